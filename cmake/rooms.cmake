@@ -1,0 +1,21 @@
+# Compiler settings of every target, and one static library per room.
+
+add_library(softkin_settings INTERFACE)
+target_include_directories(softkin_settings INTERFACE ${PROJECT_SOURCE_DIR}/src)
+target_compile_options(softkin_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -fno-math-errno)
+target_compile_definitions(softkin_settings INTERFACE SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
+target_link_libraries(softkin_settings INTERFACE Eigen3::Eigen OpenMP::OpenMP_CXX)
+if(SOFTKIN_NATIVE)
+  target_compile_options(softkin_settings INTERFACE -march=native)
+endif()
+if(SOFTKIN_SANITIZE)
+  target_compile_options(softkin_settings INTERFACE -fsanitize=${SOFTKIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(softkin_settings INTERFACE -fsanitize=${SOFTKIN_SANITIZE})
+endif()
+
+# softkin_room(NAME [rooms and libraries it uses...]): every .cpp of the folder
+function(softkin_room name)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  add_library(softkin_${name} STATIC ${sources})
+  target_link_libraries(softkin_${name} PUBLIC softkin_settings ${ARGN})
+endfunction()

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace softkin {
+
+using Index = std::int32_t;
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+/// A point a row, #V by 3 [mm].
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+}  // namespace softkin

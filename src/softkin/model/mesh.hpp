@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <softkin/core/types.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin {
+
+using Tetrahedron = std::array<Index, 4>;
+using Prism = std::array<Index, 6>;  // bottom triangle 0 1 2, top 3 4 5, edges 0-3, 1-4, 2-5
+using Triangle = std::array<Index, 3>;
+using Quad = std::array<Index, 4>;
+
+/// A named part of a mesh (a physical group): indices into the mesh's arrays, ascending, without repetition.
+struct Region {
+  std::string name;
+  int dimension = 3;  // 3: tetrahedra and prisms; 2: triangles and quads; 1 and 0: vertices
+  std::vector<Index> tetrahedra, prisms;
+  std::vector<Index> triangles, quads;
+  std::vector<Index> vertices;
+};
+
+/// A volume mesh as it stands in its file: lengths in the file's unit, elements in the file's orientation.
+struct Mesh {
+  Points vertices;  // #V by 3
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Prism> prisms;
+  std::vector<Triangle> triangles;  // surface cells that some region names
+  std::vector<Quad> quads;
+  std::vector<Region> regions;
+};
+
+/// A closed triangle surface (from STL), vertices welded.
+struct TriangleSurface {
+  Points vertices;
+  std::vector<Triangle> triangles;
+};
+
+/// Signed volume, positive where the vertex order is the standard one.
+[[nodiscard]] double signed_volume(const Points& vertices, const Tetrahedron& element);
+/// Signed volume of the prism with bilinear sides (exact integral of the linear prism's Jacobian).
+[[nodiscard]] double signed_volume(const Points& vertices, const Prism& element);
+/// Volume enclosed by a closed surface whose normals point outwards (divergence theorem).
+[[nodiscard]] double enclosed_volume(const Points& vertices, const std::vector<Triangle>& triangles);
+
+}  // namespace softkin

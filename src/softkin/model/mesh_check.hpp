@@ -1,0 +1,24 @@
+#pragma once
+
+#include <softkin/model/mesh.hpp>
+
+namespace softkin {
+
+/// What mesh check finds. Indices are into the mesh's arrays, from 0; elements count tetrahedra first, then prisms.
+struct MeshCheck {
+  std::vector<Index> negative;            // elements whose vertex order is reversed
+  std::vector<Index> degenerate;          // elements without volume (relative to their edges), or prisms that fold over
+  std::vector<Index> duplicate_elements;  // same vertices as an earlier element
+  std::vector<Index> duplicate_vertices;  // same coordinates as an earlier vertex (within 1e-9 of the diagonal)
+  std::vector<Index> unreferenced;        // vertices of no element
+  std::vector<std::array<Index, 2>> overlapping;        // elements that lie on the same side of a common face
+  std::vector<Triangle> nonmanifold_faces;              // faces of more than two elements
+  std::vector<std::array<Index, 2>> nonmanifold_edges;  // boundary edges of more than two boundary faces
+  std::vector<Index> nonmanifold_vertices;              // vertices where parts touch in a point only
+  std::vector<std::vector<Index>> parts;  // vertices of each part connected through elements, largest first
+  std::vector<double> quality;            // per element: 1 regular, 0 flat (tetrahedron: 3 * inradius / circumradius)
+};
+
+[[nodiscard]] MeshCheck check_mesh(const Mesh& mesh);
+
+}  // namespace softkin

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <softkin/model/robot_spec.hpp>
+
+namespace softkin {
+
+/// A point that moves with the mesh: the weighted sum of some vertices; the weights sum to 1.
+struct EmbeddedPoint {
+  std::vector<Index> vertices;
+  std::vector<double> weights;
+  double distance_mm = 0;  // from the nearest element; 0: inside
+
+  [[nodiscard]] Vec3 at(const Points& positions) const;
+};
+
+struct Material {
+  std::string region;
+  double shape_ratio = 1;
+  double weight = 1;
+  std::optional<double> linear_range;
+};
+
+/// A piece of cable that runs free between two points of the body, and the body's point across it: the triangle
+/// (points[segment], points[segment + 1], apex) is the actuation element of Eq. (6).
+struct CableGap {
+  Index segment = 0;
+  EmbeddedPoint apex;
+};
+
+struct Actuator {
+  std::string name;
+  ActuatorKind kind = ActuatorKind::pneumatic;
+  double low = 0, high = 0, rest = 1, weight = 5;
+  bool least_norm = true;
+  std::vector<Index> tetrahedra;      // pneumatic: elements of Model
+  std::vector<Index> prisms;          // dea: elements of Model
+  std::vector<EmbeddedPoint> points;  // cable; or the vertices of a pneumatic actuator's surface
+  std::vector<Triangle> surface;      // pneumatic with a surface: triangles over `points`
+  std::vector<CableGap> gaps;         // cable
+  double rest_measure = 0;            // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest
+};
+
+struct Marker {
+  std::string name;
+  EmbeddedPoint point;
+};
+
+struct RigidRegion {
+  std::string name;
+  std::vector<Index> vertices;
+};
+
+/// What an element is made of: a material, or the actuator that it belongs to.
+struct ElementRole {
+  Index material = -1;  // index into Model::materials, or -1
+  Index actuator = -1;  // index into Model::actuators, or -1
+  Index region = -1;    // index into Model::region_names, for output
+};
+
+/// A compiled robot: everything that depends on topology and rest shape alone. Not modified after compile().
+struct Model {
+  std::string name;
+  Points rest;                          // #V by 3 [mm], every vertex of the mesh
+  std::vector<Tetrahedron> tetrahedra;  // without void elements; positive volume
+  std::vector<Prism> prisms;            // without void elements; positive volume
+  std::vector<ElementRole> tetrahedron_roles, prism_roles;
+  std::vector<double> tetrahedron_volumes, prism_volumes;  // at rest [mm^3]
+  std::vector<std::string> region_names;
+  std::vector<Material> materials;
+  std::vector<Actuator> actuators;
+  std::vector<Marker> markers;
+  std::vector<RigidRegion> rigid;          // disjoint
+  std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
+  std::vector<bool> used;                  // per vertex: is it a vertex of an element
+  double diagonal_mm = 0;                  // of the bounding box of the used vertices
+  std::vector<std::string> notes;          // what compile() changed or the user should know, a sentence each
+
+  /// Ratios where the user asks for none [-], in the order of actuators.
+  [[nodiscard]] Eigen::VectorXd rest_actuation() const;
+};
+
+/// Checks the meaning of a description and compiles it.
+///
+/// throws  InvalidInput, naming the origin, on: unknown or empty regions, elements without material or with two
+///         actuators, values outside their ranges, a robot with a part that can still move rigidly, DEA regions with
+///         tetrahedra, pneumatic regions with prisms, cables of zero length, duplicate names, elements without volume
+[[nodiscard]] Model compile(const RobotSpec& spec);
+
+}  // namespace softkin
