@@ -3,6 +3,13 @@
 add_library(softkin_settings INTERFACE)
 target_include_directories(softkin_settings INTERFACE ${PROJECT_SOURCE_DIR}/src)
 target_compile_options(softkin_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -fno-math-errno)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(softkin_settings INTERFACE -Wno-psabi)  # no vector type crosses a library boundary
+  if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # gcc 12 reports its own AVX-512 header
+    target_compile_options(softkin_settings INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized)
+  endif()
+endif()
 target_compile_definitions(softkin_settings INTERFACE SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
 target_link_libraries(softkin_settings INTERFACE Eigen3::Eigen OpenMP::OpenMP_CXX)
 if(SOFTKIN_NATIVE)

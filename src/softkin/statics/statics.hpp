@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <softkin/core/progress.hpp>
+#include <softkin/model/equilibrium.hpp>
+#include <softkin/model/model.hpp>
+
+namespace softkin {
+
+struct StaticsOptions {
+  /// Largest move of a vertex in one iteration at which Algorithm 1 stops [mm], > 0. 0: the paper's 1e-5 mm on a robot
+  /// of its size, 8e-8 of the bounding box's diagonal.
+  double step_tolerance_mm = 0;
+  int max_iterations = 50000;  // >= 1
+  int anderson = 0;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
+  int threads = 0;             // 0: as many as the machine has
+  bool keep_history = true;    // SolveReport::history
+};
+
+/// Equilibria of one robot. Assembles and factorises once; solve() is const and may run on several threads at once.
+class Statics {
+ public:
+  /// model must outlive the object. throws InvalidInput where some part of the robot is not held
+  explicit Statics(const Model& model);
+  ~Statics();
+  Statics(Statics&&) noexcept;
+  Statics& operator=(Statics&&) noexcept;
+
+  [[nodiscard]] State rest() const;
+
+  /// Equilibrium shape under one actuation, target-shape formulation.
+  ///
+  /// actuation  m ratios in model.actuators order: length, area or volume over that at rest [-]
+  /// start      where the search begins; its positions are n x 3 [mm]; fixed vertices and rigid regions of it are
+  ///            projected to what holds them
+  /// returns    positions n x 3 [mm] and report; not converging is report.status
+  /// source     Fang et al. 2020, Alg. 1, Eqs. (1)-(10) as corrected in docs/paper.md
+  /// throws     InvalidInput on a size mismatch, a start that is not finite, or a value outside its actuator's range
+  [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions& options = {},
+                                  const ProgressCallback& progress = {}) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace softkin
