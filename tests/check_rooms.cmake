@@ -1,3 +1,5 @@
+cmake_minimum_required(VERSION 3.22)
+
 # Fails when a file of a room includes a room that it may not see (docs/architecture.md).
 set(core_sees core)
 set(model_sees core model)
