@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <random>
+#include <softkin/io/file.hpp>
 
 #include "scene_fixtures.hpp"
 
@@ -187,6 +188,16 @@ TEST(Scene, SidecarOfEqualCountsNeedsOf) {
                                "  - {name: b, sidecar: {file: vertices.txt, column: 3, of: vertices}}\n");
   EXPECT_EQ(std::get<ElementList>(spec.regions.at(0).selector).tetrahedra, std::vector<Index>{2});
   EXPECT_EQ(std::get<VertexList>(spec.regions.at(1).selector).vertices, std::vector<Index>{2});
+}
+
+TEST(Scene, ExampleOfTheManualIsAScene) {
+  const std::string manual = read_file(SOFTKIN_SOURCE_DIR "/docs/scene.md"), fence = "```yaml\n";
+  const std::size_t begin = manual.find(fence);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = manual.find("```", begin + fence.size());
+  const RobotSpec spec = parse(manual.substr(begin + fence.size(), end - begin - fence.size()));
+  EXPECT_EQ(spec.actuators.size(), 3u);
+  EXPECT_EQ(spec.markers.size(), 2u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

@@ -73,7 +73,7 @@ TEST(SceneRefusals, KeysAndUnits) {
       {"units: {lenght: m}\n", "did you mean 'length'?", 1},
       {"units: mm\n", "'units' must be a map", 1},
       {"formulation: physical\n", "formulation 'physical' is not in this version of softkin; use 'target-shape'", 1},
-      {"formulation: fem\n", "'formulation' must be one of 'target-shape', not 'fem'", 1},
+      {"formulation: fem\n", "'formulation' must be 'target-shape', not 'fem'", 1},
       {"markers:\n", "'markers' must be a list, not empty", 1},
       {"materials: {shape_ratio: 1}\n", "'materials' must be a list, not a map", 1},
   });

@@ -105,7 +105,9 @@ const std::string& text(const Node& node) {
 std::size_t choice(const Node& node, const Keys& choices) {
   const std::string& value = text(node);
   const auto found = std::find(choices.begin(), choices.end(), value);
-  if (found == choices.end()) fail(node, node.name + " must be one of " + joined(choices) + ", not " + excerpt(value));
+  if (found == choices.end())
+    fail(node,
+         node.name + " must be " + (choices.size() > 1 ? "one of " : "") + joined(choices) + ", not " + excerpt(value));
   return static_cast<std::size_t>(found - choices.begin());
 }
 
