@@ -1,0 +1,255 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <random>
+#include <softkin/io/file.hpp>
+
+#include "scene_fixtures.hpp"
+
+namespace softkin {
+namespace {
+
+RobotSpec parse(const std::string& text) {
+  return parse_scene(text, "robots/finger.yaml", fake_files());
+}
+
+RobotSpec parse_body(const std::string& text) {
+  return parse("softkin: 1\nmesh: {file: a.msh}\n" + text);
+}
+
+void expect_near(const Vec3& found, double x, double y, double z) {
+  EXPECT_LT((found - Vec3(x, y, z)).norm(), 1e-12) << found.transpose();
+}
+
+Vec3 position(const PointRef& point) {
+  return std::get<Vec3>(point.point);
+}
+
+std::string region(const PointRef& point) {
+  return std::get<std::string>(point.point);
+}
+
+TEST(Scene, WholeSceneMeshAndMaterials) {
+  const RobotSpec spec = parse(whole_scene);
+  EXPECT_EQ(spec.name, "robots/finger.yaml");
+  expect_near(spec.mesh.vertices.row(1).transpose(), 120, 0, 0);
+  ASSERT_EQ(spec.materials.size(), 2u);
+  EXPECT_EQ(spec.materials[0].region, "all");
+  EXPECT_EQ(spec.materials[0].shape_ratio, 0.5);
+  EXPECT_EQ(spec.materials[0].weight, 1);
+  EXPECT_FALSE(spec.materials[0].linear_range);
+  EXPECT_EQ(spec.materials[1].region, "rib");
+  EXPECT_EQ(spec.materials[1].weight, 2);
+  EXPECT_EQ(spec.materials[1].linear_range, 0.2);
+  EXPECT_EQ(spec.materials[1].origin.text(), "robots/finger.yaml:16");
+}
+
+TEST(Scene, WholeSceneRegions) {
+  const RobotSpec spec = parse(whole_scene);
+  ASSERT_EQ(spec.regions.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(spec.regions[i].origin.line, 6 + i);
+    EXPECT_EQ(spec.regions[i].origin.file, "robots/finger.yaml");
+  }
+  EXPECT_EQ(spec.regions[0].name, "stiff");
+  expect_near(std::get<Box>(spec.regions[0].selector).high, 10, 25, 25);
+  const auto& ball = std::get<Sphere>(spec.regions[1].selector);
+  expect_near(ball.center, 100, 200, 300);
+  EXPECT_DOUBLE_EQ(ball.radius, 4);
+  const auto& rod = std::get<Cylinder>(spec.regions[2].selector);
+  expect_near(rod.start, 0, 0, 0);
+  expect_near(rod.end, 120, 0, 0);
+  EXPECT_DOUBLE_EQ(rod.radius, 2);
+  const auto& upper = std::get<Halfspace>(spec.regions[3].selector);
+  expect_near(upper.point, 0, 0, 12.5);
+  expect_near(upper.normal, 0, 0, 1);
+  EXPECT_EQ(std::get<VertexList>(spec.regions[4].selector).vertices, (std::vector<Index>{0, 4}));
+  EXPECT_EQ(std::get<ElementList>(spec.regions[5].selector).tetrahedra, std::vector<Index>{1});
+  EXPECT_EQ(std::get<ElementList>(spec.regions[6].selector).tetrahedra, std::vector<Index>{1});
+  EXPECT_EQ(std::get<VertexList>(spec.regions[7].selector).vertices, (std::vector<Index>{0, 4}));
+}
+
+TEST(Scene, WholeSceneSupports) {
+  const RobotSpec spec = parse(whole_scene);
+  ASSERT_EQ(spec.voids.size(), 1u);
+  EXPECT_EQ(std::get<std::string>(spec.voids[0].region), "chamber2");
+  EXPECT_EQ(spec.voids[0].origin.line, 17u);
+  ASSERT_EQ(spec.fixed.size(), 3u);
+  EXPECT_EQ(std::get<std::string>(spec.fixed[0].where.region), "base");
+  EXPECT_EQ(spec.fixed[0].axes, (std::array<bool, 3>{true, true, true}));
+  const auto& box = std::get<Box>(std::get<Selector>(spec.fixed[1].where.region));
+  expect_near(box.low, -1, -1, -1);
+  expect_near(box.high, 0.1, 26, 26);
+  EXPECT_EQ(spec.fixed[1].where.origin.line, 20u);
+  EXPECT_EQ(spec.fixed[2].axes, (std::array<bool, 3>{true, false, true}));
+  ASSERT_EQ(spec.rigid.size(), 3u);
+  EXPECT_EQ(spec.rigid[0].name, "tip_plate");
+  EXPECT_EQ(std::get<std::string>(spec.rigid[0].where.region), "tip_plate");
+  EXPECT_EQ(spec.rigid[1].name, "handle");
+  EXPECT_EQ(spec.rigid[1].where.origin.line, 24u);
+  EXPECT_EQ(spec.rigid[2].name, "rigid_3");
+  EXPECT_DOUBLE_EQ(std::get<Sphere>(std::get<Selector>(spec.rigid[2].where.region)).radius, 1);
+}
+
+TEST(Scene, WholeSceneChambersAndSkins) {
+  const RobotSpec spec = parse(whole_scene);
+  ASSERT_EQ(spec.actuators.size(), 4u);
+  const ActuatorSpec &air = spec.actuators[0], &skin = spec.actuators[2], &bag = spec.actuators[3];
+  EXPECT_EQ(air.name, "air");
+  EXPECT_EQ(air.kind, ActuatorKind::pneumatic);
+  EXPECT_EQ(air.region, "chamber");
+  EXPECT_FALSE(air.surface);
+  EXPECT_EQ(air.low, 1);
+  EXPECT_EQ(air.high, 3);
+  EXPECT_EQ(air.rest, 1);
+  EXPECT_EQ(air.weight, 5);
+  EXPECT_FALSE(air.least_norm);
+  EXPECT_EQ(skin.kind, ActuatorKind::dea);
+  EXPECT_EQ(skin.region, "membrane");
+  EXPECT_EQ(skin.rest, 1.2);
+  EXPECT_EQ(skin.low, 0.7);
+  EXPECT_TRUE(skin.least_norm);
+  EXPECT_FALSE(bag.region);
+  ASSERT_TRUE(bag.surface);
+  expect_near(bag.surface->vertices.row(1).transpose(), 1000, 0, 0);
+  EXPECT_EQ(bag.surface->triangles.size(), 1u);
+  EXPECT_EQ(bag.origin.text(), "robots/finger.yaml:36");
+}
+
+TEST(Scene, WholeSceneCableAndMarkers) {
+  const RobotSpec spec = parse(whole_scene);
+  const ActuatorSpec& tendon = spec.actuators.at(1);
+  EXPECT_EQ(tendon.kind, ActuatorKind::cable);
+  EXPECT_EQ(tendon.weight, 7);
+  EXPECT_EQ(tendon.origin.line, 28u);
+  ASSERT_EQ(tendon.points.size(), 3u);
+  expect_near(position(tendon.points[1]), 60, 12, 22);
+  EXPECT_EQ(region(tendon.points[2]), "eyelet");
+  EXPECT_EQ(tendon.points[2].origin.line, 30u);
+  ASSERT_EQ(tendon.apexes.size(), 1u);
+  expect_near(position(tendon.apexes[0]), 30, 12, 10);
+  ASSERT_EQ(spec.markers.size(), 2u);
+  EXPECT_EQ(spec.markers[0].name, "tip");
+  expect_near(position(spec.markers[0].at), 120, 12.5, 0);
+  EXPECT_EQ(spec.markers[0].at.origin.line, 38u);
+  EXPECT_EQ(region(spec.markers[1].at), "tip");
+}
+
+TEST(Scene, EveryUnitOfLength) {
+  const std::pair<const char*, double> units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"um", 1e-3}, {"in", 25.4}};
+  for (const auto& [unit, mm] : units) {
+    const RobotSpec spec =
+        parse_body("units: {length: " + std::string(unit) + "}\nmarkers: [{name: p, point: [1, 0, -2]}]");
+    expect_near(position(spec.markers.at(0).at), mm, 0, -2 * mm);
+    EXPECT_DOUBLE_EQ(spec.mesh.vertices(1, 0), 0.12 * mm);
+  }
+  EXPECT_EQ(position(parse_body("markers: [{name: p, point: [1, .5, 1e2]}]").markers.at(0).at), Vec3(1, 0.5, 100));
+}
+
+TEST(Scene, LeastSceneHasDefaults) {
+  const RobotSpec spec = parse("\xEF\xBB\xBF# a comment\r\nsoftkin: 1\r\nmesh: {file: a.msh}\r\n");
+  EXPECT_EQ(spec.mesh.tetrahedra.size(), 2u);
+  EXPECT_TRUE(spec.materials.empty() && spec.actuators.empty() && spec.fixed.empty() && spec.markers.empty());
+}
+
+TEST(Scene, FilesAreBesideTheScene) {
+  std::string asked;
+  SceneFiles files = fake_files();
+  files.mesh = [&](const std::filesystem::path& path) {
+    asked = path.string();
+    return Mesh{};
+  };
+  (void)parse_scene("{softkin: 1, mesh: {file: sub/a.msh}}", "robots/finger.yaml", files);
+  EXPECT_EQ(asked, "robots/sub/a.msh");
+  (void)parse_scene("{softkin: 1, mesh: {file: /data/a.msh}}", "robots/finger.yaml", files);
+  EXPECT_EQ(asked, "/data/a.msh");
+}
+
+TEST(Scene, AliasesShareAValue) {
+  const RobotSpec spec = parse_body(
+      "fixed: [{box: &feet [[0, 0, 0], [1, 1, 1]]}]\n"
+      "regions: [{name: a, box: *feet}, {name: b, box: *feet}]\n");
+  EXPECT_EQ(std::get<Box>(spec.regions.at(1).selector).high, Vec3(1, 1, 1));
+}
+
+TEST(Scene, NamesMayBeQuotedOrLookLikeNumbers) {
+  const RobotSpec spec = parse_body("void: [\"air chamber\", 12, 'y']\nfixed: [{region: '# 3', axes: y}]");
+  EXPECT_EQ(std::get<std::string>(spec.voids.at(0).region), "air chamber");
+  EXPECT_EQ(std::get<std::string>(spec.voids.at(1).region), "12");
+  EXPECT_EQ(std::get<std::string>(spec.voids.at(2).region), "y");
+  EXPECT_EQ(std::get<std::string>(spec.fixed.at(0).where.region), "# 3");
+  EXPECT_EQ(spec.fixed.at(0).axes, (std::array<bool, 3>{false, true, false}));
+}
+
+TEST(Scene, SidecarOfEqualCountsNeedsOf) {
+  const std::string head = "softkin: 1\nmesh: {file: square.msh}\n";
+  const RobotSpec spec = parse(head +
+                               "regions:\n  - {name: a, sidecar: {file: vertices.txt, column: 3, of: elements}}\n"
+                               "  - {name: b, sidecar: {file: vertices.txt, column: 3, of: vertices}}\n");
+  EXPECT_EQ(std::get<ElementList>(spec.regions.at(0).selector).tetrahedra, std::vector<Index>{2});
+  EXPECT_EQ(std::get<VertexList>(spec.regions.at(1).selector).vertices, std::vector<Index>{2});
+}
+
+TEST(Scene, ExampleOfTheManualIsAScene) {
+  const std::string manual = read_file(SOFTKIN_SOURCE_DIR "/docs/scene.md"), fence = "```yaml\n";
+  const std::size_t begin = manual.find(fence);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = manual.find("```", begin + fence.size());
+  const RobotSpec spec = parse(manual.substr(begin + fence.size(), end - begin - fence.size()));
+  EXPECT_EQ(spec.actuators.size(), 3u);
+  EXPECT_EQ(spec.markers.size(), 2u);
+}
+
+/// 0: parsed, 1: refused. Anything else escapes and fails the test.
+int outcome(const std::string& text) {
+  try {
+    (void)parse(text);
+    return 0;
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("robots/finger.yaml", 0), 0u) << error.what();
+    return 1;
+  }
+}
+
+TEST(SceneFuzz, FlippedBytesAreReadOrRefused) {
+  std::mt19937 random(20);
+  const std::string good = whole_scene;
+  int counts[2] = {0, 0};
+  for (int i = 0; i < 2000; ++i) {
+    std::string text = good;
+    const int flips = 1 + static_cast<int>(random() % 3);
+    for (int k = 0; k < flips; ++k) text[random() % text.size()] ^= static_cast<char>(1u << (random() % 8));
+    ++counts[outcome(text)];
+  }
+  EXPECT_GT(counts[0], 50);
+  EXPECT_GT(counts[1], 500);
+}
+
+TEST(SceneFuzz, CutsInsertionsAndBracketsAreReadOrRefused) {
+  std::mt19937 random(21);
+  const std::string good = whole_scene, marks = "[]{},:-?&*!|>'\"%@`#\n\t ~.\\";
+  int counts[2] = {0, 0};
+  for (int i = 0; i < 2000; ++i) {
+    std::string text = good.substr(0, i % 4 == 0 ? random() % good.size() : good.size());
+    for (int k = 0; k < 3; ++k) text.insert(random() % (text.size() + 1), 1, marks[random() % marks.size()]);
+    ++counts[outcome(text)];
+  }
+  EXPECT_GT(counts[1], 1000);
+}
+
+TEST(SceneFuzz, DeepAndManyfoldScenesEnd) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(outcome(std::string(100000, '[')), 1);
+  EXPECT_EQ(outcome(std::string(100000, '{')), 1);
+  std::string laughs = "a0: &a0 [x]\n";
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = " *a" + std::to_string(i - 1);
+    laughs +=
+        "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + before + "," + before + "," + before + "]\n";
+  }
+  EXPECT_EQ(outcome("softkin: 1\nmesh: {file: a.msh}\n" + laughs), 1);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+}
+
+}  // namespace
+}  // namespace softkin
