@@ -9,11 +9,13 @@ namespace softkin {
 [[nodiscard]] Mesh read_medit(const std::filesystem::path& path);
 
 /// TetGen .node + .ele (path names either; the other stands beside it) and, where present, .face. Numbering from 0 or
-/// 1. The element attribute becomes regions "attribute_N", face markers "marker_N".
+/// 1. The (last) element attribute becomes regions "attribute_N", face markers "marker_N".
 [[nodiscard]] Mesh read_tetgen(const std::filesystem::path& path);
 
 /// Abaqus .inp: *NODE, *ELEMENT (C3D4, C3D6), *NSET, *ELSET (also GENERATE, and sets of sets), *SURFACE of element
-/// faces.
+/// faces. Sets become regions by their names (spelled as at first mention). Flat files, or one part with one instance
+/// that is not moved; other element types and *INCLUDE, *SYSTEM, *NGEN, ... are refused; materials, steps and the like
+/// are passed over.
 [[nodiscard]] Mesh read_abaqus(const std::filesystem::path& path);
 
 /// The form that the paper's authors publish: "N vertices", "M tets", coordinates, "4 a b c d" from 0. Sidecars beside
@@ -24,6 +26,7 @@ namespace softkin {
 /// count up from 1 or 0) or one bare 0/1 each. column counts from 1.
 struct Sidecar {
   Index rows = 0;
+  bool bare = false;  // one 0/1 a row, without ids
   std::vector<std::vector<Index>> columns;
 };
 [[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);

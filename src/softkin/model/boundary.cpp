@@ -5,10 +5,6 @@ namespace softkin {
 
 namespace {
 
-constexpr int tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-constexpr int prism_triangles[2][3] = {{0, 2, 1}, {3, 4, 5}};
-constexpr int prism_quads[3][4] = {{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
-
 template <std::size_t K>
 struct Face {
   std::array<Index, K> sorted, vertices;

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <softkin/model/embedding.hpp>
+#include <softkin/model/regions.hpp>
+#include <softkin/model/surface_tree.hpp>
+
+namespace softkin {
+
+/// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
+struct Compilation {
+  explicit Compilation(const RobotSpec& robot) : spec(robot), origin{.file = robot.name}, regions(robot) {}
+
+  const RobotSpec& spec;
+  Origin origin;  // of what has no line of its own
+  RegionTable regions;
+  Model model;
+  // index in the model of each element of the mesh; -1: void
+  std::vector<Index> tetrahedron_at, prism_at;
+  // the other way round
+  std::vector<Index> tetrahedron_of, prism_of;
+  // elements with a material and those of dielectric elastomers: where points are embedded
+  std::vector<Tetrahedron> solid_tetrahedra;
+  std::vector<Prism> solid_prisms;
+  std::optional<Embedder> embedder;
+};
+
+/// Drops void elements, orients the others, measures them and names their regions.
+void compile_elements(Compilation& c);
+
+/// Checks names and numbers of the actuators and gives them their elements.
+void compile_actuator_elements(Compilation& c);
+
+/// Gives the other elements their materials, and prepares embedding in them.
+void compile_materials(Compilation& c);
+
+/// Embeds cables, finds their gaps and apexes; embeds the surfaces of pneumatic actuators.
+void compile_actuator_points(Compilation& c);
+void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
+
+/// Fixed vertices and rigid regions.
+void compile_supports(Compilation& c);
+
+void compile_markers(Compilation& c);
+
+/// A point of the body; what names it in messages. Notes one that is outside, refuses one that is far outside.
+[[nodiscard]] EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what);
+
+[[nodiscard]] std::string number_text(double value);
+[[nodiscard]] std::string count_text(std::size_t count, const std::string& one, const std::string& many = "");
+[[nodiscard]] std::string point_text(const Vec3& point);
+
+}  // namespace softkin

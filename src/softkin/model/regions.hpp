@@ -1,0 +1,49 @@
+#pragma once
+
+#include <softkin/model/model.hpp>
+
+namespace softkin {
+
+/// The regions of a description by name: the groups of its mesh, then its own, and "all" (every element).
+///
+/// Groups of dimension 3 and 2 hold the vertices of their cells. A shape holds the vertices inside it or on its
+/// boundary (within 1e-9 of the mesh's diagonal) and the elements whose centroids are; a list of vertices those, and
+/// the elements all of whose vertices are listed; a list of elements those and their vertices.
+/// Dimension: 3 where a shape or a list of elements holds an element, 0 for other shapes and lists of vertices.
+class RegionTable {
+ public:
+  /// throws  InvalidInput on duplicate names, shapes without extent or that hold nothing, indices out of range
+  explicit RegionTable(const RobotSpec& spec);
+
+  /// throws  InvalidInput at origin, with the nearest name, where the name is unknown, stands for two groups or
+  ///         for nothing
+  [[nodiscard]] const Region& find(const std::string& name, const Origin& origin) const;
+
+  /// A region by its name, or what a shape in its place selects.
+  [[nodiscard]] Region resolve(const RegionRef& reference) const;
+
+  /// The mesh's, then the scene's.
+  [[nodiscard]] const std::vector<Region>& regions() const { return regions_; }
+
+ private:
+  [[nodiscard]] Region select(const Selector& selector, const std::string& name, const Origin& origin) const;
+
+  const Mesh& mesh_;
+  double tolerance_ = 0;
+  std::vector<Region> regions_;
+  Region all_;
+};
+
+/// "region 'base'" or "the box", for messages.
+[[nodiscard]] std::string label(const RegionRef& reference);
+
+/// The mean of a region as weights of its vertices: of its volume (dimension 3), its area (2), else of its vertices.
+/// A triangle or a tetrahedron acts at its centroid, a quad as the mean of its two triangulations.
+///
+/// throws  InvalidInput where the region has no volume, area or vertex to take the mean of
+[[nodiscard]] EmbeddedPoint mean_of(const Region& region, const Mesh& mesh);
+
+/// Whether some three of the vertices span a plane (height over the longest distance above 1e-6).
+[[nodiscard]] bool span_plane(const Points& points, const std::vector<Index>& vertices);
+
+}  // namespace softkin
