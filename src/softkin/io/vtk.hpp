@@ -2,15 +2,27 @@
 
 #include <filesystem>
 #include <softkin/model/mesh.hpp>
+#include <string>
+#include <vector>
 
 namespace softkin {
 
-/// Legacy .vtk unstructured grid, ASCII and binary. Integer cell arrays become regions "ARRAY_VALUE".
+/// Legacy .vtk unstructured grid, versions 2.0 to 5.1, ASCII and binary. Cells: tetrahedra and wedges; triangles,
+/// quads, lines and vertices only as parts of regions. Integer cell arrays of one component with at most 1000 distinct
+/// values become regions "ARRAY_VALUE"; where a value covers cells of several dimensions, the highest has that name and
+/// the others "ARRAY_VALUE_2d", "_1d", "_0d". Other arrays are not read. Wedges keep the order of their vertices.
+///
+/// throws  InvalidInput naming file and line (byte in binary files)
 [[nodiscard]] Mesh read_vtk(const std::filesystem::path& path);
 
-/// XML .vtu: ascii, binary (base64) and appended (raw, base64), zlib-compressed or not. Regions as in read_vtk;
-/// where the file names them (as write_vtu does), by that name.
+/// XML .vtu of one piece: ascii, binary (base64) and appended (raw, base64), zlib-compressed or not. Cells and regions
+/// as in read_vtk; where the file names them (as write_vtu does), by that name.
+///
+/// throws  InvalidInput naming file and line (byte in appended data)
 [[nodiscard]] Mesh read_vtu(const std::filesystem::path& path);
+
+/// The points of a .vtu alone, in the file's order. Throws as read_vtu.
+[[nodiscard]] Points read_vtu_points(const std::filesystem::path& path);
 
 /// A named array over points or cells: count * components values.
 struct Field {
@@ -29,6 +41,11 @@ struct VtuContent {
   std::vector<std::string> region_names;
 };
 
+/// Writes a .vtu that ParaView and read_vtu read: appended raw data, zlib-compressed, fields as Float64. Regions are
+/// the cell array "region" (Int32), their names the field array "region_names" (strings).
+///
+/// throws  InvalidInput naming the field, cell or region: no points, a value that is not finite, a length other than
+///         count * components, a vertex or region outside its range, names that are empty, repeated or not printable
 void write_vtu(const std::filesystem::path& path, const VtuContent& content);
 
 /// Collection of .vtu files over a parameter; `file` is relative to the .pvd's folder.
@@ -36,6 +53,8 @@ struct PvdEntry {
   double time = 0;
   std::string file;
 };
+
+/// Throws InvalidInput where a time is not finite or a file name is empty or not printable.
 void write_pvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries);
 
 }  // namespace softkin

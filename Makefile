@@ -1,0 +1,77 @@
+# The one place that knows how softkin is set up, built, run and tested. `make` alone lists what there is.
+
+SETUP ?= scripts/setup.sh
+CLANG_FORMAT ?= $(or $(shell command -v clang-format-14),clang-format)
+ifneq ($(shell command -v ccache),)
+export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+endif
+export CTEST_OUTPUT_ON_FAILURE = 1
+
+cores := $(shell nproc)
+sources = $(shell find src apps bench tests -name '*.cpp' -o -name '*.hpp')
+example := examples/pneumatic_finger
+# the rooms that read what users write, and so see hostile input: tested under the sanitizers
+reading := $(foreach room,core model io,$(if $(wildcard tests/$(room)/test_*.cpp),$(room)))
+empty :=
+reading_pattern = ^($(subst $(empty) $(empty),|,$(strip $(reading))))$$
+
+.PHONY: help setup build run test test-release test-sanitize bench format format-check clean
+
+help:
+	@echo 'make run           install what is missing, build, and bend the example finger'
+	@echo 'make test          install what is missing, build everything, run all tests and checks'
+	@echo 'make build         build build/softkin'
+	@echo 'make bench         build and run the benchmarks'
+	@echo 'make format        format the sources; make format-check only looks'
+	@echo 'make clean         remove the build folders'
+
+setup:
+	@$(SETUP)
+
+build: setup
+	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=OFF
+	cmake --build --preset release --target softkin_cli
+
+run: build
+	@mkdir -p out
+	build/softkin fk $(example)/pneumatic_finger.yaml --path $(example)/path.csv -o out/pneumatic_finger.pvd \
+	  --image out/pneumatic_finger.png --report out/pneumatic_finger.json
+	@echo
+	@echo 'Open next:'
+	@echo '  out/pneumatic_finger.png    the finger in its last pose'
+	@echo '  out/pneumatic_finger.pvd    every pose, in ParaView'
+	@echo '  out/pneumatic_finger.json   positions of the markers, iterations, times'
+	@echo '  README.md                   the five-minute tour'
+
+test:
+	@$(SETUP) --tests
+	$(MAKE) --no-print-directory format-check
+	$(MAKE) --no-print-directory test-release
+	$(MAKE) --no-print-directory test-sanitize
+
+test-release:
+	cmake --preset release -DSOFTKIN_TESTS=ON -DSOFTKIN_BENCH=ON
+	cmake --build --preset release
+	ctest --test-dir build --parallel $(cores) --no-tests=error
+
+test-sanitize:
+	cmake --preset sanitize
+	cmake --build --preset sanitize --target $(reading:%=test_%)
+	ctest --test-dir build-sanitize --parallel $(cores) --no-tests=error --tests-regex '$(reading_pattern)'
+
+bench: setup
+	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON
+	cmake --build --preset release
+	@found=0; for program in build/bench/bench_*; do \
+	  [ -f "$$program" ] && [ -x "$$program" ] || continue; \
+	  found=1; echo "$$program"; "$$program" || exit 1; \
+	done; [ $$found = 1 ] || { echo 'bench: no program build/bench/bench_*' >&2; exit 1; }
+
+format:
+	$(CLANG_FORMAT) -i $(sources)
+
+format-check:
+	$(CLANG_FORMAT) --dry-run --Werror $(sources)
+
+clean:
+	rm -rf build build-debug build-sanitize

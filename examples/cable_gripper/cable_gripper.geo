@@ -1,0 +1,7 @@
+// Cable-driven gripper finger of one material: the shape of ../knuckle_finger.geo.
+// Remesh: gmsh -3 cable_gripper.geo -o cable_gripper.msh
+Include "../knuckle_finger.geo";
+
+Physical Volume("body") = {segment[], knuckle[]};
+Physical Surface("base") = base[];
+Physical Surface("tip") = tip[];

@@ -1,0 +1,131 @@
+#include <softkin/io/gmsh_builder.hpp>
+
+namespace softkin::gmsh {
+
+namespace {
+
+template <std::size_t N>
+std::array<Index, N> to_array(std::span<const Index> vertices) {
+  std::array<Index, N> cell;
+  std::copy_n(vertices.begin(), N, cell.begin());
+  return cell;
+}
+
+void sort_unique(std::vector<Index>& indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+template <std::size_t N>
+void add_cell(CellStore<N>& store, std::span<const Index> vertices, std::span<Region* const> groups,
+              std::vector<Index> Region::*list) {
+  const Index cell = store.add(to_array<N>(vertices));
+  for (Region* group : groups) (group->*list).push_back(cell);
+}
+
+}  // namespace
+
+bool NodeNumbers::insert(std::int64_t number, Index row) {
+  if (!is_dense(number)) return sparse_.try_emplace(number, row).second;
+  const auto place = static_cast<std::size_t>(number);
+  if (place >= dense_.size()) dense_.resize(std::min(dense_limit_, 2 * place + 1), -1);
+  if (dense_[place] >= 0) return false;
+  dense_[place] = row;
+  return true;
+}
+
+Index NodeNumbers::find(std::int64_t number) const {
+  if (is_dense(number)) {
+    const auto place = static_cast<std::size_t>(number);
+    return place < dense_.size() ? dense_[place] : -1;
+  }
+  const auto found = sparse_.find(number);
+  return found == sparse_.end() ? -1 : found->second;
+}
+
+void Builder::begin_nodes(std::size_t count) {
+  positions_.resize(static_cast<Eigen::Index>(count), 3);
+  numbers_ = NodeNumbers(count);
+}
+
+bool Builder::number_node(std::int64_t number) {
+  if (!numbers_.insert(number, node_count_)) return false;
+  ++node_count_;
+  return true;
+}
+
+Region& Builder::group(int dimension, int tag) {
+  const auto [place, is_new] = groups_.try_emplace({dimension, tag});
+  if (is_new) place->second.dimension = dimension;
+  return place->second;
+}
+
+void Builder::add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
+  switch (type) {
+    case CellType::tetrahedron:
+      return add_cell(tetrahedra_, vertices, groups, &Region::tetrahedra);
+    case CellType::prism:
+      return add_cell(prisms_, vertices, groups, &Region::prisms);
+    case CellType::triangle:
+      if (!groups.empty()) add_cell(triangles_, vertices, groups, &Region::triangles);
+      return;
+    case CellType::quad:
+      if (!groups.empty()) add_cell(quads_, vertices, groups, &Region::quads);
+      return;
+    case CellType::line:
+    case CellType::point:
+      for (Region* group : groups) group->vertices.insert(group->vertices.end(), vertices.begin(), vertices.end());
+      return;
+  }
+}
+
+std::string Builder::name_group(int dimension, int tag, const std::string& name) {
+  const Key key{dimension, tag};
+  const auto [known, is_new] = names_.try_emplace(key, name);
+  if (!is_new)
+    return "physical group " + std::to_string(tag) + " of dimension " + std::to_string(dimension) +
+           " has a name already: '" + known->second + "'";
+  if (!used_names_.emplace(dimension, name).second)
+    return "two physical groups of dimension " + std::to_string(dimension) + " have the name '" + name + "'";
+  named_.push_back(key);
+  return "";
+}
+
+void Builder::move_to_regions(const Key& key, const std::string& name) {
+  Region& region = regions_.emplace_back(std::move(group(key.first, key.second)));
+  region.name = name;
+  groups_.erase(key);
+}
+
+std::string Builder::make_regions() {
+  std::map<std::string, int> highest;
+  for (const auto& [dimension, name] : used_names_) highest[name] = std::max(highest[name], dimension);
+  for (const Key& key : named_) {
+    const std::string& name = names_[key];
+    move_to_regions(key, key.first == highest[name] ? name : name + "_" + std::to_string(key.first) + "d");
+  }
+  while (!groups_.empty()) {
+    const Key key = groups_.begin()->first;
+    move_to_regions(key, "physical_" + std::to_string(key.first) + "_" + std::to_string(key.second));
+  }
+  std::set<std::string> seen;
+  for (const Region& region : regions_)
+    if (!seen.insert(region.name).second) return "two physical groups would become regions named '" + region.name + "'";
+  return "";
+}
+
+Mesh Builder::take() {
+  for (Region& region : regions_)
+    for (auto* list : {&region.tetrahedra, &region.prisms, &region.triangles, &region.quads, &region.vertices})
+      sort_unique(*list);
+  Mesh mesh;
+  mesh.vertices = std::move(positions_);
+  mesh.tetrahedra = tetrahedra_.take();
+  mesh.prisms = prisms_.take();
+  mesh.triangles = triangles_.take();
+  mesh.quads = quads_.take();
+  mesh.regions = std::move(regions_);
+  return mesh;
+}
+
+}  // namespace softkin::gmsh

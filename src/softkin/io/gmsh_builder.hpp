@@ -1,0 +1,108 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <softkin/io/gmsh_types.hpp>
+#include <softkin/model/mesh.hpp>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace softkin::gmsh {
+
+/// Rows of the vertices by their number in the file; numbers may be sparse and unordered.
+class NodeNumbers {
+ public:
+  explicit NodeNumbers(std::size_t expected = 0) : dense_limit_(4 * expected + 1024) {}
+  /// False where the number is taken.
+  bool insert(std::int64_t number, Index row);
+  /// -1 where no node has the number.
+  [[nodiscard]] Index find(std::int64_t number) const;
+
+ private:
+  [[nodiscard]] bool is_dense(std::int64_t number) const { return static_cast<std::size_t>(number) < dense_limit_; }
+
+  std::size_t dense_limit_;
+  std::vector<Index> dense_;
+  std::unordered_map<std::int64_t, Index> sparse_;
+};
+
+/// Cells in the order in which they come; those with the same vertices are stored once.
+template <std::size_t N>
+class CellStore {
+ public:
+  /// Index of the cell, new or known.
+  Index add(const std::array<Index, N>& cell) {
+    std::array<Index, N> key = cell;
+    std::sort(key.begin(), key.end());
+    const auto [place, is_new] = known_.try_emplace(key, static_cast<Index>(cells_.size()));
+    if (is_new) cells_.push_back(cell);
+    return place->second;
+  }
+  [[nodiscard]] bool empty() const { return cells_.empty(); }
+  std::vector<std::array<Index, N>> take() { return std::move(cells_); }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const std::array<Index, N>& key) const {
+      std::uint64_t hash = 0;
+      for (const Index i : key) {
+        hash = (hash ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15u;
+        hash ^= hash >> 32;
+      }
+      return static_cast<std::size_t>(hash);
+    }
+  };
+
+  std::vector<std::array<Index, N>> cells_;
+  std::unordered_map<std::array<Index, N>, Index, Hash> known_;
+};
+
+/// Collects what a .msh file holds and makes a Mesh of it.
+class Builder {
+ public:
+  void begin_nodes(std::size_t count);
+  /// Gives the next vertex a number; false where that is taken.
+  bool number_node(std::int64_t number);
+  void place_node(Index row, const Vec3& position) { positions_.row(row) = position.transpose(); }
+  [[nodiscard]] Index node_count() const { return node_count_; }
+  [[nodiscard]] Index find_node(std::int64_t number) const { return numbers_.find(number); }
+
+  /// The physical group of a dimension and tag; the reference stays valid.
+  Region& group(int dimension, int tag);
+  /// vertices holds shape_of(type).nodes rows.
+  void add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
+  [[nodiscard]] bool has_volume_elements() const { return !tetrahedra_.empty() || !prisms_.empty(); }
+
+  /// Why the group cannot get that name, or "".
+  std::string name_group(int dimension, int tag, const std::string& name);
+  /// Turns the groups into named regions; the reason why that fails, or "".
+  std::string make_regions();
+  /// The mesh, once.
+  Mesh take();
+
+ private:
+  using Key = std::pair<int, int>;  // dimension, tag
+
+  void move_to_regions(const Key& key, const std::string& name);
+
+  Points positions_;
+  Index node_count_ = 0;
+  NodeNumbers numbers_;
+  CellStore<3> triangles_;
+  CellStore<4> quads_, tetrahedra_;
+  CellStore<6> prisms_;
+  std::map<Key, Region> groups_;
+  std::map<Key, std::string> names_;
+  std::set<std::pair<int, std::string>> used_names_;  // with their dimension
+  std::vector<Key> named_;                            // in the order of the file
+  std::vector<Region> regions_;
+};
+
+}  // namespace softkin::gmsh

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <softkin/core/types.hpp>
+#include <string>
+
+namespace softkin::gmsh {
+
+/// Element types of the MSH format that softkin knows.
+enum class CellType : int { line = 1, triangle = 2, quad = 3, tetrahedron = 4, prism = 6, point = 15 };
+
+struct CellShape {
+  int dimension;
+  int nodes;
+};
+
+[[nodiscard]] CellShape shape_of(CellType type);
+
+/// Why an element type cannot be read, or "" where it is a CellType.
+[[nodiscard]] std::string refusal_of_type(std::int64_t type);
+
+inline constexpr std::int64_t kMaxIndex = std::numeric_limits<Index>::max();
+inline constexpr std::int64_t kMaxInt = std::numeric_limits<std::int32_t>::max();
+inline constexpr std::int64_t kMaxSize = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace softkin::gmsh
