@@ -29,8 +29,7 @@ struct SolveReport {
   double step_mm = 0;             // last step [mm]
   double tolerance_mm = 0;        // step at which the iteration stops [mm]
   double gradient_norm = 0;       // [mm^4]
-  double contraction = 0;         // ratio of the last steps [-]
-  double estimated_error_mm = 0;  // step * contraction / (1 - contraction): what a small step may hide [mm]
+  double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   double seconds = 0;
 };

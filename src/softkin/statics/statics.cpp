@@ -22,17 +22,7 @@ std::string number(double value) {
   return text;
 }
 
-void check(const Model& model, const Actuation& actuation, const State& start, const StaticsOptions& options) {
-  if (actuation.size() != static_cast<Index>(model.actuators.size()))
-    throw InvalidInput("the actuation has " + std::to_string(actuation.size()) + " values, the robot " +
-                       std::to_string(model.actuators.size()) + " actuators");
-  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const Actuator& actuator = model.actuators[a];
-    const double value = actuation[static_cast<Index>(a)];
-    if (!(value >= actuator.low && value <= actuator.high))
-      throw InvalidInput("actuator '" + actuator.name + "': the ratio " + number(value) + " is outside its range " +
-                         number(actuator.low) + " to " + number(actuator.high));
-  }
+void check_start(const Model& model, const State& start, const StaticsOptions& options) {
   if (start.positions.rows() != model.rest.rows())
     throw InvalidInput("the start has " + std::to_string(start.positions.rows()) + " vertices, the robot " +
                        std::to_string(model.rest.rows()));
@@ -43,15 +33,44 @@ void check(const Model& model, const Actuation& actuation, const State& start, c
         "solver options out of range: tolerance >= 0 mm, iterations >= 1, anderson 0 to 20, threads >= 0");
 }
 
-/// Ratio of the last steps, over ten iterations where there are as many.
-double contraction_of(const std::vector<double>& steps) {
-  if (steps.size() < 2) return 0;
-  const std::size_t span = std::min<std::size_t>(10, steps.size() - 1);
-  const double before = steps[steps.size() - 1 - span];
-  return before > 0 ? std::pow(steps.back() / before, 1.0 / static_cast<double>(span)) : 0;
-}
+/// How far the fixed point may be: the step over the least change of steps per change of shape in the last iterations,
+/// which for a linear iteration x <- G x is bounded by 1 - (largest eigenvalue of G), accelerated or not.
+class ErrorEstimate {
+ public:
+  void add(const Points& at, const Points& step) {
+    if (last_at_.size() > 0) {
+      const double moved = (at - last_at_).norm();
+      if (moved > 0) slopes_[count_++ % slopes_.size()] = (step - last_step_).norm() / moved;
+    }
+    last_at_ = at;
+    last_step_ = step;
+  }
+  [[nodiscard]] double mm(double step_mm) const {
+    double least = 1;
+    for (std::size_t i = 0; i < std::min(count_, slopes_.size()); ++i) least = std::min(least, slopes_[i]);
+    return step_mm / std::max(least, 1e-9);
+  }
+
+ private:
+  Points last_at_, last_step_;
+  std::array<double, 20> slopes_{};
+  std::size_t count_ = 0;
+};
 
 }  // namespace
+
+void check_actuation(const Model& model, const Actuation& actuation) {
+  if (actuation.size() != static_cast<Index>(model.actuators.size()))
+    throw InvalidInput("the actuation has " + std::to_string(actuation.size()) + " values, the robot " +
+                       std::to_string(model.actuators.size()) + " actuators");
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const double value = actuation[static_cast<Index>(a)];
+    if (!(value >= actuator.low && value <= actuator.high))
+      throw InvalidInput("actuator '" + actuator.name + "': the ratio " + number(value) + " is outside its range " +
+                         number(actuator.low) + " to " + number(actuator.high));
+  }
+}
 
 struct Statics::Parts {
   explicit Parts(const Model& robot) : model(robot), system(robot), global(robot, system.global_matrix()) {}
@@ -73,7 +92,8 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
                            const ProgressCallback& progress) const {
   const auto begin = std::chrono::steady_clock::now();
   const Model& model = parts_->model;
-  check(model, actuation, start, options);
+  check_actuation(model, actuation);
+  check_start(model, start, options);
   const int threads = options.threads > 0 ? options.threads : omp_get_num_procs();
   const double paper_tolerance = 8e-8 * model.diagonal_mm;
 
@@ -87,7 +107,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   std::vector<Pose> poses = parts_->global.project(positions);
   TargetShapeSystem::Scratch scratch = parts_->system.make_scratch();
   Anderson anderson(options.anderson);
-  std::vector<double> steps;
+  ErrorEstimate estimate;
   Points before;
   while (report.iterations < options.max_iterations) {
     report.energy = parts_->system.local_step(actuation, positions, scratch, threads);
@@ -100,7 +120,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
       break;
     }
     ++report.iterations;
-    steps.push_back(report.step_mm);
+    estimate.add(before, positions - before);
     if (options.keep_history) report.history.push_back({report.energy, report.step_mm, report.gradient_norm});
     if (report.step_mm < report.tolerance_mm) {
       report.status = Status::converged;
@@ -115,9 +135,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
       poses = parts_->global.project(positions);
     }
   }
-  report.contraction = contraction_of(steps);
-  report.estimated_error_mm = report.contraction < 1 ? report.step_mm * report.contraction / (1 - report.contraction)
-                                                     : report.step_mm * static_cast<double>(steps.size());
+  report.estimated_error_mm = estimate.mm(report.step_mm);
   report.seconds = seconds_since(begin);
   return result;
 }

@@ -7,12 +7,15 @@
 
 namespace softkin {
 
+/// throws  InvalidInput on a size mismatch or a value outside its actuator's range
+void check_actuation(const Model& model, const Actuation& actuation);
+
 struct StaticsOptions {
   /// Largest move of a vertex in one iteration at which Algorithm 1 stops [mm], > 0. 0: the paper's 1e-5 mm on a robot
   /// of its size, 8e-8 of the bounding box's diagonal.
   double step_tolerance_mm = 0;
   int max_iterations = 50000;  // >= 1
-  int anderson = 0;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
+  int anderson = 6;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
   int threads = 0;             // 0: as many as the machine has
   bool keep_history = true;    // SolveReport::history
 };

@@ -1,0 +1,81 @@
+#include "fk_files.hpp"
+
+#include <cstdio>
+#include <softkin/io/picture.hpp>
+#include <softkin/io/vtk.hpp>
+#include <softkin/model/boundary.hpp>
+#include <softkin/statics/measure.hpp>
+
+namespace softkin::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Boundary of what has substance: the body and dielectric elastomers, not the air in chambers.
+std::vector<Triangle> visible_surface(const Model& model) {
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Prism> prisms;
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
+    if (model.tetrahedron_roles[e].material >= 0) tetrahedra.push_back(model.tetrahedra[e]);
+  for (const Prism& prism : model.prisms) prisms.push_back(prism);
+  return triangulated(boundary_of(tetrahedra, prisms));
+}
+
+std::vector<ElementRole> all_roles(const Model& model) {
+  std::vector<ElementRole> roles = model.tetrahedron_roles;
+  roles.insert(roles.end(), model.prism_roles.begin(), model.prism_roles.end());
+  return roles;
+}
+
+}  // namespace
+
+void write_shape(const fs::path& path, const Model& model, const Points& positions) {
+  VtuContent content;
+  content.points = positions;
+  content.tetrahedra = model.tetrahedra;
+  content.prisms = model.prisms;
+  const Points moved = positions - model.rest;
+  content.point_fields.push_back({"displacement_mm", 3, {moved.data(), moved.data() + moved.size()}});
+
+  const ElementDeformation deformation = deformation_of(model, positions);
+  Field greatest{"principal_strain_max", 1, {}}, least{"principal_strain_min", 1, {}}, actuator{"actuator", 1, {}};
+  for (const auto& strain : deformation.strain) {
+    greatest.values.push_back(strain[0]);
+    least.values.push_back(strain[2]);
+  }
+  for (const ElementRole& role : all_roles(model)) {
+    content.cell_regions.push_back(role.region);
+    actuator.values.push_back(role.actuator);
+  }
+  content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator};
+  content.region_names = model.region_names;
+  write_vtu(path, content);
+}
+
+fs::path series_file(const fs::path& pvd, std::size_t step) {
+  char number[24];
+  std::snprintf(number, sizeof number, "_%04zu.vtu", step);
+  return fs::path(pvd).replace_filename(pvd.stem().string() + number);
+}
+
+void write_image(const fs::path& path, const Model& model, const Points& positions,
+                 const std::optional<std::array<double, 3>>& view, const std::string& title) {
+  const std::vector<Triangle> surface = visible_surface(model);
+  PictureLayer shape, ghost;
+  shape.points = positions;
+  shape.triangles = surface;
+  const Eigen::VectorXd moved = (positions - model.rest).rowwise().norm();
+  shape.values.assign(moved.data(), moved.data() + moved.size());
+  ghost.points = model.rest;
+  ghost.triangles = surface;
+  ghost.opacity = 0.15;
+  ghost.edges = false;
+  PictureOptions options;
+  if (view) options.view = {(*view)[0], (*view)[1], (*view)[2]};
+  options.title = title;
+  options.value_label = "displacement [mm]";
+  write_picture(path, {shape, ghost}, options);
+}
+
+}  // namespace softkin::cli

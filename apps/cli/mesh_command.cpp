@@ -1,0 +1,2 @@
+#include "command.hpp"
+namespace softkin::cli { void add_mesh(CLI::App&, Run&) {} }

@@ -1,0 +1,35 @@
+#include <gtest/gtest.h>
+
+#include <softkin/core/error.hpp>
+#include <softkin/core/parallel.hpp>
+
+namespace softkin {
+
+TEST(Error, OriginNamesFileAndLineOrByte) {
+  EXPECT_EQ((Origin{"a.msh", 3}).text(), "a.msh:3");
+  EXPECT_EQ((Origin{"a.msh", 0, 12, true}).text(), "a.msh: byte 12");
+  EXPECT_EQ((Origin{"a.msh"}).text(), "a.msh");
+  EXPECT_STREQ(InvalidInput({"a.msh", 3}, "too short").what(), "a.msh:3: too short");
+}
+
+TEST(Error, SuggestsTheNearestName) {
+  const std::vector<std::string> known{"chamber", "body", "base"};
+  EXPECT_EQ(nearest_name("chmaber", known), "chamber");
+  EXPECT_EQ(nearest_name("bdy", known), "body");
+  EXPECT_EQ(nearest_name("quite_another", known), "");
+  EXPECT_EQ(suggest_name("basee", known), "; did you mean 'base'?");
+  EXPECT_EQ(suggest_name("quite_another", known), "; known: chamber, body, base");
+  EXPECT_EQ(suggest_name("x", {}), "");
+}
+
+TEST(Parallel, PiecesCoverTheRangeOnceForAnyNumberOfThreads) {
+  for (const int threads : {1, 2, 3, 7}) {
+    std::vector<int> visits(1001, 0);
+    parallel_pieces(1001, threads, [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) ++visits[i];
+    });
+    for (const int visit : visits) EXPECT_EQ(visit, 1);
+  }
+}
+
+}  // namespace softkin
