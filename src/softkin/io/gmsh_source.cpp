@@ -154,7 +154,7 @@ Source::PhysicalName Source::physical_name() {
     fail("name of a physical group must stand in double quotes, not '" + printable(quoted) + "'");
   const std::string_view name = quoted.substr(1, quoted.size() - 2);
   if (name.empty()) fail("name of a physical group is empty");
-  if (name.find('"') != std::string_view::npos) fail("name of a physical group holds a '\"'");
+  if (is_unquotable(name)) fail("name of a physical group holds '\"' or a control character");
   return {static_cast<int>(dimension), static_cast<int>(tag), std::string(name)};
 }
 
