@@ -9,8 +9,9 @@
 #include <filesystem>
 #include <fstream>
 #include <softkin/core/error.hpp>
-#include <softkin/io/gmsh.hpp>
+#include <softkin/io/gmsh_read.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -334,10 +335,10 @@ inline std::string replaced(std::string text, const std::string& old, const std:
   return text.replace(at, old.size(), fresh);
 }
 
-/// The message of the InvalidInput that reading ends with, "" where it does not.
-inline std::string refusal(const std::filesystem::path& path) {
+/// The message of the InvalidInput that reading content as a file of that name ends with, "" where it does not.
+inline std::string refusal(const std::string& content, const std::string& file) {
   try {
-    (void)softkin::read_gmsh(path);
+    (void)softkin::gmsh::read(file, content);
   } catch (const softkin::InvalidInput& error) {
     return error.what();
   }

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 #include <softkin/io/file.hpp>
+#include <softkin/io/gmsh.hpp>
 
 #include "gmsh_samples.hpp"
 
@@ -311,7 +312,7 @@ TEST_P(GmshReference, HasItsCountsAndVolume) {
     EXPECT_EQ(std::count(found.begin(), found.end(), std::pair<std::string, std::size_t>(name, cells)), 1) << name;
 }
 
-// Counts: by grep from the files; volumes: from the dimensions of the bodies, the finger's from its boundary.
+// Counts by grep from the files; volumes from the dimensions of the bars, the fingers' by a sum in another program.
 INSTANTIATE_TEST_SUITE_P(
     All, GmshReference,
     ::testing::Values(

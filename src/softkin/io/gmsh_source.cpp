@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-Source::Source(const std::filesystem::path& path) : scan_(path) {
+Source::Source(const std::string& file, std::string_view content) : scan_(file, content) {
   if (scan_.at_end()) fail("file is empty: expected $MeshFormat");
   while (open_section() == "Comments") skip_section();
   if (section_.empty()) fail("file ends before $MeshFormat");
