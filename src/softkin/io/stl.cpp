@@ -201,7 +201,7 @@ void write_stl(const std::filesystem::path& path, const Points& vertices, const 
       if (vertex < 0 || vertex >= vertices.rows())
         fail("facet " + std::to_string(i) + " has the vertex " + std::to_string(vertex) + ", which does not exist");
       corners[k] = vertices.row(vertex).transpose();
-      if (!(corners[k].cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max()))
+      if (!(corners[k].array().abs() <= std::numeric_limits<float>::max()).all())
         fail("vertex " + std::to_string(vertex) + " is not finite in single precision");
       corners[k] = corners[k].cast<float>().cast<double>();
     }
