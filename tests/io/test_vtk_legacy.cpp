@@ -64,6 +64,7 @@ TEST(VtkLegacy, TakesIntegerArraysAndSkipsTheRest) {
                               "my%20part 1 2 unsigned_char\n255 3\n"
                               "METADATA\nCOMPONENT_NAMES\nx\n\n"
                               "pair 2 2 int\n1 2 3 4\n"
+                              "METADATA\nCOMPONENT_NAMES\n\ny\nINFORMATION 0\n\n"
                               "comment 1 2 string\nfirst line\n\n"
                               "NULL_ARRAY\n"
                               "flag 1 2 bit\n0 1\n");

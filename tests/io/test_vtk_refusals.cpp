@@ -1,4 +1,5 @@
 #include <functional>
+#include <limits>
 #include <random>
 #include <softkin/io/vtk.hpp>
 

@@ -4,15 +4,19 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/stl.hpp>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace softkin {
 

@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/vtu_document.hpp>
+#include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
