@@ -68,10 +68,11 @@ bench: setup
 	done; [ $$found = 1 ] || { echo 'bench: no program build/bench/bench_*' >&2; exit 1; }
 
 format:
-	$(CLANG_FORMAT) -i $(sources)
+	@$(CLANG_FORMAT) -i $(sources)
 
 format-check:
-	$(CLANG_FORMAT) --dry-run --Werror $(sources)
+	@echo 'format-check: $(words $(sources)) files'
+	@$(CLANG_FORMAT) --dry-run --Werror $(sources)
 
 clean:
 	rm -rf build build-debug build-sanitize

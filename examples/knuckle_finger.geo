@@ -1,18 +1,21 @@
 // Finger with three V notches ("knuckles"), 120 x 25 x 25 mm, x along it, base at x = 0, hinges at z = 0.
 // Shared by cable_gripper, cable_gripper_two_materials and three_tendon_finger, whose .geo name the regions:
-// segment[0..3] and knuckle[0..2] are the volumes from base to tip, base[] and tip[] the end faces.
+// segment[0..3] and knuckle[0..2] are the volumes from base to tip, base[] and tip[] the end faces, eyelet[0..5] the
+// patches where a cable leaves and enters the body, from base to tip.
 SetFactory("OpenCASCADE");
 
 length = 120;  width = 25;  height = 25;
 notch_x[] = {30, 64, 98};
 hinge = 3;        // thickness left under a notch
-flat = 2;         // half the width of a notch's bottom
-slope = 0.5;      // of a notch's walls, dx/dz
-knuckle_half = 6; // a knuckle reaches this far to either side of its notch's middle
+flat = 4;         // half the width of a notch's bottom
+slope = 0.4;      // of a notch's walls, dx/dz
+knuckle_half = 7; // a knuckle reaches this far to either side of its notch's middle
 wall_z = hinge + (knuckle_half - flat) / slope;  // where a knuckle's side meets the notch's wall
 top_half = flat + (height - hinge) * slope;      // half the width of a notch at the top
+eyelet_z = 18;    // an eyelet reaches from here to the top,
+eyelet_half = 3.5;  // and this far to either side of y = 0
 hinge_size = 3.6;
-block_size = 6;
+block_size = 7;
 
 // Prism over the polygon corner_x, corner_z, extruded along y. Sets `solid`.
 Macro Slab
@@ -57,7 +60,28 @@ For k In {0 : 3}
     parts[] += solid;
   EndIf
 EndFor
-BooleanFragments{ Volume{parts[]}; Delete; }{}
+
+eyelet_top = top_half - flat;                  // along x, from the notch's bottom edge to the eyelet's upper
+eyelet_bottom = (eyelet_z - hinge) * slope;    // and lower edge
+patches[] = {};
+For k In {0 : 2}
+  For side In {-1 : 1 : 2}
+    x = notch_x[k] + side * flat;
+    p = newp;
+    Point(p)     = {x + side * eyelet_bottom, -eyelet_half, eyelet_z};
+    Point(p + 1) = {x + side * eyelet_bottom, eyelet_half, eyelet_z};
+    Point(p + 2) = {x + side * eyelet_top, eyelet_half, height};
+    Point(p + 3) = {x + side * eyelet_top, -eyelet_half, height};
+    l = newl;
+    For i In {0 : 3}
+      Line(l + i) = {p + i, p + (i + 1) % 4};
+    EndFor
+    c = newll;  Curve Loop(c) = {l : l + 3};
+    s = news;   Plane Surface(s) = {c};
+    patches[] += {s};
+  EndFor
+EndFor
+BooleanFragments{ Volume{parts[]}; Delete; }{ Surface{patches[]}; Delete; }
 
 e = 1e-3;
 cuts[] = {0};
@@ -78,6 +102,13 @@ For k In {0 : 6}
 EndFor
 base[] = Surface In BoundingBox{-e, -width, -e, e, width, height + e};
 tip[] = Surface In BoundingBox{length - e, -width, -e, length + e, width, height + e};
+eyelet[] = {};
+For k In {0 : 2}
+  eyelet[] += Surface In BoundingBox{notch_x[k] - flat - eyelet_top - e, -eyelet_half - e, eyelet_z - e,
+                                     notch_x[k] - flat - eyelet_bottom + e, eyelet_half + e, height + e};
+  eyelet[] += Surface In BoundingBox{notch_x[k] + flat + eyelet_bottom - e, -eyelet_half - e, eyelet_z - e,
+                                     notch_x[k] + flat + eyelet_top + e, eyelet_half + e, height + e};
+EndFor
 
 Characteristic Length{ PointsOf{ Volume{segment[]}; } } = block_size;
 Characteristic Length{ PointsOf{ Volume{knuckle[]}; } } = hinge_size;

@@ -5,3 +5,6 @@ Include "../knuckle_finger.geo";
 Physical Volume("body") = {segment[], knuckle[]};
 Physical Surface("base") = base[];
 Physical Surface("tip") = tip[];
+For i In {0 : 5}
+  Physical Surface(Sprintf("eyelet%g", i + 1)) = eyelet[i];
+EndFor

@@ -8,3 +8,6 @@ Physical Volume("knuckle2") = knuckle[1];
 Physical Volume("knuckle3") = knuckle[2];
 Physical Surface("base") = base[];
 Physical Surface("tip") = tip[];
+For i In {0 : 5}
+  Physical Surface(Sprintf("eyelet%g", i + 1)) = eyelet[i];
+EndFor

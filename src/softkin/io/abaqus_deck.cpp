@@ -90,6 +90,7 @@ void AbaqusDeck::read_parameters(std::string_view text) {
   const std::vector<std::string_view> parts = split(text);
   keyword_ = normal_key(parts.front());
   parameters_.clear();
+  repeated_.clear();
   for (std::size_t i = 1; i < parts.size(); ++i)
     if (!parts[i].empty()) add_parameter(parts[i]);
 }
@@ -98,7 +99,7 @@ void AbaqusDeck::add_parameter(std::string_view text) {
   const std::size_t equals = text.find('=');
   const std::string key = normal_key(text.substr(0, equals));
   const std::string value = equals == std::string_view::npos ? "" : unquoted(trimmed(text.substr(equals + 1)));
-  if (!parameters_.emplace(key, value).second) fail("parameter " + key + " stands twice on *" + keyword_);
+  if (!parameters_.emplace(key, value).second) repeated_ = key;
 }
 
 std::string AbaqusDeck::value(const std::string& parameter) const {
@@ -117,6 +118,7 @@ void AbaqusDeck::allow(std::initializer_list<const char*> parameters) const {
   for (const auto& [key, value] : parameters_)
     if (std::find(known.begin(), known.end(), key) == known.end())
       fail("parameter '" + key.substr(0, 40) + "' of *" + keyword_ + " is not supported" + suggest_name(key, known));
+  if (!repeated_.empty()) fail("parameter " + repeated_ + " stands twice on *" + keyword_);
 }
 
 std::int64_t AbaqusDeck::integer(std::size_t field, const char* what) const {

@@ -24,7 +24,7 @@ class AbaqusDeck {
   [[nodiscard]] bool has(const std::string& parameter) const { return parameters_.contains(parameter); }
   [[nodiscard]] std::string value(const std::string& parameter) const;     // "" where there is none
   [[nodiscard]] std::string required(const std::string& parameter) const;  // fails where there is none
-  void allow(std::initializer_list<const char*> parameters) const;         // fails on any other parameter
+  void allow(std::initializer_list<const char*> parameters) const;         // fails on any other, or one twice
 
   [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }  // of the data line
   [[nodiscard]] bool continued() const { return continued_; }                     // the data line ends in a comma
@@ -48,6 +48,7 @@ class AbaqusDeck {
   std::size_t line_ = 0;
   std::string keyword_;
   std::map<std::string, std::string> parameters_;
+  std::string repeated_;  // a parameter that stands twice
   std::vector<std::string_view> fields_;
   bool continued_ = false;
 };

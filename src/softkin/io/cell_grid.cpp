@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <set>
 #include <softkin/io/cell_grid.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace softkin {
 

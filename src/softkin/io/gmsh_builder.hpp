@@ -37,31 +37,52 @@ class NodeNumbers {
 template <std::size_t N>
 class CellStore {
  public:
+  using Cell = std::array<Index, N>;
+
   /// Index of the cell, new or known.
-  Index add(const std::array<Index, N>& cell) {
-    std::array<Index, N> key = cell;
-    std::sort(key.begin(), key.end());
-    const auto [place, is_new] = known_.try_emplace(key, static_cast<Index>(cells_.size()));
-    if (is_new) cells_.push_back(cell);
-    return place->second;
+  Index add(const Cell& cell) {
+    if (2 * (cells_.size() + 1) > slots_.size()) grow();
+    Index& slot = slot_of(sorted(cell));
+    if (slot < 0) {
+      slot = static_cast<Index>(cells_.size());
+      cells_.push_back(cell);
+    }
+    return slot;
   }
   [[nodiscard]] bool empty() const { return cells_.empty(); }
-  std::vector<std::array<Index, N>> take() { return std::move(cells_); }
+  std::vector<Cell> take() { return std::move(cells_); }
 
  private:
-  struct Hash {
-    std::size_t operator()(const std::array<Index, N>& key) const {
-      std::uint64_t hash = 0;
-      for (const Index i : key) {
-        hash = (hash ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15u;
-        hash ^= hash >> 32;
-      }
-      return static_cast<std::size_t>(hash);
-    }
-  };
+  static Cell sorted(Cell cell) {
+    std::sort(cell.begin(), cell.end());
+    return cell;
+  }
 
-  std::vector<std::array<Index, N>> cells_;
-  std::unordered_map<std::array<Index, N>, Index, Hash> known_;
+  static std::size_t hash(const Cell& key) {
+    std::uint64_t value = 0;
+    for (const Index i : key) {
+      value = (value ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15u;
+      value ^= value >> 32;
+    }
+    return static_cast<std::size_t>(value);
+  }
+
+  // Where the cell of these vertices stands, or the free slot (-1) where it belongs.
+  Index& slot_of(const Cell& key) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t place = hash(key) & mask;
+    while (slots_[place] >= 0 && sorted(cells_[static_cast<std::size_t>(slots_[place])]) != key)
+      place = (place + 1) & mask;
+    return slots_[place];
+  }
+
+  void grow() {
+    slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), -1);
+    for (std::size_t i = 0; i < cells_.size(); ++i) slot_of(sorted(cells_[i])) = static_cast<Index>(i);
+  }
+
+  std::vector<Cell> cells_;
+  std::vector<Index> slots_;  // open addressing, a power of two, at most half full: far faster than std::unordered_map
 };
 
 /// Collects what a .msh file holds and makes a Mesh of it.

@@ -10,10 +10,7 @@ constexpr std::size_t kLongestName = 127;  // of the MSH format
 std::string problem_of_name(const std::string& name) {
   if (name.empty()) return "a region has no name";
   if (name.size() > kLongestName) return "region name '" + name + "' is longer than the 127 bytes of a Gmsh name";
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < ' ' || byte == 127 || c == '"') return "a region name holds '\"' or a control character";
-  }
+  if (is_unquotable(name)) return "a region name holds '\"' or a control character";
   return "";
 }
 

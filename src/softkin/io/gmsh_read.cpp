@@ -1,4 +1,5 @@
 #include <set>
+#include <softkin/io/file.hpp>
 #include <softkin/io/gmsh.hpp>
 #include <softkin/io/gmsh_read.hpp>
 
@@ -32,7 +33,7 @@ namespace {
 
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& path) : in_(path) {}
+  Reader(const std::string& file, std::string_view content) : in_(file, content) {}
 
   Mesh read() {
     for (std::string name = in_.open_section(); !name.empty(); name = in_.open_section()) read_section(name);
@@ -99,10 +100,14 @@ class Reader {
 
 }  // namespace
 
+Mesh read(const std::string& file, std::string_view content) {
+  return Reader(file, content).read();
+}
+
 }  // namespace gmsh
 
 Mesh read_gmsh(const std::filesystem::path& path) {
-  return gmsh::Reader(path).read();
+  return gmsh::read(path.string(), read_file(path));
 }
 
 }  // namespace softkin

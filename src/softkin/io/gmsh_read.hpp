@@ -5,7 +5,8 @@
 #include <optional>
 #include <softkin/io/gmsh_builder.hpp>
 #include <softkin/io/gmsh_source.hpp>
-#include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace softkin::gmsh {
 
 /// Physical tags of the geometric entities of a 4.1 file, by dimension and tag.
 using Entities = std::map<std::pair<int, std::int64_t>, std::vector<int>>;
+
+/// A .msh file that is in memory; file is for messages.
+[[nodiscard]] Mesh read(const std::string& file, std::string_view content);
 
 // The bodies of the sections, without the lines that open and close them.
 void read_nodes_2(Source& in, Builder& builder);

@@ -39,10 +39,11 @@ struct Header {
   std::int64_t items;
 };
 
-Header read_header(Source& in, const char* what) {
+Header read_header(Source& in, const char* items, std::size_t text_bytes, std::size_t binary_bytes) {
   Header header{};
   header.blocks = in.size_value("number of entity blocks", 0, kMaxSize);
-  header.items = in.size_value(what, 0, kMaxIndex);
+  header.items = in.size_value(("number of " + std::string(items)).c_str(), 0, kMaxIndex);
+  in.require(header.items, text_bytes, binary_bytes, items);
   for (const char* bound : {"least number", "greatest number"}) (void)in.size_value(bound, 0, kMaxSize);
   in.end_record();
   return header;
@@ -51,14 +52,15 @@ Header read_header(Source& in, const char* what) {
 std::int64_t read_block_size(Source& in, const char* what, std::int64_t left) {
   const std::int64_t count = in.size_value(what, 0, kMaxSize);
   if (count > left)
-    in.fail(std::string(what) + " is " + std::to_string(count) + ", but only " + std::to_string(left) +
-            " of the number announced are left");
+    in.fail(std::string(what) + " is " + std::to_string(count) + ", more than the " + std::to_string(left) +
+            " that are left of those announced");
   in.end_record();
   return count;
 }
 
 void must_be_complete(const Source& in, const char* what, std::int64_t left) {
-  if (left > 0) in.fail("the blocks hold " + std::to_string(left) + " " + what + " less than announced");
+  if (left > 0)
+    in.fail(std::string("the blocks hold fewer ") + what + " than announced: " + std::to_string(left) + " missing");
 }
 
 void read_node_block(Source& in, Builder& builder, std::int64_t& left) {
@@ -128,8 +130,7 @@ Entities read_entities_4(Source& in) {
 }
 
 void read_nodes_4(Source& in, Builder& builder) {
-  const Header header = read_header(in, "number of nodes");
-  in.require(header.items, 8, 32, "nodes");
+  const Header header = read_header(in, "nodes", 8, 32);
   builder.begin_nodes(static_cast<std::size_t>(header.items));
   std::int64_t left = header.items;
   for (std::int64_t i = 0; i < header.blocks; ++i) read_node_block(in, builder, left);
@@ -137,8 +138,7 @@ void read_nodes_4(Source& in, Builder& builder) {
 }
 
 void read_elements_4(Source& in, Builder& builder, const std::optional<Entities>& entities) {
-  const Header header = read_header(in, "number of elements");
-  in.require(header.items, 4, 16, "elements");
+  const Header header = read_header(in, "elements", 4, 16);
   std::int64_t left = header.items;
   for (std::int64_t i = 0; i < header.blocks; ++i) read_element_block(in, builder, entities, left);
   must_be_complete(in, "elements", left);

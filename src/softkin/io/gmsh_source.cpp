@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-Source::Source(const std::filesystem::path& path) : scan_(path) {
+Source::Source(const std::string& file, std::string_view content) : scan_(file, content) {
   if (scan_.at_end()) fail("file is empty: expected $MeshFormat");
   while (open_section() == "Comments") skip_section();
   if (section_.empty()) fail("file ends before $MeshFormat");
@@ -154,7 +154,7 @@ Source::PhysicalName Source::physical_name() {
     fail("name of a physical group must stand in double quotes, not '" + printable(quoted) + "'");
   const std::string_view name = quoted.substr(1, quoted.size() - 2);
   if (name.empty()) fail("name of a physical group is empty");
-  if (name.find('"') != std::string_view::npos) fail("name of a physical group holds a '\"'");
+  if (is_unquotable(name)) fail("name of a physical group holds '\"' or a control character");
   return {static_cast<int>(dimension), static_cast<int>(tag), std::string(name)};
 }
 

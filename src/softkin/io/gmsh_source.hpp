@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <softkin/io/gmsh_types.hpp>
 #include <softkin/io/scanner.hpp>
 #include <string>
@@ -11,8 +10,8 @@ namespace softkin::gmsh {
 /// A .msh file as sections of values: words, one record a line (ASCII), or binary in either byte order.
 class Source {
  public:
-  /// Opens the file and reads $MeshFormat; other sections may not stand before it, except $Comments.
-  explicit Source(const std::filesystem::path& path);
+  /// Reads $MeshFormat; other sections may not stand before it, except $Comments. content must outlive the source.
+  Source(const std::string& file, std::string_view content);
 
   [[nodiscard]] bool version_4() const { return version_4_; }
   [[nodiscard]] bool binary() const { return binary_; }

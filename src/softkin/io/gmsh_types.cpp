@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <softkin/io/gmsh_types.hpp>
-#include <string_view>
 
 namespace softkin::gmsh {
 
@@ -76,6 +76,13 @@ std::string refusal_of_type(std::int64_t type) {
   const std::string_view name = name_of(type);
   if (name.empty()) return "elements of type " + number + " are not supported: mesh with order 1";
   return std::string(name) + " (type " + number + ") are not supported: mesh with order 1";
+}
+
+bool is_unquotable(std::string_view name) {
+  return std::any_of(name.begin(), name.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < ' ' || byte == 127 || c == '"';
+  });
 }
 
 }  // namespace softkin::gmsh

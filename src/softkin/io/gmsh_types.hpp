@@ -4,6 +4,7 @@
 #include <limits>
 #include <softkin/core/types.hpp>
 #include <string>
+#include <string_view>
 
 namespace softkin::gmsh {
 
@@ -19,6 +20,9 @@ struct CellShape {
 
 /// Why an element type cannot be read, or "" where it is a CellType.
 [[nodiscard]] std::string refusal_of_type(std::int64_t type);
+
+/// Does a name hold what cannot stand between double quotes on one line?
+[[nodiscard]] bool is_unquotable(std::string_view name);
 
 inline constexpr std::int64_t kMaxIndex = std::numeric_limits<Index>::max();
 inline constexpr std::int64_t kMaxInt = std::numeric_limits<std::int32_t>::max();

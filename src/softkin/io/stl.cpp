@@ -4,15 +4,19 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/stl.hpp>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace softkin {
 
@@ -201,7 +205,7 @@ void write_stl(const std::filesystem::path& path, const Points& vertices, const 
       if (vertex < 0 || vertex >= vertices.rows())
         fail("facet " + std::to_string(i) + " has the vertex " + std::to_string(vertex) + ", which does not exist");
       corners[k] = vertices.row(vertex).transpose();
-      if (!(corners[k].cwiseAbs().maxCoeff() <= std::numeric_limits<float>::max()))
+      if (!(corners[k].array().abs() <= std::numeric_limits<float>::max()).all())
         fail("vertex " + std::to_string(vertex) + " is not finite in single precision");
       corners[k] = corners[k].cast<float>().cast<double>();
     }

@@ -1,13 +1,20 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <softkin/io/cell_grid.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/vtk.hpp>
 #include <softkin/io/vtk_numbers.hpp>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace softkin {
 
@@ -110,7 +117,8 @@ class LegacyReader {
   std::string file_;
   bool binary_ = false, offset_cells_ = false, has_cells_ = false;
   bool in_attributes_ = false, of_cells_ = false;
-  std::int64_t tuples_ = 0;  // of the attributes that follow
+  std::int64_t tuples_ = 0;      // of the attributes that follow
+  std::int64_t components_ = 0;  // of the last array, whose metadata may follow
   CellGrid grid_;
 };
 
@@ -196,6 +204,7 @@ void LegacyReader::read_points() {
   const ArrayType type = type_token();
   if (type.bits || type.strings) scanner_.fail("points must be numbers");
   begin_data();
+  components_ = 3;
   NumberReader reader = numbers();
   reader.require(3 * static_cast<std::uint64_t>(count), type.number, "coordinates");
   grid_.points.resize(count, 3);
@@ -337,6 +346,7 @@ void LegacyReader::read_field() {
 void LegacyReader::read_array(const std::string& name, const ArrayType& type, std::int64_t components,
                               std::int64_t tuples, bool is_label) {
   scanner_.binary_positions(binary_);
+  components_ = components;
   if (is_label && components == 1 && !type.strings && is_integer(type.number))
     read_labels(name, type);
   else
@@ -383,6 +393,8 @@ void LegacyReader::skip_metadata() {
   while (scanner_.remaining() > 0) {
     const std::string_view text = scanner_.line();
     if (text.find_first_not_of(" \t") == std::string_view::npos) return;
+    if (upper(text) != "COMPONENT_NAMES") continue;
+    for (std::int64_t i = 0; i < components_ && scanner_.remaining() > 0; ++i) scanner_.skip_line();  // may be blank
   }
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <softkin/io/vtk_numbers.hpp>
 #include <string>

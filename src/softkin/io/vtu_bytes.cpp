@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
+#include <cstddef>
+#include <cstdint>
 #include <softkin/io/vtu_bytes.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 

@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/vtu_document.hpp>
+#include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -217,10 +221,7 @@ std::vector<Value> VtuDocument::values(pugi::xml_node array, NumberType type,
   std::vector<Value> result;
   const auto read = [&](Scanner& scanner, bool binary) {
     NumberReader reader(scanner, binary, binary && encoding_.swap);
-    if (count) {
-      reader.require(*count, type, ("values in " + name).c_str());
-      result.reserve(*count);
-    }
+    if (count && binary) result.reserve(*count);  // the decoded data have just this size
     while (binary ? scanner.remaining() > 0 : !scanner.at_end()) {
       if (result.size() == count) scanner.fail(name + " has more than " + std::to_string(*count) + " values");
       if constexpr (std::is_same_v<Value, double>)

@@ -1,9 +1,14 @@
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <softkin/io/cell_grid.hpp>
 #include <softkin/io/vtk.hpp>
 #include <softkin/io/vtu_document.hpp>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace softkin {
 

@@ -5,13 +5,17 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/vtk.hpp>
+#include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace softkin {
 
