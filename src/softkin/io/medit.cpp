@@ -52,7 +52,7 @@ class MeditReader {
     expect_elements(mesh_, scanner_);
     expect_end(scanner_);
     append_regions(mesh_, std::move(volumes_), "ref_", 3);
-    append_regions(mesh_, std::move(surfaces_), "ref_", 2);
+    append_regions(mesh_, std::move(surfaces_), "surface_ref_", 2);
     return std::move(mesh_);
   }
 

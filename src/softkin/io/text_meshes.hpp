@@ -5,7 +5,8 @@
 
 namespace softkin {
 
-/// Medit .mesh (INRIA, ASCII). References become regions "ref_N" (tetrahedra, prisms, triangles).
+/// Medit .mesh (INRIA, ASCII). References become regions "ref_N" (tetrahedra, prisms) and "surface_ref_N"
+/// (triangles, quadrilaterals), so that a name stands for one region.
 [[nodiscard]] Mesh read_medit(const std::filesystem::path& path);
 
 /// TetGen .node + .ele (path names either; the other stands beside it) and, where present, .face. Numbering from 0 or
@@ -26,8 +27,8 @@ namespace softkin {
 /// count up from 1 or 0) or one bare 0/1 each. column counts from 1.
 struct Sidecar {
   Index rows = 0;
-  bool bare = false;  // one 0/1 a row, without ids
   std::vector<std::vector<Index>> columns;
+  bool bare = false;  // one 0/1 a row, without ids
 };
 [[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);
 

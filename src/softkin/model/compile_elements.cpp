@@ -42,7 +42,7 @@ bool folds_over(const Points& vertices, const Prism& p) {
   return false;
 }
 
-std::vector<bool> in_regions(const Compilation& c, std::vector<Index> Region::*list, std::size_t count) {
+std::vector<bool> void_elements(const Compilation& c, std::vector<Index> Region::*list, std::size_t count) {
   std::vector<bool> inside(count);
   for (const RegionRef& reference : c.spec.voids) {
     const Region region = c.regions.resolve(reference);
@@ -156,8 +156,8 @@ void compile_elements(Compilation& c) {
   Model& model = c.model;
   const Mesh& mesh = c.spec.mesh;
   if (mesh.tetrahedra.empty() && mesh.prisms.empty()) throw InvalidInput(c.origin, "the mesh has no element");
-  const std::vector<bool> void_tetrahedra = in_regions(c, &Region::tetrahedra, mesh.tetrahedra.size());
-  const std::vector<bool> void_prisms = in_regions(c, &Region::prisms, mesh.prisms.size());
+  const std::vector<bool> void_tetrahedra = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
+  const std::vector<bool> void_prisms = void_elements(c, &Region::prisms, mesh.prisms.size());
   model.rest = mesh.vertices;
   // below this a volume is the rounding of the coordinates
   const double diagonal = (model.rest.colwise().maxCoeff() - model.rest.colwise().minCoeff()).norm();
