@@ -75,14 +75,22 @@ double mean_area(const RestShape<6>& p) {
   return 0.5 * (area(0, 1, 2) + area(3, 4, 5));
 }
 
-/// A triangle has no volume; area^(3/2) scales like one and weighs a gap as a body of its size.
-double triangle_volume(const RestShape<3>& p) {
-  const Vec3 u = p.row(1) - p.row(0), v = p.row(2) - p.row(0);
-  return std::pow(0.5 * u.cross(v).norm(), 1.5);
+/// A triangle has no volume: it counts as a body element of mean volume, so that its weight is w times that of its
+/// surroundings. Much heavier ones stop local/global from converging, much lighter ones give way.
+double triangle_volume(const Model& model) {
+  double sum = 0, count = 0;
+  const auto add = [&](const std::vector<ElementRole>& roles, const std::vector<double>& volumes) {
+    for (std::size_t e = 0; e < roles.size(); ++e)
+      if (roles[e].material >= 0) sum += volumes[e], ++count;
+  };
+  add(model.tetrahedron_roles, model.tetrahedron_volumes);
+  add(model.prism_roles, model.prism_volumes);
+  return count > 0 ? sum / count : 1;
 }
 
 ActuationSet<3> cable_set(const Model& model, const Actuator& actuator, std::vector<const EmbeddedPoint*>& points) {
   ActuationSet<3> set;
+  const double weight = actuator.weight * triangle_volume(model);
   const auto node = [&](const EmbeddedPoint& point) {
     points.push_back(&point);
     return static_cast<Index>(model.rest.rows() + static_cast<Index>(points.size()) - 1);
@@ -96,7 +104,7 @@ ActuationSet<3> cable_set(const Model& model, const Actuator& actuator, std::vec
     rest.row(2) = gap.apex.at(model.rest).transpose();
     const Index first = node_along(gap.segment), second = node_along(gap.segment + 1);
     add_actuation<3>(set, {first, second, node(gap.apex)}, split_cable(rest), (rest.row(1) - rest.row(0)).norm(),
-                     actuator.weight * triangle_volume(rest));
+                     weight);
   }
   return set;
 }
