@@ -28,9 +28,9 @@ inline softkin::SceneFiles fake_files() {
     return surface;
   };
   files.sidecar = [](const fs::path& path) {
-    if (path.filename() == "tets.txt") return Sidecar{2, false, {{0}, {1}}};
-    if (path.filename() == "vertices.txt") return Sidecar{5, false, {{0, 4}, {}, {2}}};
-    if (path.filename() == "odd.txt") return Sidecar{3, false, {{0}}};
+    if (path.filename() == "tets.txt") return Sidecar{2, {{0}, {1}}};
+    if (path.filename() == "vertices.txt") return Sidecar{5, {{0, 4}, {}, {2}}};
+    if (path.filename() == "odd.txt") return Sidecar{3, {{0}}};
     throw InvalidInput({path.string()}, "no such file");
   };
   return files;

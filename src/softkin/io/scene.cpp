@@ -79,10 +79,11 @@ std::array<bool, 3> read_axes(const Node& node) {
 
 FixedSpec read_fixed(const Context& context, const Node& node) {
   Keys known = place_keys();
-  known.push_back("axes");
+  known.insert(known.end(), {"axes", "displacement"});
   const Map map(node, known);
   FixedSpec fixed{read_place(context, map)};
   if (const Node* axes = map.find("axes")) fixed.axes = read_axes(*axes);
+  if (const Node* displacement = map.find("displacement")) fixed.displacement = read_position(context, *displacement);
   return fixed;
 }
 

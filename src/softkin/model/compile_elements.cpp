@@ -159,6 +159,7 @@ void compile_elements(Compilation& c) {
   const std::vector<bool> void_tetrahedra = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
   const std::vector<bool> void_prisms = void_elements(c, &Region::prisms, mesh.prisms.size());
   model.rest = mesh.vertices;
+  model.held = mesh.vertices;
   // below this a volume is the rounding of the coordinates
   const double diagonal = (model.rest.colwise().maxCoeff() - model.rest.colwise().minCoeff()).norm();
   const double least_volume = 1e-15 * diagonal * diagonal * diagonal;

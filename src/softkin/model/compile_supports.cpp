@@ -1,10 +1,20 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <softkin/model/compile_parts.hpp>
 
 namespace softkin {
 
 namespace {
+
+void hold(Compilation& c, const FixedSpec& spec, Index v, int axis) {
+  const double place = c.model.rest(v, axis) + spec.displacement[axis];
+  if (c.model.used[v] && c.model.fixed[v][axis] && c.model.held(v, axis) != place)
+    throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) +
+                                              " (from 0) along " + "xyz"[axis] + " elsewhere than an earlier entry");
+  c.model.fixed[v][axis] = true;
+  c.model.held(v, axis) = place;
+}
 
 void fix(Compilation& c, const FixedSpec& spec) {
   if (std::none_of(spec.axes.begin(), spec.axes.end(), [](bool axis) { return axis; }))
@@ -14,9 +24,13 @@ void fix(Compilation& c, const FixedSpec& spec) {
                                [&](Index v) { return static_cast<bool>(c.model.used[v]); });
   if (!any)
     throw InvalidInput(spec.where.origin, label(spec.where) + " cannot be fixed: it holds no vertex of the body");
-  for (const Index v : region.vertices)
-    for (int axis = 0; axis < 3; ++axis)
-      if (spec.axes[axis]) c.model.fixed[v][axis] = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!spec.axes[axis] && spec.displacement[axis] != 0)
+      throw InvalidInput(spec.where.origin,
+                         label(spec.where) + " is displaced along " + "xyz"[axis] + " but not held along it");
+    if (!spec.axes[axis]) continue;
+    for (const Index v : region.vertices) hold(c, spec, v, axis);
+  }
 }
 
 std::string rigid_label(const RigidSpec& spec) {
@@ -41,6 +55,11 @@ void check_held(const Compilation& c, const RigidSpec& spec, const RigidRegion& 
     std::vector<Index> held;
     for (const Index v : rigid.vertices)
       if (c.model.fixed[v][axis]) held.push_back(v);
+    const auto moved = [&](Index v) { return c.model.held(v, axis) - c.model.rest(v, axis); };
+    for (const Index v : held)
+      if (std::abs(moved(v) - moved(held.front())) > 1e-12 * c.model.diagonal_mm)
+        throw InvalidInput(spec.where.origin,
+                           rigid_label(spec) + " is held along " + "xyz"[axis] + " with different displacements");
     if (!held.empty() && !span_plane(c.model.rest, held))
       throw InvalidInput(spec.where.origin,
                          rigid_label(spec) + " is held along " + "xyz"[axis] +

@@ -71,6 +71,7 @@ struct Model {
   std::vector<Marker> markers;
   std::vector<RigidRegion> rigid;          // disjoint
   std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
+  Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
   std::vector<bool> used;                  // per vertex: is it a vertex of an element
   double diagonal_mm = 0;                  // of the bounding box of the used vertices
   std::vector<std::string> notes;          // what compile() changed or the user should know, a sentence each

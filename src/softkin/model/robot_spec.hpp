@@ -60,6 +60,7 @@ struct MaterialSpec {
 struct FixedSpec {
   RegionRef where;
   std::array<bool, 3> axes{true, true, true};
+  Vec3 displacement{0, 0, 0};  // where it is held, from its place at rest [mm]; 0 along axes that are not held
 };
 
 enum class ActuatorKind { cable, dea, pneumatic };

@@ -16,7 +16,7 @@ Mat3 rotation_about(const Vec3& turn) {
 }  // namespace
 
 GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix)
-    : region_of_(model.rest.rows(), -1), fixed_(model.fixed), rest_(model.rest) {
+    : region_of_(model.rest.rows(), -1), fixed_(model.fixed), rest_(model.rest), held_(model.held) {
   add_regions(model);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Index> free;
@@ -44,10 +44,14 @@ void GlobalStep::add_regions(const Model& model) {
       for (int axis = 0; axis < 3; ++axis)
         if (model.fixed[v][axis]) {
           region.slides[axis] = false;
+          region.displacement[axis] = model.held(v, axis) - model.rest(v, axis);
           for (int other = 0; other < 3; ++other) region.turns[other] = region.turns[other] && other == axis;
         }
     if (!region.slides[0] && !region.slides[1] && !region.slides[2]) {
-      for (const Index v : rigid.vertices) fixed_[v] = {true, true, true};
+      for (const Index v : rigid.vertices) {
+        fixed_[v] = {true, true, true};
+        held_.row(v) = rest_.row(v) + region.displacement.transpose();
+      }
       continue;
     }
     const Index count = static_cast<Index>(rigid.vertices.size());
@@ -219,7 +223,7 @@ void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pos
 std::vector<Pose> GlobalStep::project(Points& positions) const {
   for (Index v = 0; v < rest_.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (fixed_[v][axis]) positions(v, axis) = rest_(v, axis);
+      if (fixed_[v][axis]) positions(v, axis) = held_(v, axis);
   std::vector<Pose> poses;
   for (const Region& region : regions_) {
     Vec3 center = Vec3::Zero();
@@ -241,7 +245,7 @@ std::vector<Pose> GlobalStep::project(Points& positions) const {
         }
     }
     for (int axis = 0; axis < 3; ++axis)
-      if (!region.slides[axis]) pose.center[axis] = region.rest_center[axis];
+      if (!region.slides[axis]) pose.center[axis] = region.rest_center[axis] + region.displacement[axis];
     place(region, pose, positions);
     poses.push_back(pose);
   }

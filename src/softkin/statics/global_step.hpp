@@ -45,7 +45,7 @@ class GlobalStep {
   struct Region {
     std::vector<Index> vertices;
     Points offsets;  // q: rest minus rest center
-    Vec3 rest_center;
+    Vec3 rest_center, displacement{0, 0, 0};
     std::array<bool, 3> slides{true, true, true};  // may its center move along the axis
     std::array<bool, 3> turns{true, true, true};   // may it turn about the axis
   };
@@ -61,7 +61,7 @@ class GlobalStep {
   std::vector<Region> regions_;
   std::vector<Index> region_of_;            // per vertex, -1
   std::vector<std::array<bool, 3>> fixed_;  // per vertex and axis, rigid regions aside
-  Points rest_;
+  Points rest_, held_;
 };
 
 }  // namespace softkin

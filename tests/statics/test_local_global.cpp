@@ -1,0 +1,272 @@
+#include <Eigen/Geometry>
+#include <softkin/core/error.hpp>
+#include <softkin/statics/measure.hpp>
+#include <softkin/statics/statics.hpp>
+
+#include "statics/robots.hpp"
+
+namespace softkin {
+
+namespace {
+
+using testing::finger_robot;
+using testing::mixed_robot;
+using testing::noise;
+
+StaticsOptions to_the_end(int anderson) {
+  StaticsOptions options;
+  options.step_tolerance_mm = 1e-11;
+  options.max_iterations = 200000;
+  options.anderson = anderson;
+  options.keep_history = false;
+  return options;
+}
+
+double largest_distance(const Points& a, const Points& b) {
+  return (a - b).rowwise().norm().maxCoeff();
+}
+
+Actuation one(double value) {
+  return Actuation::Constant(1, value);
+}
+
+}  // namespace
+
+TEST(LocalGlobal, EnergyFallsAtEveryIterationWhereTargetsAreFixed) {
+  const Model model = compile(mixed_robot(false));
+  const Statics statics(model);
+  std::mt19937 engine(5);
+  StaticsOptions options;
+  options.anderson = 0;
+  options.max_iterations = 60;
+  for (int round = 0; round < 100; ++round) {
+    Actuation actuation(3);
+    for (int a = 0; a < 3; ++a)
+      actuation[a] = std::uniform_real_distribution<double>(model.actuators[a].low, model.actuators[a].high)(engine);
+    State start = statics.rest();
+    if (round % 2) start.positions += noise(static_cast<Index>(model.rest.rows()), 3, round);
+    const auto history = statics.solve(actuation, start, options).report.history;
+    ASSERT_GT(history.size(), 5u);
+    for (std::size_t i = 1; i < history.size(); ++i)
+      ASSERT_LE(history[i].energy, history[i - 1].energy * (1 + 1e-13)) << "round " << round << " iteration " << i;
+  }
+}
+
+TEST(LocalGlobal, SameShapeFromRestAndFromARandomStart) {
+  const Model model = compile(finger_robot(false));
+  EXPECT_NEAR(static_cast<double>(model.tetrahedra.size()), 500, 50);
+  const Statics statics(model);
+  const Points from_rest = statics.solve(one(1.8), statics.rest(), to_the_end(0)).state.positions;
+  EXPECT_GT(largest_distance(from_rest, model.rest), 1);
+  for (const double size : {1.0, 5.0, 20.0}) {
+    State start = statics.rest();
+    start.positions += noise(static_cast<Index>(model.rest.rows()), size, 17);
+    const Equilibrium found = statics.solve(one(1.8), start, to_the_end(0));
+    EXPECT_EQ(found.report.status, Status::converged);
+    EXPECT_LT(largest_distance(found.state.positions, from_rest), 1e-6) << "noise of " << size << " mm";
+  }
+}
+
+TEST(LocalGlobal, AndersonReachesTheSameShapeInFewerIterations) {
+  for (const bool least_norm : {false, true})
+    for (const double ratio : {1.0, 0.3}) {
+      const Model model = compile(mixed_robot(least_norm, ratio));
+      const Statics statics(model);
+      const Actuation actuation = (Actuation(3) << 1.1, 1.5, 0.9).finished();
+      const Equilibrium plain = statics.solve(actuation, statics.rest(), to_the_end(0));
+      const Equilibrium fast = statics.solve(actuation, statics.rest(), to_the_end(6));
+      EXPECT_EQ(plain.report.status, Status::converged);
+      EXPECT_EQ(fast.report.status, Status::converged);
+      EXPECT_LT(largest_distance(plain.state.positions, fast.state.positions), 1e-6);
+      EXPECT_LT(2 * fast.report.iterations, plain.report.iterations);
+    }
+}
+
+TEST(LocalGlobal, EstimatedErrorBoundsTheTrueOne) {
+  const Model model = compile(finger_robot(true));
+  const Statics statics(model);
+  const Points end = statics.solve(one(1.5), statics.rest(), to_the_end(6)).state.positions;
+  for (const int anderson : {0, 6}) {
+    StaticsOptions options;
+    options.step_tolerance_mm = 1e-4;
+    options.anderson = anderson;
+    const Equilibrium found = statics.solve(one(1.5), statics.rest(), options);
+    const double true_error = largest_distance(found.state.positions, end);
+    EXPECT_GT(true_error, 5e-4);  // the step alone would promise 1e-4
+    EXPECT_GT(found.report.estimated_error_mm, 0.3 * true_error);
+    EXPECT_LT(found.report.estimated_error_mm, 10 * true_error);
+  }
+}
+
+TEST(LocalGlobal, RigidMotionOfTheSceneMovesTheResult) {
+  const RobotSpec spec = mixed_robot(true, 0.5);
+  const Mat3 turn = Eigen::AngleAxisd(2.3, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  const Vec3 shift(40, -70, 15);
+  const auto move = [&](const Vec3& p) { return Vec3(turn * p + shift); };
+  RobotSpec moved = spec;
+  moved.mesh.vertices = (spec.mesh.vertices * turn.transpose()).rowwise() + shift.transpose();
+  for (PointRef& point : moved.actuators[2].points) point.point = move(std::get<Vec3>(point.point));
+  const Model here = compile(spec), there = compile(moved);
+  const Statics statics_here(here), statics_there(there);
+  const Actuation actuation = (Actuation(3) << 0.8, 1.6, 0.85).finished();
+  const Points a = statics_here.solve(actuation, statics_here.rest(), to_the_end(6)).state.positions;
+  const Points b = statics_there.solve(actuation, statics_there.rest(), to_the_end(6)).state.positions;
+  const Points expected = (a * turn.transpose()).rowwise() + shift.transpose();
+  EXPECT_LT(largest_distance(b, expected), 1e-9 * here.diagonal_mm);
+  EXPECT_GT(largest_distance(a, here.rest), 1);
+}
+
+TEST(LocalGlobal, ScalingTheSceneScalesTheResult) {
+  const RobotSpec spec = mixed_robot(true, 0.5);
+  const Actuation actuation = (Actuation(3) << 0.8, 1.6, 0.85).finished();
+  const Model here = compile(spec);
+  const Statics statics(here);
+  StaticsOptions options;  // the default tolerance scales with the robot
+  const Points a = statics.solve(actuation, statics.rest(), options).state.positions;
+  for (const double scale : {1e-3, 7.0, 1000.0}) {
+    RobotSpec scaled = spec;
+    scaled.mesh.vertices *= scale;
+    for (PointRef& point : scaled.actuators[2].points) point.point = Vec3(scale * std::get<Vec3>(point.point));
+    const Model there = compile(scaled);
+    const Statics statics_there(there);
+    const Points b = statics_there.solve(actuation, statics_there.rest(), options).state.positions;
+    EXPECT_LT(largest_distance(b / scale, a), 1e-9 * here.diagonal_mm) << "scale " << scale;
+  }
+}
+
+TEST(LocalGlobal, ResultDoesNotDependOnThreads) {
+  const Model model = compile(mixed_robot(true, 0.5));
+  const Statics statics(model);
+  const Actuation actuation = (Actuation(3) << 0.8, 1.6, 0.85).finished();
+  StaticsOptions options;
+  options.max_iterations = 50;
+  options.threads = 1;
+  const Points one_thread = statics.solve(actuation, statics.rest(), options).state.positions;
+  for (const int threads : {2, 3}) {
+    options.threads = threads;
+    EXPECT_EQ(statics.solve(actuation, statics.rest(), options).state.positions, one_thread);
+  }
+}
+
+TEST(LocalGlobal, SoftAndNearlyRigidNeighboursStayWellPosed) {
+  // a floor without any resistance to shear, and one a thousandth as stiff as its neighbours
+  for (const double ratio : {0.0, 0.001}) {
+    RobotSpec spec = finger_robot(true);
+    MaterialSpec floor;
+    floor.region = "floor";
+    floor.shape_ratio = ratio;
+    spec.materials.push_back(floor);
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const Equilibrium found = statics.solve(one(1.6), statics.rest(), {});
+    EXPECT_EQ(found.report.status, Status::converged);
+    EXPECT_TRUE(found.state.positions.allFinite());
+    const ElementDeformation deformation = deformation_of(model, found.state.positions);
+    EXPECT_GT(*std::min_element(deformation.volume_ratio.begin(), deformation.volume_ratio.end()), 0);
+  }
+  // ratio 1e3 of the weights
+  RobotSpec spec = finger_robot(true);
+  MaterialSpec floor;
+  floor.region = "floor";
+  floor.weight = 1000;
+  spec.materials.push_back(floor);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve(one(1.6), statics.rest(), {});
+  EXPECT_EQ(found.report.status, Status::converged);
+  const ElementDeformation deformation = deformation_of(model, found.state.positions);
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
+    if (model.tetrahedron_roles[e].material == 1) {
+      EXPECT_LT(std::max(deformation.strain[e][0], -deformation.strain[e][2]), 0.01);
+    }
+}
+
+TEST(LocalGlobal, UniformRatiosAreKeptAndLeastNormMeetsTheSum) {
+  // a free chamber alone: nothing resists, so the achieved ratio is the requested one
+  Mesh mesh = testing::block_mesh({3, 3, 3}, {9, 9, 9}, testing::Split::five);
+  RobotSpec spec;
+  spec.mesh = mesh;
+  spec.fixed = {{{VertexList{{0}}, {}}, {true, true, true}},
+                {{VertexList{{3}}, {}}, {false, true, true}},
+                {{VertexList{{12}}, {}}, {false, false, true}}};
+  ActuatorSpec air = testing::actuator("air", ActuatorKind::pneumatic, 0.5, 3, true);
+  air.region = "body";
+  for (const bool least_norm : {true, false}) {
+    air.least_norm = least_norm;
+    spec.actuators = {air};
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const Equilibrium found = statics.solve(one(1.7), statics.rest(), to_the_end(6));
+    EXPECT_EQ(found.report.status, Status::converged);
+    EXPECT_NEAR(achieved_ratio(model, model.actuators[0], found.state.positions), 1.7, 1e-8);
+    // uniform scaling about the held corner
+    if (!least_norm) {
+      EXPECT_LT(largest_distance(found.state.positions, std::cbrt(1.7) * model.rest), 1e-7);
+    }
+  }
+}
+
+TEST(LocalGlobal, RefusesWhatItCannotSolve) {
+  const Model model = compile(finger_robot(true));
+  const Statics statics(model);
+  State start = statics.rest();
+  EXPECT_THROW((void)statics.solve(Actuation(2), start), InvalidInput);
+  EXPECT_THROW((void)statics.solve(one(4.1), start), InvalidInput);
+  EXPECT_THROW((void)statics.solve(one(std::nan("")), start), InvalidInput);
+  StaticsOptions options;
+  options.max_iterations = 0;
+  EXPECT_THROW((void)statics.solve(one(1.2), start, options), InvalidInput);
+  start.positions(3, 1) = std::nan("");
+  EXPECT_THROW((void)statics.solve(one(1.2), start), InvalidInput);
+  start.positions.resize(2, 3);
+  EXPECT_THROW((void)statics.solve(one(1.2), start), InvalidInput);
+}
+
+TEST(LocalGlobal, ReportsWhatHappened) {
+  const Model model = compile(finger_robot(true));
+  const Statics statics(model);
+  StaticsOptions options;
+  options.max_iterations = 3;
+  EXPECT_EQ(statics.solve(one(1.5), statics.rest(), options).report.status, Status::not_converged);
+  int calls = 0;
+  const Equilibrium stopped =
+      statics.solve(one(1.5), statics.rest(), {}, [&](const Progress& p) { return ++calls, p.iteration < 4; });
+  EXPECT_EQ(stopped.report.status, Status::interrupted);
+  EXPECT_EQ(stopped.report.iterations, 4);
+  EXPECT_EQ(calls, 4);
+  const Equilibrium found = statics.solve(one(1.5), statics.rest());
+  EXPECT_EQ(found.report.status, Status::converged);
+  EXPECT_EQ(found.report.iterations, static_cast<int>(found.report.history.size()));
+  EXPECT_LT(found.report.step_mm, found.report.tolerance_mm);
+  EXPECT_LT(found.report.history.back().gradient_norm, 1e-3 * found.report.history.front().gradient_norm);
+}
+
+/// The gradient norm that is reported is that of the energy that is reported.
+TEST(LocalGlobal, GradientNormIsThatOfTheEnergy) {
+  const Model model = compile(finger_robot(false));
+  const Statics statics(model);
+  StaticsOptions options;
+  options.max_iterations = 1;
+  State start = statics.rest();
+  start.positions += noise(static_cast<Index>(model.rest.rows()), 0.3, 1);
+  for (Index v = 0; v < model.rest.rows(); ++v)
+    if (model.fixed[v][0]) start.positions.row(v) = model.rest.row(v);
+  const auto energy = [&](const Points& positions) {
+    return statics.solve(one(1.5), {positions}, options).report.energy;
+  };
+  double squares = 0;
+  const double h = 1e-5;
+  for (Index v = 0; v < model.rest.rows(); ++v) {
+    if (model.fixed[v][0]) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      Points up = start.positions, down = start.positions;
+      up(v, axis) += h;
+      down(v, axis) -= h;
+      squares += std::pow((energy(up) - energy(down)) / (2 * h), 2);
+    }
+  }
+  const double norm = statics.solve(one(1.5), start, options).report.gradient_norm;
+  EXPECT_NEAR(norm, std::sqrt(squares), 1e-6 * norm);
+}
+
+}  // namespace softkin
