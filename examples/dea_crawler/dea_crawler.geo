@@ -21,10 +21,7 @@ Rectangle(3) = {leg, -bridge_width / 2, leg_height, bridge, bridge_width};
 Rectangle(4) = {length - x2, -bridge_width / 2, leg_height, bridge, bridge_width};
 Rectangle(5) = {x2, -width / 2, leg_height, length - 2 * x2, width};
 Rectangle(6) = {x3, -width / 2 + bar, leg_height, length - 2 * x3, width - 2 * bar};
-// Points of the plan for the hold against sliding and turning, in the middle of the legs.
-Point(1001) = {leg / 2, 0, leg_height};
-Point(1002) = {length - leg / 2, 0, leg_height};
-BooleanFragments{ Surface{1 : 6}; Delete; }{ Point{1001, 1002}; Delete; }
+BooleanFragments{ Surface{1 : 6}; Delete; }{}
 
 e = 1e-3;
 top = leg_height + membrane + pet;
@@ -62,9 +59,8 @@ Physical Volume("membrane") = skin[];
 Physical Volume("frame") = stiff[];
 Physical Volume("leg1") = left[];
 Physical Volume("leg2") = right[];
-Physical Surface("feet") = Surface In BoundingBox{-e, -width, -e, length + e, width, e};
-Physical Point("hold_xy") = Point In BoundingBox{leg / 2 - e, -e, -e, leg / 2 + e, e, e};
-Physical Point("hold_y") = Point In BoundingBox{length - leg / 2 - e, -e, -e, length - leg / 2 + e, e, e};
+Physical Surface("foot1") = Surface In BoundingBox{-e, -width, -e, leg + e, width, e};
+Physical Surface("foot2") = Surface In BoundingBox{length - leg - e, -width, -e, length + e, width, e};
 
 Mesh.CharacteristicLengthMin = size;
 Mesh.CharacteristicLengthMax = size;

@@ -29,7 +29,7 @@ TEST(TextMeshes, Medit) {
   ASSERT_EQ(mesh.vertices.rows(), 9);
   EXPECT_EQ(mesh.vertices.row(6), Eigen::RowVector3d(-1, 0, 1));
   EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {0, 2, 1, 4}}));
-  EXPECT_EQ(mesh.prisms, (std::vector<Prism>{{0, 2, 7, 3, 8, 6}}));
+  EXPECT_EQ(mesh.prisms, (std::vector<Prism>{{0, 2, 5, 3, 8, 6}}));
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}}));
   EXPECT_EQ(mesh.quads, (std::vector<Quad>{{0, 2, 8, 3}}));
   ASSERT_EQ(mesh.regions.size(), 4u);
@@ -95,7 +95,7 @@ TEST(TextMeshes, Abaqus) {
   ASSERT_EQ(mesh.vertices.rows(), 9);
   EXPECT_EQ(mesh.vertices.row(4), Eigen::RowVector3d(0, 0, -1));
   EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {0, 2, 1, 4}}));
-  EXPECT_EQ(mesh.prisms, (std::vector<Prism>{{0, 2, 6, 3, 8, 7}}));
+  EXPECT_EQ(mesh.prisms, (std::vector<Prism>{{0, 2, 5, 3, 8, 7}}));
   ASSERT_EQ(mesh.regions.size(), 8u);
   EXPECT_EQ(region(mesh, "Body", 3).tetrahedra, Indices{0});
   EXPECT_EQ(region(mesh, "Body", 3).prisms, Indices{0});
