@@ -37,7 +37,9 @@ void add_info(CLI::App& mesh, Run& run) {
       ->required();
   add_unit(command, *options);
   add_json(command, *options);
-  command.footer("Example:\n  softkin mesh info finger.msh --unit cm");
+  command.footer(
+      "Box, volume and area are those of the elements, reversed ones included.\n"
+      "Example:\n  softkin mesh info finger.msh --unit cm");
   command.callback([&run, options] { run = [options] { return mesh_info(*options); }; });
 }
 

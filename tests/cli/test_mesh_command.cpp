@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <softkin/io/mesh_io.hpp>
 #include <softkin/io/stl.hpp>
+#include <utility>
 
 #include "mesh_samples.hpp"
 
