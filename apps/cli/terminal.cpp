@@ -67,7 +67,7 @@ void ProgressLine::clear() {
 
 std::string number(double value, int digits) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  std::snprintf(text, sizeof text, "%.*g", digits, value == 0 ? 0.0 : value);  // never "-0"
   return text;
 }
 

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <softkin/core/error.hpp>
 #include <softkin/io/gmsh.hpp>
 #include <softkin/io/mesh_io.hpp>
@@ -16,9 +19,36 @@ namespace fs = std::filesystem;
 
 namespace {
 
+struct Form {
+  const char *extension, *name;
+  Mesh (*read)(const fs::path&);  // nullptr: surfaces only
+};
+
+constexpr Form forms[] = {
+    {".msh", "Gmsh", read_gmsh},     {".vtk", "VTK legacy", read_vtk},         {".vtu", "VTK XML", read_vtu},
+    {".mesh", "Medit", read_medit},  {".node", "TetGen", read_tetgen},         {".ele", "TetGen", read_tetgen},
+    {".inp", "Abaqus", read_abaqus}, {".tet", "tetrahedra as text", read_tet}, {".stl", "binary STL", nullptr}};
+
+const Form* form_of(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  const auto found =
+      std::find_if(std::begin(forms), std::end(forms), [&](const Form& form) { return form.extension == extension; });
+  return found == std::end(forms) ? nullptr : found;
+}
+
 [[noreturn]] void refuse_extension(const fs::path& path, const std::string& known) {
   throw InvalidInput({path.string()},
                      "unknown mesh file extension '" + path.extension().string() + "'; known: " + known);
+}
+
+void separate_names(std::vector<Region>& regions) {
+  std::map<std::string, int> highest;
+  for (const Region& region : regions) {
+    int& dimension = highest.try_emplace(region.name, region.dimension).first->second;
+    dimension = std::max(dimension, region.dimension);
+  }
+  for (Region& region : regions)
+    if (region.dimension < highest[region.name]) region.name += "_" + std::to_string(region.dimension) + "d";
 }
 
 /// A cell that several volume regions name keeps the first of them.
@@ -55,15 +85,21 @@ void write_boundary(const fs::path& path, const Mesh& mesh) {
 }  // namespace
 
 Mesh read_mesh(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".msh") return read_gmsh(path);
-  if (extension == ".vtk") return read_vtk(path);
-  if (extension == ".vtu") return read_vtu(path);
-  if (extension == ".mesh") return read_medit(path);
-  if (extension == ".node" || extension == ".ele") return read_tetgen(path);
-  if (extension == ".inp") return read_abaqus(path);
-  if (extension == ".tet") return read_tet(path);
-  refuse_extension(path, ".msh, .vtk, .vtu, .mesh, .node, .ele, .inp, .tet");
+  const Form* form = form_of(path);
+  if (form != nullptr && form->read != nullptr) {
+    Mesh mesh = form->read(path);
+    separate_names(mesh.regions);
+    return mesh;
+  }
+  std::string known;
+  for (const Form& other : forms)
+    if (other.read != nullptr) known += (known.empty() ? "" : ", ") + std::string(other.extension);
+  refuse_extension(path, known);
+}
+
+std::string mesh_form(const fs::path& path) {
+  const Form* form = form_of(path);
+  return form == nullptr ? "" : form->name;
 }
 
 void write_mesh(const fs::path& path, const Mesh& mesh) {

@@ -1,4 +1,5 @@
 #include <array>
+#include <softkin/io/length_unit.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene.hpp>
 #include <softkin/io/scene_parts.hpp>
@@ -33,8 +34,7 @@ void check_formulation(const Node& node) {
 double read_length_unit(const Node& node) {
   const Map map(node, {"length"});
   const Node* length = map.find("length");
-  const double to_mm[] = {1, 10, 1000, 0.001, 25.4};
-  return length ? to_mm[choice(*length, {"mm", "cm", "m", "um", "in"})] : 1;
+  return length ? mm_per(length_units()[choice(*length, length_units())]) : 1;
 }
 
 Mesh read_mesh_of(const Context& context, const Node& node) {

@@ -102,28 +102,40 @@ std::string motion_text(const Motions& motions) {
   return text;
 }
 
+// "8 vertices around (1, 2, 3) mm can move along x", or "" where the part is held.
+std::string freedom_of(const Model& model, const std::vector<Index>& vertices) {
+  Vec3 centroid = Vec3::Zero();
+  Bounds bounds;
+  for (const Index v : vertices) {
+    centroid += vertex_at(model.rest, v);
+    bounds.extend(vertex_at(model.rest, v));
+  }
+  centroid /= static_cast<double>(vertices.size());
+  const Motions motions = free_motions(model, vertices, centroid, bounds.diagonal().norm());
+  if (motions.cols() == 0) return "";
+  return count_text(vertices.size(), "vertex", "vertices") + " around " + point_text(centroid) + " mm can " +
+         motion_text(motions);
+}
+
 }  // namespace
 
 void check_anchoring(const Model& model, const Origin& origin) {
+  constexpr std::size_t most_named = 5;
   Parts parts = connected_parts(model);
   std::map<Index, std::vector<Index>> members;
   for (Index v = 0; v < model.rest.rows(); ++v)
     if (model.used[v]) members[parts.root(v)].push_back(v);
+  std::string text;
+  std::size_t loose = 0;
   for (const auto& [root, vertices] : members) {
-    Vec3 centroid = Vec3::Zero();
-    Bounds bounds;
-    for (const Index v : vertices) {
-      centroid += vertex_at(model.rest, v);
-      bounds.extend(vertex_at(model.rest, v));
-    }
-    centroid /= static_cast<double>(vertices.size());
-    const Motions motions = free_motions(model, vertices, centroid, bounds.diagonal().norm());
-    if (motions.cols() == 0) continue;
-    throw InvalidInput(origin, (members.size() == 1 ? "the robot" : "a part") + std::string(" of ") +
-                                   count_text(vertices.size(), "vertex", "vertices") + " around " +
-                                   point_text(centroid) + " mm can " + motion_text(motions) +
-                                   ": fix more of it, or connect it to a part that is held");
+    const std::string freedom = freedom_of(model, vertices);
+    if (freedom.empty() || ++loose > most_named) continue;
+    text += (loose == 1 ? "" : "; ") + std::string(members.size() == 1 ? "the robot" : "a part") + " of " + freedom;
   }
+  if (loose == 0) return;
+  if (loose > most_named) text += "; and " + count_text(loose - most_named, "more part", "more parts");
+  throw InvalidInput(origin, text + (loose == 1 ? ": fix more of it, or connect it to a part that is held"
+                                                : ": fix more of them, or connect them to a part that is held"));
 }
 
 }  // namespace softkin

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run_program.hpp"
+
+namespace softkin::testing {
+
+/// Writes Gmsh 2.2 ASCII by hand.
+struct GmshText {
+  struct Element {
+    int type, group;            // 15 point, 2 triangle, 3 quad, 4 tetrahedron, 6 prism; 0: no group
+    std::vector<int> vertices;  // from 0
+  };
+  std::vector<std::string> names;  // lines: dimension, group, name in double quotes
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<Element> elements;
+
+  [[nodiscard]] std::string text() const {
+    std::ostringstream out;
+    out.precision(17);
+    out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+    if (!names.empty()) {
+      out << "$PhysicalNames\n" << names.size() << "\n";
+      for (const std::string& name : names) out << name << "\n";
+      out << "$EndPhysicalNames\n";
+    }
+    out << "$Nodes\n" << vertices.size() << "\n";
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      out << i + 1 << " " << vertices[i][0] << " " << vertices[i][1] << " " << vertices[i][2] << "\n";
+    out << "$EndNodes\n$Elements\n" << elements.size() << "\n";
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      out << i + 1 << " " << elements[i].type << " 2 " << elements[i].group << " 1";
+      for (const int v : elements[i].vertices) out << " " << v + 1;
+      out << "\n";
+    }
+    out << "$EndElements\n";
+    return out.str();
+  }
+};
+
+/// Tetrahedra without regions.
+inline GmshText tetrahedra(const std::vector<std::array<double, 3>>& vertices,
+                           const std::vector<std::vector<int>>& elements) {
+  GmshText mesh;
+  mesh.vertices = vertices;
+  for (const auto& element : elements) mesh.elements.push_back({4, 0, element});
+  return mesh;
+}
+
+/// The cube [0, 2]^3 in six equal tetrahedra around the diagonal, positive: vertex number = x + 2 y + 4 z over the
+/// edge. Regions: body (tetrahedra 0 to 3), chamber (4, 5), base (z = 0, two triangles), corner (the origin).
+inline GmshText cube() {
+  GmshText mesh;
+  mesh.names = {"3 1 \"body\"", "3 2 \"chamber\"", "2 3 \"base\"", "0 4 \"corner\""};
+  for (int i = 0; i < 8; ++i) mesh.vertices.push_back({2.0 * (i & 1), 2.0 * (i >> 1 & 1), 2.0 * (i >> 2)});
+  const int paths[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+  for (int i = 0; i < 6; ++i)
+    mesh.elements.push_back({4, i < 4 ? 1 : 2, {paths[i][0], paths[i][1], paths[i][2], paths[i][3]}});
+  mesh.elements.push_back({2, 3, {0, 1, 3}});
+  mesh.elements.push_back({2, 3, {0, 3, 2}});
+  mesh.elements.push_back({15, 4, {0}});
+  return mesh;
+}
+
+/// A prism of height 5 over a right triangle with legs 3 and 4: region skin; its side of 3 x 5: region wall.
+inline GmshText prism() {
+  GmshText mesh;
+  mesh.names = {"3 1 \"skin\"", "2 2 \"wall\""};
+  mesh.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {0, 0, 5}, {3, 0, 5}, {0, 4, 5}};
+  mesh.elements = {{6, 1, {0, 1, 2, 3, 4, 5}}, {3, 2, {0, 1, 4, 3}}};
+  return mesh;
+}
+
+}  // namespace softkin::testing

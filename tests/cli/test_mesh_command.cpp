@@ -1,0 +1,285 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <softkin/io/mesh_io.hpp>
+#include <softkin/io/stl.hpp>
+#include <utility>
+
+#include "mesh_samples.hpp"
+
+namespace {
+
+using namespace softkin;
+using namespace softkin::testing;
+using nlohmann::json;
+
+json run_json(std::vector<std::string> arguments) {
+  arguments.emplace_back("--json");
+  const ProgramResult result = run_program(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  return json::parse(result.output);
+}
+
+void expect_refused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
+  const ProgramResult result = run_program(arguments);
+  EXPECT_EQ(result.exit_code, 2) << result.errors;
+  EXPECT_EQ(result.output, "");
+  for (const std::string& word : words) EXPECT_NE(result.errors.find(word), std::string::npos) << result.errors;
+}
+
+void expect_contains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "no '" << part << "' in:\n" << text;
+}
+
+TEST(MeshInfo, MeasuresCube) {
+  const TemporaryFolder folder;
+  const json info = run_json({"mesh", "info", folder.write("cube.msh", cube().text())});
+  EXPECT_EQ(info["form"], "Gmsh");
+  EXPECT_EQ(info["vertices"], 8);
+  EXPECT_EQ(info["tetrahedra"], 6);
+  EXPECT_EQ(info["prisms"], 0);
+  EXPECT_EQ(info["parts"], 1);
+  EXPECT_EQ(info["surface_cells"], json({{"triangles", 2}, {"quads", 0}}));
+  EXPECT_EQ(info["bounding_box_mm"]["low"], json({0.0, 0.0, 0.0}));
+  EXPECT_EQ(info["bounding_box_mm"]["high"], json({2.0, 2.0, 2.0}));
+  EXPECT_EQ(info["size_mm"], json({2.0, 2.0, 2.0}));
+  EXPECT_NEAR(info["volume_mm3"], 8, 1e-12);
+  EXPECT_NEAR(info["boundary_area_mm2"], 24, 1e-12);
+  // 19 edges: 12 of the cube, 6 diagonals of its sides, 1 through its middle
+  EXPECT_NEAR(info["edge_lengths_mm"]["min"], 2, 1e-12);
+  EXPECT_NEAR(info["edge_lengths_mm"]["median"], 2, 1e-12);
+  EXPECT_NEAR(info["edge_lengths_mm"]["max"], 2 * std::sqrt(3), 1e-12);
+  // 3 inradius / circumradius; inradius = 3 volume / area, circumradius = half the cube's diagonal
+  const double quality = 3 * (0.5 / (1 + std::sqrt(2))) / (std::sqrt(3) / 2);
+  for (const char* key : {"min", "percentile_1", "median"}) EXPECT_NEAR(info["quality"][key], quality, 1e-12);
+}
+
+TEST(MeshInfo, ListsRegions) {
+  const TemporaryFolder folder;
+  const json regions = run_json({"mesh", "info", folder.write("cube.msh", cube().text())})["regions"];
+  ASSERT_EQ(regions.size(), 4u);
+  EXPECT_EQ(regions[0]["name"], "body");
+  EXPECT_EQ(regions[0]["dimension"], 3);
+  EXPECT_EQ(regions[0]["elements"], 4);
+  EXPECT_EQ(regions[0]["vertices"], 7);
+  EXPECT_NEAR(regions[0]["volume_mm3"], 16.0 / 3, 1e-12);
+  EXPECT_EQ(regions[1]["elements"], 2);
+  EXPECT_EQ(regions[1]["vertices"], 5);
+  EXPECT_NEAR(regions[1]["volume_mm3"], 8.0 / 3, 1e-12);
+  EXPECT_EQ(regions[2]["name"], "base");
+  EXPECT_EQ(regions[2]["faces"], 2);
+  EXPECT_EQ(regions[2]["vertices"], 4);
+  EXPECT_NEAR(regions[2]["area_mm2"], 4, 1e-12);
+  EXPECT_EQ(regions[3], json({{"name", "corner"}, {"dimension", 0}, {"vertices", 1}}));
+}
+
+TEST(MeshInfo, UnitScalesPrism) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("prism.msh", prism().text());
+  for (const auto& [unit, mm] : {std::pair{"mm", 1.0}, {"cm", 10.0}, {"m", 1000.0}, {"um", 0.001}, {"in", 25.4}}) {
+    const json info = run_json({"mesh", "info", file, "--unit", unit});
+    EXPECT_EQ(info["unit"], unit);
+    EXPECT_EQ(info["prisms"], 1);
+    EXPECT_EQ(info["surface_cells"]["quads"], 1);
+    EXPECT_NEAR(info["size_mm"][2].get<double>() / mm, 5, 1e-12);
+    EXPECT_NEAR(info["volume_mm3"].get<double>() / (mm * mm * mm), 30, 1e-10);
+    EXPECT_NEAR(info["boundary_area_mm2"].get<double>() / (mm * mm), 72, 1e-10);
+    EXPECT_NEAR(info["regions"][1]["area_mm2"].get<double>() / (mm * mm), 15, 1e-10);
+    EXPECT_NEAR(info["edge_lengths_mm"]["median"].get<double>() / mm, 5, 1e-12);  // 3 3 4 4 5 5 5 5 5
+  }
+}
+
+TEST(MeshInfo, ReversedElementsAndStrayVerticesDoNotCount) {
+  GmshText mesh = cube();
+  std::swap(mesh.elements[2].vertices[0], mesh.elements[2].vertices[1]);
+  mesh.vertices.push_back({100, 100, 100});
+  const TemporaryFolder folder;
+  const json info = run_json({"mesh", "info", folder.write("cube.msh", mesh.text())});
+  EXPECT_EQ(info["vertices"], 9);
+  EXPECT_NEAR(info["volume_mm3"], 8, 1e-12);
+  EXPECT_EQ(info["size_mm"], json({2.0, 2.0, 2.0}));
+}
+
+TEST(MeshInfo, TextNamesEveryUnit) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_program({"mesh", "info", folder.write("cube.msh", cube().text()), "--unit", "cm"});
+  EXPECT_EQ(result.exit_code, 0);
+  expect_contains(result.output, "(Gmsh, lengths in cm)\n");
+  expect_contains(result.output, "\nvertices       8\n");
+  expect_contains(result.output, "\nelements       6 tetrahedra, 0 prisms in 1 part\n");
+  expect_contains(result.output, "\nbounding box   (0, 0, 0) mm to (20, 20, 20) mm\n");
+  expect_contains(result.output, "\nsize           20 x 20 x 20 mm\n");
+  expect_contains(result.output, "\nvolume         8000 mm^3\n");
+  expect_contains(result.output, "\nboundary area  2400 mm^2\n");
+  expect_contains(result.output, "\nedge lengths   min 20, median 20, max 34.64 mm\n");
+  expect_contains(result.output, "\n  body     3D  4 elements  7 vertices  5333.33 mm^3\n");
+  expect_contains(result.output, "\n  base     2D     2 faces  4 vertices      400 mm^2\n");
+  expect_contains(result.output, "\n  corner   0D                1 vertex\n");
+}
+
+TEST(MeshInfo, CutsLongTables) {
+  GmshText mesh = cube();
+  for (int group = 10; group < 60; ++group) mesh.elements.push_back({15, group, {0}});
+  const TemporaryFolder folder;
+  const std::string file = folder.write("cube.msh", mesh.text());
+  const std::string text = run_program({"mesh", "info", file}).output;
+  expect_contains(text, "\nregions        54\n");
+  expect_contains(text, "\n  ... and 14 more\n");
+  EXPECT_EQ(run_json({"mesh", "info", file})["regions"].size(), 54u);
+}
+
+void expect_same_elements(const Mesh& a, const Mesh& b) {
+  ASSERT_EQ(a.vertices.rows(), b.vertices.rows());
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.tetrahedra, b.tetrahedra);
+  EXPECT_EQ(a.prisms, b.prisms);
+}
+
+TEST(MeshConvert, GmshKeepsEverything) {
+  const TemporaryFolder folder;
+  for (const GmshText& sample : {cube(), prism()}) {
+    const std::string in = folder.write("in.msh", sample.text()), out = folder / "out.msh";
+    for (const bool ascii : {false, true}) {
+      std::vector<std::string> arguments{"mesh", "convert", in, out};
+      if (ascii) arguments.emplace_back("--ascii");
+      const json report = run_json(arguments);
+      EXPECT_EQ(report["not_kept"], json::array());
+      EXPECT_EQ(report["regions"].size(), sample.names.size());
+      EXPECT_EQ(read_text(out).find('\0') == std::string::npos, ascii);
+      const Mesh before = read_mesh(in), after = read_mesh(out);
+      expect_same_elements(before, after);
+      ASSERT_EQ(before.regions.size(), after.regions.size());
+      for (std::size_t i = 0; i < before.regions.size(); ++i) {
+        const Region &a = before.regions[i], &b = after.regions[i];
+        EXPECT_EQ(a.name, b.name);
+        EXPECT_EQ(a.dimension, b.dimension);
+        EXPECT_EQ(a.tetrahedra, b.tetrahedra);
+        EXPECT_EQ(a.prisms, b.prisms);
+        EXPECT_EQ(a.triangles, b.triangles);
+        EXPECT_EQ(a.quads, b.quads);
+        EXPECT_EQ(a.vertices, b.vertices);
+      }
+    }
+  }
+}
+
+TEST(MeshConvert, VtuKeepsVolumeRegions) {
+  const TemporaryFolder folder;
+  const std::string in = folder.write("in.msh", cube().text()), out = folder / "out.vtu";
+  const json report = run_json({"mesh", "convert", in, out});
+  EXPECT_EQ(report["regions"], json({"body", "chamber"}));
+  EXPECT_EQ(report["not_kept"], json({"region 'base' (2D, 2 faces)", "region 'corner' (0D, 1 vertex)"}));
+  const Mesh before = read_mesh(in), after = read_mesh(out);
+  expect_same_elements(before, after);
+  ASSERT_EQ(after.regions.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(after.regions[i].name, before.regions[i].name);
+    EXPECT_EQ(after.regions[i].tetrahedra, before.regions[i].tetrahedra);
+  }
+}
+
+TEST(MeshConvert, VtuNamesRegionsThatLoseElements) {
+  GmshText mesh = cube();
+  mesh.names.emplace_back("3 5 \"all\"");
+  for (int i = 0; i < 5; ++i) {  // MSH 2.2 repeats an element for each of its groups
+    mesh.elements.push_back(mesh.elements[static_cast<std::size_t>(i)]);
+    mesh.elements.back().group = 5;
+  }
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_program({"mesh", "convert", folder.write("in.msh", mesh.text()), folder / "out.vtu"});
+  EXPECT_EQ(result.exit_code, 0);
+  expect_contains(result.output, "8 vertices, 6 tetrahedra, 0 prisms, 2 regions\nnot kept:\n");
+  expect_contains(result.output, "    region 'all' (3D, 5 elements)\n");
+}
+
+TEST(MeshConvert, StlHoldsBoundary) {
+  const TemporaryFolder folder;
+  const auto convert = [&](const GmshText& mesh) {
+    const json report = run_json({"mesh", "convert", folder.write("in.msh", mesh.text()), folder / "out.stl"});
+    const TriangleSurface surface = read_stl(folder / "out.stl");
+    EXPECT_EQ(report["facets"], surface.triangles.size());
+    EXPECT_EQ(report["vertices"], surface.vertices.rows());
+    EXPECT_EQ(report["tetrahedra"], 0);
+    EXPECT_EQ(report["not_kept"].size(), 2 + mesh.names.size());
+    return std::pair(surface.triangles.size(), enclosed_volume(surface.vertices, surface.triangles));
+  };
+  EXPECT_EQ(convert(cube()), std::pair(std::size_t{12}, 8.0));
+  EXPECT_EQ(convert(prism()), std::pair(std::size_t{8}, 30.0));
+}
+
+TEST(MeshConvert, OntoItself) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("cube.msh", cube().text());
+  const Mesh before = read_mesh(file);
+  EXPECT_EQ(run_program({"mesh", "convert", file, file}).exit_code, 0);
+  expect_same_elements(before, read_mesh(file));
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(MeshConvert, ReferencesOfSeveralDimensionsStayApart) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.mesh",
+                                        "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 1\n1 0 0 1\n0 1 0 1\n"
+                                        "0 0 1 1\nTetrahedra 1\n1 2 3 4 7\nTriangles 1\n1 2 3 7\nEnd\n");
+  const json report = run_json({"mesh", "convert", file, folder / "a.msh"});
+  EXPECT_EQ(report["regions"], json({"ref_7", "ref_7_2d"}));
+  EXPECT_EQ(report["not_kept"], json::array());
+}
+
+TEST(MeshConvert, RefusesAndWritesNothing) {
+  const TemporaryFolder folder;
+  const std::string good = folder.write("good.msh", cube().text());
+  const std::string bad = folder.write("bad.msh", cube().text().substr(0, 300));
+  const std::string existing = folder.write("old.vtu", "keep me");
+  expect_refused({"mesh", "convert", bad, folder / "out.vtu"}, {"bad.msh:"});
+  expect_refused({"mesh", "convert", bad, existing}, {"bad.msh:"});
+  expect_refused({"mesh", "convert", folder / "absent.msh", folder / "out.vtu"}, {"absent.msh", "no such file"});
+  expect_refused({"mesh", "convert", good, folder / "out.obj"}, {"out.obj", "'.obj'", ".msh, .vtu, .stl"});
+  expect_refused({"mesh", "convert", good, folder / "no/out.msh"}, {"no/out.msh", "cannot be written"});
+  EXPECT_EQ(read_text(existing), "keep me");
+  EXPECT_EQ(folder.files(), 3u);
+}
+
+TEST(MeshUsage, BadUsageNamesOption) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("cube.msh", cube().text());
+  expect_refused({"mesh"}, {"subcommand", "info, check, convert", "--help"});
+  expect_refused({"mesh", "melt", file}, {"melt", "--help"});
+  expect_refused({"mesh", "info"}, {"MESH", "required", "--help"});
+  expect_refused({"mesh", "info", file, "--unit", "parsec"}, {"--unit", "parsec", "cm", "--help"});
+  expect_refused({"mesh", "info", file, "--unit"}, {"--unit", "--help"});
+  expect_refused({"mesh", "info", file, "--bogus"}, {"--bogus", "--help"});
+  expect_refused({"mesh", "info", file, "other.msh"}, {"other.msh", "--help"});
+  expect_refused({"mesh", "convert", file}, {"OUT", "required", "--help"});
+  expect_refused({"mesh", "convert", file, folder / "a.vtu", "--ascii"}, {"--ascii", "a.vtu", "--help"});
+  expect_refused({"mesh", "check"}, {"MESH", "--scene", "--help"});
+  expect_refused({"mesh", "check", file, "--scene", "a.yaml"}, {"MESH", "--scene", "--help"});
+  expect_refused({"mesh", "check", "--scene", file}, {"--scene", ".yaml", "--help"});
+  expect_refused({"mesh", "check", "a.yaml", "--unit", "cm"}, {"--unit", "--help"});
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(MeshUsage, HelpShowsOptionsAndExample) {
+  for (const char* command : {"info", "check", "convert"}) {
+    const ProgramResult result = run_program({"mesh", command, "--help"});
+    EXPECT_EQ(result.exit_code, 0);
+    expect_contains(result.output, std::string("softkin mesh ") + command + " finger.");
+    expect_contains(result.output, "--json");
+  }
+  expect_contains(run_program({"mesh", "check", "--help"}).output, "--scene SCENE");
+  expect_contains(run_program({"mesh", "info", "--help"}).output, "--unit UNIT");
+  expect_contains(run_program({"mesh", "convert", "--help"}).output, "--ascii");
+}
+
+TEST(MeshUsage, RefusesCoordinatesThatOverflow) {
+  GmshText mesh = cube();
+  mesh.vertices[7] = {1e70, 1e70, 1e70};
+  const TemporaryFolder folder;
+  const std::string file = folder.write("cube.msh", mesh.text());
+  for (const char* command : {"info", "check"}) expect_refused({"mesh", command, file}, {"cube.msh", "too large"});
+}
+
+}  // namespace
