@@ -7,7 +7,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(softkin_settings INTERFACE -Wno-psabi)  # no vector type crosses a library boundary
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # gcc 12 reports its own AVX-512 header and std::string
-    target_compile_options(softkin_settings INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict)
+    target_compile_options(softkin_settings INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict
+                           -Wno-array-bounds -Wno-stringop-overflow)
   endif()
 endif()
 target_compile_definitions(softkin_settings INTERFACE SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)

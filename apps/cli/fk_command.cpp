@@ -25,7 +25,7 @@ namespace {
 struct FkOptions {
   std::string scene, path, output, report, image, solver = "local-global";
   std::vector<std::string> settings;
-  std::optional<std::array<double, 3>> view;
+  std::vector<double> view;  // empty: the picture's default
   StaticsOptions statics;
   bool json = false, resume = false;
 };

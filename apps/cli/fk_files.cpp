@@ -59,8 +59,8 @@ fs::path series_file(const fs::path& pvd, std::size_t step) {
   return fs::path(pvd).replace_filename(pvd.stem().string() + number);
 }
 
-void write_image(const fs::path& path, const Model& model, const Points& positions,
-                 const std::optional<std::array<double, 3>>& view, const std::string& title) {
+void write_image(const fs::path& path, const Model& model, const Points& positions, const std::vector<double>& view,
+                 const std::string& title) {
   const std::vector<Triangle> surface = visible_surface(model);
   PictureLayer shape, ghost;
   shape.points = positions;
@@ -72,7 +72,7 @@ void write_image(const fs::path& path, const Model& model, const Points& positio
   ghost.opacity = 0.15;
   ghost.edges = false;
   PictureOptions options;
-  if (view) options.view = {(*view)[0], (*view)[1], (*view)[2]};
+  if (!view.empty()) options.view = {view[0], view[1], view[2]};
   options.title = title;
   options.value_label = "displacement [mm]";
   write_picture(path, {shape, ghost}, options);

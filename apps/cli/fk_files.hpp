@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
-#include <optional>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <string>
+#include <vector>
 
 namespace softkin::cli {
 
@@ -14,8 +14,9 @@ void write_shape(const std::filesystem::path& path, const Model& model, const Po
 /// NAME_0007.vtu beside NAME.pvd.
 [[nodiscard]] std::filesystem::path series_file(const std::filesystem::path& pvd, std::size_t step);
 
-/// The body coloured by displacement over a ghost of its rest shape. view: from the scene to the eye.
+/// The body coloured by displacement over a ghost of its rest shape. view: three numbers, from the scene to
+/// the eye; empty: from the front, left and above.
 void write_image(const std::filesystem::path& path, const Model& model, const Points& positions,
-                 const std::optional<std::array<double, 3>>& view, const std::string& title);
+                 const std::vector<double>& view, const std::string& title);
 
 }  // namespace softkin::cli

@@ -8,7 +8,10 @@ int main(int argc, char** argv) {
   using namespace softkin;
   CLI::App app{"softkin: kinematics of soft robots. Lengths in mm, ratios without unit."};
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
+  app.callback([&app] {
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("a command (fk, mesh)");
+  });
   cli::Run run;
   cli::add_fk(app, run);
   cli::add_mesh(app, run);

@@ -225,7 +225,7 @@ TEST(MeshConvert, ReferencesOfSeveralDimensionsStayApart) {
                                         "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 1\n1 0 0 1\n0 1 0 1\n"
                                         "0 0 1 1\nTetrahedra 1\n1 2 3 4 7\nTriangles 1\n1 2 3 7\nEnd\n");
   const json report = run_json({"mesh", "convert", file, folder / "a.msh"});
-  EXPECT_EQ(report["regions"], json({"ref_7", "ref_7_2d"}));
+  EXPECT_EQ(report["regions"], json({"ref_7", "surface_ref_7"}));
   EXPECT_EQ(report["not_kept"], json::array());
 }
 

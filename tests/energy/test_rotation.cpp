@@ -87,8 +87,9 @@ TEST(Rotation, AgreesWithSvdForProperInvertedAndFlatShapesFromAnyStart) {
       expect_best(r[l], h[l]);
       const Eigen::JacobiSVD<Mat3> svd(h[l]);
       const Vec3 s = svd.singularValues();
-      if (s[1] - (h[l].determinant() < 0 ? s[2] : 0) > 0.05 * s[0])  // unique
+      if (s[1] - (h[l].determinant() < 0 ? s[2] : 0) > 0.05 * s[0]) {  // unique
         EXPECT_NEAR((r[l] - kabsch(h[l])).norm(), 0, 1e-9) << h[l];
+      }
     }
   }
 }
