@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <softkin/core/error.hpp>
-#include <softkin/core/parallel.hpp>
 
 namespace softkin {
 
@@ -20,16 +19,6 @@ TEST(Error, SuggestsTheNearestName) {
   EXPECT_EQ(suggest_name("basee", known), "; did you mean 'base'?");
   EXPECT_EQ(suggest_name("quite_another", known), "; known: chamber, body, base");
   EXPECT_EQ(suggest_name("x", {}), "");
-}
-
-TEST(Parallel, PiecesCoverTheRangeOnceForAnyNumberOfThreads) {
-  for (const int threads : {1, 2, 3, 7}) {
-    std::vector<int> visits(1001, 0);
-    parallel_pieces(1001, threads, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) ++visits[i];
-    });
-    for (const int visit : visits) EXPECT_EQ(visit, 1);
-  }
 }
 
 }  // namespace softkin

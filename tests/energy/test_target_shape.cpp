@@ -243,6 +243,37 @@ TEST(TargetShape, InvertedSoftElementIsPulledBackToItsRestShape) {
   EXPECT_TRUE((evaluate<4>(body<4>(rest, 0.5, 1), Points_<4>::Zero()).pull.allFinite()));
 }
 
+/// The closed form that the calibration starts from: a regular tetrahedron of shape ratio R is at small strain an
+/// isotropic material with E proportional to 6R/(2+R) and nu = (1-R)/(2+R).
+TEST(TargetShape, RegularTetrahedronIsIsotropic) {
+  const Points_<4> rest = regular_tetrahedron();
+  const auto stress = [&](double ratio, const Mat3& strain) {
+    const double h = 1e-6;
+    const auto virial = [&](double sign) {
+      const Points_<4> x = rest * (Mat3::Identity() + sign * h * strain);
+      return Mat3(-2 * evaluate<4>(body<4>(rest, ratio, 1), x).pull.transpose() * rest);
+    };
+    return Mat3((virial(1) - virial(-1)) / (2 * h));
+  };
+  const auto unit = [](int i, int j) {
+    Mat3 e = Mat3::Zero();
+    e(i, j) += 0.5;
+    e(j, i) += 0.5;
+    return e;
+  };
+  double e_1 = 0;
+  for (const double r : {1.0, 0.5, 0.2, 0.1}) {
+    const Mat3 along_x = stress(r, unit(0, 0));
+    const double c_11 = along_x(0, 0), c_12 = along_x(1, 1);
+    EXPECT_NEAR(along_x(2, 2), c_12, 1e-6);
+    EXPECT_NEAR(stress(r, unit(0, 1))(0, 1), 0.5 * (c_11 - c_12), 1e-6);  // isotropic
+    const double e = (c_11 - c_12) * (c_11 + 2 * c_12) / (c_11 + c_12);
+    if (r == 1) e_1 = e;
+    EXPECT_NEAR(e / e_1, 3 * r / (2 + r), 1e-7);
+    EXPECT_NEAR(c_12 / (c_11 + c_12), (1 - r) / (2 + r), 1e-7);
+  }
+}
+
 TEST(TargetShape, CableTargetShrinksTheEdgeAndKeepsTheApex) {
   Points_<3> rest;
   rest << 1, 2, 5, 5, 2, 5, 2, 2, 1;  // edge along x, foot of the apex at a quarter of it

@@ -51,7 +51,8 @@ TEST(SparseFactor, SolvesAsADenseFactorDoes) {
     const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix).selfadjointView<Eigen::Lower>();
     const Eigen::MatrixXd expected = dense.ldlt().solve(right);
     Points solution = right;
-    SparseFactor(matrix).solve(solution, 1);
+    Team alone(1);
+    SparseFactor(matrix).solve(solution, alone);
     EXPECT_NEAR((solution - expected).norm(), 0, 1e-11 * expected.norm());
   }
 }
@@ -60,9 +61,10 @@ TEST(SparseFactor, ResultDoesNotDependOnThreads) {
   const auto matrix = grid_matrix(30, 6, 6, 7);
   const SparseFactor factor(matrix);
   Points one = random_points(static_cast<Index>(matrix.rows())), two = one, three = one;
-  factor.solve(one, 1);
-  factor.solve(two, 2);
-  factor.solve(three, 3);
+  Team alone(1), pair(2), trio(3);
+  factor.solve(one, alone);
+  factor.solve(two, pair);
+  factor.solve(three, trio);
   EXPECT_EQ(one, two);
   EXPECT_EQ(one, three);
 }

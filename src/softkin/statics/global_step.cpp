@@ -102,11 +102,12 @@ void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, Group& gr
   Eigen::SparseMatrix<double> free_part(count, count);
   free_part.setFromTriplets(entries.begin(), entries.end());
   group.factor.emplace_back(free_part);
+  Team alone(1);
   for (Index h = 0; h < handles; h += 3) {
     Points columns = Points::Zero(count, 3);
     const Index width = std::min<Index>(3, handles - h);
     columns.leftCols(width) = group.coupling.middleCols(h, width);
-    group.factor.front().solve(columns, 1);
+    group.factor.front().solve(columns, alone);
     group.follow.middleCols(h, width) = columns.leftCols(width);
   }
   group.schur -= group.coupling.transpose() * group.follow;
@@ -195,7 +196,7 @@ void GlobalStep::move_poses(const Handles& asked, std::vector<Pose>& poses) cons
   }
 }
 
-void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pose>& poses, int threads) const {
+void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pose>& poses, Team& team) const {
   Handles asked = handles_of(residual);
   std::vector<Points> moves;
   for (const Group& group : groups_) {
@@ -203,7 +204,7 @@ void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pos
     Points& move = moves.emplace_back(Points::Zero(count, 3));
     for (Index i = 0; i < count; ++i)
       for (const int axis : group.axes) move(i, axis) = residual(group.free[i], axis);
-    if (count > 0) group.factor.front().solve(move, threads);
+    if (count > 0) group.factor.front().solve(move, team);
     if (!regions_.empty())
       for (const int axis : group.axes) asked.col(axis) -= group.coupling.transpose() * move.col(axis);
   }

@@ -23,7 +23,7 @@ class GlobalStep {
   GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix);
 
   /// Moves positions (#V by 3) by the step that residual (#V by 3) asks for; poses move along.
-  void step(const Points& residual, Points& positions, std::vector<Pose>& poses, int threads) const;
+  void step(const Points& residual, Points& positions, std::vector<Pose>& poses, Team& team) const;
 
   /// Puts fixed vertices back and rigid regions into their best-fit poses.
   [[nodiscard]] std::vector<Pose> project(Points& positions) const;

@@ -55,22 +55,21 @@ void SparseFactor::backward(Row* rows, Index begin, Index end) const {
   }
 }
 
-void SparseFactor::solve(Points& right_side, int threads) const {
+void SparseFactor::solve(Points& right_side, Team& team) const {
   const Index n = size(), top = pieces_.back(), count = static_cast<Index>(pieces_.size()) - 1;
   std::vector<Row> rows(n), above(static_cast<std::size_t>(count) * (n - top), Row{});
   for (Index k = 0; k < n; ++k)
     rows[k] = {right_side(order_[k], 0), right_side(order_[k], 1), right_side(order_[k], 2), 0};
 
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
-  for (Index i = 0; i < count; ++i)
+  team.each(count, [&](Index i) {
     forward(rows.data(), above.data() + static_cast<std::size_t>(i) * (n - top), pieces_[i], pieces_[i + 1], top);
+  });
   for (Index i = 0; i < count; ++i)
     for (Index k = top; k < n; ++k)
       for (int c = 0; c < 4; ++c) rows[k].c[c] += above[static_cast<std::size_t>(i) * (n - top) + k - top].c[c];
   forward(rows.data(), nullptr, top, n, n);
   backward(rows.data(), top, n);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
-  for (Index i = 0; i < count; ++i) backward(rows.data(), pieces_[i], pieces_[i + 1]);
+  team.each(count, [&](Index i) { backward(rows.data(), pieces_[i], pieces_[i + 1]); });
 
   for (Index k = 0; k < n; ++k)
     for (int c = 0; c < 3; ++c) right_side(order_[k], c) = rows[k].c[c];

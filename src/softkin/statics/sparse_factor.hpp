@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <softkin/core/types.hpp>
+#include <softkin/core/team.hpp>
 #include <vector>
 
 namespace softkin {
@@ -15,7 +15,7 @@ class SparseFactor {
   explicit SparseFactor(const Eigen::SparseMatrix<double>& matrix);
 
   /// right_side, n x 3, becomes the solution.
-  void solve(Points& right_side, int threads) const;
+  void solve(Points& right_side, Team& team) const;
 
   [[nodiscard]] Index size() const { return static_cast<Index>(order_.size()); }
   [[nodiscard]] std::int64_t nonzeros() const { return static_cast<std::int64_t>(values_.size()) + size(); }

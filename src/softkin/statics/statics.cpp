@@ -1,4 +1,4 @@
-#include <omp.h>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <softkin/core/error.hpp>
@@ -31,6 +31,14 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
       options.anderson > 20 || options.threads < 0)
     throw InvalidInput(
         "solver options out of range: tolerance >= 0 mm, iterations >= 1, anderson 0 to 20, threads >= 0");
+}
+
+/// Starting a thread costs as much as some hundred elements.
+int worthwhile_threads(const Model& model) {
+  constexpr std::size_t elements_each = 1500;
+  const std::size_t elements = model.tetrahedra.size() + model.prisms.size();
+  return static_cast<int>(
+      std::clamp<std::size_t>(elements / elements_each, 1, std::max(1u, std::thread::hardware_concurrency())));
 }
 
 /// How far the fixed point may be: the step over the least change of steps per change of shape in the last iterations,
@@ -94,7 +102,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
-  const int threads = options.threads > 0 ? options.threads : omp_get_num_procs();
+  Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));
   const double paper_tolerance = 8e-8 * model.diagonal_mm;
 
   Equilibrium result;
@@ -110,10 +118,10 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   ErrorEstimate estimate;
   Points before;
   while (report.iterations < options.max_iterations) {
-    report.energy = parts_->system.local_step(actuation, positions, scratch, threads);
+    report.energy = parts_->system.local_step(actuation, positions, scratch, team);
     report.gradient_norm = 2 * parts_->global.free_norm(scratch.residual, poses);
     before = positions;
-    parts_->global.step(scratch.residual, positions, poses, threads);
+    parts_->global.step(scratch.residual, positions, poses, team);
     report.step_mm = (positions - before).rowwise().norm().maxCoeff();
     if (!std::isfinite(report.step_mm)) {
       positions = before;

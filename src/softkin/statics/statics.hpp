@@ -16,7 +16,7 @@ struct StaticsOptions {
   double step_tolerance_mm = 0;
   int max_iterations = 50000;  // >= 1
   int anderson = 6;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
-  int threads = 0;             // 0: as many as the machine has
+  int threads = 0;             // 0: as many as the machine has and the robot is worth; the result is the same
   bool keep_history = true;    // SolveReport::history
 };
 

@@ -1,4 +1,3 @@
-#include <softkin/core/parallel.hpp>
 #include <softkin/statics/target_shape_system.hpp>
 
 namespace softkin {
@@ -33,8 +32,8 @@ void store(const ElementPull<K>& out, Index first, Index count, double* pulls) {
 /// Runs kernel(block, shape, rotation, out) over a set and stores what it gives.
 template <int K, class Block, class Kernel>
 void run(const ElementSet<K, Block>& set, const Points& nodes, std::vector<PackRotation>& rotations, double* pulls,
-         Pack* energies, int threads, const Kernel& kernel) {
-  parallel_pieces(set.block_count(), threads, [&](Index begin, Index end) {
+         Pack* energies, Team& team, const Kernel& kernel) {
+  team.pieces(set.block_count(), [&](Index begin, Index end) {
     Shape<K> shape;
     ElementPull<K> out;
     for (Index b = begin; b < end; ++b) {
@@ -83,7 +82,7 @@ TargetShapeSystem::Scratch TargetShapeSystem::make_scratch() const {
 /// a_i = a_i^cur + u_i (a U - sum_j a_j^cur u_j) / sum_j u_j^2; for a cable, a U counts the gaps only.
 template <int K>
 void TargetShapeSystem::local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes,
-                                     std::vector<Pack>& ratios, int threads) const {
+                                     std::vector<Pack>& ratios, Team& team) const {
   const Actuator& actuator = model_.actuators[set.actuator];
   double rest = 0, squares = 0, current = 0;
   for (Index e = 0; e < set.count; ++e) {
@@ -96,7 +95,7 @@ void TargetShapeSystem::local_ratios(const ActuationSet<K>& set, double requeste
     std::fill(ratios.begin(), ratios.end(), pack(std::max(least_ratio, asked / rest)));
     return;
   }
-  parallel_pieces(set.block_count(), threads, [&](Index begin, Index end) {
+  team.pieces(set.block_count(), [&](Index begin, Index end) {
     Shape<K> shape;
     for (Index b = begin; b < end; ++b) {
       load<K>(nodes, set.nodes[b], shape);
@@ -111,7 +110,7 @@ void TargetShapeSystem::local_ratios(const ActuationSet<K>& set, double requeste
 }
 
 double TargetShapeSystem::local_step(const Actuation& actuation, const Points& positions, Scratch& scratch,
-                                     int threads) const {
+                                     Team& team) const {
   const Index vertices = static_cast<Index>(positions.rows());
   scratch.nodes.topRows(vertices) = positions;
   for (std::size_t i = 0; i < sets_.points.size(); ++i)
@@ -127,18 +126,18 @@ double TargetShapeSystem::local_step(const Actuation& actuation, const Points& p
         pull_of_actuation<K>(set.blocks[b], scratch.ratios[index][b], shape, rotation, out);
     };
     if constexpr (!std::is_same_v<Block, BodyBlock<K>>)
-      local_ratios<K>(set, actuation[set.actuator], scratch.nodes, scratch.ratios[index], threads);
-    run<K>(set, scratch.nodes, scratch.rotations[index], scratch.pulls.data(), energies, threads, kernel);
+      local_ratios<K>(set, actuation[set.actuator], scratch.nodes, scratch.ratios[index], team);
+    run<K>(set, scratch.nodes, scratch.rotations[index], scratch.pulls.data(), energies, team, kernel);
     energies += set.block_count();
     ++index;
   });
-  gather(scratch, threads);
+  gather(scratch, team);
   Pack energy{};
   for (const Pack& part : scratch.energies) energy += part;
   return sum(energy);
 }
 
-void TargetShapeSystem::gather(Scratch& scratch, int threads) const {
+void TargetShapeSystem::gather(Scratch& scratch, Team& team) const {
   const auto pull_at = [&](Index node) {
     Vec3 total = Vec3::Zero();
     for (Index i = slot_starts_[node]; i < slot_starts_[node + 1]; ++i)
@@ -146,7 +145,7 @@ void TargetShapeSystem::gather(Scratch& scratch, int threads) const {
     return total;
   };
   const Index vertices = static_cast<Index>(scratch.residual.rows());
-  parallel_pieces(vertices, threads, [&](Index begin, Index end) {
+  team.pieces(vertices, [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) scratch.residual.row(v) = pull_at(v).transpose();
   });
   for (std::size_t i = 0; i < sets_.points.size(); ++i) {

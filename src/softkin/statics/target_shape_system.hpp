@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <softkin/core/team.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/element_sets.hpp>
 
@@ -26,7 +27,7 @@ class TargetShapeSystem {
   /// V_i^d).
   ///
   /// returns  energy of Eq. (9) at these positions and targets [mm^5]
-  double local_step(const Actuation& actuation, const Points& positions, Scratch& scratch, int threads) const;
+  double local_step(const Actuation& actuation, const Points& positions, Scratch& scratch, Team& team) const;
 
   /// Matrix of Eq. (10), one coordinate, lower triangle: sum_i w_i Vol_i P_i^T N P_i [mm^3].
   [[nodiscard]] Eigen::SparseMatrix<double> global_matrix() const;
@@ -34,8 +35,8 @@ class TargetShapeSystem {
  private:
   template <int K>
   void local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes, std::vector<Pack>& ratios,
-                    int threads) const;
-  void gather(Scratch& scratch, int threads) const;
+                    Team& team) const;
+  void gather(Scratch& scratch, Team& team) const;
 
   const Model& model_;
   ElementSets sets_;

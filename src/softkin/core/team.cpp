@@ -1,0 +1,83 @@
+#include <softkin/core/team.hpp>
+
+namespace softkin {
+
+namespace {
+
+/// Some microseconds: shorter than falling asleep and waking, long enough for the gap between two loops.
+constexpr int spins = 1000;
+
+void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+/// Returns once value differs from old.
+std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
+  for (int i = 0; i < spins; ++i) {
+    const std::uint32_t now = value.load(std::memory_order_acquire);
+    if (now != old) return now;
+    pause();
+  }
+  value.wait(old, std::memory_order_acquire);
+  return value.load(std::memory_order_acquire);
+}
+
+}  // namespace
+
+Team::Team(int threads) {
+  const int size = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  for (int i = 1; i < size; ++i) workers_.emplace_back([this] { work(); });
+}
+
+Team::~Team() {
+  ended_.store(true);
+  loops_.fetch_add(1, std::memory_order_release);
+  loops_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void Team::run(Index count, Call call, const void* body) {
+  call_ = call;
+  body_ = body;
+  count_ = count;
+  next_.store(0, std::memory_order_relaxed);
+  if (workers_.empty() || count < 2) {
+    take_pieces();
+    return;
+  }
+  state_.store(1, std::memory_order_release);
+  loops_.fetch_add(1, std::memory_order_release);
+  loops_.notify_all();
+  take_pieces();
+  // closed: workers that are still asleep stay out
+  std::uint32_t state = state_.fetch_and(~1u, std::memory_order_acq_rel) & ~1u;
+  while (state != 0) state = wait_for_change(state_, state);
+}
+
+void Team::take_pieces() {
+  for (Index i = next_.fetch_add(1, std::memory_order_relaxed); i < count_;
+       i = next_.fetch_add(1, std::memory_order_relaxed))
+    call_(body_, i);
+}
+
+void Team::work() {
+  std::uint32_t seen = 0;
+  while (true) {
+    seen = wait_for_change(loops_, seen);
+    if (ended_.load()) return;
+    std::uint32_t state = state_.load(std::memory_order_acquire);
+    while (state & 1u) {
+      if (!state_.compare_exchange_weak(state, state + 2, std::memory_order_acq_rel)) continue;
+      take_pieces();
+      state_.fetch_sub(2, std::memory_order_acq_rel);
+      state_.notify_all();
+      break;
+    }
+  }
+}
+
+}  // namespace softkin

@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <softkin/core/team.hpp>
+
+namespace softkin {
+
+TEST(Team, EveryIndexOnceLoopAfterLoop) {
+  for (const int threads : {1, 2, 3, 8}) {
+    Team team(threads);
+    EXPECT_EQ(team.size(), threads);
+    for (int loop = 0; loop < 2000; ++loop) {
+      const Index count = loop % 37;
+      std::vector<int> visits(count, 0);  // not atomic: two threads at one index would be a race
+      team.each(count, [&](Index i) { ++visits[i]; });
+      for (const int visit : visits) ASSERT_EQ(visit, 1);
+    }
+  }
+}
+
+TEST(Team, PiecesCoverTheRange) {
+  for (const int threads : {1, 2, 5})
+    for (const Index count : {0, 1, 3, 1001}) {
+      Team team(threads);
+      std::vector<int> visits(count, 0);
+      team.pieces(count, [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) ++visits[i];
+      });
+      for (const int visit : visits) EXPECT_EQ(visit, 1);
+    }
+}
+
+TEST(Team, ZeroMeansTheMachine) {
+  EXPECT_GE(Team(0).size(), 1);
+}
+
+TEST(Team, ResultsOfALoopAreSeenByTheNext) {
+  Team team(4);
+  std::vector<std::int64_t> values(512, 1);
+  for (int loop = 0; loop < 500; ++loop) {
+    std::vector<std::int64_t> next(values.size());
+    team.each(static_cast<Index>(values.size()), [&](Index i) { next[i] = values[(i + 1) % values.size()] + 1; });
+    values.swap(next);
+  }
+  for (const std::int64_t value : values) EXPECT_EQ(value, 501);
+}
+
+}  // namespace softkin
