@@ -2,7 +2,8 @@
 
 add_library(softkin_settings INTERFACE)
 target_include_directories(softkin_settings INTERFACE ${PROJECT_SOURCE_DIR}/src)
-target_compile_options(softkin_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -fno-math-errno)
+target_compile_options(softkin_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -fno-math-errno
+                       -ffp-contract=fast)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(softkin_settings INTERFACE -Wno-psabi)  # no vector type crosses a library boundary
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

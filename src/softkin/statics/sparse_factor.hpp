@@ -7,8 +7,8 @@
 namespace softkin {
 
 /// Cholesky factor of a symmetric positive definite matrix, made once and solved many times, the three coordinates
-/// together. Independent subtrees of the elimination tree are solved on several threads; the result does not depend on
-/// their number.
+/// together. Columns with (nearly) the same rows form supernodes, solved as dense blocks; independent subtrees of the
+/// elimination tree are solved on several threads, and the result does not depend on their number.
 class SparseFactor {
  public:
   /// matrix: the lower triangle is read. throws InvalidInput where it is not positive definite
@@ -18,18 +18,35 @@ class SparseFactor {
   void solve(Points& right_side, Team& team) const;
 
   [[nodiscard]] Index size() const { return static_cast<Index>(order_.size()); }
+  /// Entries of L, zeros that fill supernodes up included.
   [[nodiscard]] std::int64_t nonzeros() const { return static_cast<std::int64_t>(values_.size()) + size(); }
 
  private:
   /// Three coordinates and a spare: one vector register.
-  struct alignas(32) Row {
-    double c[4];
-  };
-  void forward(Row* rows, Row* above, Index begin, Index end, Index top) const;
-  void backward(Row* rows, Index begin, Index end) const;
+  typedef double Row __attribute__((vector_size(4 * sizeof(double))));
 
-  std::vector<Index> order_, pieces_;
-  std::vector<std::int64_t> starts_;  // of each column of L, diagonal left out
+  /// Columns [begin, end) of L: below the diagonal, row by row, then its rows further down, `width` values each.
+  struct Supernode {
+    Index begin, end;
+    std::int64_t first_row;  // in rows_
+    Index inner_rows;        // rows before the top
+    Index row_count;
+    std::int64_t first_value;
+
+    [[nodiscard]] Index width() const { return end - begin; }
+    [[nodiscard]] std::int64_t first_below() const {
+      return first_value + static_cast<std::int64_t>(width()) * (width() - 1) / 2;
+    }
+  };
+
+  void add_supernode(const Eigen::SparseMatrix<double>& lower, Index begin, Index end, Index top);
+  void forward(const Supernode& node, Row* rows, Row* above, Index top) const;
+  void backward(const Supernode& node, Row* rows) const;
+
+  std::vector<Index> order_;
+  std::vector<Index> piece_nodes_;  // first supernode of every piece, then that of the top
+  Index top_ = 0;                   // first row of the top
+  std::vector<Supernode> nodes_;
   std::vector<Index> rows_;
   std::vector<double> values_, inverse_diagonal_;
 };
