@@ -137,7 +137,7 @@ class Parser {
 };
 
 ProgramResult run_shell(const std::string& command) {
-  FILE* pipe = ::popen((command + " </dev/null 2>&1").c_str(), "r");
+  FILE* pipe = ::popen(("{ " + command + "\n} </dev/null 2>&1").c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
   ProgramResult result;
   std::array<char, 4096> bytes;
@@ -197,7 +197,7 @@ class Clone {
   /// Each command runs once, however often it stands somewhere.
   const ProgramResult& run(const std::string& command) {
     const auto [found, added] = results_.try_emplace(command);
-    if (added) found->second = run_shell("cd " + testing::shell_quoted(folder_ / "") + " && " + command);
+    if (added) found->second = run_shell("cd " + testing::shell_quoted(folder_ / "") + " && timeout 60 " + command);
     return found->second;
   }
   [[nodiscard]] std::size_t runs() const { return results_.size(); }
