@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 #include "fk_fingerprint.hpp"
@@ -36,15 +38,22 @@ Json strain_json(const StrainHistogram& histogram) {
   return json;
 }
 
-/// Every iteration up to 100, then ever sparser: a curve stays a curve and a report stays small.
+/// As many digits as a curve needs.
+Json rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return known(std::strtod(text, nullptr));
+}
+
+/// Every iteration up to 50, then ever sparser: a curve stays a curve and a report stays small.
 Json history_json(const std::vector<IterationRecord>& history) {
   Json json = {
       {"iteration", Json::array()}, {"energy", Json::array()}, {"step_mm", Json::array()}, {"residual", Json::array()}};
-  for (std::size_t i = 0; i < history.size(); i += std::max<std::size_t>(1, i / 100)) {
+  for (std::size_t i = 0; i < history.size(); i += std::max<std::size_t>(1, i / 50)) {
     json["iteration"].push_back(i + 1);
-    json["energy"].push_back(known(history[i].energy));
-    json["step_mm"].push_back(known(history[i].step_mm));
-    json["residual"].push_back(known(history[i].gradient_norm));
+    json["energy"].push_back(rounded(history[i].energy));
+    json["step_mm"].push_back(rounded(history[i].step_mm));
+    json["residual"].push_back(rounded(history[i].gradient_norm));
   }
   return json;
 }

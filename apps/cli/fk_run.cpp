@@ -136,8 +136,10 @@ class FkRun {
   [[nodiscard]] int stopped() const {
     const bool files = !options_.output.empty() || !options_.report.empty() || !options_.image.empty();
     const bool resumable = options_.series() && !options_.report.empty() && !options_.path.empty();
-    std::string text = "interrupted after " + std::to_string(report_.size()) + " of " + counted(steps_.size(), "step");
+    std::string text = "interrupted";
     if (report_.size() == 0) text += "; nothing was finished";
+    if (report_.size() > 0)
+      text += " after " + std::to_string(report_.size()) + " of " + counted(steps_.size(), "step");
     if (report_.size() > 0 && files) text += "; they are in the files that were asked for";
     if (report_.size() > 0 && resumable) text += ", the same command with --resume goes on";
     std::fprintf(stderr, "softkin: %s\n", text.c_str());
