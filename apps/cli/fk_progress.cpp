@@ -29,8 +29,7 @@ void FkProgress::show(const Progress& p) {
   const double elapsed = seconds_now() - start_;
   std::string text = std::to_string(step_) + "/" + std::to_string(steps_) + " steps, " + duration(elapsed);
   if (done / all > least_share) text += ", " + duration(elapsed * (all - done) / done) + " left";
-  text += ", iteration " + std::to_string(p.iteration) + ": " + number(p.step_mm, 2) + " of " +
-          number(p.tolerance_mm, 2) + " mm";
+  text += ", iteration " + std::to_string(p.iteration) + ": " + number(p.step_mm, 2) + " mm";
   line_.show((static_cast<double>(step_) + share_) / static_cast<double>(steps_), text);
 }
 

@@ -20,8 +20,11 @@ namespace {
 
 class ReportOnDisk {
  public:
-  ReportOnDisk(const FkOptions& options, const std::vector<Step>& asked)
-      : options_(options), asked_(asked), json_(Json::parse(read_file(options.report), nullptr, false)) {}
+  ReportOnDisk(const Model& model, const FkOptions& options, const std::vector<Step>& asked)
+      : model_(model),
+        options_(options),
+        asked_(asked),
+        json_(Json::parse(read_file(options.report), nullptr, false)) {}
 
   Finished take(Report& report) const {
     try {
@@ -38,7 +41,9 @@ class ReportOnDisk {
   }
 
   void check_head(const Json& head) const {
-    const auto same = [&](const char* key) { return json_.at(key) == head.at(key); };
+    const auto same = [&](const char* key) {  // whatever the order of keys
+      return nlohmann::json(json_.at(key)) == nlohmann::json(head.at(key));
+    };
     if (!same("softkin")) refuse("softkin " + json_.at("softkin").get<std::string>() + " wrote it");
     if (!same("robot_fingerprint")) refuse("it is of another robot, or the scene or its mesh has changed");
     if (!same("solver"))
@@ -51,15 +56,15 @@ class ReportOnDisk {
     if (i >= asked_.size())
       refuse("it has " + number_of_step + ", but " + options_.path + " ends before; the path has changed");
     const std::string where = options_.path + ":" + std::to_string(asked_[i].line);
-    Eigen::Index a = 0;
-    for (const auto& [name, value] : json_.at("steps").at(i).at("actuation").items()) {
-      if (a >= asked_[i].actuation.size()) refuse(number_of_step + " has other actuators");
-      const double before = value.get<double>(), now = asked_[i].actuation[a++];
+    const Json& actuation = step.at("actuation");
+    if (actuation.size() != model_.actuators.size()) refuse(number_of_step + " has other actuators");
+    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+      const std::string& name = model_.actuators[a].name;
+      const double before = actuation.at(name).get<double>(), now = asked_[i].actuation[static_cast<Index>(a)];
       if (before != now)
         refuse(number_of_step + " was solved for " + name + " = " + number(before, 12) + ", but " + where +
                " asks for " + number(now, 12) + "; the path has changed");
     }
-    if (a != asked_[i].actuation.size()) refuse(number_of_step + " has other actuators");
     const std::optional<double> time =
         step.contains("time_s") ? std::optional(step.at("time_s").get<double>()) : std::nullopt;
     if (time != asked_[i].time) refuse(number_of_step + " has another time than " + where + "; the path has changed");
@@ -93,6 +98,7 @@ class ReportOnDisk {
     return finished;
   }
 
+  const Model& model_;
   const FkOptions& options_;
   const std::vector<Step>& asked_;
   Json json_;
@@ -105,13 +111,13 @@ void add_shape(Json& step, const std::string& file, const Points& positions) {
   step["shape_fingerprint"] = fingerprint_of(positions);
 }
 
-Finished take_finished(const FkOptions& options, const std::vector<Step>& steps, Report& report) {
+Finished take_finished(const Model& model, const FkOptions& options, const std::vector<Step>& steps, Report& report) {
   if (!fs::exists(options.report)) {
     Finished none;
     none.remark = "there is no " + options.report + " yet";
     return none;
   }
-  return ReportOnDisk(options, steps).take(report);
+  return ReportOnDisk(model, options, steps).take(report);
 }
 
 }  // namespace softkin::cli

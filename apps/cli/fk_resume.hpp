@@ -24,6 +24,7 @@ void add_shape(Report::Json& step, const std::string& file, const Points& positi
 /// Adds to report, which has no steps yet, those of the report on disk whose shapes are there as they were written.
 ///
 /// throws  InvalidInput where the report on disk is of another robot, solver or path
-[[nodiscard]] Finished take_finished(const FkOptions& options, const std::vector<Step>& steps, Report& report);
+[[nodiscard]] Finished take_finished(const Model& model, const FkOptions& options, const std::vector<Step>& steps,
+                                     Report& report);
 
 }  // namespace softkin::cli

@@ -52,7 +52,7 @@ class FkRun {
   }
 
   void resume() {
-    Finished finished = take_finished(options_, steps_, report_);
+    Finished finished = take_finished(model_, options_, steps_, report_);
     remove_torn_files(options_, steps_.size());
     if (!finished.remark.empty()) say(finished.remark);
     if (finished.steps == 0) return say("nothing to resume: starting with step 0");

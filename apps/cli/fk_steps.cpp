@@ -88,7 +88,8 @@ std::vector<Index> column_targets(const Model& model, const std::string& file, c
   for (const std::string& column : table.columns) {
     const std::optional<Index> a = find_actuator(model, column);
     if (!a && column != time_column)
-      throw InvalidInput({file}, "column " + excerpt(column) + ": " + unknown_actuator(model, column));
+      throw InvalidInput(
+          {file}, "column " + excerpt(column) + ": " + unknown_actuator(model, column) + "; a time is column t_s [s]");
     if (a && settings[static_cast<std::size_t>(*a)])
       throw InvalidInput("--set " + column + ": the path " + file + " has a column for this actuator");
     targets.push_back(a.value_or(time_target));
