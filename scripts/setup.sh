@@ -22,7 +22,7 @@ if [ -r /etc/os-release ]; then
 fi
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "$system has no apt; softkin is made for Debian 12 and Ubuntu 24.04." \
-       "Install a C++20 compiler with OpenMP (gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
+       "Install a C++20 compiler (gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
        "pugixml, zlib, libpng, CLI11 and METIS, with their headers; for the tests also GoogleTest and clang-format 14." \
        "Then run make again with SETUP=true, e.g.: make run SETUP=true"
 fi

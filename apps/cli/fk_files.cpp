@@ -1,10 +1,8 @@
 #include "fk_files.hpp"
 
-#include <cstdio>
 #include <softkin/io/picture.hpp>
 #include <softkin/io/vtk.hpp>
 #include <softkin/model/boundary.hpp>
-#include <softkin/statics/measure.hpp>
 
 namespace softkin::cli {
 
@@ -30,7 +28,8 @@ std::vector<ElementRole> all_roles(const Model& model) {
 
 }  // namespace
 
-void write_shape(const fs::path& path, const Model& model, const Points& positions) {
+void write_shape(const fs::path& path, const Model& model, const Points& positions,
+                 const ElementDeformation& deformation, bool converged) {
   VtuContent content;
   content.points = positions;
   content.tetrahedra = model.tetrahedra;
@@ -38,7 +37,6 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
   const Points moved = positions - model.rest;
   content.point_fields.push_back({"displacement_mm", 3, {moved.data(), moved.data() + moved.size()}});
 
-  const ElementDeformation deformation = deformation_of(model, positions);
   Field greatest{"principal_strain_max", 1, {}}, least{"principal_strain_min", 1, {}}, actuator{"actuator", 1, {}};
   for (const auto& strain : deformation.strain) {
     greatest.values.push_back(strain[0]);
@@ -48,15 +46,10 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
     content.cell_regions.push_back(role.region);
     actuator.values.push_back(role.actuator);
   }
-  content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator};
+  const Field mark{"converged", 1, std::vector<double>(deformation.strain.size(), converged ? 1 : 0)};
+  content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator, mark};
   content.region_names = model.region_names;
   write_vtu(path, content);
-}
-
-fs::path series_file(const fs::path& pvd, std::size_t step) {
-  char number[24];
-  std::snprintf(number, sizeof number, "_%04zu.vtu", step);
-  return fs::path(pvd).replace_filename(pvd.stem().string() + number);
 }
 
 void write_image(const fs::path& path, const Model& model, const Points& positions, const std::vector<double>& view,
@@ -72,7 +65,8 @@ void write_image(const fs::path& path, const Model& model, const Points& positio
   ghost.opacity = 0.15;
   ghost.edges = false;
   PictureOptions options;
-  if (!view.empty()) options.view = {view[0], view[1], view[2]};
+  if (!view.empty()) options.view = Vec3(view[0], view[1], view[2]).stableNormalized();
+  if (options.view.head<2>().norm() < 1e-6) options.up = Vec3::UnitY();  // from above or below
   options.title = title;
   options.value_label = "displacement [mm]";
   write_picture(path, {shape, ghost}, options);

@@ -3,19 +3,19 @@
 #include <filesystem>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/measure.hpp>
 #include <string>
 #include <vector>
 
 namespace softkin::cli {
 
-/// The shape with displacement [mm], volume ratio and principal strains [-], region and actuator.
-void write_shape(const std::filesystem::path& path, const Model& model, const Points& positions);
+/// The shape with displacement [mm], volume ratio and principal strains [-], region, actuator, and whether the solve
+/// converged (1) or not (0). deformation: of positions.
+void write_shape(const std::filesystem::path& path, const Model& model, const Points& positions,
+                 const ElementDeformation& deformation, bool converged);
 
-/// NAME_0007.vtu beside NAME.pvd.
-[[nodiscard]] std::filesystem::path series_file(const std::filesystem::path& pvd, std::size_t step);
-
-/// The body coloured by displacement over a ghost of its rest shape. view: three numbers, from the scene to
-/// the eye; empty: from the front, left and above.
+/// The body coloured by displacement over a ghost of its rest shape. view: three numbers, not all zero, from the
+/// robot to the eye, y upwards where it looks along z; empty: from the front, left and above.
 void write_image(const std::filesystem::path& path, const Model& model, const Points& positions,
                  const std::vector<double>& view, const std::string& title);
 

@@ -3,24 +3,42 @@
 #include <nlohmann/json.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/measure.hpp>
 #include <string>
+#include <vector>
+
+#include "fk_options.hpp"
 
 namespace softkin::cli {
 
-/// One solved step as the report has it (DESIGN: report, JSON).
-[[nodiscard]] nlohmann::ordered_json step_json(const Model& model, const Equilibrium& equilibrium);
+/// The report (DESIGN.md section 4): what it is about, then the steps.
+class Report {
+ public:
+  using Json = nlohmann::ordered_json;
 
-/// The report around the steps.
-[[nodiscard]] nlohmann::ordered_json report_json(const Model& model, const std::string& scene);
+  Report(const Model& model, const FkOptions& options);
 
-/// Header and rows of the table on the terminal.
-[[nodiscard]] std::string table_header(const Model& model);
-[[nodiscard]] std::string table_row(const Model& model, std::size_t step, const nlohmann::ordered_json& json);
+  /// What it is about: version, scene, robot, solver, units, mesh, notes.
+  [[nodiscard]] const Json& head() const { return head_; }
+  /// Throws Json::exception on a step that step_json did not make.
+  void add(Json step);
+  [[nodiscard]] std::size_t size() const { return lines_.size(); }
+  [[nodiscard]] const Json& last() const { return last_; }
+  /// The numbers of the steps that did not converge.
+  [[nodiscard]] const std::vector<std::size_t>& unconverged() const { return unconverged_; }
 
-/// "1,851 vertices, 5,556 tetrahedra, ..." and the model's notes, a line each.
-[[nodiscard]] std::string summary(const Model& model);
+  /// JSON, a line for each key and each step. Grows by what add() brings, so that it can be written after every step.
+  [[nodiscard]] std::string text() const;
 
-/// Strains and what the step may hide, for the last step, a line each.
-[[nodiscard]] std::string findings(const nlohmann::ordered_json& step);
+ private:
+  Json head_, last_;
+  std::vector<std::string> lines_;
+  std::vector<std::size_t> unconverged_;
+  double seconds_ = 0;
+};
+
+/// One solved step; deformation: of its shape.
+[[nodiscard]] Report::Json step_json(const Model& model, const Equilibrium& equilibrium,
+                                     const ElementDeformation& deformation);
 
 }  // namespace softkin::cli

@@ -1,12 +1,32 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <softkin/core/error.hpp>
+#include <string>
 
 #include "command.hpp"
 
+namespace {
+
+using namespace softkin;
+
+/// Help and version are printed; anything else is bad usage, told in one line.
+int answer(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+  std::string command = "softkin", message = error.what();
+  for (const CLI::App* each = &app; !each->get_subcommands().empty();) {
+    each = each->get_subcommands().front();
+    command += " " + each->get_name();
+  }
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::fprintf(stderr, "softkin: %s (%s --help tells more)\n", message.c_str(), command.c_str());
+  return cli::bad_input;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace softkin;
-  CLI::App app{"softkin: kinematics of soft robots. Lengths in mm, ratios without unit."};
+  CLI::App app{"softkin: kinematics of soft robots. Lengths in mm, ratios without unit.", "softkin"};
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
   app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
   app.callback([&app] {
@@ -18,7 +38,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? cli::done : cli::bad_input;
+    return answer(app, error);
   }
   try {
     return run();

@@ -10,15 +10,10 @@
 
 namespace softkin::cli {
 
-namespace {
-
-/// Characters, not bytes: those that continue a UTF-8 character do not count.
-std::size_t width(const std::string& text) {
+std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
-
-}  // namespace
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
@@ -43,12 +38,12 @@ std::string printable(const std::string& name) {
 std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows, const std::string& alignment) {
   std::vector<std::size_t> widths(alignment.size(), 0);
   for (const auto& row : rows)
-    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
   std::vector<std::string> lines;
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < widths.size(); ++i) {
-      const std::string fill(widths[i] - width(row[i]), ' ');
+      const std::string fill(widths[i] - characters(row[i]), ' ');
       line += (i > 0 ? "  " : "") + (alignment[i] == 'r' ? fill + row[i] : row[i] + fill);
     }
     line.erase(line.find_last_not_of(' ') + 1);

@@ -10,6 +10,9 @@ namespace softkin::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// Characters, not bytes: those that continue a UTF-8 character do not count.
+[[nodiscard]] std::size_t characters(const std::string& text);
+
 /// "1 prism", "2 prisms"; many: where the plural is not one + "s".
 [[nodiscard]] std::string counted(std::size_t count, const std::string& one, const std::string& many = "");
 

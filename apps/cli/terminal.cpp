@@ -1,10 +1,12 @@
 #include "terminal.hpp"
 
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 namespace softkin::cli {
@@ -20,8 +22,9 @@ void on_interrupt(int signal_number) {
   ::raise(signal_number);
 }
 
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+std::size_t terminal_width() {
+  winsize size = {};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -29,6 +32,7 @@ double seconds_now() {
 void catch_interrupt() {
   struct sigaction action = {};
   action.sa_handler = on_interrupt;
+  action.sa_flags = SA_RESTART;  // what is being written is written to its end
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
@@ -48,13 +52,14 @@ void ProgressLine::show(double share, const std::string& text) {
   if (!terminal_ || now - last_ < 0.1) return;
   last_ = now;
   shown_ = true;
-  std::string bar;
+  std::string line = text;
   if (share >= 0) {
-    constexpr int width = 24;
-    const int full = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
-    bar = "[" + std::string(full, '#') + std::string(width - full, ' ') + "] ";
+    constexpr std::size_t width = 20;
+    const auto full = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * width);
+    line = "[" + std::string(full, '#') + std::string(width - full, ' ') + "] " + text;
   }
-  std::fprintf(stderr, "\r\033[K%s%.100s", bar.c_str(), text.c_str());
+  line.resize(std::min(line.size(), terminal_width() - 1));  // a line that wraps cannot be rewritten
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
   std::fflush(stderr);
 }
 
@@ -63,6 +68,18 @@ void ProgressLine::clear() {
   std::fprintf(stderr, "\r\033[K");
   std::fflush(stderr);
   shown_ = false;
+}
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string duration(double seconds) {
+  const auto whole = static_cast<long long>(std::ceil(std::clamp(seconds, 0.0, 1e15)));
+  if (whole < 60) return std::to_string(whole) + " s";
+  const long long minutes = whole / 60;
+  if (minutes < 60) return std::to_string(minutes) + " min " + std::to_string(whole % 60) + " s";
+  return std::to_string(minutes / 60) + " h " + std::to_string(minutes % 60) + " min";
 }
 
 std::string number(double value, int digits) {

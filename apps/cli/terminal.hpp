@@ -16,7 +16,8 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// At most ten times a second. share: of the work, 0 to 1, or below 0 where it is not known.
+  /// At most ten times a second, cut to the width of the terminal. text: ASCII. share: of the work, 0 to 1, or below 0
+  /// where it is not known.
   void show(double share, const std::string& text);
   void clear();
 
@@ -25,6 +26,12 @@ class ProgressLine {
   bool shown_ = false;
   double last_ = 0;  // [s]
 };
+
+/// Of a clock that never jumps.
+[[nodiscard]] double seconds_now();
+
+/// "45 s", "3 min 20 s", "2 h 5 min".
+[[nodiscard]] std::string duration(double seconds);
 
 /// The shortest decimal text of a number at so many significant digits.
 [[nodiscard]] std::string number(double value, int digits = 6);

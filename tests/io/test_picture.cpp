@@ -282,6 +282,24 @@ TEST_F(PictureTest, SeeThroughLayersAreBlended) {
   EXPECT_EQ(middle({twice, solid}), middle({red, solid}));
 }
 
+TEST_F(PictureTest, SeeThroughLayersHideWhereTheyNearlyCoincide) {
+  const PictureLayer solid = square(0, {0, 0, 1});  // with the layers in front of it 2 x 2 and shallow: size 2.83
+  const Pixel blue{0, 0, 255};
+  const auto middle = [&](double distance) {
+    return drawn({solid, square(distance, {1, 0, 0}, 0.5)}, from_above(100, 100)).at(50, 50);
+  };
+  for (const double distance : {-0.012, 0.001, 0.012}) EXPECT_EQ(middle(distance), blue) << distance;
+  for (const double distance : {0.016, 0.05}) EXPECT_TRUE(near(middle(distance), {128, 0, 128}, 1)) << distance;
+  PictureLayer rough = square(0, {1, 0, 0}, 0.5);  // in front in places, as two shapes of a held part are
+  for (int i = 0; i < 4; ++i) rough.points(i, 2) = i % 2 == 0 ? 0.01 : -0.01;
+  EXPECT_EQ(drawn({solid, rough}, from_above(100, 100)).bytes, drawn({solid}, from_above(100, 100)).bytes)
+      << "blotches";
+  PictureLayer wide = rectangle(-2, 2, -1, 1, 0.001);
+  wide.color = {1, 0, 0};
+  wide.opacity = 0.5;
+  EXPECT_TRUE(near(drawn({solid, wide}, from_above(200, 100)).at(20, 50), {255, 128, 128}, 1)) << "on the background";
+}
+
 TEST_F(PictureTest, EdgesAreThinAndDark) {
   PictureLayer layer = square(0, {1, 1, 0});
   layer.edges = true;

@@ -16,6 +16,7 @@ namespace {
 constexpr int smallest = 64, largest = 8192;            // width and height [pixel]
 constexpr int legend_width = 320, legend_height = 240;  // the smallest picture with a legend [pixel]
 constexpr double filled = 0.9;                          // share of the drawing area that the layers fill
+constexpr double coincident = 0.005;                    // share of the layers' size that is as good as no distance
 constexpr double deepest = 1e12;                        // [pixel]
 constexpr double shadow = 0.42, highlight = 0.18;       // how much the light darkens and brightens
 
@@ -122,6 +123,7 @@ Interval value_range(const std::vector<PictureLayer>& layers) {
 struct Screen {
   Camera camera;
   double scale = 1;  // [pixel / mm]
+  double size = 1;   // diagonal of what is drawn [pixel]
   Vec3 center, middle;
 
   [[nodiscard]] Vec3 at(const Vec3& point) const { return scale * (camera.seen(point) - center) + middle; }
@@ -135,10 +137,15 @@ Screen fit(const std::vector<PictureLayer>& layers, const Camera& camera, const 
     for (int k = 0; k < 3; ++k) extent[k].include(seen[k]);
   });
   const Canvas::Place space = filled / 2 * (area.high - area.low);
-  Screen screen{camera, std::min(space.x() / extent[0].half_length(), space.y() / extent[1].half_length()),
-                Vec3(extent[0].middle(), extent[1].middle(), extent[2].middle()), Vec3::Zero()};
+  const Vec3 half(extent[0].half_length(), extent[1].half_length(), extent[2].half_length());
+  Screen screen;
+  screen.camera = camera;
+  screen.scale = std::min(space.x() / half.x(), space.y() / half.y());
+  screen.size = 2 * screen.scale * half.stableNorm();
+  screen.center = {extent[0].middle(), extent[1].middle(), extent[2].middle()};
+  screen.middle.setZero();
   screen.middle.head<2>() = (area.low + area.high) / 2;
-  const double depth = screen.scale * extent[2].half_length();
+  const double depth = screen.scale * half.z();
   if (!(screen.scale > 0) || !std::isfinite(screen.scale) || !(depth < deepest)) {
     checker.refuse("the picture's layers have no extent in this view, or one too large to draw");
   }
@@ -211,7 +218,7 @@ void write_picture(const std::filesystem::path& path, const std::vector<PictureL
   std::vector<ScreenLayer> drawn;
   for (const PictureLayer& layer : layers) drawn.push_back({on_screen(layer, screen, values), layer.opacity});
   refuse_edge_on(drawn, checker);
-  RgbImage image = rasterize(drawn, options.width, options.height);
+  RgbImage image = rasterize(drawn, coincident * screen.size, options.width, options.height);
   draw_legend(legend, image);
   write_file(path, encode_png(image));
 }

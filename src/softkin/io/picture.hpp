@@ -30,7 +30,9 @@ struct PictureOptions {
 ///
 /// Values of all layers share one colour map from their smallest to their largest; a surface that faces the eye has the
 /// map's very colour, the light comes from the upper left. The triangles fill 90 % of the area left to them; pictures
-/// below 320 x 240 have no title, bars or axes and are all area. Text outside ASCII appears as empty boxes.
+/// below 320 x 240 have no title, bars or axes and are all area. Text outside ASCII appears as empty boxes. A
+/// see-through surface hides where it is not nearer than the solid one by 0.5 % of the layers' size: there both are the
+/// same place.
 ///
 /// throws  InvalidInput, naming the path and what is wrong: no triangle, or none with an area in this view; points or
 ///         values that are not finite; a value count other than the points'; triangles that name no point; colour,

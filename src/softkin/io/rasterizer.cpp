@@ -11,7 +11,6 @@ namespace {
 constexpr int samples_per_axis = 2;  // per pixel and axis
 constexpr int band_rows = 32;        // pixels; bounds the memory of the samples
 constexpr double grid = 256;         // corners lie on 1 / grid of a sample: edge functions are then exact, seams closed
-constexpr double coincident = .02;   // samples by which a see-through surface has to be nearer than the solid one
 constexpr double edge_half_width = 0.55;  // samples
 constexpr double edge_strength = 0.5;     // share of black
 constexpr double dense = 5, sparse = 16;  // heights of a triangle [samples] between which its edges fade in
@@ -139,8 +138,9 @@ struct Fragment {
   float opacity;
 };
 
-/// Colour of sample i of the solid band with the see-through ones in front of it.
-Color blended(const Band& solid, const std::vector<ClearBand>& clear, std::size_t i, std::vector<Fragment>& fragments) {
+/// Colour of sample i of the solid band with the see-through ones in front of it, nearer by more than `coincident`.
+Color blended(const Band& solid, const std::vector<ClearBand>& clear, double coincident, std::size_t i,
+              std::vector<Fragment>& fragments) {
   fragments.clear();
   for (const auto& [band, opacity] : clear) {
     const Sample& sample = band.samples[i];
@@ -155,7 +155,7 @@ Color blended(const Band& solid, const std::vector<ClearBand>& clear, std::size_
   return color;
 }
 
-void resolve(const Band& solid, const std::vector<ClearBand>& clear, RgbImage& image) {
+void resolve(const Band& solid, const std::vector<ClearBand>& clear, double coincident, RgbImage& image) {
   std::vector<Fragment> fragments;
   for (int row = 0; row < solid.rows / samples_per_axis; ++row) {
     for (int x = 0; x < image.width; ++x) {
@@ -163,7 +163,7 @@ void resolve(const Band& solid, const std::vector<ClearBand>& clear, RgbImage& i
       for (int k = 0; k < samples_per_axis * samples_per_axis; ++k) {
         const std::size_t i = std::size_t(samples_per_axis * row + k / samples_per_axis) * solid.columns +
                               std::size_t(samples_per_axis * x + k % samples_per_axis);
-        const Color color = blended(solid, clear, i, fragments);
+        const Color color = blended(solid, clear, coincident, i, fragments);
         for (int channel = 0; channel < 3; ++channel) sum[channel] += color[channel];
       }
       std::uint8_t* pixel = image.pixel(x, solid.first_row / samples_per_axis + row);
@@ -174,7 +174,7 @@ void resolve(const Band& solid, const std::vector<ClearBand>& clear, RgbImage& i
 
 }  // namespace
 
-RgbImage rasterize(const std::vector<ScreenLayer>& layers, int width, int height) {
+RgbImage rasterize(const std::vector<ScreenLayer>& layers, double coincident, int width, int height) {
   RgbImage image(width, height);
   Band solid(width);
   std::vector<ClearBand> clear;
@@ -187,7 +187,7 @@ RgbImage rasterize(const std::vector<ScreenLayer>& layers, int width, int height
     for (ClearBand& c : clear) c.band.clear(row, rows);
     auto next = clear.begin();
     for (const ScreenLayer& layer : layers) paint_layer(layer, layer.opacity < 1 ? (next++)->band : solid);
-    resolve(solid, clear, image);
+    resolve(solid, clear, samples_per_axis * coincident, image);
   }
   return image;
 }

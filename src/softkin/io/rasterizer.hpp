@@ -23,7 +23,8 @@ struct ScreenLayer {
 };
 
 /// Draws with hidden surfaces removed and 2 x 2 samples a pixel, on white. Of a layer with opacity < 1 only the nearest
-/// surface shows; such layers are blended from far to near over what is solid, and not where both coincide.
-[[nodiscard]] RgbImage rasterize(const std::vector<ScreenLayer>& layers, int width, int height);
+/// surface shows; such layers are blended from far to near over what is solid, and only where they are nearer than it
+/// by more than `coincident` [pixel].
+[[nodiscard]] RgbImage rasterize(const std::vector<ScreenLayer>& layers, double coincident, int width, int height);
 
 }  // namespace softkin

@@ -1,0 +1,118 @@
+#include "fk_options.hpp"
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/io/scanner.hpp>
+#include <softkin/io/text_mesh_tools.hpp>
+
+namespace softkin::cli {
+
+namespace {
+
+constexpr int most_threads = 512;
+constexpr int most_iterations = 1'000'000'000;
+
+CLI::Validator integer_from(std::int64_t low, std::int64_t high) {
+  const auto check = [low, high](const std::string& text) -> std::string {
+    std::int64_t value = 0;
+    if (parse_integer(text, value) && value >= low && value <= high) return "";
+    return "must be an integer from " + std::to_string(low) + " to " + std::to_string(high) + ", not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator finite_number(bool negative_too) {
+  const auto check = [negative_too](const std::string& text) -> std::string {
+    double value = 0;
+    if (parse_real(text, value) && (negative_too || value >= 0)) return "";
+    return std::string("must be a finite number") + (negative_too ? "" : ", 0 or more") + ", not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
+void add_files(CLI::App& command, FkOptions& options) {
+  command.add_option("SCENE", options.scene, "Scene, YAML (docs/scene.md)")->type_name("")->required();
+  command
+      .add_option("--path", options.path,
+                  "A column per actuator, a row per step, each step solved from\nthe last; "
+                  "a column t_s is the time in the series [s]")
+      ->type_name("F.csv");
+  command.add_option("-o,--output", options.output, "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...")
+      ->type_name("F");
+  command.add_option("--report", options.report, "All numbers of all steps, with their strain histograms")
+      ->type_name("F.json");
+  command.add_option("--image", options.image, "Picture of the last shape")->type_name("F.png");
+}
+
+void add_solver(CLI::App& command, FkOptions& options) {
+  command
+      .add_option("--solver", options.solver, "local-global: Algorithm 1 of Fang et al. 2020; there is no other yet")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"local-global"}).description(""));
+  command
+      .add_option("--tolerance", options.statics.step_tolerance_mm,
+                  "Stop when no vertex moves farther than this in an iteration\n[mm]; default: 8e-8 of the robot's "
+                  "diagonal, which is the\npaper's 1e-5 mm on its robots")
+      ->type_name("MM")
+      ->check(finite_number(false));
+  command
+      .add_option("--max-iterations", options.statics.max_iterations,
+                  "Give up on a step after so many (default: " + std::to_string(options.statics.max_iterations) + ")")
+      ->type_name("N")
+      ->check(integer_from(1, most_iterations));
+  command
+      .add_option("--anderson", options.statics.anderson,
+                  "Earlier iterations that Anderson acceleration combines,\n0 to 20; 0: Algorithm 1 as printed "
+                  "(default: " +
+                      std::to_string(options.statics.anderson) + ")")
+      ->type_name("N")
+      ->check(integer_from(0, 20));
+  command.add_option("--threads", options.statics.threads, "0: as many as the machine has (default)")
+      ->type_name("N")
+      ->check(integer_from(0, most_threads));
+}
+
+}  // namespace
+
+bool FkOptions::series() const {
+  return lower_extension(output) == ".pvd";
+}
+
+void add_options(CLI::App& command, FkOptions& options) {
+  add_files(command, options);
+  command
+      .add_option("--set", options.settings,
+                  "ACTUATOR=RATIO: length, area or volume over that at rest\n[-]; repeatable; other actuators rest")
+      ->type_name("A=R")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--view", options.view,
+                  "Picture: direction X Y Z from the robot to the eye (default:\n-0.5 -1 0.45); 0 0 1 looks from above")
+      ->type_name("NUMBER")
+      ->expected(3)
+      ->check(finite_number(true));
+  add_solver(command, options);
+  command.add_flag("--resume", options.resume,
+                   "Go on where the same command was interrupted; needs --path,\n--report and -o F.pvd");
+  command.add_flag("--json", options.json, "Print the report instead of the table");
+}
+
+void check_usage(const FkOptions& options) {
+  const std::string form = lower_extension(options.output);
+  if (!options.output.empty() && form != ".vtu" && form != ".pvd")
+    throw InvalidInput("--output " + options.output + ": must end in .vtu (the last shape) or .pvd (every step)");
+  if (!options.image.empty() && lower_extension(options.image) != ".png")
+    throw InvalidInput("--image " + options.image + ": must end in .png");
+  if (!options.view.empty() && options.image.empty())
+    throw InvalidInput("--view is the view of the picture: it needs --image F.png");
+  if (!options.view.empty() && std::hypot(options.view[0], options.view[1], options.view[2]) == 0)
+    throw InvalidInput("--view 0 0 0: must be a direction, so not zero");
+  if (options.resume && (options.path.empty() || !options.series() || options.report.empty()))
+    throw InvalidInput("--resume needs the --path, --report and --output F.pvd of the run that was interrupted");
+}
+
+}  // namespace softkin::cli

@@ -1,0 +1,142 @@
+#include "fk_outputs.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
+#include <string>
+#include <system_error>
+
+namespace softkin::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Output {
+  const char* option;
+  fs::path file;
+};
+
+std::vector<Output> outputs_of(const FkOptions& options) {
+  std::vector<Output> outputs;
+  const auto add = [&](const char* option, const std::string& file) {
+    if (!file.empty()) outputs.push_back({option, file});
+  };
+  add("--output", options.output);
+  add("--report", options.report);
+  add("--image", options.image);
+  return outputs;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// The same for every spelling of a path, whether the file exists or not.
+fs::path resolved(const fs::path& file) {
+  std::error_code failure;
+  const fs::path result = fs::weakly_canonical(fs::absolute(file), failure);
+  return failure ? fs::absolute(file) : result;
+}
+
+[[noreturn]] void refuse(const Output& output, const std::string& why) {
+  throw InvalidInput(std::string(output.option) + " " + output.file.string() + ": " + why);
+}
+
+void check_series(const Output& output, const std::vector<fs::path>& inputs, std::size_t steps) {
+  std::set<fs::path> beside;
+  for (const fs::path& input : inputs)
+    if (resolved(folder_of(input)) == resolved(folder_of(output.file))) beside.insert(input.filename());
+  if (beside.empty()) return;
+  for (std::size_t i = 0; i < steps; ++i) {
+    const fs::path name = series_file(output.file, i).filename();
+    if (beside.count(name) > 0) refuse(output, "its " + name.string() + " would replace a file that is read");
+  }
+}
+
+/// What write_file writes before it renames: NAME.PID.part. Returns NAME, or "".
+std::string torn_name(std::string name) {
+  const std::string end = ".part";
+  if (name.size() < end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) return "";
+  name.resize(name.size() - end.size());
+  const std::size_t dot = name.find_last_not_of("0123456789");
+  return dot == std::string::npos || name[dot] != '.' || dot + 1 == name.size() ? "" : name.substr(0, dot);
+}
+
+}  // namespace
+
+fs::path series_file(const fs::path& pvd, std::size_t step) {
+  char number[24];
+  std::snprintf(number, sizeof number, "_%04zu.vtu", step);
+  return fs::path(pvd).replace_filename(pvd.stem().string() + number);
+}
+
+void check_outputs(const FkOptions& options, const std::vector<fs::path>& inputs, std::size_t steps) {
+  std::map<fs::path, const char*> taken;
+  for (const Output& output : outputs_of(options)) {
+    std::error_code failure;
+    if (!output.file.has_filename() || fs::is_directory(output.file, failure))
+      refuse(output, "is a folder, not a file");
+    if (fs::exists(output.file, failure) && !fs::is_regular_file(output.file, failure))
+      refuse(output, "is no plain file and will not be replaced");
+    const fs::path file = resolved(output.file);
+    for (const fs::path& input : inputs)
+      if (resolved(input) == file) refuse(output, "would replace a file that is read");
+    if (!taken.emplace(file, output.option).second) refuse(output, std::string("is the file of ") + taken[file]);
+    if (options.series() && output.file == options.output) check_series(output, inputs, steps);
+  }
+}
+
+OutputFolders::OutputFolders(const FkOptions& options) {
+  for (const Output& output : outputs_of(options)) {
+    const fs::path folder = folder_of(output.file);
+    try {
+      make(folder);
+      const fs::path probe = folder / (".softkin." + std::to_string(::getpid()));
+      write_file(probe, "");  // asks what permissions do not tell, before the work and not after it
+      fs::remove(probe);
+    } catch (const fs::filesystem_error& failure) {
+      remove_empty();
+      refuse(output, "its folder cannot be made: " + failure.code().message());
+    } catch (const InvalidInput&) {
+      remove_empty();
+      refuse(output, "its folder cannot be written to");
+    }
+  }
+}
+
+OutputFolders::~OutputFolders() {
+  remove_empty();
+}
+
+void OutputFolders::make(const fs::path& folder) {
+  if (fs::is_directory(folder)) return;
+  if (fs::exists(folder)) throw fs::filesystem_error("", folder, std::make_error_code(std::errc::not_a_directory));
+  if (folder.has_parent_path() && folder.parent_path() != folder) make(folder.parent_path());
+  if (fs::create_directory(folder)) made_.push_back(folder);
+}
+
+void OutputFolders::remove_empty() const {
+  std::error_code not_empty;
+  std::for_each(made_.rbegin(), made_.rend(), [&](const fs::path& folder) { fs::remove(folder, not_empty); });
+}
+
+void remove_torn_files(const FkOptions& options, std::size_t steps) {
+  for (const Output& output : outputs_of(options)) {
+    std::set<std::string> names{output.file.filename().string()};
+    if (options.series() && output.file == options.output)
+      for (std::size_t i = 0; i < steps; ++i) names.insert(series_file(output.file, i).filename().string());
+    std::vector<fs::path> torn;
+    for (const auto& entry : fs::directory_iterator(folder_of(output.file)))
+      if (names.count(torn_name(entry.path().filename().string())) > 0) torn.push_back(entry.path());
+    std::error_code ignored;
+    for (const fs::path& file : torn) fs::remove(file, ignored);
+  }
+}
+
+}  // namespace softkin::cli

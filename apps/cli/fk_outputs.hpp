@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "fk_options.hpp"
+
+namespace softkin::cli {
+
+/// NAME_0007.vtu beside NAME.pvd.
+[[nodiscard]] std::filesystem::path series_file(const std::filesystem::path& pvd, std::size_t step);
+
+/// Throws InvalidInput where an output would replace an input, another output, or what is no plain file.
+void check_outputs(const FkOptions& options, const std::vector<std::filesystem::path>& inputs, std::size_t steps);
+
+/// Makes the folders of the outputs; at the end removes those of them that stayed empty.
+class OutputFolders {
+ public:
+  /// Throws InvalidInput where a folder cannot be made or written to.
+  explicit OutputFolders(const FkOptions& options);
+  ~OutputFolders();
+  OutputFolders(const OutputFolders&) = delete;
+  OutputFolders& operator=(const OutputFolders&) = delete;
+
+ private:
+  void make(const std::filesystem::path& folder);
+  void remove_empty() const;
+
+  std::vector<std::filesystem::path> made_;
+};
+
+/// Removes what a killed run left half written beside its outputs.
+void remove_torn_files(const FkOptions& options, std::size_t steps);
+
+}  // namespace softkin::cli

@@ -1,0 +1,162 @@
+#include "fk_steps.hpp"
+
+#include <algorithm>
+#include <softkin/core/error.hpp>
+#include <softkin/io/csv.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
+#include <string_view>
+
+#include "terminal.hpp"
+
+namespace softkin::cli {
+
+namespace {
+
+constexpr const char* time_column = "t_s";
+constexpr Index time_target = -1;
+
+std::vector<std::string> actuator_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const Actuator& actuator : model.actuators) names.push_back(actuator.name);
+  return names;
+}
+
+std::string unknown_actuator(const Model& model, const std::string& name) {
+  const std::vector<std::string> names = actuator_names(model);
+  return "no actuator " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
+}
+
+std::optional<Index> find_actuator(const Model& model, const std::string& name) {
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (model.actuators[a].name == name) return static_cast<Index>(a);
+  return std::nullopt;
+}
+
+bool in_range(const Actuator& actuator, double ratio) {
+  return ratio >= actuator.low && ratio <= actuator.high;
+}
+
+std::string range_text(const Actuator& actuator) {
+  return "its range, " + number(actuator.low) + " to " + number(actuator.high) + " [-]";
+}
+
+/// What --set asks for, per actuator.
+using Settings = std::vector<std::optional<double>>;
+
+Settings read_settings(const Model& model, const std::vector<std::string>& settings) {
+  Settings values(model.actuators.size());
+  for (const std::string& setting : settings) {
+    const auto refuse = [&](const std::string& why) { throw InvalidInput("--set " + excerpt(setting) + ": " + why); };
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) refuse("expected ACTUATOR=RATIO, for example --set air=1.5");
+    const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
+    const std::optional<Index> a = find_actuator(model, name);
+    if (!a) refuse(unknown_actuator(model, name));
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
+    double ratio = 0;
+    if (!parse_real(text, ratio))
+      refuse("the ratio to rest must be a finite number without unit, not " + excerpt(text));
+    if (!in_range(actuator, ratio)) refuse("the ratio is outside " + range_text(actuator));
+    if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");
+    values[static_cast<std::size_t>(*a)] = ratio;
+  }
+  return values;
+}
+
+Actuation start_actuation(const Model& model, const Settings& settings) {
+  Actuation actuation = model.rest_actuation();
+  for (std::size_t a = 0; a < settings.size(); ++a)
+    if (settings[a]) actuation[static_cast<Index>(a)] = *settings[a];
+  return actuation;
+}
+
+/// Is what nobody asked for, the rest value, within its range?
+void check_rest(const Model& model, const Step& step) {
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const double ratio = step.actuation[static_cast<Index>(a)];
+    const std::string& name = model.actuators[a].name;
+    if (!in_range(model.actuators[a], ratio))
+      throw InvalidInput("actuator '" + name + "' needs --set " + name + "=RATIO: its rest value " + number(ratio) +
+                         " is outside " + range_text(model.actuators[a]));
+  }
+}
+
+std::vector<Index> column_targets(const Model& model, const std::string& file, const CsvTable& table,
+                                  const Settings& settings) {
+  std::vector<Index> targets;
+  for (const std::string& column : table.columns) {
+    const std::optional<Index> a = find_actuator(model, column);
+    if (!a && column != time_column)
+      throw InvalidInput(
+          {file}, "column " + excerpt(column) + ": " + unknown_actuator(model, column) + "; a time is column t_s [s]");
+    if (a && settings[static_cast<std::size_t>(*a)])
+      throw InvalidInput("--set " + column + ": the path " + file + " has a column for this actuator");
+    targets.push_back(a.value_or(time_target));
+  }
+  if (std::all_of(targets.begin(), targets.end(), [](Index target) { return target == time_target; }))
+    throw InvalidInput({file}, "no column names an actuator, so there is nothing to follow");
+  return targets;
+}
+
+class PathReader {
+ public:
+  PathReader(const Model& model, const std::string& file, const Settings& settings)
+      : model_(model),
+        file_(file),
+        table_(read_csv(file)),
+        targets_(column_targets(model, file, table_, settings)),
+        start_{start_actuation(model, settings), std::nullopt, 0} {}
+
+  [[nodiscard]] std::vector<Step> steps() const {
+    std::vector<Step> steps;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      steps.push_back(step(row));
+      check_rest(model_, steps.back());
+      if (row > 0 && steps[row].time && *steps[row].time <= *steps[row - 1].time)
+        fail(row, std::string(time_column) + " must increase from row to row, but " + number(*steps[row].time, 12) +
+                      " s follows " + number(*steps[row - 1].time, 12) + " s");
+    }
+    return steps;
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t row, const std::string& message) const {
+    throw InvalidInput({file_, table_.lines[row]}, message);
+  }
+
+  [[nodiscard]] Step step(std::size_t row) const {
+    Step step = start_;
+    step.line = table_.lines[row];
+    for (std::size_t column = 0; column < targets_.size(); ++column) {
+      const double value = table_.rows[row][column];
+      if (targets_[column] == time_target) {
+        step.time = value;
+        continue;
+      }
+      const Actuator& actuator = model_.actuators[static_cast<std::size_t>(targets_[column])];
+      if (!in_range(actuator, value))
+        fail(row, "column '" + actuator.name + "': " + number(value, 12) + " is outside " + range_text(actuator));
+      step.actuation[targets_[column]] = value;
+    }
+    return step;
+  }
+
+  const Model& model_;
+  const std::string& file_;
+  CsvTable table_;
+  std::vector<Index> targets_;
+  Step start_;
+};
+
+}  // namespace
+
+std::vector<Step> asked_steps(const Model& model, const FkOptions& options) {
+  const Settings settings = read_settings(model, options.settings);
+  if (!options.path.empty()) return PathReader(model, options.path, settings).steps();
+  const Step step{start_actuation(model, settings), std::nullopt, 0};
+  check_rest(model, step);
+  return {step};
+}
+
+}  // namespace softkin::cli

@@ -1,0 +1,387 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "run_program.hpp"
+
+namespace softkin {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ProgramResult;
+using testing::TemporaryFolder;
+
+const fs::path source = SOFTKIN_SOURCE_DIR;
+
+/// Commands of one block of a document, and what the document says they print.
+struct Block {
+  fs::path document;
+  std::vector<std::pair<std::size_t, std::string>> commands;  // line, text
+  std::vector<std::string> shown;
+  int exit_code = 0;  // of the last command
+
+  [[nodiscard]] std::string at(std::size_t line) const {
+    return document.lexically_relative(source).string() + ":" + std::to_string(line) + ": ";
+  }
+};
+
+std::vector<fs::path> documents() {
+  std::vector<fs::path> found{source / "README.md", source / "CONTRIBUTING.md", source / "examples" / "README.md"};
+  for (const auto& entry : fs::directory_iterator(source / "docs"))
+    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(source / "examples"))
+    if (fs::exists(entry.path() / "README.md")) found.push_back(entry.path() / "README.md");
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+std::string without_blanks(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+/// Is this the beginning of a command rather than the name of a program or file?
+bool is_command(const std::string& text) {
+  for (const char* begin : {"build/softkin ", "make ", "cmake -", "gmsh ", "scripts/"})
+    if (text.starts_with(begin)) return true;
+  return false;
+}
+
+/// Fenced blocks ```sh (```sh exit=N: the last command ends with that code) with the ```text that follows, lines of
+/// code by indentation, and code within a line.
+class Parser {
+ public:
+  explicit Parser(fs::path document) : document_(std::move(document)) {}
+
+  std::vector<Block> parse() {
+    std::istringstream stream(testing::read_text(document_.string()));
+    for (std::string line; std::getline(stream, line);) {
+      ++line_;
+      const std::string text = without_blanks(line);
+      if (text.starts_with("```"))
+        fence_ = fence_.empty() ? open(words_of(text.substr(3))) : "";
+      else if (fence_ == "sh")
+        add_line(text);
+      else if (fence_ == "text" && follows_)
+        blocks_.back().shown.push_back(line);
+      else if (fence_.empty())
+        read_prose(line, text);
+    }
+    EXPECT_TRUE(fence_.empty()) << document_ << " ends within a block of code";
+    return std::move(blocks_);
+  }
+
+ private:
+  std::string open(const std::vector<std::string>& info) {
+    const std::string language = info.empty() ? "none" : info[0];
+    follows_ = language == "text" && after_shell_;
+    after_shell_ = language == "sh";
+    if (!after_shell_) return language;
+    begin_block();
+    if (info.size() > 1 && info[1].starts_with("exit=")) blocks_.back().exit_code = std::stoi(info[1].substr(5));
+    return language;
+  }
+
+  void begin_block() {
+    blocks_.emplace_back();
+    blocks_.back().document = document_;
+  }
+
+  void add_line(const std::string& text) {
+    auto& commands = blocks_.back().commands;
+    if (continued_) {
+      commands.back().second += " " + text;
+    } else if (text.empty() || text[0] == '#') {
+      return;
+    } else {
+      commands.emplace_back(line_, text);
+    }
+    std::string& command = commands.back().second;
+    continued_ = command.ends_with("\\");
+    if (continued_) command.pop_back();
+  }
+
+  void read_prose(const std::string& line, const std::string& text) {
+    if (text.empty()) return;
+    if (line.starts_with("    ") && (continued_ || text.starts_with("build/softkin "))) {
+      if (!continued_) begin_block();
+      return add_line(text);
+    }
+    after_shell_ = false;
+    for (std::size_t from = line.find('`'); from != std::string::npos; from = line.find('`', from)) {
+      const std::size_t end = line.find('`', from + 1);
+      if (end == std::string::npos) return;
+      const std::string code = line.substr(from + 1, end - from - 1);
+      from = end + 1;
+      if (!is_command(code)) continue;
+      begin_block();
+      blocks_.back().commands.emplace_back(line_, code);
+    }
+  }
+
+  fs::path document_;
+  std::size_t line_ = 0;
+  std::string fence_;  // language of the block that is open; empty: none
+  bool continued_ = false, after_shell_ = false, follows_ = false;
+  std::vector<Block> blocks_;
+};
+
+ProgramResult run_shell(const std::string& command) {
+  FILE* pipe = ::popen(("{ " + command + "\n} </dev/null 2>&1").c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
+  ProgramResult result;
+  std::array<char, 4096> bytes;
+  while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), pipe))
+    result.output.append(bytes.data(), count);
+  const int status = ::pclose(pipe);
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+/// Names of the Makefile's commands.
+std::set<std::string> make_targets() {
+  std::istringstream stream(testing::read_text(source / "Makefile"));
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with(".PHONY:")) {
+      const std::vector<std::string> names = words_of(line.substr(7));
+      return {names.begin(), names.end()};
+    }
+  return {};
+}
+
+std::set<std::string> presets() {
+  const auto json = nlohmann::json::parse(testing::read_text(source / "CMakePresets.json"));
+  std::set<std::string> names;
+  for (const auto& preset : json["configurePresets"]) names.insert(preset["name"].get<std::string>());
+  return names;
+}
+
+/// What `make run` asks softkin to do.
+std::vector<std::string> commands_of_make_run() {
+  const ProgramResult dry = run_shell("env -u MAKEFLAGS -u MAKELEVEL make -n -C " +
+                                      testing::shell_quoted(source.string()) + " run SETUP=true");
+  EXPECT_EQ(dry.exit_code, 0) << dry.output;
+  std::vector<std::string> commands;
+  bool continued = false;
+  std::istringstream stream(dry.output);
+  for (std::string line; std::getline(stream, line);) {
+    if (!continued && !line.starts_with("build/softkin ")) continue;
+    if (!continued) commands.emplace_back();
+    continued = line.ends_with("\\");
+    if (continued) line.pop_back();
+    commands.back() += line;
+  }
+  return commands;
+}
+
+/// A folder like a fresh clone in which softkin has been built.
+class Clone {
+ public:
+  Clone() {
+    fs::create_directory(folder_ / "build");
+    fs::create_directory(folder_ / "out");
+    fs::create_symlink(SOFTKIN_PROGRAM, folder_ / "build/softkin");
+    fs::create_symlink(source / "examples", folder_ / "examples");
+  }
+
+  /// Each command runs once, however often it stands somewhere.
+  const ProgramResult& run(const std::string& command) {
+    const auto [found, added] = results_.try_emplace(command);
+    if (added) found->second = run_shell("cd " + testing::shell_quoted(folder_ / "") + " && timeout 60 " + command);
+    return found->second;
+  }
+  [[nodiscard]] std::size_t runs() const { return results_.size(); }
+
+ private:
+  TemporaryFolder folder_;
+  std::map<std::string, ProgramResult> results_;
+};
+
+/// A word that is a number, maybe with punctuation around.
+bool number_in(const std::string& word, double& value) {
+  const std::size_t begin = word.find_first_of("-0123456789");
+  if (begin == std::string::npos) return false;
+  const std::string digits = word.substr(begin, word.find_last_of("0123456789") - begin + 1);
+  char* end = nullptr;
+  value = std::strtod(digits.c_str(), &end);
+  return end == digits.c_str() + digits.size();
+}
+
+/// Are the lines equal but for rounding? Iterations and seconds, before the status, are not compared.
+bool says_the_same(const std::string& shown, const std::string& printed) {
+  const std::vector<std::string> a = words_of(shown), b = words_of(printed);
+  if (a.size() != b.size()) return false;
+  const std::size_t measured = !a.empty() && a.back() == "converged" ? a.size() - 3 : a.size();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double x = 0, y = 0;
+    if (a[i] == b[i] || (i >= measured && i + 1 < a.size())) continue;
+    if (!number_in(a[i], x) || !number_in(b[i], y) || std::abs(x - y) > 0.005 + 0.01 * std::abs(y)) return false;
+  }
+  return true;
+}
+
+class Checker {
+ public:
+  void check(const Block& block) {
+    std::string printed;
+    for (const auto& [line, command] : block.commands) {
+      const int expected = line == block.commands.back().first ? block.exit_code : 0;
+      for (std::size_t from = 0; from != std::string::npos;) {
+        const std::size_t next = command.find("&&", from);
+        const std::string part = without_blanks(command.substr(from, next - from));
+        from = next == std::string::npos ? next : next + 2;
+        printed += follow(block, line, part, expected);
+      }
+    }
+    std::istringstream stream(printed);
+    std::string line;
+    for (const std::string& shown : block.shown) {
+      if (without_blanks(shown).empty() || without_blanks(shown) == "...") continue;
+      bool found = false;
+      while (!found && std::getline(stream, line)) found = says_the_same(shown, line);
+      EXPECT_TRUE(found) << block.at(block.commands.back().first) << "the document shows\n  " << shown
+                         << "\nbut the commands print\n"
+                         << printed;
+      if (!found) return;
+    }
+  }
+
+  [[nodiscard]] std::size_t runs() const { return clone_.runs(); }
+
+ private:
+  /// Runs or checks one command; what it prints.
+  std::string follow(const Block& block, std::size_t line, const std::string& command, int expected) {
+    const std::vector<std::string> words = words_of(command);
+    const std::string& program = words.at(0);
+    const std::string at = block.at(line) + command + ": ";
+    if (program == "build/softkin") return run(at, command, expected);
+    if (program == "make") return make(at, words);
+    if (program == "cmake") {
+      check_cmake(at, words);
+    } else if (program == "gmsh") {
+      check_gmsh(at, block.document.parent_path(), words);
+    } else if (program.starts_with("scripts/")) {
+      EXPECT_TRUE(fs::exists(source / program)) << at << "no such script";
+    } else if (const std::size_t tests = program.find("/tests/test_"); tests != std::string::npos) {
+      EXPECT_TRUE(fs::exists(source / "tests" / program.substr(tests + 12))) << at << "no such test";
+    } else if (program != "git" && program != "cd") {
+      ADD_FAILURE() << at << "unknown program";
+    }
+    return "";
+  }
+
+  std::string run(const std::string& at, const std::string& command, int expected) {
+    std::vector<std::string> words = words_of(command);
+    for (std::size_t i = 0; i + 1 < words.size(); ++i)
+      if (words[i] == "-o" || words[i] == "--output" || words[i] == "--report" || words[i] == "--image") {
+        EXPECT_TRUE(words[i + 1].starts_with("out/")) << at << "writes outside out/";
+      }
+    const ProgramResult& result = clone_.run(command);
+    EXPECT_EQ(result.exit_code, expected) << at << "\n" << result.output;
+    return result.output;
+  }
+
+  std::string make(const std::string& at, const std::vector<std::string>& words) {
+    std::string printed;
+    for (std::size_t i = 1; i < words.size() && words[i] != "#"; ++i) {
+      if (words[i].find('=') != std::string::npos) continue;
+      EXPECT_TRUE(targets_.contains(words[i])) << at << "the Makefile has no '" << words[i] << "'";
+      if (words[i] != "run") continue;
+      const std::vector<std::string> commands = commands_of_make_run();
+      EXPECT_FALSE(commands.empty()) << at << "runs nothing";
+      for (const std::string& command : commands) printed += run(at, command, 0);
+    }
+    return printed;
+  }
+
+  void check_cmake(const std::string& at, const std::vector<std::string>& words) {
+    for (std::size_t i = 1; i + 1 < words.size(); ++i) {
+      const std::string& value = words[i + 1];
+      if (words[i] == "--preset") {
+        EXPECT_TRUE(presets_.contains(value)) << at << "no preset '" << value << "'";
+      }
+      if (words[i] == "--target") {
+        EXPECT_TRUE(value == "softkin_cli" ||
+                    (value.starts_with("test_") && fs::exists(source / "tests" / value.substr(5))))
+            << at << "no target '" << value << "'";
+      }
+    }
+  }
+
+  static void check_gmsh(const std::string& at, const fs::path& folder, const std::vector<std::string>& words) {
+    for (const std::string& word : words)
+      if (word.ends_with(".geo")) {
+        EXPECT_TRUE(fs::exists(folder / word)) << at << "no file " << word;
+      }
+  }
+
+  Clone clone_;
+  std::set<std::string> targets_ = make_targets(), presets_ = presets();
+};
+
+/// The part of a heading's address: lower case, blanks as hyphens, no punctuation.
+std::string anchor_of(const std::string& heading) {
+  std::string anchor;
+  for (const char c : heading) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) || c == '-' || c == '_' || byte > 127) anchor += static_cast<char>(std::tolower(byte));
+    if (c == ' ') anchor += '-';
+  }
+  return anchor;
+}
+
+bool has_heading(const fs::path& document, const std::string& anchor) {
+  std::istringstream stream(testing::read_text(document.string()));
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with("#") && anchor_of(without_blanks(line.substr(line.find_first_not_of('#')))) == anchor)
+      return true;
+  return false;
+}
+
+}  // namespace
+
+TEST(Docs, EveryCommandDoesWhatTheDocumentSays) {
+  Checker checker;
+  std::size_t shown = 0;
+  for (const fs::path& document : documents())
+    for (const Block& block : Parser(document).parse()) {
+      const auto begin = std::chrono::steady_clock::now();
+      checker.check(block);
+      shown += block.shown.size();
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+      if (seconds.count() > 5) std::printf("%.1f s: %s\n", seconds.count(), block.commands.front().second.c_str());
+    }
+  EXPECT_GE(checker.runs(), 15u);
+  EXPECT_GE(shown, 5u);
+}
+
+TEST(Docs, LinksLeadSomewhere) {
+  std::size_t count = 0;
+  for (const fs::path& document : documents()) {
+    const std::string text = testing::read_text(document.string());
+    for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 2)) {
+      const std::string link = text.substr(at + 2, text.find(')', at) - at - 2);
+      if (link.find("://") != std::string::npos) continue;
+      const std::size_t hash = link.find('#');
+      const fs::path file = hash == 0 ? document : document.parent_path() / link.substr(0, hash);
+      EXPECT_TRUE(fs::exists(file)) << document << " links to " << link;
+      if (hash != std::string::npos) {
+        EXPECT_TRUE(has_heading(file, link.substr(hash + 1))) << document << " links to " << link;
+      }
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 10u);
+}
+
+}  // namespace softkin

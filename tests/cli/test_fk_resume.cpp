@@ -1,0 +1,328 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <softkin/io/vtk.hpp>
+#include <thread>
+
+#include "fk_samples.hpp"
+#include "start_program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace softkin::testing;
+using nlohmann::json;
+
+constexpr int steps = 60;
+
+std::string path_text(int rows = steps, double changed_first = 1) {
+  std::string text = "t_s,air\n";
+  for (int i = 0; i < rows; ++i) {
+    const double ratio = i == 0 ? changed_first : 1 + 0.013 * i;
+    text += std::to_string(0.5 * i) + "," + std::to_string(ratio) + "\n";
+  }
+  return text;
+}
+
+/// A longer block, so that a step takes some milliseconds, and a path of many steps.
+struct PathFolder : TemporaryFolder {
+  std::string scene, path, report, series;
+
+  PathFolder() {
+    write("block.msh", Block(9).mesh.text());
+    scene = write("block.yaml", block_scene());
+    path = write("path.csv", path_text());
+    report = *this / "out/report.json";
+    series = *this / "out/shape.pvd";
+  }
+  [[nodiscard]] std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all{"fk", scene, "--path", path, "--report", report, "-o", series, "--threads", "1"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  [[nodiscard]] ProgramResult run(const std::vector<std::string>& more = {}) const {
+    return run_program(arguments(more));
+  }
+  [[nodiscard]] ProgramResult resume() const { return run({"--resume"}); }
+  [[nodiscard]] std::string shape(int step) const {
+    char name[32];
+    std::snprintf(name, sizeof name, "out/shape_%04d.vtu", step);
+    return *this / name;
+  }
+  [[nodiscard]] std::size_t reported() const {
+    return fs::exists(report) ? json::parse(read_text(report))["steps"].size() : 0;
+  }
+  [[nodiscard]] json last_run() const { return json::parse(read_text(report)); }
+};
+
+/// Names and content of the shapes and the collection; what the clock changes stays out.
+std::map<std::string, std::string> shapes_of(const PathFolder& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder / "out"))
+    if (entry.path().extension() != ".json") files[entry.path().filename().string()] = read_text(entry.path().string());
+  return files;
+}
+
+std::map<std::string, std::string> uninterrupted_shapes() {
+  const PathFolder folder;
+  const ProgramResult result = folder.run();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  return shapes_of(folder);
+}
+
+/// The steps without the times that they took.
+json steps_of(const PathFolder& folder) {
+  json all = folder.last_run()["steps"];
+  for (json& step : all) step.erase("seconds");
+  return all;
+}
+
+void expect_refused(const PathFolder& folder, const std::vector<std::string>& words,
+                    const std::vector<std::string>& more = {"--resume"}) {
+  const auto before = shapes_of(folder);
+  const ProgramResult result = folder.run(more);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.errors.rfind("softkin: ", 0), 0u) << result.errors;
+  for (const std::string& word : words) EXPECT_NE(result.errors.find(word), std::string::npos) << result.errors;
+  EXPECT_EQ(shapes_of(folder), before);
+}
+
+/// Runs until so many steps are reported and is then interrupted.
+ProgramResult interrupted_run(const PathFolder& folder, std::size_t after, int signal_number = SIGINT) {
+  StartedProgram program(folder, folder.arguments());
+  EXPECT_TRUE(program.wait_until([&] { return folder.reported() >= after; }));
+  program.send(signal_number);
+  return program.wait();
+}
+
+TEST(FkResume, InterruptKeepsWhatIsFinished) {
+  for (const int signal_number : {SIGINT, SIGTERM}) {
+    const PathFolder folder;
+    const ProgramResult result = interrupted_run(folder, 3, signal_number);
+    EXPECT_EQ(result.exit_code, 1);
+    const std::size_t done = folder.reported();
+    ASSERT_GE(done, 3u);
+    ASSERT_LT(done, std::size_t{steps});
+    EXPECT_EQ(result.errors, "softkin: interrupted after " + std::to_string(done) +
+                                 " of 60 steps; they are in the files that were asked for, the same command with "
+                                 "--resume goes on\n");
+    const auto files = shapes_of(folder);
+    EXPECT_EQ(files.size(), done + 1) << "the shapes and the collection, nothing half";
+    for (std::size_t i = 0; i < done; ++i)
+      EXPECT_EQ(softkin::read_vtu_points(folder.shape(static_cast<int>(i))).rows(), 160);
+    const std::string collection = files.at("shape.pvd"),
+                      last = fs::path(folder.shape(static_cast<int>(done) - 1)).filename();
+    EXPECT_NE(collection.find(last), std::string::npos) << collection;
+    EXPECT_NE(collection.find("timestep=\"0.5\""), std::string::npos) << collection;
+  }
+}
+
+TEST(FkResume, EndsAsIfNeverInterrupted) {
+  const PathFolder folder, whole;
+  EXPECT_EQ(interrupted_run(folder, 5).exit_code, 1);
+  const std::size_t done = folder.reported();
+  const ProgramResult result = folder.resume();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  EXPECT_NE(result.output.find(std::to_string(done) + " of 60 steps were done before: going on"), std::string::npos)
+      << result.output;
+  EXPECT_EQ(whole.run().exit_code, 0);
+  EXPECT_EQ(shapes_of(folder), shapes_of(whole));
+  EXPECT_EQ(steps_of(folder), steps_of(whole));
+  EXPECT_NE(read_text(folder.shape(steps - 1)).find("type=\"Float64\" Name=\"Points\""), std::string::npos);
+}
+
+TEST(FkResume, KilledAtAnyMoment) {
+  const auto expected = uninterrupted_shapes();
+  const PathFolder folder;
+  std::mt19937 random(20);
+  std::set<std::size_t> stops;
+  for (int kill = 0; kill < 20; ++kill) {
+    if (folder.reported() == steps) fs::remove_all(folder / "out");
+    {
+      StartedProgram program(folder, folder.arguments({"--resume"}));
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 60000));
+      program.send(SIGKILL);
+      (void)program.wait();
+    }
+    const std::size_t done = folder.reported();  // throws where the report is torn
+    stops.insert(done);
+    for (std::size_t i = 0; i < done; ++i) ASSERT_TRUE(fs::exists(folder.shape(static_cast<int>(i)))) << kill;
+  }
+  EXPECT_GT(stops.size(), 3u);
+  const ProgramResult result = folder.resume();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(shapes_of(folder), expected) << "nothing half written stays";
+  EXPECT_EQ(folder.reported(), std::size_t{steps});
+}
+
+TEST(FkResume, NothingLeftIsSaid) {
+  const PathFolder folder;
+  EXPECT_EQ(folder.run().exit_code, 0);
+  const auto shapes = shapes_of(folder);
+  const std::string report = read_text(folder.report);
+  const ProgramResult result = folder.resume();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("60 of 60 steps were done before: nothing is left"), std::string::npos) << result.output;
+  EXPECT_EQ(shapes_of(folder), shapes);
+  EXPECT_EQ(read_text(folder.report), report);
+  EXPECT_EQ(folder.run({"--resume", "--json"}).output, report);
+}
+
+TEST(FkResume, WithoutAReportItStartsFromTheBeginning) {
+  const PathFolder folder;
+  folder.write("path.csv", path_text(2));
+  const ProgramResult result = folder.resume();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("nothing to resume: starting with step 0"), std::string::npos) << result.output;
+  EXPECT_EQ(folder.reported(), 2u);
+}
+
+TEST(FkResume, GoesByContentAndNotByName) {
+  const PathFolder folder;
+  folder.write("path.csv", path_text(4));
+  EXPECT_EQ(folder.run().exit_code, 0);
+  folder.write("longer.csv", path_text(6));
+  fs::create_directory(folder / "other");
+  fs::rename(folder / "block.msh", folder / "renamed.msh");
+  std::string scene = block_scene("# a comment\n");
+  scene.replace(scene.find("block.msh"), 9, "../renamed.msh");
+  folder.write("other/scene.yaml", scene);
+  const ProgramResult result =
+      run_program({"fk", folder / "other/../other/scene.yaml", "--path", folder / "longer.csv", "--report",
+                   folder.report, "-o", folder.series, "--threads", "2", "--resume"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("4 of 6 steps were done before: going on"), std::string::npos) << result.output;
+}
+
+TEST(FkResume, RefusesAnotherTask) {
+  const PathFolder folder;
+  folder.write("path.csv", path_text(3));
+  EXPECT_EQ(folder.run().exit_code, 0);
+
+  folder.write("path.csv", path_text(3, 1.001));
+  expect_refused(folder,
+                 {"report.json: --resume cannot", "step 0 was solved for air = 1, but ", "path.csv:2 asks for 1.001"});
+  folder.write("path.csv", path_text(2));
+  expect_refused(folder, {"it has step 2, but ", "path has changed"});
+  folder.write("path.csv", "t_s,air\n0,1\n0.6,1.013\n1,1.026\n");
+  expect_refused(folder, {"step 1 has another time than ", "path.csv:3"});
+  folder.write("path.csv", path_text(3));
+  expect_refused(folder, {"other solver options", "max_iterations"}, {"--resume", "--max-iterations", "7"});
+
+  std::string scene = block_scene();
+  scene.replace(scene.find("shape_ratio: 1.0"), 16, "shape_ratio: 0.9");
+  folder.write("block.yaml", scene);
+  expect_refused(folder, {"another robot, or the scene or its mesh has changed"});
+  folder.write("block.yaml", block_scene());
+  Block moved(9);
+  moved.mesh.vertices[7][1] += 1e-9;
+  folder.write("block.msh", moved.mesh.text());
+  expect_refused(folder, {"another robot, or the scene or its mesh has changed"});
+}
+
+TEST(FkResume, RefusesAReportThatItDidNotWrite) {
+  const PathFolder folder;
+  folder.write("path.csv", path_text(3));
+  EXPECT_EQ(folder.run().exit_code, 0);
+  const json good = folder.last_run();
+  const auto refused = [&](const std::string& text, const std::string& why) {
+    folder.write("out/report.json", text);
+    expect_refused(folder, {"report.json: --resume cannot go on from this report: " + why});
+  };
+  for (const std::string text : {"", "{", "[]", "3", "null", "{}", "{\"softkin\": 1}"})
+    refused(text, "it is not a report");
+  for (const std::string key : {"robot_fingerprint", "solver", "steps"}) {
+    json bad = good;
+    bad.erase(key);
+    refused(bad.dump(), "it is not a report");
+    bad[key] = key == "steps" ? json(17) : json();
+    refused(bad.dump(), "");
+  }
+  for (const std::string key : {"actuation", "status", "seconds", "shape_fingerprint"}) {
+    json bad = good;
+    bad["steps"][1].erase(key);
+    refused(bad.dump(), "it is not a report");
+    bad["steps"][1][key] = json::array({json()});
+    refused(bad.dump(), "");
+  }
+  json newer = good;
+  newer["softkin"] = "99.0";
+  refused(newer.dump(), "softkin 99.0 wrote it");
+  json more = good;
+  more["steps"][1]["actuation"]["oil"] = 1.0;
+  refused(more.dump(), "step 1 has other actuators");
+}
+
+TEST(FkResume, SolvesAgainWhatIsMissingOrDamaged) {
+  const PathFolder folder;
+  folder.write("path.csv", path_text(4));
+  EXPECT_EQ(folder.run().exit_code, 0);
+  const auto expected = shapes_of(folder);
+  const auto expect_solved_from = [&](const std::string& step) {
+    const ProgramResult result = folder.resume();
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.output.find("is missing or not the shape of the report\n" + step), std::string::npos)
+        << result.output;
+    EXPECT_EQ(shapes_of(folder), expected);
+  };
+  fs::remove(folder.shape(2));
+  expect_solved_from("2 of 4 steps were done before: going on");
+  fs::resize_file(folder.shape(3), 1000);
+  expect_solved_from("3 of 4 steps were done before: going on");
+  fs::copy_file(folder.shape(2), folder.shape(0), fs::copy_options::overwrite_existing);
+  expect_solved_from("nothing to resume: starting with step 0");
+}
+
+TEST(FkResume, NeedsAllFilesOfTheRun) {
+  const PathFolder folder;
+  for (const auto& files : {std::vector<std::string>{"--path", folder.path, "-o", folder.series},
+                            {"--path", folder.path, "--report", folder.report},
+                            {"-o", folder.series, "--report", folder.report},
+                            {"--path", folder.path, "--report", folder.report, "-o", folder / "out/a.vtu"}}) {
+    std::vector<std::string> arguments{"fk", folder.scene, "--resume"};
+    arguments.insert(arguments.end(), files.begin(), files.end());
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.errors.rfind("softkin: --resume needs ", 0), 0u) << result.errors;
+  }
+  EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(FkInterrupt, OfASingleSolveLeavesNothing) {
+  const TemporaryFolder folder;
+  folder.write("block.msh", Block(40).mesh.text());
+  const std::string scene = folder.write("block.yaml", block_scene());
+  StartedProgram program(folder, {"fk", scene, "--set", "air=1.9", "--tolerance", "1e-300", "--max-iterations",
+                                  "1000000000", "-o", folder / "new/shape.vtu", "--threads", "1"});
+  ASSERT_TRUE(program.wait_until([&] { return read_text(folder / "stdout.txt").find("status") != std::string::npos; }));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.errors, "softkin: interrupted; nothing was finished\n");
+  EXPECT_FALSE(fs::exists(folder / "new"));
+}
+
+TEST(FkInterrupt, OfAPathWritesTheLastShape) {
+  const PathFolder folder;
+  const std::string shape = folder / "last.vtu", report = folder / "report.json";
+  StartedProgram program(
+      folder, {"fk", folder.scene, "--path", folder.path, "-o", shape, "--json", "--report", report, "--threads", "1"});
+  ASSERT_TRUE(program.wait_until([&] { return fs::exists(report); }));
+  program.send(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.errors.rfind("softkin: interrupted after ", 0), 0u) << result.errors;
+  EXPECT_EQ(result.output, read_text(report));
+  const json last = json::parse(result.output)["steps"].back();
+  const softkin::Points points = softkin::read_vtu_points(shape);
+  const int corner = 5 + 10 * (3 + 4 * 3);  // (20, 12, 12)
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(points(corner, axis), last["markers"]["corner"][axis], 1e-9);
+}
+
+}  // namespace
