@@ -6,7 +6,7 @@ SetFactory("OpenCASCADE");
 
 length = 120;  width = 25;  height = 25;
 notch_x[] = {30, 64, 98};
-hinge = 3;        // thickness left under a notch
+hinge = 5;        // thickness left under a notch
 flat = 4;         // half the width of a notch's bottom
 slope = 0.4;      // of a notch's walls, dx/dz
 knuckle_half = 7; // a knuckle reaches this far to either side of its notch's middle
@@ -14,8 +14,8 @@ wall_z = hinge + (knuckle_half - flat) / slope;  // where a knuckle's side meets
 top_half = flat + (height - hinge) * slope;      // half the width of a notch at the top
 eyelet_z = 18;    // an eyelet reaches from here to the top,
 eyelet_half = 3.5;  // and this far to either side of y = 0
-hinge_size = 3.6;
-block_size = 7;
+hinge_size = 3.2;
+block_size = 8;
 
 // Prism over the polygon corner_x, corner_z, extruded along y. Sets `solid`.
 Macro Slab

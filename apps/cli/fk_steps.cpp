@@ -71,17 +71,6 @@ Actuation start_actuation(const Model& model, const Settings& settings) {
   return actuation;
 }
 
-/// Is what nobody asked for, the rest value, within its range?
-void check_rest(const Model& model, const Step& step) {
-  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const double ratio = step.actuation[static_cast<Index>(a)];
-    const std::string& name = model.actuators[a].name;
-    if (!in_range(model.actuators[a], ratio))
-      throw InvalidInput("actuator '" + name + "' needs --set " + name + "=RATIO: its rest value " + number(ratio) +
-                         " is outside " + range_text(model.actuators[a]));
-  }
-}
-
 std::vector<Index> column_targets(const Model& model, const std::string& file, const CsvTable& table,
                                   const Settings& settings) {
   std::vector<Index> targets;
@@ -112,7 +101,6 @@ class PathReader {
     std::vector<Step> steps;
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
       steps.push_back(step(row));
-      check_rest(model_, steps.back());
       if (row > 0 && steps[row].time && *steps[row].time <= *steps[row - 1].time)
         fail(row, std::string(time_column) + " must increase from row to row, but " + number(*steps[row].time, 12) +
                       " s follows " + number(*steps[row - 1].time, 12) + " s");
@@ -154,9 +142,7 @@ class PathReader {
 std::vector<Step> asked_steps(const Model& model, const FkOptions& options) {
   const Settings settings = read_settings(model, options.settings);
   if (!options.path.empty()) return PathReader(model, options.path, settings).steps();
-  const Step step{start_actuation(model, settings), std::nullopt, 0};
-  check_rest(model, step);
-  return {step};
+  return {{start_actuation(model, settings), std::nullopt, 0}};
 }
 
 }  // namespace softkin::cli

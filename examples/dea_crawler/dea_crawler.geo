@@ -1,64 +1,94 @@
-// Crawling robot: a dielectric elastomer membrane under a PET frame, two rigid legs; 90 x 40 x 11 mm, feet at z = 0.
-// Every element is a prism: one triangulated plan, extruded in layers.
+// Crawling robot: a dielectric elastomer membrane between two rigid legs, as the string of a bow, and above it a PET
+// frame, the bow; 90 x 40 x 18 mm, feet at z = 0. Every element is a prism: triangulated sheets, extruded along z.
 // Remesh: gmsh -3 dea_crawler.geo -o dea_crawler.msh
 SetFactory("OpenCASCADE");
 
 length = 90;  width = 40;
-leg = 5;             // length of a leg along x
-bridge = 10;         // from a leg to the frame, along x
-bridge_width = 12;
-bar = 5;             // width of the frame's strips
-leg_height = 9.5;    // below the membrane
-membrane = 0.5;      // thickness of the lower layer: the membrane in the window, PET elsewhere
-pet = 1;             // thickness of the upper layer: PET
+leg = 8;          // length of a leg along x
+rail = 8;         // width of the frame's rails, one along either side
+rise = 7;         // of the bow at rest, which picks the side to which it bends
+pet = 2;          // thickness of the frame
+frame_z = 9;      // its underside at the legs
+membrane_z = 4.5; // upper side of the membrane
+membrane = 0.5;   // its thickness
 size = 3.5;
 
-x2 = leg + bridge;
-x3 = x2 + bar;
-Rectangle(1) = {0, -width / 2, leg_height, leg, width};
-Rectangle(2) = {length - leg, -width / 2, leg_height, leg, width};
-Rectangle(3) = {leg, -bridge_width / 2, leg_height, bridge, bridge_width};
-Rectangle(4) = {length - x2, -bridge_width / 2, leg_height, bridge, bridge_width};
-Rectangle(5) = {x2, -width / 2, leg_height, length - 2 * x2, width};
-Rectangle(6) = {x3, -width / 2 + bar, leg_height, length - 2 * x3, width - 2 * bar};
-BooleanFragments{ Surface{1 : 6}; Delete; }{}
+// The underside of the frame: rails and three rungs. Each piece of the bow is swept across the whole width, in three
+// strips, of which the middle one is kept where there is a rung.
+cut_x[] = {leg, 25, 30, 42.5, 47.5, 60, 65, length - leg};
+sheets[] = {};
+For k In {0 : 6}
+  p = newp;
+  For i In {0 : 6}
+    x = cut_x[k] + (cut_x[k + 1] - cut_x[k]) * i / 6;
+    Point(p + i) = {x, -width / 2, frame_z + rise / 2 * (1 - Cos(2 * Pi * (x - leg) / (length - 2 * leg)))};
+  EndFor
+  l = newl;  Spline(l) = {p : p + 6};
+  side[] = Extrude {0, rail, 0} { Curve{l}; };
+  sheets[] += {side[1]};
+  middle[] = Extrude {0, width - 2 * rail, 0} { Curve{side[0]}; };
+  If (k % 2)
+    sheets[] += {middle[1]};
+  Else
+    Recursive Delete { Surface{middle[1]}; }
+  EndIf
+  across[] = Translate {0, width - rail, 0} { Duplicata { Surface{side[1]}; } };
+  sheets[] += {across[]};
+EndFor
+feet[] = {};
+For i In {0 : 1}
+  x = i ? length - leg : 0;
+  s = news;  Rectangle(s) = {x, -width / 2, frame_z, leg, width};
+  feet[] += {s};
+EndFor
+BooleanFragments{ Surface{sheets[], feet[]}; Delete; }{}
 
 e = 1e-3;
-top = leg_height + membrane + pet;
-Macro Legs  // what lies in the footprint of a leg, z1 <= z <= z2: surfaces in footprint[], volumes in left[], right[]
-  footprint[] = {};
-  footprint[] += Surface In BoundingBox{-e, -width, z1 - e, leg + e, width, z2 + e};
-  footprint[] += Surface In BoundingBox{length - leg - e, -width, z1 - e, length + e, width, z2 + e};
-  left[] = {};
-  left[] += Volume In BoundingBox{-e, -width, z1 - e, leg + e, width, z2 + e};
-  right[] = {};
-  right[] += Volume In BoundingBox{length - leg - e, -width, z1 - e, length + e, width, z2 + e};
+Macro Feet  // footprint[]: the legs' sections at z1
+  footprint[] = Surface In BoundingBox{-e, -width, z1 - e, leg + e, width, z1 + e};
+  footprint[] += Surface In BoundingBox{length - leg - e, -width, z1 - e, length + e, width, z1 + e};
 Return
 
-// Lower layer everywhere, PET layer above it outside the window, legs below. One Extrude for each, so that
-// neighbours share their sides.
-z1 = leg_height;  z2 = leg_height;
-Call Legs;
-plan[] = Surface{:};
-Extrude {0, 0, membrane} { Surface{plan[]}; Layers{1}; Recombine; }
-x4 = length - x3;
-y = width / 2 - bar;
-upper[] = Surface In BoundingBox{-e, -width, z1 + membrane - e, length + e, width, z1 + membrane + e};
-upper[] -= Surface In BoundingBox{x3 - e, -y - e, z1 + membrane - e, x4 + e, y + e, z1 + membrane + e};
-Extrude {0, 0, pet} { Surface{upper[]}; Layers{1}; Recombine; }
-Extrude {0, 0, -leg_height} { Surface{footprint[]}; Layers{3}; Recombine; }
+z1 = frame_z;
+Call Feet;
+upper[] = Surface{:};
 
-z1 = 0;  z2 = top;
-Call Legs;
-skin[] = Volume In BoundingBox{x3 - e, -y - e, 0, x4 + e, y + e, top};
-stiff[] = Volume{:};
-stiff[] -= left[];
-stiff[] -= right[];
-stiff[] -= skin[];
+// A plan of the membrane that ends in the legs' own edges. It is swept down with the legs; what it sweeps above and
+// below the membrane belongs to no region and is left out of the mesh file.
+y[] = {-width / 2, rail - width / 2, width / 2 - rail, width / 2};
+start[] = {};
+end[] = {};
+For i In {0 : 2}
+  start[] += Curve In BoundingBox{leg - e, y[i] - e, z1 - e, leg + e, y[i + 1] + e, z1 + e};
+  end[] += Curve In BoundingBox{length - leg - e, y[i] - e, z1 - e, length - leg + e, y[i + 1] + e, z1 + e};
+EndFor
+sides[] = {};
+For i In {0 : 3 : 3}
+  p1[] = Point In BoundingBox{leg - e, y[i] - e, z1 - e, leg + e, y[i] + e, z1 + e};
+  p2[] = Point In BoundingBox{length - leg - e, y[i] - e, z1 - e, length - leg + e, y[i] + e, z1 + e};
+  l = newl;  Line(l) = {p1[0], p2[0]};
+  sides[] += {l};
+EndFor
+c = newll;  Curve Loop(c) = {sides[0], end[], sides[1], start[{2, 1, 0}]};
+s = news;   Plane Surface(s) = {c};
+
+Extrude {0, 0, pet} { Surface{upper[]}; Layers{1}; Recombine; }
+cuts[] = {frame_z, membrane_z, membrane_z - membrane, 0};
+lower[] = {footprint[], s};
+For i In {0 : 2}
+  Extrude {0, 0, cuts[i + 1] - cuts[i]} { Surface{lower[]}; Layers{1 + (i != 1)}; Recombine; }
+  lower[] = Surface In BoundingBox{-e, -width, cuts[i + 1] - e, length + e, width, cuts[i + 1] + e};
+EndFor
+
+top = frame_z + rise + pet;
+leg1[] = Volume In BoundingBox{-e, -width, -e, leg + e, width, top};
+leg2[] = Volume In BoundingBox{length - leg - e, -width, -e, length + e, width, top};
+skin[] = Volume In BoundingBox{leg - e, -width, cuts[2] - e, length - leg + e, width, membrane_z + e};
+frame[] = Volume In BoundingBox{leg - e, -width, frame_z - e, length - leg + e, width, top + e};
 Physical Volume("membrane") = skin[];
-Physical Volume("frame") = stiff[];
-Physical Volume("leg1") = left[];
-Physical Volume("leg2") = right[];
+Physical Volume("frame") = frame[];
+Physical Volume("leg1") = leg1[];
+Physical Volume("leg2") = leg2[];
 Physical Surface("foot1") = Surface In BoundingBox{-e, -width, -e, leg + e, width, e};
 Physical Surface("foot2") = Surface In BoundingBox{length - leg - e, -width, -e, length + e, width, e};
 

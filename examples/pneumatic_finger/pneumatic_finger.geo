@@ -4,9 +4,9 @@ SetFactory("OpenCASCADE");
 
 length = 120;
 peak_width = 25;    peak_top = 25;    // outer section where a fold is widest
-valley_width = 15;  valley_top = 17;  // and where it is narrowest
-floor = 2;
-wall_y = 1.8;  wall_z = 2.2;  // along y and z; 1.3 mm and 1.2 mm across the slanted walls
+valley_width = 13;  valley_top = 14;  // and where it is narrowest
+floor = 5;
+wall_y = 1.6;  wall_z = 2;
 cap = 6;                      // solid block at either end
 folds = 10;
 half_pitch = (length - 2 * cap) / (2 * folds);
@@ -75,8 +75,10 @@ Physical Surface("base") = Surface In BoundingBox{-e, -peak_width, -e, e, peak_w
 Physical Surface("tip") = Surface In BoundingBox{length - e, -peak_width, -e, length + e, peak_width, peak_top + e};
 Physical Surface("cavity_wall") = Abs(Boundary{ Volume{chamber[]}; });
 
-Mesh.CharacteristicLengthMin = 5;
-Mesh.CharacteristicLengthMax = 7;
+Mesh.CharacteristicLengthMin = 4.4;
+Mesh.CharacteristicLengthMax = 4.4;
+Mesh.Algorithm = 5;  // Delaunay: of the algorithms the one whose mesh is most alike on both sides of y = 0
 Mesh.Optimize = 1;
 Mesh.Binary = 1;
 Mesh.MshFileVersion = 4.1;
+

@@ -77,8 +77,8 @@ Physical Surface("base") = Surface In BoundingBox{-cap_radius - e, -cap_radius -
 Physical Surface("tip") =
     Surface In BoundingBox{-cap_radius - e, -cap_radius - e, height - e, cap_radius + e, cap_radius + e, height + e};
 
-Mesh.CharacteristicLengthMin = 11;
-Mesh.CharacteristicLengthMax = 11;
+Mesh.CharacteristicLengthMin = 7;
+Mesh.CharacteristicLengthMax = 7;
 Mesh.Optimize = 1;
 Mesh.OptimizeThreshold = 0.6;
 Mesh.Binary = 1;
