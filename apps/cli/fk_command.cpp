@@ -47,9 +47,9 @@ int run_fk(const FkOptions& options) {
   line.show(-1, "assembling");
   const Statics statics(model);
   line.clear();
+  catch_interrupt();
   const OutputFolders folders(options);
   if (!options.json) print(options.scene + ": " + summary(model) + "\n");
-  catch_interrupt();
   return run_steps(model, statics, options, steps);
 }
 

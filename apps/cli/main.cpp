@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <new>
 #include <softkin/core/error.hpp>
 #include <string>
 
@@ -44,6 +46,8 @@ int main(int argc, char** argv) {
     return run();
   } catch (const InvalidInput& error) {
     std::fprintf(stderr, "softkin: %s\n", error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "softkin: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "softkin: out of memory\n");
   } catch (const std::exception& error) {

@@ -6,7 +6,7 @@ length = 120;
 peak_width = 25;    peak_top = 25;    // outer section where a fold is widest
 valley_width = 13;  valley_top = 14;  // and where it is narrowest
 floor = 5;
-wall_y = 1.6;  wall_z = 2;
+wall_y = 1.6;  wall_z = 2;  // along y and z; 1.1 mm and 0.9 mm across the slanted walls
 cap = 6;                      // solid block at either end
 folds = 10;
 half_pitch = (length - 2 * cap) / (2 * folds);

@@ -195,7 +195,7 @@ TEST(FkResume, GoesByContentAndNotByName) {
   folder.write("other/scene.yaml", scene);
   const ProgramResult result =
       run_program({"fk", folder / "other/../other/scene.yaml", "--path", folder / "longer.csv", "--report",
-                   folder.report, "-o", folder.series, "--threads", "2", "--resume"});
+                   folder.report, "-o", folder.series, "--threads", "1", "--resume"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("4 of 6 steps were done before: going on"), std::string::npos) << result.output;
 }
