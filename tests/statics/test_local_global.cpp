@@ -247,6 +247,29 @@ TEST(LocalGlobal, RefusesWhatItCannotSolve) {
   EXPECT_THROW((void)statics.solve(one(1.2), start), InvalidInput);
 }
 
+TEST(LocalGlobal, OverflowEndsAsNotConvergedWithFiniteNumbers) {
+  const Model model = compile(finger_robot(true));
+  const Statics statics(model);
+  State start = statics.rest();
+  start.positions += noise(static_cast<Index>(model.rest.rows()), 1e200, 3);
+  const Equilibrium found = statics.solve(one(1.5), start);
+  EXPECT_EQ(found.report.status, Status::not_converged);
+  EXPECT_TRUE(found.state.positions.allFinite());
+  const SolveReport& r = found.report;
+  EXPECT_TRUE(std::isfinite(r.energy + r.step_mm + r.gradient_norm + r.estimated_error_mm));
+}
+
+TEST(LocalGlobal, WhenIterationsRunOutTheShapeIsOneThatWasSolvedFor) {
+  const Model model = compile(finger_robot(false));
+  const Statics statics(model);
+  StaticsOptions options;
+  options.max_iterations = 12;
+  const Equilibrium stopped = statics.solve(one(1.5), statics.rest(), options);
+  options.max_iterations = 1;
+  // the energy at the shape is that after the last step, so not above the one before it
+  EXPECT_LE(statics.solve(one(1.5), stopped.state, options).report.energy, stopped.report.energy);
+}
+
 TEST(LocalGlobal, ReportsWhatHappened) {
   const Model model = compile(finger_robot(true));
   const Statics statics(model);

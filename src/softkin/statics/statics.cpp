@@ -65,6 +65,14 @@ class ErrorEstimate {
   std::size_t count_ = 0;
 };
 
+void accept(const IterationRecord& record, bool keep_history, SolveReport& report) {
+  ++report.iterations;
+  report.energy = record.energy;
+  report.step_mm = record.step_mm;
+  report.gradient_norm = record.gradient_norm;
+  if (keep_history) report.history.push_back(record);
+}
+
 }  // namespace
 
 void check_actuation(const Model& model, const Actuation& actuation) {
@@ -116,20 +124,21 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   TargetShapeSystem::Scratch scratch = parts_->system.make_scratch();
   Anderson anderson(options.anderson);
   ErrorEstimate estimate;
-  Points before;
+  Points before, accepted = positions;
   while (report.iterations < options.max_iterations) {
-    report.energy = parts_->system.local_step(actuation, positions, scratch, team);
-    report.gradient_norm = 2 * parts_->global.free_norm(scratch.residual, poses);
+    IterationRecord record;
+    record.energy = parts_->system.local_step(actuation, positions, scratch, team);
+    record.gradient_norm = 2 * parts_->global.free_norm(scratch.residual, poses);
     before = positions;
     parts_->global.step(scratch.residual, positions, poses, team);
-    report.step_mm = (positions - before).rowwise().norm().maxCoeff();
-    if (!std::isfinite(report.step_mm)) {
-      positions = before;
+    record.step_mm = (positions - before).rowwise().norm().maxCoeff();
+    // the squares of far-off coordinates overflow
+    if (!std::isfinite(record.energy + record.gradient_norm + record.step_mm) || !positions.allFinite()) {
+      positions = accepted;
       break;
     }
-    ++report.iterations;
+    accept(record, options.keep_history, report);
     estimate.add(before, positions - before);
-    if (options.keep_history) report.history.push_back({report.energy, report.step_mm, report.gradient_norm});
     if (report.step_mm < report.tolerance_mm) {
       report.status = Status::converged;
       break;
@@ -138,7 +147,8 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
       report.status = Status::interrupted;
       break;
     }
-    if (options.anderson > 0) {
+    accepted = positions;
+    if (options.anderson > 0 && report.iterations < options.max_iterations) {
       positions = anderson.next(before, positions);
       poses = parts_->global.project(positions);
     }
