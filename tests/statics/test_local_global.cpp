@@ -61,9 +61,12 @@ TEST(LocalGlobal, SameShapeFromRestAndFromARandomStart) {
   for (const double size : {1.0, 5.0, 20.0}) {
     State start = statics.rest();
     start.positions += noise(static_cast<Index>(model.rest.rows()), size, 17);
-    const Equilibrium found = statics.solve(one(1.8), start, to_the_end(0));
-    EXPECT_EQ(found.report.status, Status::converged);
-    EXPECT_LT(largest_distance(found.state.positions, from_rest), 1e-6) << "noise of " << size << " mm";
+    for (const int anderson : {0, 6}) {
+      const Equilibrium found = statics.solve(one(1.8), start, to_the_end(anderson));
+      EXPECT_EQ(found.report.status, Status::converged);
+      EXPECT_LT(largest_distance(found.state.positions, from_rest), 1e-6)
+          << "noise of " << size << " mm, Anderson " << anderson;
+    }
   }
 }
 

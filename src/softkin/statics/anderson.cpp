@@ -3,13 +3,17 @@
 
 namespace softkin {
 
+void Anderson::restart() {
+  step_changes_.clear();
+  image_changes_.clear();
+  last_step_.resize(0, 3);
+}
+
 Points Anderson::next(const Points& x, const Points& image) {
   const Points step = image - x;
   const double length = step.norm();
   if (last_step_.size() > 0 && length > 2 * shortest_) {
-    step_changes_.clear();
-    image_changes_.clear();
-    last_step_.resize(0, 3);
+    restart();
   }
   if (last_step_.size() > 0) {
     if (static_cast<int>(step_changes_.size()) == window_) {

@@ -16,6 +16,9 @@ class Anderson {
   /// x: where the iteration was; image: G(x). Returns where to go on from.
   [[nodiscard]] Points next(const Points& x, const Points& image);
 
+  /// Forgets the iterates so far.
+  void restart();
+
  private:
   int window_;
   std::vector<Points> step_changes_, image_changes_;  // the last `window_` of them

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/statics/anderson.hpp>
 #include <softkin/statics/global_step.hpp>
@@ -40,6 +41,10 @@ int worthwhile_threads(const Model& model) {
   return static_cast<int>(
       std::clamp<std::size_t>(elements / elements_each, 1, std::max(1u, std::thread::hardware_concurrency())));
 }
+
+/// Accelerated steps may raise the energy a little on their way, and have to where R_omega < 1 or ratios are
+/// redistributed; those that raise it more lead to other equilibria.
+constexpr double tolerated_growth = 1.2;
 
 /// How far the fixed point may be: the step over the least change of steps per change of shape in the last iterations,
 /// which for a linear iteration x <- G x is bounded by 1 - (largest eigenvalue of G), accelerated or not.
@@ -125,10 +130,19 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   Anderson anderson(options.anderson);
   ErrorEstimate estimate;
   Points before, accepted = positions;
+  double tolerated = std::numeric_limits<double>::infinity();
   while (report.iterations < options.max_iterations) {
     IterationRecord record;
     record.energy = parts_->system.local_step(actuation, positions, scratch, team);
     record.gradient_norm = 2 * parts_->global.free_norm(scratch.residual, poses);
+    if (record.energy > tolerated) {  // the extrapolation went astray: on from the plain step
+      positions = accepted;
+      poses = parts_->global.project(positions);
+      tolerated = std::numeric_limits<double>::infinity();
+      anderson.restart();
+      continue;
+    }
+    tolerated = options.anderson > 0 ? tolerated_growth * record.energy : tolerated;
     before = positions;
     parts_->global.step(scratch.residual, positions, poses, team);
     record.step_mm = (positions - before).rowwise().norm().maxCoeff();
