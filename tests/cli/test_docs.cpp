@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "run_program.hpp"
@@ -57,8 +58,8 @@ bool is_command(const std::string& text) {
   return false;
 }
 
-/// Fenced blocks ```sh (```sh exit=N: the last command ends with that code) with the ```text that follows, lines of
-/// code by indentation, and code within a line.
+/// Fenced blocks ```sh (```sh exit=N: the last command ends with that code) with the ```text that follows below the
+/// same heading, lines of code by indentation, and code within a line.
 class Parser {
  public:
   explicit Parser(fs::path document) : document_(std::move(document)) {}
@@ -72,8 +73,8 @@ class Parser {
         fence_ = fence_.empty() ? open(words_of(text.substr(3))) : "";
       else if (fence_ == "sh")
         add_line(text);
-      else if (fence_ == "text" && follows_)
-        blocks_.back().shown.push_back(line);
+      else if (fence_ == "text" && shell_)
+        blocks_[*shell_].shown.push_back(line);
       else if (fence_.empty())
         read_prose(line, text);
     }
@@ -84,10 +85,9 @@ class Parser {
  private:
   std::string open(const std::vector<std::string>& info) {
     const std::string language = info.empty() ? "none" : info[0];
-    follows_ = language == "text" && after_shell_;
-    after_shell_ = language == "sh";
-    if (!after_shell_) return language;
+    if (language != "sh") return language;
     begin_block();
+    shell_ = blocks_.size() - 1;
     if (info.size() > 1 && info[1].starts_with("exit=")) blocks_.back().exit_code = std::stoi(info[1].substr(5));
     return language;
   }
@@ -117,7 +117,7 @@ class Parser {
       if (!continued_) begin_block();
       return add_line(text);
     }
-    after_shell_ = false;
+    if (text[0] == '#') shell_.reset();  // a heading
     for (std::size_t from = line.find('`'); from != std::string::npos; from = line.find('`', from)) {
       const std::size_t end = line.find('`', from + 1);
       if (end == std::string::npos) return;
@@ -132,7 +132,8 @@ class Parser {
   fs::path document_;
   std::size_t line_ = 0;
   std::string fence_;  // language of the block that is open; empty: none
-  bool continued_ = false, after_shell_ = false, follows_ = false;
+  bool continued_ = false;
+  std::optional<std::size_t> shell_;  // the last block ```sh below this heading
   std::vector<Block> blocks_;
 };
 
@@ -214,8 +215,8 @@ bool number_in(const std::string& word, double& value, double& tolerance) {
   const std::string digits = word.substr(begin, word.find_last_of("0123456789") - begin + 1);
   const std::size_t point = digits.find('.');
   const double decimals = point == std::string::npos ? 0 : static_cast<double>(digits.size() - point - 1);
-  // a solve ends up to some hundredths of a mm from the equilibrium
-  tolerance = decimals == 0 ? 0 : std::min(0.03, 30 * std::pow(10, -decimals));
+  // a solve ends some hundredths of a mm from the equilibrium, and where depends on rounding
+  tolerance = decimals == 0 ? 0 : std::min(0.1, 100 * std::pow(10, -decimals));
   char* end = nullptr;
   value = std::strtod(digits.c_str(), &end);
   return end == digits.c_str() + digits.size();
