@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <softkin/statics/global_step.hpp>
 #include <softkin/statics/statics.hpp>
+#include <softkin/statics/target_shape_system.hpp>
 
 #include "model/block_mesh.hpp"
 
@@ -34,6 +36,42 @@ RobotSpec finger(int across) {
   return spec;
 }
 
+/// Milliseconds of the local step (rotations, target shapes, assembly) and of the global one (triangular solves), on
+/// one thread: the least of several.
+std::pair<double, double> parts(const Model& model) {
+  const TargetShapeSystem system(model);
+  const GlobalStep global(model, system.global_matrix());
+  TargetShapeSystem::Scratch scratch = system.make_scratch();
+  Points positions = model.rest;
+  std::vector<Pose> poses = global.project(positions);
+  const Actuation actuation = Actuation::Constant(1, 1.5);
+  Team alone(1);
+  double local = 1e9, solve = 1e9;
+  for (int run = 0; run < 30; ++run) {
+    const double begin = now();
+    system.local_step(actuation, positions, scratch, alone);
+    const double middle = now();
+    global.step(scratch.residual, positions, poses, alone);
+    local = std::min(local, 1e3 * (middle - begin));
+    solve = std::min(solve, 1e3 * (now() - middle));
+  }
+  return {local, solve};
+}
+
+/// Exponent of the growth of times with sizes: slope of the logarithms, least squares.
+double growth(const std::vector<double>& sizes, const std::vector<double>& times) {
+  const auto n = static_cast<double>(sizes.size());
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const double x = std::log(sizes[i]), y = std::log(times[i]);
+    sx += x;
+    sy += y;
+    sxx += x * x;
+    sxy += x * y;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
 /// Milliseconds per iteration: the least of several runs, each of as many iterations as take about a third of a second.
 double milliseconds(const Statics& statics, int threads, bool as_printed) {
   StaticsOptions options;
@@ -60,30 +98,25 @@ double milliseconds(const Statics& statics, int threads, bool as_printed) {
 int main() {
   std::printf(
       "Time per local/global iteration (Algorithm 1; Fig. 17): one chamber, 120 x 25 x 25 mm, body R_omega = 1\n");
-  std::printf("%10s %12s %10s %14s %14s %14s %16s\n", "vertices", "tetrahedra", "setup [s]", "1 thread [ms]",
-              "all [ms]", "Anderson [ms]", "all [us/vertex]");
-  std::vector<double> log_vertices, log_times;
+  std::printf("%9s %11s %10s | %12s %13s %10s | %16s %14s\n", "vertices", "tetrahedra", "setup [s]", "local [ms]",
+              "global [ms]", "both [ms]", "all threads [ms]", "Anderson [ms]");
+  std::vector<double> sizes, locals, globals, whole;
   for (const int across : {4, 6, 8, 12, 16, 20}) {
     const Model model = compile(finger(across));
     const double begin = now();
     const Statics statics(model);
     const double setup = now() - begin;
+    const auto [local, global] = parts(model);
     const double one = milliseconds(statics, 1, true), all = milliseconds(statics, 0, true);
     const double accelerated = milliseconds(statics, 0, false);
-    const auto vertices = static_cast<double>(model.rest.rows());
-    std::printf("%10.0f %12zu %10.3f %14.3f %14.3f %14.3f %16.3f\n", vertices, model.tetrahedra.size(), setup, one, all,
-                accelerated, 1e3 * all / vertices);
+    sizes.push_back(static_cast<double>(model.rest.rows()));
+    std::printf("%9.0f %11zu %10.3f | %12.3f %13.3f %10.3f | %16.3f %14.3f\n", sizes.back(), model.tetrahedra.size(),
+                setup, local, global, one, all, accelerated);
     std::fflush(stdout);
-    log_vertices.push_back(std::log(vertices));
-    log_times.push_back(std::log(all));
+    locals.push_back(local);
+    globals.push_back(global);
+    whole.push_back(all);
   }
-  const auto n = static_cast<double>(log_times.size());
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = 0; i < log_times.size(); ++i) {
-    sx += log_vertices[i];
-    sy += log_times[i];
-    sxx += log_vertices[i] * log_vertices[i];
-    sxy += log_vertices[i] * log_times[i];
-  }
-  std::printf("growth: time ~ vertices^%.2f (1: linear)\n", (n * sxy - sx * sy) / (n * sxx - sx * sx));
+  std::printf("growth with the vertices (1: linear): local step %.2f, global step %.2f, all threads %.2f\n",
+              growth(sizes, locals), growth(sizes, globals), growth(sizes, whole));
 }
