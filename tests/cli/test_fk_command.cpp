@@ -359,7 +359,7 @@ TEST(FkProgress, IsShownOnATerminalOnly) {
   std::string rows = "air\n";
   for (int i = 0; i < 8; ++i) rows += std::to_string(1.2 + 0.1 * i) + "\n";
   const std::vector<std::string> arguments{
-      "fk",     scene,         "--path", folder.write("path.csv", rows), "--threads", "1", "--max-iterations", "200",
+      "fk",     scene,         "--path", folder.write("path.csv", rows), "--threads", "1", "--max-iterations", "2500",
       "--json", "--tolerance", "1e-300"};
   StartedProgram program(folder, arguments, true);
   const std::string shown = program.wait().errors;
