@@ -63,13 +63,8 @@ inline std::string shell_quoted(const std::string& word) {
   return quoted + "'";
 }
 
-/// Runs softkin with these arguments, without input and without a terminal.
-inline ProgramResult run_program(const std::vector<std::string>& arguments) {
-  const TemporaryFolder folder;
-  const std::string errors = folder / "stderr";
-  std::string command = shell_quoted(SOFTKIN_PROGRAM);
-  for (const std::string& argument : arguments) command += " " + shell_quoted(argument);
-  command += " </dev/null 2>" + shell_quoted(errors);
+/// Runs a shell's command line; the result's errors stay empty.
+inline ProgramResult run_shell(const std::string& command) {
   FILE* pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
   ProgramResult result;
@@ -78,6 +73,16 @@ inline ProgramResult run_program(const std::vector<std::string>& arguments) {
     result.output.append(bytes.data(), count);
   const int status = ::pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+/// Runs softkin with these arguments, without input and without a terminal.
+inline ProgramResult run_program(const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  const std::string errors = folder / "stderr";
+  std::string command = shell_quoted(SOFTKIN_PROGRAM);
+  for (const std::string& argument : arguments) command += " " + shell_quoted(argument);
+  ProgramResult result = run_shell(command + " </dev/null 2>" + shell_quoted(errors));
   result.errors = read_text(errors);
   return result;
 }

@@ -137,16 +137,8 @@ class Parser {
   std::vector<Block> blocks_;
 };
 
-ProgramResult run_shell(const std::string& command) {
-  FILE* pipe = ::popen(("{ " + command + "\n} </dev/null 2>&1").c_str(), "r");
-  if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
-  ProgramResult result;
-  std::array<char, 4096> bytes;
-  while (const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), pipe))
-    result.output.append(bytes.data(), count);
-  const int status = ::pclose(pipe);
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return result;
+ProgramResult run_line(const std::string& command) {
+  return testing::run_shell("{ " + command + "\n} </dev/null 2>&1");
 }
 
 /// Names of the Makefile's commands.
@@ -169,8 +161,8 @@ std::set<std::string> presets() {
 
 /// What `make run` asks softkin to do.
 std::vector<std::string> commands_of_make_run() {
-  const ProgramResult dry = run_shell("env -u MAKEFLAGS -u MAKELEVEL make -n -C " +
-                                      testing::shell_quoted(source.string()) + " run SETUP=true");
+  const ProgramResult dry = run_line("env -u MAKEFLAGS -u MAKELEVEL make -n -C " +
+                                     testing::shell_quoted(source.string()) + " run SETUP=true");
   EXPECT_EQ(dry.exit_code, 0) << dry.output;
   std::vector<std::string> commands;
   bool continued = false;
@@ -198,7 +190,7 @@ class Clone {
   /// Each command runs once, however often it stands somewhere.
   const ProgramResult& run(const std::string& command) {
     const auto [found, added] = results_.try_emplace(command);
-    if (added) found->second = run_shell("cd " + testing::shell_quoted(folder_ / "") + " && timeout 60 " + command);
+    if (added) found->second = run_line("cd " + testing::shell_quoted(folder_ / "") + " && timeout 60 " + command);
     return found->second;
   }
   [[nodiscard]] std::size_t runs() const { return results_.size(); }

@@ -56,6 +56,8 @@ void add_body(BodySet<K>& set, const Model& model, const std::array<Index, K>& n
 template <int K>
 void add_actuation(ActuationSet<K>& set, const std::array<Index, K>& nodes, const TargetSplit<K>& split, double measure,
                    double weight) {
+  set.measure_sum += measure;
+  set.measure_squares += measure * measure;
   add_element<K>(set, nodes, [&](ActuationBlock<K>& block, int l) {
     for (int i = 0; i < K; ++i) {
       set_lane(block.constant[i], l, split.constant.row(i));

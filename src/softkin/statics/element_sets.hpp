@@ -11,6 +11,7 @@ struct ElementSet {
   Index count = 0;       // elements; the last block repeats the last one, without weight, to fill its lanes
   Index first_slot = 0;  // of the pulls that this set writes: element e, node i writes slot first_slot + K e + i
   Index actuator = -1;
+  double measure_sum = 0, measure_squares = 0;  // over the actuation elements' measures at rest: sum u, sum u^2
   std::vector<Block> blocks;
   std::vector<std::array<std::array<Index, lanes>, K>> nodes;
 

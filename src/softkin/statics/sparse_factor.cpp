@@ -56,13 +56,13 @@ SparseFactor::SparseFactor(const Matrix& matrix) {
     piece_nodes_.push_back(static_cast<Index>(nodes_.size()));
     for (Index begin = ordering.pieces[p]; begin < ordering.pieces[p + 1];) {
       const Index end = supernode_end(lower, begin, ordering.pieces[p + 1]);
-      add_supernode(lower, begin, end, top_);
+      add_supernode(lower, begin, end);
       begin = end;
     }
   }
 }
 
-void SparseFactor::add_supernode(const Matrix& lower, Index begin, Index end, Index top) {
+void SparseFactor::add_supernode(const Matrix& lower, Index begin, Index end) {
   Supernode node{begin,
                  end,
                  static_cast<std::int64_t>(rows_.size()),
@@ -72,7 +72,7 @@ void SparseFactor::add_supernode(const Matrix& lower, Index begin, Index end, In
   for (Matrix::InnerIterator it(lower, end - 1); it; ++it) {
     if (it.row() == end - 1) continue;
     rows_.push_back(static_cast<Index>(it.row()));
-    if (it.row() < top) ++node.inner_rows;
+    if (it.row() < top_) ++node.inner_rows;
   }
   const Index width = node.width();
   values_.resize(values_.size() + static_cast<std::size_t>(node.first_below() - node.first_value) +
@@ -94,7 +94,7 @@ void SparseFactor::add_supernode(const Matrix& lower, Index begin, Index end, In
   nodes_.push_back(node);
 }
 
-void SparseFactor::forward(const Supernode& node, Row* rows, Row* above, Index top) const {
+void SparseFactor::forward(const Supernode& node, Row* rows, Row* above) const {
   const Index width = node.width();
   Row* x = rows + node.begin;
   const double* p = values_.data() + node.first_value;
@@ -102,7 +102,7 @@ void SparseFactor::forward(const Supernode& node, Row* rows, Row* above, Index t
     for (Index c = 0; c < i; ++c) x[i] -= p[c] * x[c];
 
   const Index* target = rows_.data() + node.first_row;
-  const auto at = [&](Index r) -> Row& { return r < node.inner_rows ? rows[target[r]] : above[target[r] - top]; };
+  const auto at = [&](Index r) -> Row& { return r < node.inner_rows ? rows[target[r]] : above[target[r] - top_]; };
   Index r = 0;
   for (; r + 4 <= node.row_count; r += 4, p += 4 * width) {  // four rows share the loads of x
     Row a{}, b{}, c{}, d{};
@@ -154,12 +154,12 @@ void SparseFactor::solve(Points& right_side, Team& team) const {
 
   team.each(count, [&](Index i) {
     Row* own = above.data() + static_cast<std::size_t>(i) * above_rows;
-    for (Index s = piece_nodes_[i]; s < piece_nodes_[i + 1]; ++s) forward(nodes_[s], rows.data(), own, top_);
+    for (Index s = piece_nodes_[i]; s < piece_nodes_[i + 1]; ++s) forward(nodes_[s], rows.data(), own);
   });
   for (Index i = 0; i < count; ++i)
     for (Index k = 0; k < above_rows; ++k) rows[top_ + k] += above[static_cast<std::size_t>(i) * above_rows + k];
   const Index first_of_top = piece_nodes_.back(), end = static_cast<Index>(nodes_.size());
-  for (Index s = first_of_top; s < end; ++s) forward(nodes_[s], rows.data(), rows.data() + top_, top_);
+  for (Index s = first_of_top; s < end; ++s) forward(nodes_[s], rows.data(), rows.data() + top_);
   for (Index s = end - 1; s >= first_of_top; --s) backward(nodes_[s], rows.data());
   team.each(count, [&](Index i) {
     for (Index s = piece_nodes_[i + 1] - 1; s >= piece_nodes_[i]; --s) backward(nodes_[s], rows.data());

@@ -39,8 +39,8 @@ class SparseFactor {
     }
   };
 
-  void add_supernode(const Eigen::SparseMatrix<double>& lower, Index begin, Index end, Index top);
-  void forward(const Supernode& node, Row* rows, Row* above, Index top) const;
+  void add_supernode(const Eigen::SparseMatrix<double>& lower, Index begin, Index end);
+  void forward(const Supernode& node, Row* rows, Row* above) const;
   void backward(const Supernode& node, Row* rows) const;
 
   std::vector<Index> order_;

@@ -84,15 +84,9 @@ template <int K>
 void TargetShapeSystem::local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes,
                                      std::vector<Pack>& ratios, Team& team) const {
   const Actuator& actuator = model_.actuators[set.actuator];
-  double rest = 0, squares = 0, current = 0;
-  for (Index e = 0; e < set.count; ++e) {
-    const double u = set.blocks[e / lanes].measure[e % lanes];
-    rest += u;
-    squares += u * u;
-  }
-  const double asked = requested * actuator.rest_measure - (actuator.rest_measure - rest);
+  const double asked = requested * actuator.rest_measure - (actuator.rest_measure - set.measure_sum);
   if (!actuator.least_norm) {
-    std::fill(ratios.begin(), ratios.end(), pack(std::max(least_ratio, asked / rest)));
+    std::fill(ratios.begin(), ratios.end(), pack(std::max(least_ratio, asked / set.measure_sum)));
     return;
   }
   team.pieces(set.block_count(), [&](Index begin, Index end) {
@@ -102,9 +96,10 @@ void TargetShapeSystem::local_ratios(const ActuationSet<K>& set, double requeste
       ratios[b] = current_ratio<K>(set.blocks[b], shape);
     }
   });
+  double current = 0;
   for (Index e = 0; e < set.count; ++e)
     current += ratios[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
-  const double change = (asked - current) / squares;
+  const double change = (asked - current) / set.measure_squares;
   for (Index b = 0; b < set.block_count(); ++b)
     ratios[b] = max(pack(least_ratio), ratios[b] + change * set.blocks[b].measure);
 }
