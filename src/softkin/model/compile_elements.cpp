@@ -186,14 +186,20 @@ namespace {
 
 Material checked_material(const MaterialSpec& spec) {
   const std::string owner = "the material of region '" + spec.region + "'";
-  if (!(spec.shape_ratio >= 0 && spec.shape_ratio <= 1))
+  if (!spec.shape_ratio) throw InvalidInput(spec.origin, owner + " needs shape_ratio, R_omega of the target shapes");
+  if (!(*spec.shape_ratio >= 0 && *spec.shape_ratio <= 1))
     throw InvalidInput(spec.origin,
-                       owner + ": shape_ratio must lie in [0, 1], not be " + number_text(spec.shape_ratio));
+                       owner + ": shape_ratio must lie in [0, 1], not be " + number_text(*spec.shape_ratio));
   if (!(spec.weight > 0 && std::isfinite(spec.weight)))
     throw InvalidInput(spec.origin, owner + ": weight must be above 0, not " + number_text(spec.weight));
   if (spec.linear_range && !(*spec.linear_range > 0 && std::isfinite(*spec.linear_range)))
     throw InvalidInput(spec.origin, owner + ": linear_range must be above 0, not " + number_text(*spec.linear_range));
-  return {spec.region, spec.shape_ratio, spec.weight, spec.linear_range};
+  Material material;
+  material.region = spec.region;
+  material.shape_ratio = *spec.shape_ratio;
+  material.weight = spec.weight;
+  material.linear_range = spec.linear_range;
+  return material;
 }
 
 std::size_t assign(const std::vector<Index>& elements, const std::vector<Index>& at, Index material,

@@ -10,25 +10,35 @@ using Actuation = Eigen::VectorXd;
 
 /// Where a search begins or ended.
 struct State {
-  Points positions;  // #V by 3 [mm]
+  Points positions;               // #V by 3 [mm]
+  Actuation actuation{};          // of which positions is an equilibrium; empty: not known
+  Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa], 0 for a dea; empty: not known
 };
 
-enum class Status { converged, not_converged, interrupted };
+/// limit: there is no equilibrium to be followed as far as was asked; the shape is the last good one.
+enum class Status { converged, not_converged, interrupted, limit };
 
+/// Energies are in mm^5, gradients in mm^4 (target-shape), or in mJ and N (physical).
 struct IterationRecord {
-  double energy = 0;         // before the step [mm^5]
+  double energy = 0;         // before the step
   double step_mm = 0;        // largest move of a vertex [mm]
-  double gradient_norm = 0;  // Euclidean norm of dE/dx before the step [mm^4]
+  double gradient_norm = 0;  // Euclidean norm of what is not in balance before the step
 };
 
 struct SolveReport {
   Status status = Status::not_converged;
   std::string solver;
   int iterations = 0;
-  double energy = 0;              // at the last shape evaluated [mm^5]
-  double step_mm = 0;             // last step [mm]
-  double tolerance_mm = 0;        // step at which the iteration stops [mm]
-  double gradient_norm = 0;       // [mm^4]
+  int factorisations = 0;      // of the stiffness; newton
+  int projections = 0;         // iterations in which element Hessians were made positive semidefinite
+  int shifts = 0;              // iterations in which a multiple of the diagonal was added
+  int continuation_steps = 0;  // equilibria on the way, the last one included; newton
+  double reached = 1;          // share of the way from the start's actuation to the one asked for [-]
+  std::string remark;          // why it stopped, where status is not converged
+  double energy = 0;           // at the last shape evaluated
+  double step_mm = 0;          // last step [mm]
+  double tolerance_mm = 0;     // step at which the iteration stops [mm]
+  double gradient_norm = 0;
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   double seconds = 0;

@@ -9,6 +9,8 @@ namespace softkin {
 
 using Tetrahedron = std::array<Index, 4>;
 using Prism = std::array<Index, 6>;  // bottom triangle 0 1 2, top 3 4 5, edges 0-3, 1-4, 2-5
+/// Nodes on the edges 01, 12, 02, 03, 13, 23 of a quadratic tetrahedron.
+using EdgeNodes = std::array<Index, 6>;
 using Triangle = std::array<Index, 3>;
 using Quad = std::array<Index, 4>;
 
@@ -21,12 +23,15 @@ struct Region {
   std::vector<Index> vertices;
 };
 
+inline constexpr int tetrahedron_edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+
 /// A volume mesh as it stands in its file: lengths in the file's unit, elements in the file's orientation.
 struct Mesh {
   Points vertices;  // #V by 3
   std::vector<Tetrahedron> tetrahedra;
+  std::vector<EdgeNodes> edge_nodes;  // of order 2: of every tetrahedron, and there are no prisms; of order 1: empty
   std::vector<Prism> prisms;
-  std::vector<Triangle> triangles;  // surface cells that some region names
+  std::vector<Triangle> triangles;  // surface cells that some region names; of order 2 their corners
   std::vector<Quad> quads;
   std::vector<Region> regions;
 };

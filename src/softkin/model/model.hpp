@@ -15,9 +15,17 @@ struct EmbeddedPoint {
 
 struct Material {
   std::string region;
-  double shape_ratio = 1;
-  double weight = 1;
+  double shape_ratio = 1;  // target-shape
+  double weight = 1;       // target-shape
+  ElasticLaw elastic;      // physical
+  double density = 0;      // [kg/m^3]
   std::optional<double> linear_range;
+};
+
+/// A triangle of a cavity's boundary. Order 2: the nodes on its edges 01, 12, 20 too.
+struct CavityFace {
+  Triangle corners;
+  std::array<Index, 3> edges{-1, -1, -1};
 };
 
 /// A piece of cable that runs free between two points of the body, and the body's point across it: the triangle
@@ -30,14 +38,17 @@ struct CableGap {
 struct Actuator {
   std::string name;
   ActuatorKind kind = ActuatorKind::pneumatic;
+  Control control = Control::ratio;
   double low = 0, high = 0, rest = 1, weight = 5;
   bool least_norm = true;
-  std::vector<Index> tetrahedra;      // pneumatic: elements of Model
+  std::vector<Index> tetrahedra;      // pneumatic, target-shape: elements of Model
+  std::vector<CavityFace> cavity;     // pneumatic with a region, physical: its boundary, normals out of the chamber
   std::vector<Index> prisms;          // dea: elements of Model
   std::vector<EmbeddedPoint> points;  // cable; or the vertices of a pneumatic actuator's surface
   std::vector<Triangle> surface;      // pneumatic with a surface: triangles over `points`
-  std::vector<CableGap> gaps;         // cable
-  double rest_measure = 0;            // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest
+  std::vector<CableGap> gaps;         // cable, target-shape
+  double rest_measure = 0;            // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
+                                      // a dea's ratio 1
 };
 
 struct Marker {
@@ -60,8 +71,10 @@ struct ElementRole {
 /// A compiled robot: everything that depends on topology and rest shape alone. Not modified after compile().
 struct Model {
   std::string name;
+  Formulation formulation = Formulation::target_shape;
   Points rest;                          // #V by 3 [mm], every vertex of the mesh
-  std::vector<Tetrahedron> tetrahedra;  // without void elements; positive volume
+  std::vector<Tetrahedron> tetrahedra;  // without void elements (physical: nor those of chambers); positive volume
+  std::vector<EdgeNodes> edge_nodes;    // order 2: of every tetrahedron; order 1: empty
   std::vector<Prism> prisms;            // without void elements; positive volume
   std::vector<ElementRole> tetrahedron_roles, prism_roles;
   std::vector<double> tetrahedron_volumes, prism_volumes;  // at rest [mm^3]
@@ -72,11 +85,12 @@ struct Model {
   std::vector<RigidRegion> rigid;          // disjoint
   std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
   Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
+  Points dead_load;                        // #V by 3 [N]: weight and forces; physical, else empty
   std::vector<bool> used;                  // per vertex: is it a vertex of an element
   double diagonal_mm = 0;                  // of the bounding box of the used vertices
   std::vector<std::string> notes;          // what compile() changed or the user should know, a sentence each
 
-  /// Ratios where the user asks for none [-], in the order of actuators.
+  /// Values where the user asks for none, in the order of actuators.
   [[nodiscard]] Eigen::VectorXd rest_actuation() const;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <softkin/core/elastic_law.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/model/mesh.hpp>
 #include <variant>
@@ -48,12 +49,26 @@ struct RegionSpec {
   Origin origin;
 };
 
+enum class Formulation { target_shape, physical };
+
+/// Elastic constants as the user gives them: E and nu for the first three laws; the law's own c10, ... for the others,
+/// with the bulk modulus, or nu in its place (bulk from the small-strain shear modulus 2 (c10 + c01)).
+struct ElasticSpec {
+  Law law = Law::neo_hookean;
+  std::optional<double> youngs_modulus;      // [MPa], > 0
+  std::optional<double> poisson_ratio;       // [-], -1 < nu < 0.5
+  std::optional<double> c10, c01, c20, c30;  // [MPa]
+  std::optional<double> bulk_modulus;        // [MPa], > 0
+};
+
 /// Later entries override earlier ones where their regions overlap. The region "all" is every element.
 struct MaterialSpec {
   std::string region;
-  double shape_ratio = 1;              // R_omega, 0 <= shape_ratio <= 1
-  double weight = 1;                   // w of Eq. (9), > 0
-  std::optional<double> linear_range;  // largest |principal strain| of the linear range [-], > 0
+  std::optional<double> shape_ratio = 1;  // target-shape: R_omega, 0 <= shape_ratio <= 1; none: the scene has none
+  double weight = 1;                      // target-shape: w of Eq. (9), > 0
+  std::optional<ElasticSpec> elastic;     // physical
+  double density = 0;                     // [kg/m^3], >= 0; physical with gravity
+  std::optional<double> linear_range;     // largest |principal strain| of the linear range [-], > 0
   Origin origin;
 };
 
@@ -65,6 +80,10 @@ struct FixedSpec {
 
 enum class ActuatorKind { cable, dea, pneumatic };
 
+/// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
+/// [kPa].
+enum class Control { ratio, load };
+
 struct ActuatorSpec {
   std::string name;
   ActuatorKind kind = ActuatorKind::pneumatic;
@@ -72,8 +91,9 @@ struct ActuatorSpec {
   std::optional<TriangleSurface> surface;  // pneumatic: cavity surface instead of a region [mm]
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
-  double low = 0, high = 0;                // range of the ratio [-], 0 < low <= high
-  double rest = 1;                         // ratio where none is asked for [-]; a dea's prestretch
+  Control control = Control::ratio;        // load: physical formulation, cable and pneumatic
+  double low = 0, high = 0;                // range [-]: 0 < low <= high; tension [N]: 0 <= low; pressure [kPa]: any
+  double rest = 1;                         // value where none is asked for: a dea's prestretch; load control: 0; else 1
   double weight = 5;                       // w of Eq. (9), > 0
   bool least_norm = true;                  // false: every element takes the actuator's ratio
   Origin origin;
@@ -89,10 +109,21 @@ struct RigidSpec {
   std::string name;
 };
 
+/// A dead load, spread over a region or at a point.
+struct ForceSpec {
+  std::string name;
+  PointRef at;
+  Vec3 force{0, 0, 0};  // [N]
+};
+
 /// A robot as the user describes it: plain data, lengths in mm. compile() turns it into a Model.
 struct RobotSpec {
   std::string name;  // the scene's file name, for messages
-  Mesh mesh;         // in mm
+  Formulation formulation = Formulation::target_shape;
+  Mesh mesh;                      // in mm
+  bool quadratic = false;         // physical: elevate a mesh of order 1 to order 2
+  Vec3 gravity{0, 0, 0};          // [m/s^2]; physical
+  std::vector<ForceSpec> forces;  // physical
   std::vector<RegionSpec> regions;
   std::vector<MaterialSpec> materials;
   std::vector<RegionRef> voids;

@@ -106,7 +106,9 @@ Statics::Statics(Statics&&) noexcept = default;
 Statics& Statics::operator=(Statics&&) noexcept = default;
 
 State Statics::rest() const {
-  return {parts_->model.rest};
+  State state;
+  state.positions = parts_->model.rest;
+  return state;
 }
 
 Equilibrium Statics::solve(const Actuation& actuation, const State& start, const StaticsOptions& options,

@@ -1,0 +1,27 @@
+#pragma once
+
+namespace softkin {
+
+/// Strain energy per rest volume W [MPa = mJ/mm^3] of an isotropic material in the deformation gradient F; J = det F,
+/// C = F^T F, I1 = tr C, I2 = (I1^2 - tr C^2) / 2. Barred invariants: J^(-2/3) I1, J^(-4/3) I2.
+enum class Law {
+  st_venant_kirchhoff,  // mu tr(E^2) + lambda/2 tr(E)^2, E = (C - I) / 2
+  corotational,         // mu |F - R|^2 + lambda/2 tr(R^T F - I)^2, R the best rotation
+  neo_hookean,          // mu/2 (I1 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2: Smith et al. 2018, Eq. (13)
+  mooney_rivlin,        // c10 (bar I1 - 3) + c01 (bar I2 - 3) + bulk/2 (J - 1)^2
+  yeoh                  // c10 (bar I1 - 3) + c20 (bar I1 - 3)^2 + c30 (bar I1 - 3)^3 + bulk/2 (J - 1)^2
+};
+
+/// A law and its constants [MPa]; those that the law does not use are 0.
+struct ElasticLaw {
+  Law law = Law::neo_hookean;
+  double mu = 0, lambda = 0;
+  double c10 = 0, c01 = 0, c20 = 0, c30 = 0, bulk = 0;
+};
+
+/// Has the law no energy for J <= 0?
+[[nodiscard]] constexpr bool forbids_inversion(Law law) {
+  return law == Law::mooney_rivlin || law == Law::yeoh;
+}
+
+}  // namespace softkin

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <softkin/core/elastic_law.hpp>
+#include <softkin/energy/pack.hpp>
+
+namespace softkin {
+
+/// Constants of a law, one set per lane [MPa]; meaning as in ElasticLaw.
+struct LawBlock {
+  Law law = Law::neo_hookean;
+  Pack mu{}, lambda{}, c10{}, c01{}, c20{}, c30{}, bulk{};
+};
+
+/// Elements of K nodes and Q quadrature points (4, 1: linear tetrahedra; 10, 4: quadratic ones; 6, 6: prisms), one per
+/// lane, all of one law. F = sum_a x_a slope_a^T. A dielectric elastomer's active stretch, F = F_e F_a, is in the
+/// slopes: slope_a = F_a^-T (slope of the passive element).
+template <int K, int Q>
+struct ElasticBlock {
+  LawBlock law;
+  Pack3 slope[Q][K];  // gradients of the shape functions in the rest shape [1/mm]
+  Pack volume[Q];     // rest volume that the point stands for [mm^3]; 0 in lanes without an element
+};
+
+template <int K>
+struct ElasticForce {
+  Shape<K> gradient;  // of the energy in the nodes' positions [N]
+  Pack energy;        // [mJ]
+  PackMask inverted;  // lanes with J <= 0 at a quadrature point that has volume
+};
+
+/// Blocks (a, b), b <= a, of a symmetric matrix of K x K blocks of 3 x 3, at a (a + 1) / 2 + b [N/mm].
+template <int K>
+struct ElasticStiffness {
+  Pack33 block[K * (K + 1) / 2];
+};
+
+/// Energy and its gradient, in every lane. Where a law forbids inversion and J <= 0 the result is finite and
+/// meaningless, and the lane is marked in `inverted`.
+template <int K, int Q>
+void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out);
+
+/// Second derivative of the energy. projected: with d^2W/dF^2 of every quadrature point replaced by the nearest
+/// positive semidefinite matrix.
+template <int K, int Q>
+void elastic_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, bool projected,
+                       ElasticStiffness<K>& out);
+
+/// Shape functions' gradients and volumes of one element at rest.
+template <int K, int Q>
+struct ElasticRest {
+  Eigen::Matrix<double, K, 3> slope[Q];  // [1/mm]
+  double volume[Q];                      // [mm^3], sum: the element's volume
+};
+[[nodiscard]] ElasticRest<4, 1> elastic_rest(const Eigen::Matrix<double, 4, 3>& rest);
+/// Nodes: corners, then the edges 01, 12, 02, 03, 13, 23; four-point rule (C3D10).
+[[nodiscard]] ElasticRest<10, 4> elastic_rest(const Eigen::Matrix<double, 10, 3>& rest);
+/// Three points in the triangle by two across (6 points).
+[[nodiscard]] ElasticRest<6, 6> elastic_rest(const Eigen::Matrix<double, 6, 3>& rest);
+
+/// Columns: two unit vectors in the mean plane of a prism's triangles and their common normal.
+[[nodiscard]] Mat3 layer_frame(const Eigen::Matrix<double, 6, 3>& rest);
+
+}  // namespace softkin
