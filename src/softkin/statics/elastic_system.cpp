@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <softkin/energy/turning.hpp>
 #include <softkin/statics/elastic_system.hpp>
 
 namespace softkin {
@@ -167,6 +168,32 @@ void ElasticSystem::stretch_layers(const Eigen::VectorXd& actuation, Scratch& sc
   }
 }
 
+template <int K, int Q>
+void ElasticSystem::store(const Set<K, Q>& set, Index block, const Shape<K>& pull, Scratch& scratch) const {
+  const Index count = std::min<Index>(lanes, set.count - lanes * block);
+  double* out = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(set.first_pull + K * lanes * block);
+  for (Index l = 0; l < count; ++l)
+    for (int i = 0; i < K; ++i, out += 3) {
+      out[0] = pull[i].x[l];
+      out[1] = pull[i].y[l];
+      out[2] = pull[i].z[l];
+    }
+}
+
+void ElasticSystem::gather(const Scratch& scratch, Points& sums, Team& team) const {
+  sums.resize(vertices_, 3);
+  team.pieces(vertices_, [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      double total[3] = {};
+      for (Index i = pull_starts_[v]; i < pull_starts_[v + 1]; ++i) {
+        const double* pull = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(pull_order_[i]);
+        for (int c = 0; c < 3; ++c) total[c] += pull[c];
+      }
+      for (int c = 0; c < 3; ++c) sums(v, c) = total[c];
+    }
+  });
+}
+
 ElasticSystem::Result ElasticSystem::force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch,
                                            Points& gradient, Team& team) const {
   stretch_layers(actuation, scratch);
@@ -181,14 +208,7 @@ ElasticSystem::Result ElasticSystem::force(const Eigen::VectorXd& actuation, con
         elastic_force<K, Q>(blocks[b], shape, out);
         scratch.energies[first + b] = out.energy;
         scratch.inverted[first + b] = forbids_inversion(set.law) ? out.inverted : PackMask{};
-        const Index count = std::min<Index>(lanes, set.count - lanes * b);
-        double* pull = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(set.first_pull + K * lanes * b);
-        for (Index l = 0; l < count; ++l)
-          for (int i = 0; i < K; ++i, pull += 3) {
-            pull[0] = out.gradient[i].x[l];
-            pull[1] = out.gradient[i].y[l];
-            pull[2] = out.gradient[i].z[l];
-          }
+        store(set, b, out.gradient, scratch);
       }
     });
     first += blocks.size();
@@ -201,17 +221,7 @@ ElasticSystem::Result ElasticSystem::force(const Eigen::VectorXd& actuation, con
   }
   result.energy = sum(energy);
   result.forbidden = any(inverted);
-  gradient.resize(vertices_, 3);
-  team.pieces(vertices_, [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v) {
-      double total[3] = {};
-      for (Index i = pull_starts_[v]; i < pull_starts_[v + 1]; ++i) {
-        const double* pull = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(pull_order_[i]);
-        for (int c = 0; c < 3; ++c) total[c] += pull[c];
-      }
-      for (int c = 0; c < 3; ++c) gradient(v, c) = total[c];
-    }
-  });
+  gather(scratch, gradient, team);
   return result;
 }
 
@@ -249,6 +259,52 @@ void ElasticSystem::stiffness(const Eigen::VectorXd& actuation, const Points& po
       }
     });
   });
+}
+
+void ElasticSystem::turning(const Points& positions, const Points& step, Scratch& scratch, Points& residual,
+                            Team& team) const {
+  const auto run = [&]<int K, int Q>(const Set<K, Q>& set) {
+    team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+      Shape<K> current, moves, pull;
+      for (Index b = begin; b < end; ++b) {
+        load<K>(positions, set.nodes[b], current);
+        load<K>(step, set.nodes[b], moves);
+        turning_pull<K, Q>(set.blocks[b], current, moves, pull);
+        store(set, b, pull, scratch);
+      }
+    });
+  };
+  for (const auto& set : linear_) run(set);
+  for (const auto& set : quadratic_) run(set);
+  for (const auto& set : prisms_) run(set);
+  gather(scratch, residual, team);
+}
+
+Eigen::SparseMatrix<double> ElasticSystem::laplacian() const {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add_set = [&]<int K, int Q>(const Set<K, Q>& set) {
+    for (Index e = 0; e < set.count; ++e) {
+      const ElasticBlock<K, Q>& block = set.blocks[e / lanes];
+      const int l = e % lanes;
+      for (int i = 0; i < K; ++i)
+        for (int j = 0; j < K; ++j) {
+          const Index row = set.nodes[e / lanes][i][l], column = set.nodes[e / lanes][j][l];
+          if (row < column) continue;
+          double sum = 0;
+          for (int q = 0; q < Q; ++q)
+            sum += block.volume[q][l] * lane_of(block.slope[q][i], l).dot(lane_of(block.slope[q][j], l));
+          entries.emplace_back(row, column, sum);
+        }
+    }
+  };
+  for (const auto& set : linear_) add_set(set);
+  for (const auto& set : quadratic_) add_set(set);
+  for (const auto& set : prisms_) add_set(set);
+  for (Index v = 0; v < vertices_; ++v)
+    if (pull_starts_[v] == pull_starts_[v + 1]) entries.emplace_back(v, v, 1.0);
+  Eigen::SparseMatrix<double> matrix(vertices_, vertices_);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
 }
 
 }  // namespace softkin

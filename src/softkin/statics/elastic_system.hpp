@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <softkin/core/team.hpp>
 #include <softkin/energy/elastic.hpp>
 #include <softkin/model/model.hpp>
@@ -38,6 +39,14 @@ class ElasticSystem {
   void stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected, Scratch& scratch,
                  std::vector<double>& slots, Team& team) const;
 
+  /// What the linear step lacks to turn the elements instead of shearing them (energy/turning.hpp), a pull for each
+  /// vertex: residual of a system with the matrix below.
+  void turning(const Points& positions, const Points& step, Scratch& scratch, Points& residual, Team& team) const;
+
+  /// Sum over quadrature points of volume slope_a . slope_b: one coordinate, lower triangle. Vertices of no element
+  /// have a 1 on the diagonal.
+  [[nodiscard]] Eigen::SparseMatrix<double> laplacian() const;
+
  private:
   /// Elements of one kind and law, `lanes` to a block; the last block repeats the last element, without volume.
   template <int K, int Q>
@@ -55,6 +64,9 @@ class ElasticSystem {
   template <int K, int Q, class Element>
   static void add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants,
                   Index actuator, const Element& nodes);
+  void gather(const Scratch& scratch, Points& sums, Team& team) const;
+  template <int K, int Q>
+  void store(const Set<K, Q>& set, Index block, const Shape<K>& pull, Scratch& scratch) const;
   void stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) const;
 
   /// visit(set, its blocks at the current active stretch)

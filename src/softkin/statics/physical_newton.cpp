@@ -60,7 +60,7 @@ PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::v
     PhysicalSystem::Size next_size;
     for (;;) {
       trial_ = at;
-      system_.freedoms().move(step, damping, trial_.positions);
+      system_.advance(step, damping, work_, trial_.positions, team_);
       trial_.multipliers += damping * change;
       system_.evaluate(trial_, demand, active, work_, next_balance_, team_);
       bool good = !next_balance_.forbidden && next_balance_.force.allFinite();
@@ -89,7 +89,7 @@ PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::v
     while (size.largest >= settings_.tolerance_mm && contraction < chord_contraction) {
       size = next_size;
       trial_ = at;
-      system_.freedoms().move(simplified, 1, trial_.positions);
+      system_.advance(simplified, 1, work_, trial_.positions, team_);
       trial_.multipliers += simplified_change;
       system_.evaluate(trial_, demand, active, work_, next_balance_, team_);
       if (next_balance_.forbidden || !next_balance_.force.allFinite()) break;

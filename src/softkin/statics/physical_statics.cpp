@@ -115,7 +115,7 @@ class Continuation {
     system_.step(balance, work_, step, change, team_);
     const Points before = at.positions;
     if (step.allFinite() && change.allFinite()) {
-      system_.freedoms().move(step, 1, at.positions);
+      system_.advance(step, 1, work_, at.positions, team_);
       at.multipliers += change;
     }
     system_.freedoms().hold(there.share, at.positions);

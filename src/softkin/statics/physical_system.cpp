@@ -12,6 +12,7 @@ PhysicalSystem::PhysicalSystem(const Model& model) : model_(model), elastic_(mod
   slots_ = cliques.slots.back();
   pattern_ = std::make_unique<BlockPattern>(static_cast<Index>(model.rest.rows()), cliques);
   freedoms_ = std::make_unique<Freedoms>(model, *pattern_);
+  turning_ = std::make_unique<GlobalStep>(model, elastic_.laplacian());
 }
 
 PhysicalSystem::Workspace::Workspace(const PhysicalSystem& system)
@@ -137,6 +138,15 @@ void PhysicalSystem::upset(const Iterate& at, const Demand& from, const Demand& 
   }
   balance.force.resize(freedoms_->size());
   freedoms_->reduce(force, at.positions, balance.force);
+}
+
+void PhysicalSystem::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions,
+                             Team& team) const {
+  freedoms_->expand(scale * step, positions, work.moves);
+  elastic_.turning(positions, work.moves, work.elastic, work.lacking, team);
+  freedoms_->move(step, scale, positions);
+  std::vector<Pose> poses = turning_->poses(positions);
+  turning_->step(work.lacking, positions, poses, team);
 }
 
 PhysicalSystem::Size PhysicalSystem::size_of(const Eigen::VectorXd& unknowns, const Points& positions) const {

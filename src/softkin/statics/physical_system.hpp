@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <softkin/statics/elastic_system.hpp>
 #include <softkin/statics/freedoms.hpp>
+#include <softkin/statics/global_step.hpp>
 #include <softkin/statics/measures.hpp>
 #include <softkin/statics/sparse_ldlt.hpp>
 
@@ -34,6 +35,7 @@ class PhysicalSystem {
     ElasticSystem::Scratch elastic;
     std::vector<double> slots, blocks, values;
     Points gradient;             // of the Lagrangian in x
+    Points moves, lacking;       // of advance()
     std::vector<Points> slopes;  // of each active measure
     SparseLdlt factor;
     Eigen::MatrixXd responses;                // K^-1 G, a column per active constraint, in the order of `active`
@@ -67,6 +69,10 @@ class PhysicalSystem {
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
 
+  /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first
+  /// order, and far better where a step bends the robot.
+  void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
+
   /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
   struct Size {
     double largest = 0, mean = 0;
@@ -99,6 +105,7 @@ class PhysicalSystem {
   std::int64_t slots_ = 0;
   std::unique_ptr<BlockPattern> pattern_;
   std::unique_ptr<Freedoms> freedoms_;
+  std::unique_ptr<GlobalStep> turning_;
 };
 
 }  // namespace softkin
