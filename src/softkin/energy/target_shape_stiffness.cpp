@@ -199,6 +199,13 @@ void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio,
 }
 
 template <int K>
+Pack ratio_change(const ActuationBlock<K>& block, const Shape<K>& current, const Shape<K>& change) {
+  Shape<K> slope;
+  measure_slope(current, slope);
+  return inner<K>(slope, change) / block.measure;
+}
+
+template <int K>
 void ratio_coupling(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
                     const PackRotation& rotation, RatioCoupling<K>& out) {
   Shape<K> still;
@@ -270,6 +277,9 @@ template void pull_change_of_actuation(const ActuationBlock<4>&, const Pack&, co
                                        const PackRotation&, const Shape<4>&, Shape<4>&);
 template void pull_change_of_actuation(const ActuationBlock<6>&, const Pack&, const Pack&, const Shape<6>&,
                                        const PackRotation&, const Shape<6>&, Shape<6>&);
+template Pack ratio_change(const ActuationBlock<3>&, const Shape<3>&, const Shape<3>&);
+template Pack ratio_change(const ActuationBlock<4>&, const Shape<4>&, const Shape<4>&);
+template Pack ratio_change(const ActuationBlock<6>&, const Shape<6>&, const Shape<6>&);
 template void ratio_coupling(const ActuationBlock<3>&, const Pack&, const Shape<3>&, const PackRotation&,
                              RatioCoupling<3>&);
 template void ratio_coupling(const ActuationBlock<4>&, const Pack&, const Shape<4>&, const PackRotation&,

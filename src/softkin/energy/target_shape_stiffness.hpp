@@ -39,6 +39,10 @@ void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio,
                               const Shape<K>& current, const PackRotation& rotation, const Shape<K>& change,
                               Shape<K>& out);
 
+/// How current_ratio changes with the shape, along `change`; neither need be centred.
+template <int K>
+[[nodiscard]] Pack ratio_change(const ActuationBlock<K>& block, const Shape<K>& current, const Shape<K>& change);
+
 /// How the pull answers to the element's own ratio and that to the shape; current is centred.
 template <int K>
 void ratio_coupling(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
