@@ -116,6 +116,19 @@ void add_volume_region(Mesh& mesh, const std::string& name, const Inside& inside
   mesh.regions.push_back(std::move(region));
 }
 
+/// 30 mm cube of 27 cells; region "chamber" is the middle one.
+inline Mesh hollow_mesh() {
+  Mesh mesh = block_mesh({3, 3, 3}, {30, 30, 30});
+  add_volume_region(mesh, "chamber", [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 5; });
+  return mesh;
+}
+
+/// A closed surface, normals outwards.
+inline TriangleSurface box_surface(const Vec3& low, const Vec3& size) {
+  const Mesh box = block_mesh({1, 1, 1}, size);
+  return {box.vertices.rowwise() + low.transpose(), triangulated(boundary_of(box.tetrahedra, {}))};
+}
+
 /// Adds a region of single vertices.
 inline void add_vertex_region(Mesh& mesh, const std::string& name, std::vector<Index> vertices) {
   Region region;

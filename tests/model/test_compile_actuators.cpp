@@ -9,17 +9,8 @@ using namespace softkin::testing;
 
 namespace {
 
-/// 30 mm cube of 27 cells; region "chamber" is the middle one.
 RobotSpec hollow_cube() {
-  RobotSpec spec = block_robot(block_mesh({3, 3, 3}, {30, 30, 30}));
-  add_volume_region(spec.mesh, "chamber",
-                    [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 5; });
-  return spec;
-}
-
-TriangleSurface box_surface(const Vec3& low, const Vec3& size) {
-  const Mesh box = block_mesh({1, 1, 1}, size);
-  return {box.vertices.rowwise() + low.transpose(), triangulated(boundary_of(box.tetrahedra, {}))};
+  return block_robot(hollow_mesh());
 }
 
 TEST(Pneumatic, ARegionBecomesTheChamber) {

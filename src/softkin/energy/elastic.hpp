@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/core/elastic_law.hpp>
+#include <softkin/core/types.hpp>
 #include <softkin/energy/pack.hpp>
 
 namespace softkin {

@@ -67,12 +67,14 @@ void compile_markers(Compilation& c) {
 Model compile(const RobotSpec& spec) {
   Compilation c(spec);
   c.model.name = spec.name;
+  c.model.formulation = spec.formulation;
   compile_elements(c);
   compile_actuator_elements(c);
   compile_materials(c);
   compile_actuator_points(c);
   compile_supports(c);
   compile_markers(c);
+  compile_loads(c);
   check_anchoring(c.model, c.origin);
   return std::move(c.model);
 }

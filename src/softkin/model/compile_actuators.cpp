@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <softkin/model/boundary.hpp>
+#include <softkin/model/cavity.hpp>
 #include <softkin/model/compile_parts.hpp>
 #include <softkin/model/triangle_geometry.hpp>
 
@@ -12,19 +14,41 @@ namespace {
   throw InvalidInput(spec.origin, "actuator '" + spec.name + "' " + what);
 }
 
-void check_numbers(const ActuatorSpec& spec) {
+std::string range_text(double low, double high) {
+  return "[" + number_text(low) + ", " + number_text(high) + "]";
+}
+
+void check_load(const ActuatorSpec& spec, Formulation formulation) {
+  if (formulation != Formulation::physical)
+    refuse(spec, "is controlled by its load: that needs the physical formulation");
+  if (spec.kind == ActuatorKind::dea) refuse(spec, "is a dea: it is controlled by its ratio, not by a load");
+  const bool cable = spec.kind == ActuatorKind::cable;
+  if (!(std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high)) || (cable && spec.low < 0))
+    refuse(spec, std::string("needs a range of its ") +
+                     (cable ? "tension with 0 <= low <= high" : "pressure with low <= high") + ", not " +
+                     range_text(spec.low, spec.high));
+  if (spec.rest != 0) refuse(spec, "cannot have a load at rest other than 0, not " + number_text(spec.rest));
+}
+
+void check_ratio(const ActuatorSpec& spec) {
   if (!(spec.low > 0 && spec.low <= spec.high && std::isfinite(spec.high)))
-    refuse(spec,
-           "needs a range with 0 < low <= high, not [" + number_text(spec.low) + ", " + number_text(spec.high) + "]");
-  if (!(spec.weight > 0 && std::isfinite(spec.weight)))
-    refuse(spec, "needs a weight above 0, not " + number_text(spec.weight));
+    refuse(spec, "needs a range with 0 < low <= high, not " + range_text(spec.low, spec.high));
   if (spec.kind == ActuatorKind::dea) {
     if (!(spec.rest >= spec.low && spec.rest <= spec.high))
-      refuse(spec, "has its rest ratio (prestretch) " + number_text(spec.rest) + " outside its range [" +
-                       number_text(spec.low) + ", " + number_text(spec.high) + "]");
+      refuse(spec, "has its rest ratio (prestretch) " + number_text(spec.rest) + " outside its range " +
+                       range_text(spec.low, spec.high));
   } else if (spec.rest != 1) {
     refuse(spec, "cannot have a rest ratio other than 1: only a dea has a prestretch");
   }
+}
+
+void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
+  if (!(spec.weight > 0 && std::isfinite(spec.weight)))
+    refuse(spec, "needs a weight above 0, not " + number_text(spec.weight));
+  if (spec.control == Control::load)
+    check_load(spec, formulation);
+  else
+    check_ratio(spec);
 }
 
 void check_members(const ActuatorSpec& spec) {
@@ -73,17 +97,29 @@ std::vector<Index> tetrahedra_inside(const Model& model, const TriangleSurface& 
   return inside;
 }
 
+TriangleSurface checked_surface(const ActuatorSpec& spec) {
+  try {
+    if (!spec.surface->vertices.allFinite()) throw InvalidInput("the surface has a vertex that is not finite");
+    return closed_outwards(*spec.surface);
+  } catch (const InvalidInput& error) {
+    refuse(spec, std::string("needs a closed surface: ") + error.what());
+  }
+}
+
+const std::vector<Index>& chamber_region(const Compilation& c, const ActuatorSpec& spec) {
+  const Region& region = c.regions.find(*spec.region, spec.origin);
+  if (!region.prisms.empty())
+    refuse(spec, "is pneumatic and needs tetrahedra, but region '" + *spec.region + "' has " +
+                     count_text(region.prisms.size(), "prism"));
+  if (region.tetrahedra.empty()) refuse(spec, "has no element: region '" + *spec.region + "' holds no tetrahedron");
+  return region.tetrahedra;
+}
+
 void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   Model& model = c.model;
   std::vector<Index> found;
   if (spec.surface) {
-    TriangleSurface surface;
-    try {
-      if (!spec.surface->vertices.allFinite()) throw InvalidInput("the surface has a vertex that is not finite");
-      surface = closed_outwards(*spec.surface);
-    } catch (const InvalidInput& error) {
-      refuse(spec, std::string("needs a closed surface: ") + error.what());
-    }
+    TriangleSurface surface = checked_surface(spec);
     found = tetrahedra_inside(model, surface);
     if (found.empty())
       refuse(spec,
@@ -91,15 +127,47 @@ void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) 
              "the surface");
     actuator.surface = std::move(surface.triangles);
   } else {
-    const Region& region = c.regions.find(*spec.region, spec.origin);
-    if (!region.prisms.empty())
-      refuse(spec, "is pneumatic and needs tetrahedra, but region '" + *spec.region + "' has " +
-                       count_text(region.prisms.size(), "prism"));
-    if (region.tetrahedra.empty()) refuse(spec, "has no element: region '" + *spec.region + "' holds no tetrahedron");
-    found = in_model(spec, region.tetrahedra, c.tetrahedron_at, "tetrahedron");
+    found = in_model(spec, chamber_region(c, spec), c.tetrahedron_at, "tetrahedron");
   }
   take(c, spec, found, model.tetrahedron_roles, c.tetrahedron_of, "tetrahedron", actuator.tetrahedra);
   for (const Index i : actuator.tetrahedra) actuator.rest_measure += model.tetrahedron_volumes[i];
+}
+
+// What of a cavity's boundary is not the body's cannot move.
+void check_contact(Compilation& c, const ActuatorSpec& spec, const std::vector<CavityFace>& cavity) {
+  std::set<Index> vertices;
+  for (const CavityFace& face : cavity) {
+    vertices.insert(face.corners.begin(), face.corners.end());
+    if (face.edges[0] >= 0) vertices.insert(face.edges.begin(), face.edges.end());
+  }
+  const auto loose = static_cast<std::size_t>(
+      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
+  if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
+  if (loose > 0)
+    c.model.notes.push_back(count_text(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
+                            spec.name + "' " + (loose == 1 ? "belongs" : "belong") +
+                            " to no element of the body and stay" + (loose == 1 ? "s" : "") + " in place.");
+}
+
+void fill_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  std::vector<Index> elements;
+  take(c, spec, in_model(spec, chamber_region(c, spec), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
+       "tetrahedron", elements);
+  std::vector<Tetrahedron> tetrahedra;
+  tetrahedra.reserve(elements.size());
+  for (const Index i : elements) tetrahedra.push_back(c.chamber_tetrahedra[i]);
+  for (const Triangle& corners : boundary_of(tetrahedra, {}).triangles) actuator.cavity.push_back({corners});
+  check_contact(c, spec, actuator.cavity);
+  actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
+}
+
+void fill_pneumatic(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  if (c.spec.formulation != Formulation::physical)
+    fill_chamber(c, spec, actuator);
+  else if (spec.surface)
+    actuator.surface = checked_surface(spec).triangles;
+  else
+    fill_cavity(c, spec, actuator);
 }
 
 double area(const Points& vertices, Index i, Index j, Index k) {
@@ -124,8 +192,9 @@ void fill_membrane(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
 
 void note_rest(Compilation& c, const Actuator& actuator) {
   if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
-  c.model.notes.push_back("The range [" + number_text(actuator.low) + ", " + number_text(actuator.high) +
-                          "] of actuator '" + actuator.name + "' excludes its rest ratio 1: where none is asked for, " +
+  c.model.notes.push_back("The range " + range_text(actuator.low, actuator.high) + " of actuator '" + actuator.name +
+                          "' excludes its " + (actuator.control == Control::load ? "load at rest 0" : "rest ratio 1") +
+                          ": where none is asked for, " +
                           number_text(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
 }
 
@@ -136,17 +205,18 @@ void compile_actuator_elements(Compilation& c) {
   for (const ActuatorSpec& spec : c.spec.actuators) {
     if (spec.name.empty()) throw InvalidInput(spec.origin, "an actuator needs a name");
     if (!names.insert(spec.name).second) throw InvalidInput(spec.origin, "there are two actuators '" + spec.name + "'");
-    check_numbers(spec);
+    check_numbers(spec, c.spec.formulation);
     check_members(spec);
     Actuator actuator;
     actuator.name = spec.name;
     actuator.kind = spec.kind;
+    actuator.control = spec.control;
     actuator.low = spec.low;
     actuator.high = spec.high;
     actuator.rest = spec.rest;
     actuator.weight = spec.weight;
     actuator.least_norm = spec.least_norm;
-    if (spec.kind == ActuatorKind::pneumatic) fill_chamber(c, spec, actuator);
+    if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);
     if (spec.kind == ActuatorKind::dea) fill_membrane(c, spec, actuator);
     note_rest(c, actuator);
     c.model.actuators.push_back(std::move(actuator));
@@ -172,6 +242,10 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
     c.model.notes.push_back(count_text(outside, "vertex", "vertices") + " of the surface of actuator '" + spec.name +
                             "' " + (outside == 1 ? "is" : "are") + " up to " + number_text(farthest) +
                             " mm outside the body and follow" + (outside == 1 ? "s" : "") + " its nearest elements.");
+  if (c.spec.formulation != Formulation::physical) return;
+  Points embedded(vertices.rows(), 3);
+  for (Index i = 0; i < vertices.rows(); ++i) embedded.row(i) = actuator.points[i].at(c.model.rest).transpose();
+  actuator.rest_measure = enclosed_volume(embedded, actuator.surface);
 }
 
 }  // namespace

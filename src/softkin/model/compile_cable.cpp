@@ -104,13 +104,15 @@ void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec
 
 void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
   const std::vector<Vec3> points = embed_points(c, spec, cable);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) cable.rest_measure += (points[i + 1] - points[i]).norm();
+  // physical: a constraint on its length, without actuation elements
+  if (c.spec.formulation == Formulation::physical) return;
   for (const Index segment : free_segments(c, points)) cable.gaps.push_back({segment, {}});
   if (spec.apexes.empty())
     find_apexes(c, spec, points, cable);
   else
     take_apexes(c, spec, points, cable);
 
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) cable.rest_measure += (points[i + 1] - points[i]).norm();
   double inside = cable.rest_measure;
   for (const CableGap& gap : cable.gaps) inside -= (points[gap.segment + 1] - points[gap.segment]).norm();
   const double least = inside / cable.rest_measure;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <softkin/model/compile_parts.hpp>
 #include <softkin/model/triangle_geometry.hpp>
 
@@ -53,6 +52,17 @@ std::vector<bool> void_elements(const Compilation& c, std::vector<Index> Region:
   return inside;
 }
 
+/// Physical: tetrahedra of pneumatic chambers, which are no elements of the model.
+std::vector<bool> chamber_elements(const Compilation& c) {
+  std::vector<bool> inside(c.spec.mesh.tetrahedra.size());
+  if (c.spec.formulation != Formulation::physical) return inside;
+  for (const ActuatorSpec& spec : c.spec.actuators) {
+    if (spec.kind != ActuatorKind::pneumatic || !spec.region) continue;
+    for (const Index i : c.regions.find(*spec.region, spec.origin).tetrahedra) inside[i] = true;
+  }
+  return inside;
+}
+
 template <class Element>
 struct Kind {
   const char *one, *many;
@@ -81,12 +91,12 @@ void refuse(const Compilation& c, const Kind<Element>& kind, const Refused& refu
 
 /// Fills in the elements of a kind and returns how many it reversed.
 template <class Element>
-std::size_t orient(Compilation& c, const std::vector<bool>& is_void, const Kind<Element>& kind, double least_volume) {
+std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind<Element>& kind, double least_volume) {
   std::size_t reversed = 0;
   Refused empty, folded;
   kind.at.assign(kind.mesh_elements.size(), -1);
   for (std::size_t i = 0; i < kind.mesh_elements.size(); ++i) {
-    if (is_void[i]) continue;
+    if (left_out[i]) continue;
     Element element = kind.mesh_elements[i];
     double volume = signed_volume(c.spec.mesh.vertices, element);
     const double edge = longest_edge(c.spec.mesh.vertices, element);
@@ -119,6 +129,9 @@ void find_used_vertices(Compilation& c) {
     for (const Index v : p) model.used[v] = true;
   Bounds bounds;
   model.fixed.assign(model.used.size(), {false, false, false});
+  std::vector<bool> of_chamber(model.used.size());
+  for (const Tetrahedron& t : c.chamber_tetrahedra)
+    for (const Index v : t) of_chamber[v] = true;
   std::size_t unused = 0;
   for (std::size_t v = 0; v < model.used.size(); ++v) {
     if (model.used[v]) {
@@ -126,7 +139,7 @@ void find_used_vertices(Compilation& c) {
       continue;
     }
     model.fixed[v] = {true, true, true};
-    ++unused;
+    if (!of_chamber[v]) ++unused;
   }
   model.diagonal_mm = bounds.diagonal().norm();
   if (unused > 0)
@@ -156,7 +169,13 @@ void compile_elements(Compilation& c) {
   Model& model = c.model;
   const Mesh& mesh = c.spec.mesh;
   if (mesh.tetrahedra.empty() && mesh.prisms.empty()) throw InvalidInput(c.origin, "the mesh has no element");
-  const std::vector<bool> void_tetrahedra = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
+  std::vector<bool> not_body = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
+  std::vector<bool> not_chamber = chamber_elements(c);
+  for (std::size_t i = 0; i < not_body.size(); ++i) {
+    const bool of_chamber = not_chamber[i];
+    not_chamber[i] = !of_chamber || not_body[i];
+    not_body[i] = not_body[i] || of_chamber;
+  }
   const std::vector<bool> void_prisms = void_elements(c, &Region::prisms, mesh.prisms.size());
   model.rest = mesh.vertices;
   model.held = mesh.vertices;
@@ -164,91 +183,28 @@ void compile_elements(Compilation& c) {
   const double diagonal = (model.rest.colwise().maxCoeff() - model.rest.colwise().minCoeff()).norm();
   const double least_volume = 1e-15 * diagonal * diagonal * diagonal;
   const std::size_t reversed =
-      orient(c, void_tetrahedra,
+      orient(c, not_body,
              Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, model.tetrahedra,
                                model.tetrahedron_volumes, c.tetrahedron_at, c.tetrahedron_of},
+             least_volume) +
+      orient(c, not_chamber,
+             Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, c.chamber_tetrahedra, c.chamber_volumes,
+                               c.chamber_at, c.chamber_of},
              least_volume) +
       orient(c, void_prisms,
              Kind<Prism>{"prism", "prisms", mesh.prisms, model.prisms, model.prism_volumes, c.prism_at, c.prism_of},
              least_volume);
   if (model.tetrahedra.empty() && model.prisms.empty())
-    throw InvalidInput(c.origin, "every element of the mesh is void");
+    throw InvalidInput(c.origin, std::string("every element of the mesh is void") +
+                                     (c.chamber_tetrahedra.empty() ? "" : " or belongs to a chamber"));
   if (reversed > 0)
     model.notes.push_back(count_text(reversed, "element was", "elements were") +
                           " reordered, because the order of the vertices made the volume negative.");
   model.tetrahedron_roles.resize(model.tetrahedra.size());
   model.prism_roles.resize(model.prisms.size());
+  c.chamber_roles.resize(c.chamber_tetrahedra.size());
   find_used_vertices(c);
   name_regions(c);
-}
-
-namespace {
-
-Material checked_material(const MaterialSpec& spec) {
-  const std::string owner = "the material of region '" + spec.region + "'";
-  if (!spec.shape_ratio) throw InvalidInput(spec.origin, owner + " needs shape_ratio, R_omega of the target shapes");
-  if (!(*spec.shape_ratio >= 0 && *spec.shape_ratio <= 1))
-    throw InvalidInput(spec.origin,
-                       owner + ": shape_ratio must lie in [0, 1], not be " + number_text(*spec.shape_ratio));
-  if (!(spec.weight > 0 && std::isfinite(spec.weight)))
-    throw InvalidInput(spec.origin, owner + ": weight must be above 0, not " + number_text(spec.weight));
-  if (spec.linear_range && !(*spec.linear_range > 0 && std::isfinite(*spec.linear_range)))
-    throw InvalidInput(spec.origin, owner + ": linear_range must be above 0, not " + number_text(*spec.linear_range));
-  Material material;
-  material.region = spec.region;
-  material.shape_ratio = *spec.shape_ratio;
-  material.weight = spec.weight;
-  material.linear_range = spec.linear_range;
-  return material;
-}
-
-std::size_t assign(const std::vector<Index>& elements, const std::vector<Index>& at, Index material,
-                   std::vector<ElementRole>& roles) {
-  std::size_t count = 0;
-  for (const Index i : elements) {
-    if (at[i] < 0 || roles[at[i]].actuator >= 0) continue;
-    roles[at[i]].material = material;
-    ++count;
-  }
-  return count;
-}
-
-void refuse_bare_elements(const Compilation& c) {
-  const Model& model = c.model;
-  std::map<Index, std::size_t> bare;  // by region
-  for (const auto* roles : {&model.tetrahedron_roles, &model.prism_roles})
-    for (const ElementRole& role : *roles)
-      if (role.material < 0 && role.actuator < 0) ++bare[role.region];
-  if (bare.empty()) return;
-  std::string text;
-  for (const auto& [region, count] : bare) {
-    const std::string where = region < 0 ? "of no region" : "of region '" + model.region_names[region] + "'";
-    text += (text.empty() ? "" : " and ") + count_text(count, "element") + " " + where;
-  }
-  const bool single = bare.size() == 1 && bare.begin()->second == 1;
-  throw InvalidInput(c.origin, text + (single ? " has" : " have") + " no material: give one, or make the region void");
-}
-
-}  // namespace
-
-void compile_materials(Compilation& c) {
-  Model& model = c.model;
-  for (const MaterialSpec& spec : c.spec.materials) {
-    const auto index = static_cast<Index>(model.materials.size());
-    model.materials.push_back(checked_material(spec));
-    const Region& region = c.regions.find(spec.region, spec.origin);
-    if (assign(region.tetrahedra, c.tetrahedron_at, index, model.tetrahedron_roles) +
-            assign(region.prisms, c.prism_at, index, model.prism_roles) ==
-        0)
-      throw InvalidInput(spec.origin, "region '" + spec.region +
-                                          "' has a material but no element of the body: its elements are void, belong "
-                                          "to actuators, or it is not a volume");
-  }
-  refuse_bare_elements(c);
-  for (std::size_t i = 0; i < model.tetrahedra.size(); ++i)
-    if (model.tetrahedron_roles[i].actuator < 0) c.solid_tetrahedra.push_back(model.tetrahedra[i]);
-  c.solid_prisms = model.prisms;
-  c.embedder.emplace(model.rest, c.solid_tetrahedra, c.solid_prisms);
 }
 
 }  // namespace softkin

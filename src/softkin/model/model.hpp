@@ -61,7 +61,8 @@ struct RigidRegion {
   std::vector<Index> vertices;
 };
 
-/// What an element is made of: a material, or the actuator that it belongs to.
+/// What an element is made of: a material, or the actuator that it belongs to; physical: a material always, and a
+/// prism of a dea has its actuator too.
 struct ElementRole {
   Index material = -1;  // index into Model::materials, or -1
   Index actuator = -1;  // index into Model::actuators, or -1
@@ -98,7 +99,9 @@ struct Model {
 ///
 /// throws  InvalidInput, naming the origin, on: unknown or empty regions, elements without material or with two
 ///         actuators, values outside their ranges, a robot with a part that can still move rigidly, DEA regions with
-///         tetrahedra, pneumatic regions with prisms, cables of zero length, duplicate names, elements without volume
+///         tetrahedra, pneumatic regions with prisms, cables of zero length, duplicate names, elements without volume;
+///         physical: materials without elastic constants, chambers that do not touch the body, gravity without a
+///         density; target-shape: load control
 [[nodiscard]] Model compile(const RobotSpec& spec);
 
 }  // namespace softkin

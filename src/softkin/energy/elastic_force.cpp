@@ -1,0 +1,84 @@
+#include <softkin/energy/elastic_law_point.hpp>
+#include <softkin/energy/elastic_polar.hpp>
+
+namespace softkin {
+
+namespace {
+
+/// W and P = dW/dF [MPa], J
+struct Stress {
+  Pack energy;
+  Pack33 first;
+  Pack jacobian;
+};
+
+/// P = 2 W_1 F + 2 W_2 (I1 F - F C) + W_J dJ/dF
+template <Law law>
+Stress invariant_stress(const LawBlock& constants, const Pack33& f) {
+  const Deformation d = deformation(f);
+  const InvariantEnergy w = invariant_energy<law>(constants, d);
+  Stress stress{w.energy, {}, d.jacobian};
+  Pack of_gradient = 2 * w.by_first;
+  if constexpr (uses_second(law)) of_gradient += 2 * w.by_second * d.first;
+  for (int i = 0; i < 3; ++i) {
+    Pack3& row = stress.first.row[i];
+    row = of_gradient * f.row[i];
+    if constexpr (uses_second(law)) row = row - 2 * w.by_second * (d.right * f.row[i]);
+    if constexpr (uses_jacobian(law)) row = row + w.by_jacobian * d.cofactor.row[i];
+  }
+  return stress;
+}
+
+/// P = 2 mu (F - R) + lambda tr(S - I) R
+Stress corotational_stress(const LawBlock& constants, const Pack33& f) {
+  const Polar p = polar(f);
+  Pack33 strain = p.stretch;
+  add_to_diagonal(strain, pack(-1));
+  const Pack swelling = trace(strain);
+  Stress stress;
+  stress.energy = constants.mu * inner(strain, strain) + 0.5 * constants.lambda * swelling * swelling;
+  const Pack twice_mu = 2 * constants.mu, of_rotation = constants.lambda * swelling;
+  for (int i = 0; i < 3; ++i)
+    stress.first.row[i] = twice_mu * (f.row[i] - p.rotation.row[i]) + of_rotation * p.rotation.row[i];
+  stress.jacobian = dot(f.row[0], cross(f.row[1], f.row[2]));
+  return stress;
+}
+
+template <Law law>
+Stress stress_of(const LawBlock& constants, const Pack33& f) {
+  if constexpr (law == Law::corotational)
+    return corotational_stress(constants, f);
+  else
+    return invariant_stress<law>(constants, f);
+}
+
+template <Law law, int K, int Q>
+void force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out) {
+  Pack energy{};
+  PackMask inverted{};
+  Shape<K> gradient{};
+  for (int q = 0; q < Q; ++q) {
+    const Pack& volume = block.volume[q];
+    Stress stress = stress_of<law>(block.law, deformation_gradient<K>(block.slope[q], current));
+    energy += volume * stress.energy;
+    inverted |= (stress.jacobian <= 0) & (volume > 0);
+    for (Pack3& row : stress.first.row) row = volume * row;
+    for (int a = 0; a < K; ++a) gradient[a] = gradient[a] + stress.first * block.slope[q][a];
+  }
+  for (int a = 0; a < K; ++a) out.gradient[a] = gradient[a];
+  out.energy = energy;
+  out.inverted = inverted;
+}
+
+}  // namespace
+
+template <int K, int Q>
+void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out) {
+  dispatch(block.law.law, [&]<Law law>() { force<law, K, Q>(block, current, out); });
+}
+
+template void elastic_force(const ElasticBlock<4, 1>&, const Shape<4>&, ElasticForce<4>&);
+template void elastic_force(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticForce<10>&);
+template void elastic_force(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticForce<6>&);
+
+}  // namespace softkin

@@ -1,0 +1,311 @@
+#include <Eigen/Geometry>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <softkin/energy/rotation.hpp>
+#include <softkin/statics/freedoms.hpp>
+#include <softkin/statics/ordering.hpp>
+
+namespace softkin {
+
+namespace {
+
+Mat3 rotation_about(const Vec3& turn) {
+  const double angle = turn.norm();
+  return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
+}
+
+}  // namespace
+
+Freedoms::Freedoms(const Model& model, const BlockPattern& pattern)
+    : rest_(model.rest), held_(model.held), fixed_(model.fixed), region_of_(model.rest.rows(), -1) {
+  find_regions(model);
+  number(pattern);
+}
+
+/// A region held along an axis (compile() allows that at three non-collinear vertices or none) neither slides along it
+/// nor turns out of the plane; one that is held along all axes is as good as fixed.
+void Freedoms::find_regions(const Model& model) {
+  for (const RigidRegion& rigid : model.rigid) {
+    Region region;
+    region.vertices = rigid.vertices;
+    std::array<bool, 3> slides{true, true, true}, turns{true, true, true};
+    for (const Index v : rigid.vertices)
+      for (int axis = 0; axis < 3; ++axis)
+        if (model.fixed[v][axis]) {
+          slides[axis] = false;
+          region.displacement[axis] = model.held(v, axis) - model.rest(v, axis);
+          for (int other = 0; other < 3; ++other) turns[other] = turns[other] && other == axis;
+        }
+    if (!slides[0] && !slides[1] && !slides[2]) {
+      for (const Index v : rigid.vertices) {
+        fixed_[v] = {true, true, true};
+        held_.row(v) = rest_.row(v) + region.displacement.transpose();
+      }
+      continue;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (slides[axis]) region.slides.push_back(axis);
+      if (turns[axis]) region.turns.push_back(axis);
+    }
+    region.offsets.resize(static_cast<Index>(rigid.vertices.size()), 3);
+    for (Index i = 0; i < region.offsets.rows(); ++i) region.offsets.row(i) = rest_.row(rigid.vertices[i]);
+    region.rest_center = region.offsets.colwise().mean().transpose();
+    region.offsets.rowwise() -= region.rest_center.transpose().eval();
+    for (const Index v : rigid.vertices) {
+      region_of_[v] = static_cast<Index>(regions_.size());
+      fixed_[v] = {true, true, true};  // no unknowns of its own
+    }
+    regions_.push_back(std::move(region));
+  }
+}
+
+void Freedoms::number(const BlockPattern& pattern) {
+  std::vector<Index> node_of(static_cast<std::size_t>(rest_.rows()), -1), vertex_of;
+  for (Index v = 0; v < rest_.rows(); ++v)
+    if (fixed_[v] != std::array<bool, 3>{true, true, true}) {
+      node_of[v] = static_cast<Index>(vertex_of.size());
+      vertex_of.push_back(v);
+    }
+  const Index vertex_nodes = static_cast<Index>(vertex_of.size());
+  const Index count = vertex_nodes + static_cast<Index>(regions_.size());
+  for (Index v = 0; v < rest_.rows(); ++v)
+    if (region_of_[v] >= 0) node_of[v] = vertex_nodes + region_of_[v];
+
+  std::vector<Eigen::Triplet<double>> links;
+  for (Index node = 0; node < count; ++node) links.emplace_back(node, node, 1.0);
+  pattern.each([&](std::int64_t, Index row, Index column) {
+    const Index i = node_of[row], j = node_of[column];
+    if (i >= 0 && j >= 0 && i != j) links.emplace_back(std::max(i, j), std::min(i, j), 1.0);
+  });
+  Eigen::SparseMatrix<double> graph(count, count);
+  graph.setFromTriplets(links.begin(), links.end());
+  links = {};
+  const Ordering ordering = nested_dissection(graph);
+
+  std::vector<Index> place(static_cast<std::size_t>(count));
+  for (Index k = 0; k < count; ++k) place[ordering.order[k]] = k;
+  for (Index& node : node_of)
+    if (node >= 0) node = place[node];
+  first_unknown_.assign(static_cast<std::size_t>(rest_.rows()), -1);
+  columns_.pieces = ordering.pieces;
+  for (Index k = 0; k < count; ++k) {
+    const Index node = ordering.order[k], first = columns_.unknowns.back();
+    Index width = 0;
+    if (node < vertex_nodes) {
+      const Index v = vertex_of[node];
+      vertex_of_.push_back(v);
+      first_unknown_[v] = first;
+      for (int axis = 0; axis < 3; ++axis) width += !fixed_[v][axis];
+    } else {
+      Region& region = regions_[node - vertex_nodes];
+      vertex_of_.push_back(-1);
+      region.node = k;
+      width = static_cast<Index>(region.slides.size() + region.turns.size());
+    }
+    columns_.unknowns.push_back(first + width);
+  }
+  std::vector<std::vector<Index>> rows(static_cast<std::size_t>(count));
+  for (Index j = 0; j < count; ++j)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(graph, j); it; ++it) {
+      const Index a = place[it.row()], b = place[j];
+      rows[std::min(a, b)].push_back(std::max(a, b));
+    }
+  for (Index j = 0; j < count; ++j) {
+    std::sort(rows[j].begin(), rows[j].end());
+    for (const Index row : rows[j]) {
+      columns_.rows.push_back(row);
+      columns_.offsets.push_back(columns_.offsets.back() +
+                                 static_cast<std::int64_t>(columns_.width(row)) * columns_.width(j));
+    }
+    columns_.starts.push_back(static_cast<Index>(columns_.rows.size()));
+  }
+  find_sources(pattern, node_of);
+}
+
+void Freedoms::find_sources(const BlockPattern& pattern, const std::vector<Index>& node_of) {
+  sources_.assign(columns_.rows.size(), {-1, false});
+  pattern.each([&](std::int64_t block, Index row, Index column) {
+    const Index i = node_of[row], j = node_of[column];
+    if (i < 0 || j < 0) return;
+    const Index low = std::min(i, j), high = std::max(i, j);
+    const auto first = columns_.rows.begin() + columns_.starts[low],
+               last = columns_.rows.begin() + columns_.starts[low + 1];
+    const std::int64_t entry = std::lower_bound(first, last, high) - columns_.rows.begin();
+    if (region_of_[row] < 0 && region_of_[column] < 0)
+      sources_[entry] = {block, i < j};
+    else
+      region_blocks_.push_back({block, entry, row, column, i < j});
+  });
+}
+
+Vec3 Freedoms::center(const Region& region, const Points& positions) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Index v : region.vertices) sum += positions.row(v).transpose();
+  return sum / static_cast<double>(region.vertices.size());
+}
+
+std::vector<Vec3> Freedoms::centers(const Points& positions) const {
+  std::vector<Vec3> all;
+  for (const Region& region : regions_) all.push_back(center(region, positions));
+  return all;
+}
+
+/// Rows of T of a vertex, over the unknowns of its node.
+Eigen::Matrix<double, 3, Eigen::Dynamic> Freedoms::tangent(Index vertex, const std::vector<Vec3>& centers,
+                                                           const Points& positions) const {
+  if (const Index r = region_of_[vertex]; r >= 0) {
+    const Region& region = regions_[r];
+    Eigen::Matrix<double, 3, Eigen::Dynamic> t(3, columns_.width(region.node));
+    Index column = 0;
+    for (const int axis : region.slides) t.col(column++) = Vec3::Unit(axis);
+    const Vec3 arm = positions.row(vertex).transpose() - centers[r];
+    for (const int axis : region.turns) t.col(column++) = Vec3::Unit(axis).cross(arm);
+    return t;
+  }
+  Index free = 0;
+  for (int axis = 0; axis < 3; ++axis) free += !fixed_[vertex][axis];
+  Eigen::Matrix<double, 3, Eigen::Dynamic> t = Eigen::MatrixXd::Zero(3, free);
+  Index column = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!fixed_[vertex][axis]) t(axis, column++) = 1;
+  return t;
+}
+
+void Freedoms::reduce(const Points& vectors, const Points& positions, Eigen::Ref<Eigen::VectorXd> out) const {
+  for (Index v = 0; v < rest_.rows(); ++v) {
+    Index u = first_unknown_[v];
+    if (u < 0) continue;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!fixed_[v][axis]) out[u++] = vectors(v, axis);
+  }
+  for (const Region& region : regions_) {
+    const Vec3 middle = center(region, positions);
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    for (const Index v : region.vertices) {
+      const Vec3 vector = vectors.row(v).transpose();
+      force += vector;
+      torque += (positions.row(v).transpose() - middle).cross(vector);
+    }
+    Index u = columns_.unknowns[region.node];
+    for (const int axis : region.slides) out[u++] = force[axis];
+    for (const int axis : region.turns) out[u++] = torque[axis];
+  }
+}
+
+void Freedoms::expand(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const Points& positions, Points& out) const {
+  out.resize(rest_.rows(), 3);
+  for (Index v = 0; v < rest_.rows(); ++v) {
+    Index u = first_unknown_[v];
+    for (int axis = 0; axis < 3; ++axis) out(v, axis) = u >= 0 && !fixed_[v][axis] ? unknowns[u++] : 0;
+  }
+  for (const Region& region : regions_) {
+    const Vec3 middle = center(region, positions);
+    Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
+    Index u = columns_.unknowns[region.node];
+    for (const int axis : region.slides) slide[axis] = unknowns[u++];
+    for (const int axis : region.turns) turn[axis] = unknowns[u++];
+    for (const Index v : region.vertices)
+      out.row(v) = (slide + turn.cross(positions.row(v).transpose() - middle)).transpose();
+  }
+}
+
+void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double scale, Points& positions) const {
+  for (Index v = 0; v < rest_.rows(); ++v) {
+    Index u = first_unknown_[v];
+    if (u < 0) continue;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!fixed_[v][axis]) positions(v, axis) += scale * unknowns[u++];
+  }
+  for (const Region& region : regions_) {
+    const Vec3 middle = center(region, positions);
+    Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
+    Index u = columns_.unknowns[region.node];
+    for (const int axis : region.slides) slide[axis] = scale * unknowns[u++];
+    for (const int axis : region.turns) turn[axis] = scale * unknowns[u++];
+    const Mat3 rotation = rotation_about(turn);
+    for (const Index v : region.vertices)
+      positions.row(v) = (middle + slide + rotation * (positions.row(v).transpose() - middle)).transpose();
+  }
+}
+
+void Freedoms::reduce_matrix(const std::vector<double>& blocks, const Points& gradient, const Points& positions,
+                             std::vector<double>& values, Team& team) const {
+  values.resize(static_cast<std::size_t>(columns_.offsets.back()));
+  team.pieces(columns_.nodes(), [&](Index begin, Index end) {
+    for (Index j = begin; j < end; ++j)
+      for (Index e = columns_.starts[j]; e < columns_.starts[j + 1]; ++e) {
+        double* value = values.data() + columns_.offsets[e];
+        const Source source = sources_[e];
+        if (source.block < 0) {  // of a region, or zero
+          std::fill(value, values.data() + columns_.offsets[e + 1], 0.0);
+          continue;
+        }
+        const double* block = blocks.data() + 9 * source.block;
+        const int row_step = source.transposed ? 1 : 3, column_step = 4 - row_step;
+        const auto &row_fixed = fixed_[vertex_of_[columns_.rows[e]]], &column_fixed = fixed_[vertex_of_[j]];
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r)
+            if (!row_fixed[r] && !column_fixed[c]) *value++ = block[r * row_step + c * column_step];
+      }
+  });
+  if (regions_.empty()) return;
+  const std::vector<Vec3> middles = centers(positions);
+  for (const RegionBlock& part : region_blocks_) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks.data() + 9 * part.block);
+    const Eigen::MatrixXd product =
+        tangent(part.row, middles, positions).transpose() * block * tangent(part.column, middles, positions);
+    const bool same_node = region_of_[part.row] >= 0 && region_of_[part.row] == region_of_[part.column];
+    const bool flipped = part.transposed && !same_node;
+    const Index height = flipped ? static_cast<Index>(product.cols()) : static_cast<Index>(product.rows());
+    Eigen::Map<Eigen::MatrixXd> target(values.data() + columns_.offsets[part.entry], height,
+                                       flipped ? product.rows() : product.cols());
+    if (flipped)
+      target += product.transpose();
+    else
+      target += product;
+    if (same_node && part.row != part.column) target += product.transpose();
+  }
+  // x turns to second order by w x (w x arm) / 2
+  for (std::size_t r = 0; r < regions_.size(); ++r) {
+    const Region& region = regions_[r];
+    Mat3 bend = Mat3::Zero();
+    for (const Index v : region.vertices) {
+      const Vec3 arm = positions.row(v).transpose() - middles[r], force = gradient.row(v).transpose();
+      bend += 0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
+    }
+    const Index width = columns_.width(region.node), slides = static_cast<Index>(region.slides.size());
+    Eigen::Map<Eigen::MatrixXd> target(values.data() + columns_.offsets[columns_.starts[region.node]], width, width);
+    for (Index i = slides; i < width; ++i)
+      for (Index k = slides; k < width; ++k) target(i, k) += bend(region.turns[i - slides], region.turns[k - slides]);
+  }
+}
+
+void Freedoms::hold(double share, Points& positions) const {
+  for (Index v = 0; v < rest_.rows(); ++v)
+    if (region_of_[v] < 0)
+      for (int axis = 0; axis < 3; ++axis)
+        if (fixed_[v][axis]) positions(v, axis) = rest_(v, axis) + share * (held_(v, axis) - rest_(v, axis));
+  for (const Region& region : regions_) {
+    Vec3 middle = center(region, positions);
+    Mat3 correlation = Mat3::Zero();
+    for (Index i = 0; i < region.offsets.rows(); ++i)
+      correlation += (positions.row(region.vertices[i]).transpose() - middle) * region.offsets.row(i);
+    Mat3 rotation = Mat3::Identity();
+    if (region.turns.size() == 3) {
+      rotation = best_rotation(correlation);
+    } else {
+      for (const int about : region.turns) {
+        const int i = (about + 1) % 3, j = (about + 2) % 3;
+        const double angle = std::atan2(correlation(j, i) - correlation(i, j), correlation(i, i) + correlation(j, j));
+        rotation = rotation_about(angle * Vec3::Unit(about));
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::find(region.slides.begin(), region.slides.end(), axis) == region.slides.end())
+        middle[axis] = region.rest_center[axis] + share * region.displacement[axis];
+    for (Index i = 0; i < region.offsets.rows(); ++i)
+      positions.row(region.vertices[i]) = (middle + rotation * region.offsets.row(i).transpose()).transpose();
+  }
+}
+
+}  // namespace softkin

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <softkin/model/model.hpp>
+#include <softkin/statics/block_columns.hpp>
+#include <softkin/statics/block_matrix.hpp>
+
+namespace softkin {
+
+/// The unknowns of a robot: the free axes of its vertices, and up to three slides [mm] and three turns [rad] of every
+/// rigid region that is not held whole. x moves by T u to first order.
+class Freedoms {
+ public:
+  Freedoms(const Model& model, const BlockPattern& pattern);
+
+  [[nodiscard]] Index size() const { return columns_.size(); }
+  /// Pattern of the matrix over the unknowns, in the order of elimination, which is theirs.
+  [[nodiscard]] const BlockColumns& columns() const { return columns_; }
+
+  /// T^T vectors. positions: where the rigid regions are
+  void reduce(const Points& vectors, const Points& positions, Eigen::Ref<Eigen::VectorXd> out) const;
+
+  /// T u
+  void expand(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const Points& positions, Points& out) const;
+
+  /// Moves positions by scale u: rigid regions turn, all else is x + scale T u.
+  void move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double scale, Points& positions) const;
+
+  /// The second derivative in the unknowns of an energy with the given gradient and Hessian in x: T^T H T and, for
+  /// turns, what the gradient adds. values: of columns().
+  void reduce_matrix(const std::vector<double>& blocks, const Points& gradient, const Points& positions,
+                     std::vector<double>& values, Team& team) const;
+
+  /// Puts what is fixed at rest + share (held - rest), and rigid regions into the pose that fits them best.
+  void hold(double share, Points& positions) const;
+
+ private:
+  struct Region {
+    std::vector<Index> vertices;
+    Points offsets;  // rest minus rest center
+    Vec3 rest_center, displacement{0, 0, 0};
+    std::vector<int> slides, turns;  // axes
+    Index node = -1;
+  };
+  struct Source {
+    std::int64_t block;
+    bool transposed;
+  };
+  struct RegionBlock {  // a block of the matrix over vertices of which one or both are of a rigid region
+    std::int64_t block, entry;
+    Index row, column;  // vertices
+    bool transposed;    // the entry's row node is the column's
+  };
+
+  void find_regions(const Model& model);
+  void number(const BlockPattern& pattern);
+  void find_sources(const BlockPattern& pattern, const std::vector<Index>& node_of);
+  [[nodiscard]] Vec3 center(const Region& region, const Points& positions) const;
+  [[nodiscard]] Eigen::Matrix<double, 3, Eigen::Dynamic> tangent(Index vertex, const std::vector<Vec3>& centers,
+                                                                 const Points& positions) const;
+  [[nodiscard]] std::vector<Vec3> centers(const Points& positions) const;
+
+  Points rest_, held_;
+  std::vector<std::array<bool, 3>> fixed_;  // per vertex and axis; regions aside
+  std::vector<Region> regions_;
+  std::vector<Index> region_of_;      // per vertex, -1
+  std::vector<Index> vertex_of_;      // per node in elimination order; -1: a region
+  std::vector<Index> first_unknown_;  // per vertex, -1: none of its own
+  BlockColumns columns_;
+  std::vector<Source> sources_;  // per entry of columns_; block -1: of a region
+  std::vector<RegionBlock> region_blocks_;
+};
+
+}  // namespace softkin

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <softkin/statics/sparse_ldlt.hpp>
+
+namespace softkin {
+
+namespace {
+
+using Panel = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+/// Columns worth a thread's start.
+template <class Body>
+void each_column(Index columns, Index rows, Team& team, const Body& body) {
+  constexpr double worthwhile = 1e5;
+  if (static_cast<double>(columns) * rows < worthwhile) {
+    for (Index c = 0; c < columns; ++c) body(c);
+  } else {
+    team.pieces(columns, [&](Index begin, Index end) {
+      for (Index c = begin; c < end; ++c) body(c);
+    });
+  }
+}
+
+}  // namespace
+
+SparseLdlt::SparseLdlt(const BlockColumns& pattern)
+    : pattern_(pattern),
+      tree_(make_front_tree(pattern)),
+      lower_(static_cast<std::size_t>(tree_.values)),
+      diagonal_(static_cast<std::size_t>(pattern.size())),
+      pieces_(tree_.arena_sizes.size()) {
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    std::size_t largest = 0;
+    for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f) {
+      const Index size = tree_.fronts[f].size();
+      largest = std::max(largest, static_cast<std::size_t>(front_stride(size)) * size);
+    }
+    pieces_[p].front.resize(largest + 8);
+    pieces_[p].arena.resize(static_cast<std::size_t>(tree_.arena_sizes[p]));
+  }
+}
+
+double SparseLdlt::bytes() const {
+  double values = static_cast<double>(lower_.size() + diagonal_.size());
+  for (const Piece& piece : pieces_)
+    values += static_cast<double>(piece.front.size() + piece.arena.size() + piece.work.plain.size() +
+                                  piece.work.scaled.size());
+  return 8 * values + 4.0 * static_cast<double>(tree_.rows.size() + tree_.places.size() + pattern_.rows.size() +
+                                                tree_.entry_places.size());
+}
+
+void SparseLdlt::assemble(Index index, const std::vector<double>& values, double* front, const Piece& piece,
+                          Team& team) const {
+  const Front& own = tree_.fronts[index];
+  const Index stride = front_stride(own.size());
+  each_column(own.size(), stride, team, [&](Index c) {
+    double* column = front + static_cast<std::ptrdiff_t>(c) * stride;
+    std::fill(column + c / 8 * 8, column + stride, 0.0);
+  });
+  for (Index node = own.begin_node; node < own.end_node; ++node) {
+    const Index width = pattern_.width(node);
+    double* columns = front + static_cast<std::ptrdiff_t>(pattern_.unknowns[node] - own.begin) * stride;
+    for (Index e = pattern_.starts[node]; e < pattern_.starts[node + 1]; ++e) {
+      const Index height = pattern_.width(pattern_.rows[e]);
+      const double* block = values.data() + pattern_.offsets[e];
+      double* target = columns + tree_.entry_places[e];
+      for (Index c = 0; c < width; ++c)
+        for (Index r = 0; r < height; ++r) target[static_cast<std::ptrdiff_t>(c) * stride + r] = block[c * height + r];
+    }
+  }
+  for (Index i = tree_.first_child[index]; i >= 0; i = tree_.next_sibling[i]) {
+    const Front& child = tree_.fronts[i];
+    const double* update = piece.arena.data() + child.update_offset;
+    const Index* places = tree_.places.data() + child.first_row;
+    each_column(child.below, child.below, team, [&](Index c) {
+      double* column = front + static_cast<std::ptrdiff_t>(places[c]) * stride;
+      const double* from = update + static_cast<std::ptrdiff_t>(c) * child.below;
+      for (Index r = c; r < child.below; ++r) column[places[r]] += from[r];
+    });
+  }
+}
+
+void SparseLdlt::factor(Index index, const std::vector<double>& values, double least, Piece& piece, Team& team) {
+  const Front& own = tree_.fronts[index];
+  const Index size = own.size(), pivots = own.pivots(), stride = front_stride(size);
+  double* front = piece.front.data();
+  assemble(index, values, front, piece, team);
+  piece.negative += factor_front(front, size, pivots, least, diagonal_.data() + own.begin, piece.work, team);
+  const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
+  each_column(pivots, size, team, [&](Index c) {
+    std::copy(column(c) + c, column(c) + size,
+              lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size + c);
+  });
+  Piece& home = own.parent >= top_front() ? pieces_.back() : piece;
+  each_column(own.below, own.below, team, [&](Index c) {
+    std::copy(column(pivots + c) + pivots + c, column(pivots + c) + size,
+              home.arena.data() + own.update_offset + static_cast<std::int64_t>(c) * own.below + c);
+  });
+}
+
+SparseLdlt::Pivots SparseLdlt::factorise(const std::vector<double>& values, double least, Team& team) {
+  const Index count = static_cast<Index>(pieces_.size()) - 1;
+  Team alone(1);
+  const auto run = [&](Index p, Team& helpers) {
+    pieces_[p].negative = 0;
+    for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f) factor(f, values, least, pieces_[p], helpers);
+  };
+  team.each(count, [&](Index p) { run(p, alone); });
+  run(count, team);
+  Pivots pivots;
+  for (const Piece& piece : pieces_) pivots.negative += piece.negative;
+  pivots.replaced = static_cast<Index>(std::count(diagonal_.begin(), diagonal_.end(), -least));
+  return pivots;
+}
+
+/// x: the unknowns; above: what is to be subtracted from unknowns from `top` on; work: as many rows as a front has
+/// below.
+template <class Columns>
+void SparseLdlt::forward(const Front& front, Columns& x, Columns& above, Columns& work, Index top) const {
+  const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
+                    Eigen::OuterStride<>(front.size()));
+  auto own = x.middleRows(front.begin, front.pivots());
+  panel.topRows(front.pivots()).template triangularView<Eigen::UnitLower>().solveInPlace(own);
+  if (front.below == 0) return;
+  auto moved = work.topRows(front.below);
+  moved.noalias() = panel.bottomRows(front.below) * own;
+  const Index* rows = tree_.rows.data() + front.first_row;
+  for (Index c = 0; c < x.cols(); ++c)
+    for (Index r = 0; r < front.below; ++r) {
+      if (rows[r] < top)
+        x(rows[r], c) -= moved(r, c);
+      else
+        above(rows[r] - top, c) += moved(r, c);
+    }
+}
+
+template <class Columns>
+void SparseLdlt::backward(const Front& front, Columns& x, Columns& work) const {
+  const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
+                    Eigen::OuterStride<>(front.size()));
+  auto own = x.middleRows(front.begin, front.pivots());
+  for (Index c = 0; c < x.cols(); ++c)
+    for (Index r = 0; r < front.pivots(); ++r) own(r, c) /= diagonal_[front.begin + r];
+  if (front.below > 0) {
+    auto known = work.topRows(front.below);
+    const Index* rows = tree_.rows.data() + front.first_row;
+    for (Index c = 0; c < x.cols(); ++c)
+      for (Index r = 0; r < front.below; ++r) known(r, c) = x(rows[r], c);
+    own.noalias() -= panel.bottomRows(front.below).transpose() * known;
+  }
+  panel.topRows(front.pivots()).transpose().template triangularView<Eigen::UnitUpper>().solveInPlace(own);
+}
+
+template <class Columns>
+void SparseLdlt::solve_columns(Columns& x, Team& team) const {
+  const Index count = static_cast<Index>(pieces_.size()) - 1, first_top = top_front();
+  const Index end = static_cast<Index>(tree_.fronts.size());
+  const Index top = first_top < end ? tree_.fronts[first_top].begin : size();
+  Index most_below = 0;
+  for (const Front& front : tree_.fronts) most_below = std::max(most_below, front.below);
+  std::vector<Columns> above(count), work(count);
+  team.each(count, [&](Index p) {
+    above[p] = Columns::Zero(size() - top, x.cols());
+    work[p] = Columns(most_below, x.cols());
+    for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f) forward(tree_.fronts[f], x, above[p], work[p], top);
+  });
+  for (const Columns& part : above) x.bottomRows(size() - top) -= part;
+  Columns none, rows(most_below, x.cols());
+  for (Index f = first_top; f < end; ++f) forward(tree_.fronts[f], x, none, rows, size());
+  for (Index f = end - 1; f >= first_top; --f) backward(tree_.fronts[f], x, rows);
+  team.each(count, [&](Index p) {
+    for (Index f = tree_.pieces[p + 1] - 1; f >= tree_.pieces[p]; --f) backward(tree_.fronts[f], x, work[p]);
+  });
+}
+
+void SparseLdlt::solve(Eigen::MatrixXd& right_side, Team& team) const {
+  if (right_side.cols() != 1) return solve_columns(right_side, team);
+  Eigen::VectorXd column = right_side.col(0);
+  solve_columns(column, team);
+  right_side.col(0) = column;
+}
+
+}  // namespace softkin

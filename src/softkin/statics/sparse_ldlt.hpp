@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <softkin/statics/front_kernel.hpp>
+#include <softkin/statics/front_tree.hpp>
+
+namespace softkin {
+
+/// LDL^T of a symmetric sparse matrix without pivoting, multifrontal: analysed once, factorised many times. The number
+/// of negative pivots is the number of negative eigenvalues. Independent subtrees and large fronts run on the team; the
+/// result does not depend on its size.
+class SparseLdlt {
+ public:
+  explicit SparseLdlt(const BlockColumns& pattern);
+
+  struct Pivots {
+    Index negative = 0;  // as many as the matrix has negative eigenvalues
+    Index replaced = 0;  // pivots too small to divide by; they count as negative
+  };
+
+  /// values: as the pattern's offsets say. least: magnitude below which a pivot is replaced.
+  Pivots factorise(const std::vector<double>& values, double least, Team& team);
+
+  /// right_side, size() x k in the pattern's order of unknowns, becomes the solution.
+  void solve(Eigen::MatrixXd& right_side, Team& team) const;
+
+  [[nodiscard]] Index size() const { return pattern_.size(); }
+  [[nodiscard]] std::int64_t nonzeros() const { return tree_.values; }
+  [[nodiscard]] double flops() const { return tree_.flops; }
+  [[nodiscard]] double bytes() const;
+
+ private:
+  struct Piece {
+    FrontWork work;
+    std::vector<double> front, arena;
+    Index negative = 0;
+  };
+
+  void factor(Index front, const std::vector<double>& values, double least, Piece& piece, Team& team);
+  void assemble(Index index, const std::vector<double>& values, double* front, const Piece& piece, Team& team) const;
+  [[nodiscard]] Index top_front() const { return tree_.pieces[tree_.pieces.size() - 2]; }
+  template <class Columns>
+  void forward(const Front& front, Columns& x, Columns& above, Columns& work, Index top) const;
+  template <class Columns>
+  void backward(const Front& front, Columns& x, Columns& work) const;
+  template <class Columns>
+  void solve_columns(Columns& x, Team& team) const;
+
+  BlockColumns pattern_;
+  FrontTree tree_;
+  std::vector<double> lower_, diagonal_;
+  std::vector<Piece> pieces_;  // the top's is the last
+};
+
+}  // namespace softkin

@@ -1,0 +1,245 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <softkin/model/cavity.hpp>
+
+#include "model/compile_testing.hpp"
+#include "model/physical_robots.hpp"
+
+using namespace softkin;
+using namespace softkin::testing;
+
+namespace {
+
+std::set<Index> vertices_of(const std::vector<CavityFace>& faces) {
+  std::set<Index> vertices;
+  for (const CavityFace& face : faces) vertices.insert(face.corners.begin(), face.corners.end());
+  return vertices;
+}
+
+TEST(Physical, AChamberIsACavityWithoutElements) {
+  RobotSpec spec = physical_robot(hollow_mesh());
+  spec.actuators.push_back(chamber("chamber"));
+  const Model model = compile(spec);
+  EXPECT_EQ(model.formulation, Formulation::physical);
+  EXPECT_EQ(model.tetrahedra.size(), 26u * 6);
+  const Actuator& air = model.actuators[0];
+  EXPECT_TRUE(air.tetrahedra.empty());
+  EXPECT_EQ(air.cavity.size(), 12u);
+  EXPECT_NEAR(air.rest_measure, 1000, 1e-9);
+  for (const Index v : vertices_of(air.cavity)) {
+    EXPECT_DOUBLE_EQ((model.rest.row(v).transpose() - Vec3(15, 15, 15)).cwiseAbs().maxCoeff(), 5);
+    EXPECT_TRUE(model.used[v]);
+  }
+  for (const ElementRole& role : model.tetrahedron_roles) {
+    EXPECT_EQ(role.material, 0);
+    EXPECT_EQ(role.actuator, -1);
+  }
+  EXPECT_TRUE(model.notes.empty());
+  // volume grows where the cavity's vertices move out
+  Points grown = model.rest;
+  for (const Index v : vertices_of(air.cavity)) grown.row(v) += 0.1 * (grown.row(v) - Eigen::RowVector3d::Constant(15));
+  EXPECT_NEAR(enclosed_volume(grown, air.cavity), 1331, 1e-9);
+}
+
+TEST(Physical, ReversedElementsOfAChamberAreTurned) {
+  RobotSpec spec = physical_robot(hollow_mesh());
+  spec.actuators.push_back(chamber("chamber"));
+  for (const Index i : spec.mesh.regions.back().tetrahedra)
+    if (i % 2 == 0) std::swap(spec.mesh.tetrahedra[i][2], spec.mesh.tetrahedra[i][3]);
+  const Model model = compile(spec);
+  EXPECT_EQ(model.actuators[0].cavity.size(), 12u);
+  EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
+  EXPECT_TRUE(has_note(model, "3 elements were reordered"));
+}
+
+TEST(Physical, ACavityHasItsFacesOnTheOutsideToo) {
+  RobotSpec spec = physical_robot(block_mesh({3, 1, 1}, {30, 10, 10}));
+  add_volume_region(spec.mesh, "end", [](const Vec3& p) { return p[0] > 20; });
+  spec.actuators.push_back(chamber("end"));
+  const Model model = compile(spec);
+  EXPECT_EQ(model.actuators[0].cavity.size(), 12u);
+  EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
+  EXPECT_TRUE(has_note(model, "4 vertices on the boundary of the chamber of actuator 'air' belong to no element"));
+  EXPECT_EQ(model.notes.size(), 1u);
+  for (Index v = 0; v < model.rest.rows(); ++v) EXPECT_EQ(model.used[v], model.rest(v, 0) < 25);
+}
+
+TEST(Physical, VerticesInsideAChamberAreNoLooseVertices) {
+  RobotSpec spec = physical_robot(block_mesh({4, 4, 4}, {40, 40, 40}));
+  add_volume_region(spec.mesh, "chamber",
+                    [](const Vec3& p) { return (p - Vec3(20, 20, 20)).cwiseAbs().maxCoeff() < 10; });
+  spec.actuators.push_back(chamber("chamber"));
+  const Model model = compile(spec);
+  EXPECT_TRUE(model.notes.empty());
+  EXPECT_NEAR(model.actuators[0].rest_measure, 8000, 1e-9);
+  EXPECT_EQ(model.actuators[0].cavity.size(), 6u * 8);
+}
+
+TEST(Physical, ASurfaceIsEmbeddedInTheBody) {
+  RobotSpec spec = physical_robot(hollow_mesh());
+  ActuatorSpec bag = chamber("");
+  bag.region.reset();
+  bag.surface = box_surface({6, 7, 8}, {11, 12, 13});
+  for (Triangle& t : bag.surface->triangles) std::swap(t[0], t[1]);
+  spec.actuators.push_back(bag);
+  const Model model = compile(spec);
+  EXPECT_EQ(model.tetrahedra.size(), 27u * 6);
+  EXPECT_TRUE(model.actuators[0].tetrahedra.empty());
+  EXPECT_TRUE(model.actuators[0].cavity.empty());
+  EXPECT_EQ(model.actuators[0].points.size(), 8u);
+  EXPECT_EQ(model.actuators[0].surface.size(), 12u);
+  EXPECT_NEAR(model.actuators[0].rest_measure, 11 * 12 * 13, 1e-9);
+}
+
+TEST(Physical, ACableHasNoGaps) {
+  RobotSpec spec = physical_robot(block_mesh({3, 1, 2}, {30, 10, 20}));
+  spec.actuators.push_back(cable({at(0, 5, 15), at(10, 5, 15), at(30, 5, 15)}, 0.01, 1));
+  spec.actuators[0].apexes = {at(15, 5, 2)};
+  const Model model = compile(spec);
+  EXPECT_TRUE(model.actuators[0].gaps.empty());
+  EXPECT_EQ(model.actuators[0].points.size(), 3u);
+  EXPECT_NEAR(model.actuators[0].rest_measure, 30, 1e-12);
+}
+
+TEST(Physical, ACableHoldsNoPart) {
+  RobotSpec spec = physical_robot(block_mesh({3, 1, 1}, {30, 10, 10}));
+  spec.voids.push_back(shaped(Box{{10, 0, 0}, {20, 10, 10}}));
+  spec.actuators.push_back(cable({at(2, 5, 9), at(10, 5, 9), at(20, 5, 9), at(28, 5, 9)}));
+  EXPECT_NE(refusal(spec).find("a part of 8 vertices around (25, 5, 5) mm can move"), std::string::npos);
+  spec.rigid.push_back({shaped(Box{{10, 0, 0}, {20, 10, 10}}), "link"});
+  EXPECT_EQ(refusal(spec), "");
+}
+
+TEST(Physical, ADeaHasAMaterialAndAnActuator) {
+  Mesh mesh = block_mesh({4, 2, 1}, {8, 4, 1}, Split::prisms);
+  add_volume_region(mesh, "membrane", [](const Vec3& p) { return p[0] < 4; });
+  RobotSpec spec = physical_robot(mesh);
+  spec.materials[0].region = "all";
+  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
+  skin.region = "membrane";
+  skin.rest = 1.2;
+  spec.actuators.push_back(skin);
+  const Model model = compile(spec);
+  EXPECT_EQ(model.actuators[0].prisms.size(), 8u);
+  EXPECT_NEAR(model.actuators[0].rest_measure, 16, 1e-12);
+  int actuated = 0;
+  for (const ElementRole& role : model.prism_roles) {
+    EXPECT_EQ(role.material, 0);
+    actuated += role.actuator == 0;
+  }
+  EXPECT_EQ(actuated, 8);
+  // its prisms are elements of the body: they need a material
+  spec.regions.push_back({"rest", Box{{4, 0, 0}, {8, 4, 1}}, line(2)});
+  spec.materials[0].region = "rest";
+  EXPECT_NE(refusal(spec).find("8 elements of region 'body' have no material"), std::string::npos);
+}
+
+TEST(Physical, LoadControlRestsAtZero) {
+  RobotSpec spec = physical_robot(hollow_mesh());
+  spec.actuators = {chamber("chamber"), cable({at(0, 5, 5), at(30, 5, 5)})};
+  for (ActuatorSpec& a : spec.actuators) {
+    a.control = Control::load;
+    a.rest = 0;
+  }
+  spec.actuators[0].low = -20;
+  spec.actuators[1].low = 2;
+  spec.actuators[1].high = 9;
+  const Model model = compile(spec);
+  EXPECT_EQ(model.actuators[0].control, Control::load);
+  EXPECT_EQ(model.rest_actuation(), Eigen::Vector2d(0, 2));
+  ASSERT_EQ(model.notes.size(), 1u);
+  EXPECT_EQ(model.notes[0],
+            "The range [2, 9] of actuator 'tendon' excludes its load at rest 0: where none is asked for, 2 is taken.");
+}
+
+TEST(Physical, ActuatorRefusals) {
+  RobotSpec good = physical_robot(hollow_mesh());
+  add_volume_region(good.mesh, "half",
+                    [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 5 && p[0] > p[1]; });
+  good.actuators = {chamber("chamber"), cable({at(0, 5, 5), at(30, 5, 5)})};
+  good.actuators[1].control = Control::load;
+  good.actuators[1].rest = 0;
+  const auto change = [](std::size_t i, const std::function<void(ActuatorSpec&)>& f) {
+    return [=](RobotSpec& spec) { f(spec.actuators[i]); };
+  };
+  expect_refused(
+      good,
+      {
+          {"shared",
+           [](RobotSpec& s) {
+             s.actuators.push_back(s.actuators[0]);
+             s.actuators[2].name = "water";
+             s.actuators[2].region = "half";
+           },
+           "actuator 'water' and actuator 'air' both hold tetrahedron"},
+          {"void", [](RobotSpec& s) { s.voids.push_back(named("chamber")); }, "which is void: it cannot be both"},
+          {"far",
+           [](RobotSpec& s) {
+             // all around the chamber is void
+             s.mesh = block_mesh({5, 5, 5}, {50, 50, 50});
+             add_volume_region(s.mesh, "chamber",
+                               [](const Vec3& p) { return (p - Vec3(25, 25, 25)).cwiseAbs().maxCoeff() < 5; });
+             add_volume_region(s.mesh, "around", [](const Vec3& p) {
+               const double r = (p - Vec3(25, 25, 25)).cwiseAbs().maxCoeff();
+               return r > 5 && r < 15;
+             });
+             s.voids = {named("around")};
+           },
+           "actuator 'air' has a chamber that does not touch the body"},
+          {"all", change(0, [](ActuatorSpec& a) { a.region = "body"; }), "void or belongs to a chamber"},
+          {"ratio 0", change(0, [](ActuatorSpec& a) { a.low = 0; }), "needs a range with 0 < low <= high"},
+          {"tension", change(1, [](ActuatorSpec& a) { a.low = -1; }), "range of its tension with 0 <= low <= high"},
+          {"tension nan", change(1, [](ActuatorSpec& a) { a.high = std::nan(""); }), "not [0.9, nan]"},
+          {"pressure",
+           change(0,
+                  [](ActuatorSpec& a) {
+                    a.control = Control::load;
+                    a.rest = 0;
+                    a.high = -1;
+                  }),
+           "range of its pressure with low <= high, not [0.5, -1]"},
+          {"pressure inf",
+           change(0,
+                  [](ActuatorSpec& a) {
+                    a.control = Control::load;
+                    a.rest = 0;
+                    a.low = -INFINITY;
+                  }),
+           "range of its pressure with low <= high"},
+          {"rest", change(1, [](ActuatorSpec& a) { a.rest = 1; }), "cannot have a load at rest other than 0, not 1"},
+          {"open",
+           change(0,
+                  [](ActuatorSpec& a) {
+                    a.region.reset();
+                    a.surface = box_surface({9, 9, 9}, {12, 12, 12});
+                    a.surface->triangles.pop_back();
+                  }),
+           "needs a closed surface: the surface is not closed"},
+      });
+  RobotSpec shell = physical_robot(block_mesh({2, 2, 1}, {2, 2, 1}, Split::prisms));
+  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
+  skin.region = "body";
+  skin.control = Control::load;
+  shell.actuators.push_back(skin);
+  EXPECT_NE(refusal(shell).find("actuator 'skin' is a dea: it is controlled by its ratio"), std::string::npos);
+}
+
+TEST(Physical, TargetShapesKnowNoForces) {
+  RobotSpec spec = block_robot(hollow_mesh());
+  spec.gravity = {0, 0, -9.81};
+  spec.forces = {{"push", at(30, 15, 15), {1, 0, 0}}};
+  const Model model = compile(spec);
+  EXPECT_EQ(model.dead_load.rows(), 0);
+  EXPECT_EQ(model.notes.size(), 2u);
+  EXPECT_TRUE(has_note(model, "Gravity is left out"));
+  EXPECT_TRUE(has_note(model, "1 force is left out"));
+  spec.actuators = {chamber("chamber")};
+  spec.actuators[0].control = Control::load;
+  EXPECT_NE(refusal(spec).find("robot.yaml:9: actuator 'air' is controlled by its load: that needs the physical"),
+            std::string::npos);
+}
+
+}  // namespace

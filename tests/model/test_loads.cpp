@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/compile_testing.hpp"
+#include "model/physical_robots.hpp"
+
+using namespace softkin;
+using namespace softkin::testing;
+
+namespace {
+
+RobotSpec heavy_block(Split split) {
+  Mesh mesh = block_mesh({3, 2, 2}, {30, 20, 10}, split);
+  RobotSpec spec = physical_robot(std::move(mesh));
+  spec.materials[0].density = 1100;
+  spec.gravity = {0, 3, -9.81};
+  return spec;
+}
+
+/// Moments of a load: sum of x_i f_i over the vertices, a component of f a column.
+Mat3 moments(const Model& model) {
+  return model.rest.transpose() * model.dead_load;
+}
+
+TEST(DeadLoad, WeighsABlock) {
+  for (const Split split : {Split::five, Split::six, Split::prisms}) {
+    const RobotSpec spec = heavy_block(split);
+    const Model model = compile(spec);
+    ASSERT_EQ(model.dead_load.rows(), model.rest.rows());
+    const Vec3 weight = 6e-6 * 1100 * spec.gravity;  // 6000 mm^3
+    EXPECT_LT((model.dead_load.colwise().sum().transpose() - weight).norm(), 1e-14);
+    EXPECT_LT((moments(model) - Vec3(15, 10, 5) * weight.transpose()).norm(), 1e-12) << "acts at the centroid";
+  }
+}
+
+TEST(DeadLoad, OfATaperedPrismActsAtItsCentroid) {
+  // a frustum of unit height over the triangle (0, 0), (3, 0), (0, 3), its top scaled by s about (0, 0)
+  RobotSpec spec = heavy_block(Split::prisms);
+  const double s = 0.4;
+  spec.mesh = Mesh();
+  spec.mesh.vertices.resize(6, 3);
+  spec.mesh.vertices << 0, 0, 0, 3, 0, 0, 0, 3, 0, 0, 0, 1, 3 * s, 0, 1, 0, 3 * s, 1;
+  spec.mesh.prisms = {{0, 1, 2, 3, 4, 5}};
+  spec.fixed = {{shaped(VertexList{{0, 1, 2}}), {true, true, true}}};
+  const Model model = compile(spec);
+  // scale 1 - (1 - s) z: area 9/2 scale^2, centroid at scale (1, 1)
+  const auto power = [&](int n) { return (1 - std::pow(s, n + 1)) / ((n + 1) * (1 - s)); };
+  const double volume = 4.5 * power(2), x = 4.5 * power(3);
+  const double z = 4.5 * (power(2) - power(3)) / (1 - s);
+  const Vec3 unit = 1100e-9 * spec.gravity;
+  EXPECT_LT((model.dead_load.colwise().sum().transpose() - volume * unit).norm(), 1e-18);
+  EXPECT_LT((moments(model) - Vec3(x, x, z) * unit.transpose()).norm(), 1e-18);
+}
+
+TEST(DeadLoad, EveryMaterialHasItsDensity) {
+  RobotSpec spec = heavy_block(Split::six);
+  add_volume_region(spec.mesh, "tip", [](const Vec3& p) { return p[0] > 20; });
+  spec.materials.push_back(spec.materials[0]);
+  spec.materials[1].region = "tip";
+  spec.materials[1].density = 0;
+  Model model = compile(spec);
+  EXPECT_NEAR(model.dead_load.col(2).sum(), -4e-6 * 1100 * 9.81, 1e-14);
+  EXPECT_TRUE(has_note(model, "The material of region 'tip' has no density and so no weight."));
+  spec.materials[1].density = 2200;
+  model = compile(spec);
+  EXPECT_NEAR(model.dead_load.col(2).sum(), -8e-6 * 1100 * 9.81, 1e-14);
+  EXPECT_TRUE(model.notes.empty());
+}
+
+TEST(DeadLoad, AChamberHasNoWeight) {
+  RobotSpec spec = physical_robot(hollow_mesh());
+  spec.actuators.push_back(chamber("chamber"));
+  spec.materials[0].density = 1000;
+  spec.gravity = {0, 0, -10};
+  EXPECT_NEAR(compile(spec).dead_load.col(2).sum(), -0.26, 1e-14);
+}
+
+TEST(DeadLoad, ForcesActAtPointsAndOnRegions) {
+  RobotSpec spec = physical_robot(block_mesh({3, 2, 2}, {30, 20, 10}));
+  EXPECT_EQ(compile(spec).dead_load, Points::Zero(compile(spec).rest.rows(), 3));
+  spec.forces = {{"push", at(12, 3, 4), {1, 2, 3}}, {"", mean("x_high"), {0, 0, -4}}};
+  const Model model = compile(spec);
+  EXPECT_LT((model.dead_load.colwise().sum().transpose() - Vec3(1, 2, -1)).norm(), 1e-14);
+  const Mat3 expected = Vec3(12, 3, 4) * Vec3(1, 2, 3).transpose() + Vec3(30, 10, 5) * Vec3(0, 0, -4).transpose();
+  EXPECT_LT((moments(model) - expected).norm(), 1e-12);
+}
+
+TEST(DeadLoad, Refusals) {
+  RobotSpec good = heavy_block(Split::six);
+  good.forces = {{"push", at(30, 3, 4), {1, 2, 3}}};
+  expect_refused(good, {
+                           {"density", [](RobotSpec& s) { s.materials[0].density = 0; },
+                            "block: there is gravity but no material has a density"},
+                           {"gravity", [](RobotSpec& s) { s.gravity[1] = NAN; }, "block: gravity is not finite"},
+                           {"force", [](RobotSpec& s) { s.forces[0].force[0] = INFINITY; },
+                            "robot.yaml:5: force 'push' is not finite"},
+                           {"far", [](RobotSpec& s) { s.forces[0].at = at(90, 0, 0); },
+                            "the point of force 'push' is 60 mm from the mesh"},
+                           {"region", [](RobotSpec& s) { s.forces[0].at = mean("x_hihg"); }, "did you mean 'x_high'?"},
+                       });
+}
+
+}  // namespace

@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/compile_testing.hpp"
+#include "model/physical_robots.hpp"
+
+using namespace softkin;
+using namespace softkin::testing;
+
+namespace {
+
+ElasticLaw compiled(const ElasticSpec& elastic) {
+  RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
+  spec.materials[0].elastic = elastic;
+  return compile(spec).materials[0].elastic;
+}
+
+TEST(ElasticConstants, YoungsModulusAndPoissonRatio) {
+  for (const Law law : {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean})
+    for (const double nu : {-0.5, 0.0, 0.3, 0.49}) {
+      ElasticSpec spec;
+      spec.law = law;
+      spec.youngs_modulus = 2.5;
+      spec.poisson_ratio = nu;
+      const ElasticLaw elastic = compiled(spec);
+      EXPECT_EQ(elastic.law, law);
+      // under uniaxial stress E e the strains are (e, -nu e, -nu e), by Hooke's law in mu and lambda
+      const double trace = 1 - 2 * nu;
+      EXPECT_NEAR(2 * elastic.mu + elastic.lambda * trace, 2.5, 1e-12);
+      EXPECT_NEAR(-2 * elastic.mu * nu + elastic.lambda * trace, 0, 1e-12);
+      EXPECT_EQ(elastic.c10, 0);
+      EXPECT_EQ(elastic.bulk, 0);
+    }
+}
+
+TEST(ElasticConstants, BulkModulusGivenOrByPoissonRatio) {
+  ElasticSpec rivlin;
+  rivlin.law = Law::mooney_rivlin;
+  rivlin.c10 = 0.4;
+  rivlin.c01 = -0.1;
+  rivlin.bulk_modulus = 30;
+  ElasticLaw law = compiled(rivlin);
+  EXPECT_EQ(law.c10, 0.4);
+  EXPECT_EQ(law.c01, -0.1);
+  EXPECT_EQ(law.bulk, 30);
+  EXPECT_EQ(law.mu, 0);
+  rivlin.bulk_modulus.reset();
+  rivlin.poisson_ratio = 0.45;
+  law = compiled(rivlin);
+  // nu = (3 K - 2 G) / (2 (3 K + G)), G = 0.6
+  EXPECT_NEAR((3 * law.bulk - 1.2) / (2 * (3 * law.bulk + 0.6)), 0.45, 1e-14);
+
+  ElasticSpec yeoh;
+  yeoh.law = Law::yeoh;
+  yeoh.c10 = 0.3;
+  yeoh.c20 = -0.01;
+  yeoh.poisson_ratio = 0.45;
+  const ElasticLaw same = compiled(yeoh);
+  EXPECT_NEAR(same.bulk, law.bulk, 1e-12);
+  EXPECT_EQ(same.c20, -0.01);
+  EXPECT_EQ(same.c30, 0);
+}
+
+TEST(ElasticConstants, Refusals) {
+  RobotSpec lame = physical_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
+  lame.materials[0].origin = line(3);
+  const auto change = [](const std::function<void(ElasticSpec&)>& f) {
+    return [=](RobotSpec& spec) { f(*spec.materials[0].elastic); };
+  };
+  const double nan = std::nan("");
+  expect_refused(
+      lame,
+      {
+          {"none", [](RobotSpec& s) { s.materials[0].elastic.reset(); },
+           "robot.yaml:3: the material of region 'all' needs elastic constants"},
+          {"no E", change([](ElasticSpec& e) { e.youngs_modulus.reset(); }), "needs youngs_modulus"},
+          {"no nu", change([](ElasticSpec& e) { e.poisson_ratio.reset(); }), "needs poisson_ratio"},
+          {"E 0", change([](ElasticSpec& e) { e.youngs_modulus = 0; }), "youngs_modulus must be above 0, not 0"},
+          {"E nan", change([=](ElasticSpec& e) { e.youngs_modulus = nan; }), "youngs_modulus must be finite"},
+          {"E inf", change([](ElasticSpec& e) { e.youngs_modulus = INFINITY; }), "youngs_modulus must be finite"},
+          {"nu 0.5", change([](ElasticSpec& e) { e.poisson_ratio = 0.5; }), "must lie between -1 and 0.5, not be 0.5"},
+          {"nu -1", change([](ElasticSpec& e) { e.poisson_ratio = -1; }), "must lie between -1 and 0.5, not be -1"},
+          {"nu nan", change([=](ElasticSpec& e) { e.poisson_ratio = nan; }), "poisson_ratio must be finite"},
+          {"c10", change([](ElasticSpec& e) { e.c10 = 1; }), "has c10, which its law does not take"},
+          {"bulk", change([](ElasticSpec& e) { e.bulk_modulus = 1; }), "has bulk_modulus, which its law"},
+          {"density", [](RobotSpec& s) { s.materials[0].density = -1; }, "density must be 0 or above, not -1"},
+          {"density nan", [=](RobotSpec& s) { s.materials[0].density = nan; }, "density must be 0 or above"},
+      });
+  RobotSpec rivlin = lame;
+  ElasticSpec& elastic = *rivlin.materials[0].elastic;
+  elastic = {};
+  elastic.law = Law::mooney_rivlin;
+  elastic.c10 = elastic.c01 = 0.1;
+  elastic.bulk_modulus = 10;
+  expect_refused(rivlin, {
+                             {"sum", change([](ElasticSpec& e) { e.c01 = -0.1; }), "c10 + c01 must be above 0, not 0"},
+                             {"no c01", change([](ElasticSpec& e) { e.c01.reset(); }), "needs c01"},
+                             {"nan", change([=](ElasticSpec& e) { e.c01 = nan; }), "c01 must be finite"},
+                             {"c20", change([](ElasticSpec& e) { e.c20 = 1; }), "has c20, which its law"},
+                             {"E", change([](ElasticSpec& e) { e.youngs_modulus = 1; }), "has youngs_modulus, which"},
+                             {"both", change([](ElasticSpec& e) { e.poisson_ratio = 0.4; }), "one of the two"},
+                             {"neither", change([](ElasticSpec& e) { e.bulk_modulus.reset(); }),
+                              "needs bulk_modulus or poisson_ratio"},
+                             {"bulk", change([](ElasticSpec& e) { e.bulk_modulus = 0; }), "bulk_modulus must be above"},
+                             {"yeoh", change([](ElasticSpec& e) { e.law = Law::yeoh; }), "has c01, which its law"},
+                         });
+}
+
+TEST(ElasticConstants, TargetShapesDoWithout) {
+  RobotSpec spec = block_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
+  EXPECT_EQ(refusal(spec), "");
+  spec.materials[0].shape_ratio.reset();
+  EXPECT_NE(refusal(spec).find("needs shape_ratio"), std::string::npos);
+}
+
+}  // namespace
