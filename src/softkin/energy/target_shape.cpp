@@ -1,20 +1,9 @@
 #include <Eigen/Geometry>
-#include <softkin/energy/target_shape.hpp>
+#include <softkin/energy/target_shape_parts.hpp>
 
 namespace softkin {
 
 namespace {
-
-template <int K>
-Pack33 correlation(const Shape<K>& current, const Shape<K>& target) {
-  Pack33 h{};
-  for (int i = 0; i < K; ++i) {
-    h.row[0] = h.row[0] + current[i].x * target[i];
-    h.row[1] = h.row[1] + current[i].y * target[i];
-    h.row[2] = h.row[2] + current[i].z * target[i];
-  }
-  return h;
-}
 
 template <int K>
 void finish(const Pack& weight, ElementPull<K>& out) {
@@ -42,28 +31,6 @@ Pack measure(const Shape<4>& current) {
 }
 Pack measure(const Shape<6>& current) {
   return mean_area(current);
-}
-
-/// f and g of ActuationBlock
-void growth(const ActuationBlock<3>&, const Pack& ratio, Pack& grown, Pack& thinned) {
-  grown = ratio;
-  thinned = pack(0);
-}
-void growth(const ActuationBlock<4>&, const Pack& ratio, Pack& grown, Pack& thinned) {
-  grown = cbrt(ratio);
-  thinned = pack(0);
-}
-void growth(const ActuationBlock<6>&, const Pack& ratio, Pack& grown, Pack& thinned) {
-  grown = sqrt(ratio);
-  thinned = 1 / ratio;
-}
-
-/// How much of the soft target is Eq. (4), times its scale r; the rest of it is the rigid target.
-void soft_target(const Pack& volume_ratio, Pack& scaled, Pack& rigid) {
-  constexpr double whole_from = 1.0 / 8;
-  const Pack share = max(pack(0), min(pack(1), (1 / whole_from) * volume_ratio));
-  scaled = share / cbrt(max(volume_ratio, pack(1e-6)));
-  rigid = 1 - share;
 }
 
 }  // namespace

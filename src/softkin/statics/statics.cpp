@@ -1,12 +1,9 @@
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <limits>
 #include <softkin/core/error.hpp>
-#include <softkin/statics/anderson.hpp>
-#include <softkin/statics/global_step.hpp>
+#include <softkin/statics/local_global.hpp>
 #include <softkin/statics/statics.hpp>
-#include <softkin/statics/target_shape_system.hpp>
+#include <softkin/statics/target_shape_newton.hpp>
 
 namespace softkin {
 
@@ -42,42 +39,6 @@ int worthwhile_threads(const Model& model) {
       std::clamp<std::size_t>(elements / elements_each, 1, std::max(1u, std::thread::hardware_concurrency())));
 }
 
-/// Accelerated steps may raise the energy a little on their way, and have to where R_omega < 1 or ratios are
-/// redistributed; those that raise it more lead to other equilibria.
-constexpr double tolerated_growth = 1.2;
-
-/// How far the fixed point may be: the step over the least change of steps per change of shape in the last iterations,
-/// which for a linear iteration x <- G x is bounded by 1 - (largest eigenvalue of G), accelerated or not.
-class ErrorEstimate {
- public:
-  void add(const Points& at, const Points& step) {
-    if (last_at_.size() > 0) {
-      const double moved = (at - last_at_).norm();
-      if (moved > 0) slopes_[count_++ % slopes_.size()] = (step - last_step_).norm() / moved;
-    }
-    last_at_ = at;
-    last_step_ = step;
-  }
-  [[nodiscard]] double mm(double step_mm) const {
-    double least = 1;
-    for (std::size_t i = 0; i < std::min(count_, slopes_.size()); ++i) least = std::min(least, slopes_[i]);
-    return step_mm / std::max(least, 1e-9);
-  }
-
- private:
-  Points last_at_, last_step_;
-  std::array<double, 20> slopes_{};
-  std::size_t count_ = 0;
-};
-
-void accept(const IterationRecord& record, bool keep_history, SolveReport& report) {
-  ++report.iterations;
-  report.energy = record.energy;
-  report.step_mm = record.step_mm;
-  report.gradient_norm = record.gradient_norm;
-  if (keep_history) report.history.push_back(record);
-}
-
 }  // namespace
 
 void check_actuation(const Model& model, const Actuation& actuation) {
@@ -94,10 +55,12 @@ void check_actuation(const Model& model, const Actuation& actuation) {
 }
 
 struct Statics::Parts {
-  explicit Parts(const Model& robot) : model(robot), system(robot), global(robot, system.global_matrix()) {}
+  explicit Parts(const Model& robot)
+      : model(robot), system(robot), global(robot, system.global_matrix()), newton(robot, system, global) {}
   const Model& model;
   TargetShapeSystem system;
   GlobalStep global;
+  TargetShapeNewton newton;
 };
 
 Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
@@ -122,54 +85,14 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
 
   Equilibrium result;
   result.actuation = actuation;
+  result.state.positions = start.positions;
   SolveReport& report = result.report;
-  report.solver = "local-global";
   report.tolerance_mm = options.step_tolerance_mm > 0 ? options.step_tolerance_mm : paper_tolerance;
-  Points& positions = result.state.positions;
-  positions = start.positions;
-  std::vector<Pose> poses = parts_->global.project(positions);
-  TargetShapeSystem::Scratch scratch = parts_->system.make_scratch();
-  Anderson anderson(options.anderson);
-  ErrorEstimate estimate;
-  Points before, accepted = positions;
-  double tolerated = std::numeric_limits<double>::infinity();
-  while (report.iterations < options.max_iterations) {
-    IterationRecord record;
-    record.energy = parts_->system.local_step(actuation, positions, scratch, team);
-    record.gradient_norm = 2 * parts_->global.free_norm(scratch.residual, poses);
-    if (record.energy > tolerated) {  // the extrapolation went astray: on from the plain step
-      positions = accepted;
-      poses = parts_->global.project(positions);
-      tolerated = std::numeric_limits<double>::infinity();
-      anderson.restart();
-      continue;
-    }
-    tolerated = options.anderson > 0 ? tolerated_growth * record.energy : tolerated;
-    before = positions;
-    parts_->global.step(scratch.residual, positions, poses, team);
-    record.step_mm = (positions - before).rowwise().norm().maxCoeff();
-    // the squares of far-off coordinates overflow
-    if (!std::isfinite(record.energy + record.gradient_norm + record.step_mm) || !positions.allFinite()) {
-      positions = accepted;
-      break;
-    }
-    accept(record, options.keep_history, report);
-    estimate.add(before, positions - before);
-    if (report.step_mm < report.tolerance_mm) {
-      report.status = Status::converged;
-      break;
-    }
-    if (progress && !progress({report.iterations, report.step_mm, report.tolerance_mm})) {
-      report.status = Status::interrupted;
-      break;
-    }
-    accepted = positions;
-    if (options.anderson > 0 && report.iterations < options.max_iterations) {
-      positions = anderson.next(before, positions);
-      poses = parts_->global.project(positions);
-    }
-  }
-  report.estimated_error_mm = estimate.mm(report.step_mm);
+  if (options.solver == Solver::newton)
+    parts_->newton.solve(start.actuation, options, progress, team, result);
+  else
+    solve_local_global(parts_->system, parts_->global, options, progress, team, result);
+  if (report.status == Status::converged) result.state.actuation = actuation;
   report.seconds = seconds_since(begin);
   return result;
 }

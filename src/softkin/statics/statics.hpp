@@ -10,8 +10,12 @@ namespace softkin {
 /// throws  InvalidInput on a size mismatch or a value outside its actuator's range
 void check_actuation(const Model& model, const Actuation& actuation);
 
+/// newton: the fixed point of Algorithm 1 by Newton's method. local_global: Algorithm 1 itself.
+enum class Solver { newton, local_global };
+
 struct StaticsOptions {
-  /// Largest move of a vertex in one iteration at which Algorithm 1 stops [mm], > 0. 0: the paper's 1e-5 mm on a robot
+  Solver solver = Solver::newton;
+  /// Largest move of a vertex in one iteration at which a solver stops [mm], > 0. 0: the paper's 1e-5 mm on a robot
   /// of its size, 8e-8 of the bounding box's diagonal.
   double step_tolerance_mm = 0;
   int max_iterations = 50000;  // >= 1
@@ -37,7 +41,7 @@ class Statics {
   /// start      where the search begins; its positions are n x 3 [mm]; fixed vertices and rigid regions of it are
   ///            projected to what holds them
   /// returns    positions n x 3 [mm] and report; not converging is report.status
-  /// source     Fang et al. 2020, Alg. 1, Eqs. (1)-(10) as corrected in docs/paper.md
+  /// source     Fang et al. 2020, Alg. 1, Eqs. (1)-(10) as corrected in docs/paper.md; Newton: same equilibrium
   /// throws     InvalidInput on a size mismatch, a start that is not finite, or a value outside its actuator's range
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions& options = {},
                                   const ProgressCallback& progress = {}) const;

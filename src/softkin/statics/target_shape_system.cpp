@@ -1,33 +1,9 @@
+#include <softkin/statics/target_shape_blocks.hpp>
 #include <softkin/statics/target_shape_system.hpp>
 
 namespace softkin {
 
 namespace {
-
-/// Local ratios stay above this, where a target shape would vanish or turn over [-].
-constexpr double least_ratio = 0.01;
-
-template <int K, class Nodes>
-void load(const Points& positions, const Nodes& nodes, Shape<K>& shape) {
-  for (int i = 0; i < K; ++i)
-    for (int l = 0; l < lanes; ++l) {
-      const double* p = positions.data() + 3 * static_cast<std::size_t>(nodes[i][l]);
-      shape[i].x[l] = p[0];
-      shape[i].y[l] = p[1];
-      shape[i].z[l] = p[2];
-    }
-}
-
-template <int K>
-void store(const ElementPull<K>& out, Index first, Index count, double* pulls) {
-  for (Index l = 0; l < count; ++l)
-    for (int i = 0; i < K; ++i) {
-      double* p = pulls + 3 * static_cast<std::size_t>(first + K * l + i);
-      p[0] = out.pull[i].x[l];
-      p[1] = out.pull[i].y[l];
-      p[2] = out.pull[i].z[l];
-    }
-}
 
 /// Runs kernel(block, shape, rotation, out) over a set and stores what it gives.
 template <int K, class Block, class Kernel>
@@ -39,7 +15,7 @@ void run(const ElementSet<K, Block>& set, const Points& nodes, std::vector<PackR
     for (Index b = begin; b < end; ++b) {
       load<K>(nodes, set.nodes[b], shape);
       kernel(b, shape, rotations[b], out);
-      store<K>(out, set.first_slot + K * lanes * b, std::min<Index>(lanes, set.count - lanes * b), pulls);
+      store<K>(out.pull, set.first_slot + K * lanes * b, std::min<Index>(lanes, set.count - lanes * b), pulls);
       energies[b] = out.energy;
     }
   });
@@ -106,11 +82,7 @@ void TargetShapeSystem::local_ratios(const ActuationSet<K>& set, double requeste
 
 double TargetShapeSystem::local_step(const Actuation& actuation, const Points& positions, Scratch& scratch,
                                      Team& team) const {
-  const Index vertices = static_cast<Index>(positions.rows());
-  scratch.nodes.topRows(vertices) = positions;
-  for (std::size_t i = 0; i < sets_.points.size(); ++i)
-    scratch.nodes.row(vertices + static_cast<Index>(i)) = sets_.points[i]->at(positions).transpose();
-
+  spread(positions, scratch.nodes);
   std::size_t index = 0;
   Pack* energies = scratch.energies.data();
   sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
@@ -126,28 +98,36 @@ double TargetShapeSystem::local_step(const Actuation& actuation, const Points& p
     energies += set.block_count();
     ++index;
   });
-  gather(scratch, team);
+  gather(scratch.pulls, scratch.residual, team);
   Pack energy{};
   for (const Pack& part : scratch.energies) energy += part;
   return sum(energy);
 }
 
-void TargetShapeSystem::gather(Scratch& scratch, Team& team) const {
+/// Embedded points' places, or moves, from the vertices'.
+void TargetShapeSystem::spread(const Points& positions, Points& nodes) const {
+  const Index vertices = static_cast<Index>(positions.rows());
+  nodes.topRows(vertices) = positions;
+  for (std::size_t i = 0; i < sets_.points.size(); ++i)
+    nodes.row(vertices + static_cast<Index>(i)) = sets_.points[i]->at(positions).transpose();
+}
+
+void TargetShapeSystem::gather(const std::vector<double>& pulls, Points& residual, Team& team) const {
   const auto pull_at = [&](Index node) {
     Vec3 total = Vec3::Zero();
     for (Index i = slot_starts_[node]; i < slot_starts_[node + 1]; ++i)
-      total += Eigen::Map<const Vec3>(scratch.pulls.data() + 3 * static_cast<std::size_t>(slots_[i]));
+      total += Eigen::Map<const Vec3>(pulls.data() + 3 * static_cast<std::size_t>(slots_[i]));
     return total;
   };
-  const Index vertices = static_cast<Index>(scratch.residual.rows());
+  const Index vertices = static_cast<Index>(residual.rows());
   team.pieces(vertices, [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v) scratch.residual.row(v) = pull_at(v).transpose();
+    for (Index v = begin; v < end; ++v) residual.row(v) = pull_at(v).transpose();
   });
   for (std::size_t i = 0; i < sets_.points.size(); ++i) {
     const EmbeddedPoint& point = *sets_.points[i];
     const Vec3 pull = pull_at(vertices + static_cast<Index>(i));
     for (std::size_t k = 0; k < point.vertices.size(); ++k)
-      scratch.residual.row(point.vertices[k]) += point.weights[k] * pull.transpose();
+      residual.row(point.vertices[k]) += point.weights[k] * pull.transpose();
   }
 }
 

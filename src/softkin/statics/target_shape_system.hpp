@@ -29,6 +29,27 @@ class TargetShapeSystem {
   /// returns  energy of Eq. (9) at these positions and targets [mm^5]
   double local_step(const Actuation& actuation, const Points& positions, Scratch& scratch, Team& team) const;
 
+  /// How the residual changes with the positions, at the shape of the last local_step: rotations turn along, targets of
+  /// R_omega < 1 and least-norm ratios follow.
+  ///
+  /// local   the scratch of that local_step
+  /// change  #V by 3, of the positions
+  /// out     another scratch; its residual, #V by 3, becomes the derivative of local.residual along `change`
+  void residual_change(const Scratch& local, const Points& change, Scratch& out, Team& team) const;
+
+  /// The part of residual_change that couples all elements of a least-norm actuator, -source (target . change): a change
+  /// of one element's measure is made up for by all. Per least-norm actuator, in the order of the sets.
+  struct Redistribution {
+    Points source, target;  // #V by 3
+  };
+  void redistributions(const Scratch& local, Scratch& work, std::vector<Redistribution>& out, Team& team) const;
+
+  /// Is the residual minus half the gradient of the energy: no R_omega < 1, no least-norm ratios?
+  [[nodiscard]] bool is_gradient() const;
+  [[nodiscard]] const ElementSets& sets() const { return sets_; }
+  /// Do the set's ratios follow the shape?
+  [[nodiscard]] bool redistributes(Index actuator) const { return actuator >= 0 && model_.actuators[actuator].least_norm; }
+
   /// Matrix of Eq. (10), one coordinate, lower triangle: sum_i w_i Vol_i P_i^T N P_i [mm^3].
   [[nodiscard]] Eigen::SparseMatrix<double> global_matrix() const;
 
@@ -36,7 +57,11 @@ class TargetShapeSystem {
   template <int K>
   void local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes, std::vector<Pack>& ratios,
                     Team& team) const;
-  void gather(Scratch& scratch, Team& team) const;
+  template <int K>
+  void ratio_changes(const ActuationSet<K>& set, const Scratch& local, const std::vector<Pack>& ratios,
+                     const Points& nodes, std::vector<Pack>& changes, Team& team) const;
+  void spread(const Points& positions, Points& nodes) const;
+  void gather(const std::vector<double>& pulls, Points& residual, Team& team) const;
 
   const Model& model_;
   ElementSets sets_;

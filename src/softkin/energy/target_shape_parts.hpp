@@ -1,0 +1,69 @@
+#pragma once
+
+#include <softkin/energy/target_shape.hpp>
+
+/// Formulas that the pulls of the target-shape formulation share with their derivatives.
+namespace softkin {
+
+/// H of best_rotation
+template <int K>
+inline Pack33 correlation(const Shape<K>& current, const Shape<K>& target) {
+  Pack33 h{};
+  for (int i = 0; i < K; ++i) {
+    h.row[0] = h.row[0] + current[i].x * target[i];
+    h.row[1] = h.row[1] + current[i].y * target[i];
+    h.row[2] = h.row[2] + current[i].z * target[i];
+  }
+  return h;
+}
+
+/// f and g of ActuationBlock
+inline void growth(const ActuationBlock<3>&, const Pack& ratio, Pack& grown, Pack& thinned) {
+  grown = ratio;
+  thinned = pack(0);
+}
+inline void growth(const ActuationBlock<4>&, const Pack& ratio, Pack& grown, Pack& thinned) {
+  grown = cbrt(ratio);
+  thinned = pack(0);
+}
+inline void growth(const ActuationBlock<6>&, const Pack& ratio, Pack& grown, Pack& thinned) {
+  grown = sqrt(ratio);
+  thinned = 1 / ratio;
+}
+
+/// The derivatives of f and g.
+inline void growth_slope(const ActuationBlock<3>&, const Pack&, Pack& grown, Pack& thinned) {
+  grown = pack(1);
+  thinned = pack(0);
+}
+inline void growth_slope(const ActuationBlock<4>&, const Pack& ratio, Pack& grown, Pack& thinned) {
+  grown = cbrt(ratio) / (3 * ratio);
+  thinned = pack(0);
+}
+inline void growth_slope(const ActuationBlock<6>&, const Pack& ratio, Pack& grown, Pack& thinned) {
+  grown = 0.5 / sqrt(ratio);
+  thinned = -1 / (ratio * ratio);
+}
+
+/// Below this share of its volume an element's soft target turns into the rigid one; below the least one its scale no
+/// longer grows.
+inline constexpr double whole_from = 1.0 / 8, least_scaled = 1e-6;
+
+/// How much of the soft target is Eq. (4), times its scale r; the rest of it is the rigid target.
+inline void soft_target(const Pack& volume_ratio, Pack& scaled, Pack& rigid) {
+  const Pack share = max(pack(0), min(pack(1), (1 / whole_from) * volume_ratio));
+  scaled = share / cbrt(max(volume_ratio, pack(least_scaled)));
+  rigid = 1 - share;
+}
+
+/// The derivatives of soft_target by the volume ratio.
+inline void soft_target_slope(const Pack& volume_ratio, Pack& scaled, Pack& rigid) {
+  const Pack bounded = max(volume_ratio, pack(least_scaled));
+  const Pack root = cbrt(bounded), zero = pack(0);
+  const PackMask whole = volume_ratio >= whole_from, inverted = volume_ratio <= 0;
+  const Pack turning = select(volume_ratio < least_scaled, pack(1), pack(2.0 / 3)) / (whole_from * root);
+  scaled = select(whole, -1 / (3 * root * bounded), select(inverted, zero, turning));
+  rigid = select(whole | inverted, zero, pack(-1 / whole_from));
+}
+
+}  // namespace softkin

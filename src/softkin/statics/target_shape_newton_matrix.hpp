@@ -1,0 +1,46 @@
+#pragma once
+
+#include <softkin/energy/target_shape_stiffness.hpp>
+#include <softkin/statics/block_matrix.hpp>
+#include <softkin/statics/target_shape_system.hpp>
+
+namespace softkin {
+
+/// The stiffness of the target-shape formulation over all vertices: minus the derivative of the residual where that is
+/// symmetric, else a positive semidefinite matrix near it (see stiffness_of_body, stiffness_of_actuation). The pattern
+/// is made once.
+class TargetShapeMatrix {
+ public:
+  /// system must outlive the object.
+  TargetShapeMatrix(const Model& model, const TargetShapeSystem& system);
+
+  [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
+
+  /// Values of pattern() [mm^3] at the shape of the last local_step.
+  ///
+  /// local      the scratch of that local_step
+  /// projected  with every element's matrix positive semidefinite
+  /// slots      work space
+  void assemble(const TargetShapeSystem::Scratch& local, bool projected, std::vector<double>& slots,
+                std::vector<double>& blocks, Team& team) const;
+
+ private:
+  /// A cable's triangle moves with the vertices that its three points are sums of.
+  struct Triangle {
+    struct Part {
+      Index place;  // of the vertex in the clique
+      double weight;
+    };
+    std::array<std::vector<Part>, 3> parts;
+  };
+
+  Cliques make_cliques(const Model& model);
+  void add_triangle(const Triangle& triangle, const TargetStiffness<3>& stiffness, int lane, double* slots) const;
+
+  const TargetShapeSystem& system_;
+  std::vector<std::int64_t> slots_;  // first of each element, in the order of the sets
+  std::vector<Triangle> triangles_;  // in the order of the sets
+  BlockPattern pattern_;
+};
+
+}  // namespace softkin
