@@ -135,6 +135,19 @@ void assemble(const Pack& weight, const Pack& straight, const Shape<K>& target, 
     }
 }
 
+template <int K>
+void turned_move(const Pack& weight, const Shape<K>& current, const Shape<K>& target, const Shape<K>& change,
+                 Shape<K>& out) {
+  for (int i = 0; i < K; ++i) out[i] = change[i];
+  center<K>(out);
+  const Pack3 turn = turn_compliance(turn_stiffness<K>(current, target)) * moment<K>(target, out);
+  // Cayley's map: agrees with exp to second order, and never turns by more than half a circle
+  const Pack3 half = pack(0.5) * turn;
+  const Pack scale = 1 / sqrt(1 + dot(half, half));
+  const Pack33 matrix = to_matrix({scale, scale * half.x, scale * half.y, scale * half.z});
+  for (int i = 0; i < K; ++i) out[i] = weight * (matrix * (current[i] + out[i] - cross(turn, current[i])) - current[i]);
+}
+
 /// The least eigenvalue of the turn stiffness, in the metric of the target, that keeps the exact matrix finite.
 constexpr double least_turn = 1e-6;
 
@@ -196,6 +209,22 @@ void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio,
   const Pack3 torque = moment<K>(target, moved) + ratio_change * moment<K>(slope, current);
   const Pack3 turn = turn_compliance(turn_stiffness<K>(current, target)) * torque;
   for (int i = 0; i < K; ++i) out[i] = block.weight * (cross(turn, target[i]) + ratio_change * slope[i] - moved[i]);
+}
+
+template <int K>
+void turned_move_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation,
+                         const Shape<K>& change, Shape<K>& out) {
+  Shape<K> target;
+  turned<K>(rotation, block.rest, target);
+  turned_move<K>(block.weight, current, target, change, out);
+}
+
+template <int K>
+void turned_move_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
+                              const PackRotation& rotation, const Shape<K>& change, Shape<K>& out) {
+  Shape<K> target, slope;
+  actuation_target<K>(block, ratio, rotation, target, slope);
+  turned_move<K>(block.weight, current, target, change, out);
 }
 
 template <int K>
@@ -277,6 +306,16 @@ template void pull_change_of_actuation(const ActuationBlock<4>&, const Pack&, co
                                        const PackRotation&, const Shape<4>&, Shape<4>&);
 template void pull_change_of_actuation(const ActuationBlock<6>&, const Pack&, const Pack&, const Shape<6>&,
                                        const PackRotation&, const Shape<6>&, Shape<6>&);
+template void turned_move_of_body(const BodyBlock<4>&, const Shape<4>&, const PackRotation&, const Shape<4>&,
+                                  Shape<4>&);
+template void turned_move_of_body(const BodyBlock<6>&, const Shape<6>&, const PackRotation&, const Shape<6>&,
+                                  Shape<6>&);
+template void turned_move_of_actuation(const ActuationBlock<3>&, const Pack&, const Shape<3>&, const PackRotation&,
+                                       const Shape<3>&, Shape<3>&);
+template void turned_move_of_actuation(const ActuationBlock<4>&, const Pack&, const Shape<4>&, const PackRotation&,
+                                       const Shape<4>&, Shape<4>&);
+template void turned_move_of_actuation(const ActuationBlock<6>&, const Pack&, const Shape<6>&, const PackRotation&,
+                                       const Shape<6>&, Shape<6>&);
 template Pack ratio_change(const ActuationBlock<3>&, const Shape<3>&, const Shape<3>&);
 template Pack ratio_change(const ActuationBlock<4>&, const Shape<4>&, const Shape<4>&);
 template Pack ratio_change(const ActuationBlock<6>&, const Shape<6>&, const Shape<6>&);

@@ -39,6 +39,17 @@ void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio,
                               const Shape<K>& current, const PackRotation& rotation, const Shape<K>& change,
                               Shape<K>& out);
 
+/// The pull by which elements, turned as their targets are, ask for a move: w (exp(omega) (X + d - omega x X) - X) with
+/// the change d and omega of pull_change_of_body. To first order w d; a bend by a large angle stays one.
+///
+/// out  a target for the global step, not a derivative
+template <int K>
+void turned_move_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation,
+                         const Shape<K>& change, Shape<K>& out);
+template <int K>
+void turned_move_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
+                              const PackRotation& rotation, const Shape<K>& change, Shape<K>& out);
+
 /// How current_ratio changes with the shape, along `change`; neither need be centred.
 template <int K>
 [[nodiscard]] Pack ratio_change(const ActuationBlock<K>& block, const Shape<K>& current, const Shape<K>& change);

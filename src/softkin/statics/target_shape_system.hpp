@@ -37,8 +37,12 @@ class TargetShapeSystem {
   /// out     another scratch; its residual, #V by 3, becomes the derivative of local.residual along `change`
   void residual_change(const Scratch& local, const Points& change, Scratch& out, Team& team) const;
 
-  /// The part of residual_change that couples all elements of a least-norm actuator, -source (target . change): a change
-  /// of one element's measure is made up for by all. Per least-norm actuator, in the order of the sets.
+  /// Where `change`, taken with the turns that it makes the targets make, would move the elements: out.residual is what
+  /// the global step asks for to go there (see turned_move_of_body).
+  void turned_move(const Scratch& local, const Points& change, Scratch& out, Team& team) const;
+
+  /// The part of residual_change that couples all elements of a least-norm actuator, -source (target . change): a
+  /// change of one element's measure is made up for by all. Per least-norm actuator, in the order of the sets.
   struct Redistribution {
     Points source, target;  // #V by 3
   };
@@ -48,7 +52,9 @@ class TargetShapeSystem {
   [[nodiscard]] bool is_gradient() const;
   [[nodiscard]] const ElementSets& sets() const { return sets_; }
   /// Do the set's ratios follow the shape?
-  [[nodiscard]] bool redistributes(Index actuator) const { return actuator >= 0 && model_.actuators[actuator].least_norm; }
+  [[nodiscard]] bool redistributes(Index actuator) const {
+    return actuator >= 0 && model_.actuators[actuator].least_norm;
+  }
 
   /// Matrix of Eq. (10), one coordinate, lower triangle: sum_i w_i Vol_i P_i^T N P_i [mm^3].
   [[nodiscard]] Eigen::SparseMatrix<double> global_matrix() const;
@@ -60,6 +66,8 @@ class TargetShapeSystem {
   template <int K>
   void ratio_changes(const ActuationSet<K>& set, const Scratch& local, const std::vector<Pack>& ratios,
                      const Points& nodes, std::vector<Pack>& changes, Team& team) const;
+  template <class Kernel>
+  void each_change(const Scratch& local, Scratch& out, Team& team, const Kernel& kernel) const;
   void spread(const Points& positions, Points& nodes) const;
   void gather(const std::vector<double>& pulls, Points& residual, Team& team) const;
 

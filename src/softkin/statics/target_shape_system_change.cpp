@@ -50,30 +50,56 @@ void TargetShapeSystem::ratio_changes(const ActuationSet<K>& set, const Scratch&
     changes[b] = follows(ratios[b]) * (changes[b] + common * set.blocks[b].measure);
 }
 
-void TargetShapeSystem::residual_change(const Scratch& local, const Points& change, Scratch& out, Team& team) const {
-  spread(change, out.nodes);
+/// kernel(set, index of the set, block, centred shape, its change, pull), over all blocks; out.nodes is the change.
+template <class Kernel>
+void TargetShapeSystem::each_change(const Scratch& local, Scratch& out, Team& team, const Kernel& kernel) const {
   std::size_t index = 0;
   sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
-    constexpr bool of_body = std::is_same_v<Block, BodyBlock<K>>;
-    if constexpr (!of_body) ratio_changes<K>(set, local, local.ratios[index], out.nodes, out.ratios[index], team);
     team.pieces(set.block_count(), [&](Index begin, Index end) {
-      Shape<K> shape, moved, pull;
+      Shape<K> shape, change, pull;
       for (Index b = begin; b < end; ++b) {
         load<K>(local.nodes, set.nodes[b], shape);
-        load<K>(out.nodes, set.nodes[b], moved);
+        load<K>(out.nodes, set.nodes[b], change);
         center<K>(shape);
-        const PackRotation& rotation = local.rotations[index][b];
-        if constexpr (of_body)
-          pull_change_of_body<K>(set.blocks[b], shape, rotation, moved, pull);
-        else
-          pull_change_of_actuation<K>(set.blocks[b], local.ratios[index][b], out.ratios[index][b], shape, rotation,
-                                      moved, pull);
+        kernel(set, index, b, shape, change, pull);
         store<K>(pull, set.first_slot + K * lanes * b, std::min<Index>(lanes, set.count - lanes * b), out.pulls.data());
       }
     });
     ++index;
   });
   gather(out.pulls, out.residual, team);
+}
+
+void TargetShapeSystem::residual_change(const Scratch& local, const Points& change, Scratch& out, Team& team) const {
+  spread(change, out.nodes);
+  std::size_t index = 0;
+  sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
+    if constexpr (!std::is_same_v<Block, BodyBlock<K>>)
+      ratio_changes<K>(set, local, local.ratios[index], out.nodes, out.ratios[index], team);
+    ++index;
+  });
+  const auto kernel = [&]<int K, class Block>(const ElementSet<K, Block>& set, std::size_t i, Index b,
+                                              const Shape<K>& shape, const Shape<K>& moved, Shape<K>& pull) {
+    const PackRotation& rotation = local.rotations[i][b];
+    if constexpr (std::is_same_v<Block, BodyBlock<K>>)
+      pull_change_of_body<K>(set.blocks[b], shape, rotation, moved, pull);
+    else
+      pull_change_of_actuation<K>(set.blocks[b], local.ratios[i][b], out.ratios[i][b], shape, rotation, moved, pull);
+  };
+  each_change(local, out, team, kernel);
+}
+
+void TargetShapeSystem::turned_move(const Scratch& local, const Points& change, Scratch& out, Team& team) const {
+  spread(change, out.nodes);
+  const auto kernel = [&]<int K, class Block>(const ElementSet<K, Block>& set, std::size_t i, Index b,
+                                              const Shape<K>& shape, const Shape<K>& moved, Shape<K>& pull) {
+    const PackRotation& rotation = local.rotations[i][b];
+    if constexpr (std::is_same_v<Block, BodyBlock<K>>)
+      turned_move_of_body<K>(set.blocks[b], shape, rotation, moved, pull);
+    else
+      turned_move_of_actuation<K>(set.blocks[b], local.ratios[i][b], shape, rotation, moved, pull);
+  };
+  each_change(local, out, team, kernel);
 }
 
 void TargetShapeSystem::redistributions(const Scratch& local, Scratch& work, std::vector<Redistribution>& out,
@@ -102,12 +128,16 @@ void TargetShapeSystem::redistributions(const Scratch& local, Scratch& work, std
         };
         part.source.resize(model_.rest.rows(), 3);
         part.target.resize(model_.rest.rows(), 3);
-        collect([&](const RatioCoupling<K>& coupling, const Pack& measure, const Pack& free, Shape<K>& value) {
-          for (int i = 0; i < K; ++i) value[i] = (free * measure / set.measure_squares) * coupling.pull_slope[i];
-        }, part.source);
-        collect([&](const RatioCoupling<K>& coupling, const Pack& measure, const Pack&, Shape<K>& value) {
-          for (int i = 0; i < K; ++i) value[i] = measure * coupling.ratio_slope[i];
-        }, part.target);
+        collect(
+            [&](const RatioCoupling<K>& coupling, const Pack& measure, const Pack& free, Shape<K>& value) {
+              for (int i = 0; i < K; ++i) value[i] = (free * measure / set.measure_squares) * coupling.pull_slope[i];
+            },
+            part.source);
+        collect(
+            [&](const RatioCoupling<K>& coupling, const Pack& measure, const Pack&, Shape<K>& value) {
+              for (int i = 0; i < K; ++i) value[i] = measure * coupling.ratio_slope[i];
+            },
+            part.target);
       }
     }
     ++index;

@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <softkin/statics/target_shape_newton.hpp>
+#include <softkin/statics/target_shape_newton_search.hpp>
+
+namespace softkin {
+
+namespace {
+
+using End = TargetShapeSearch::End;
+
+/// Local-global iterations that help Newton's method out in one run.
+constexpr int patience = 300;
+
+/// Equilibria on the way from one actuation to another; the step is halved where one is not found and doubled where
+/// one is.
+End follow(const Actuation& from, const Actuation& to, TargetShapeSearch& search, Points& positions,
+           SolveReport& report) {
+  constexpr double first = 0.25, least = 1.0 / 256;
+  double share = 0, step = first;
+  Points reached = positions;
+  report.continuation_steps = 0;
+  while (share < 1) {
+    const double next = std::min(1.0, share + step);
+    positions = reached;
+    const End end = search.run(from + next * (to - from), 0, positions);
+    if (end == End::interrupted || end == End::exhausted) return end;
+    if (end == End::converged) {
+      share = next;
+      step *= 2;
+      reached = positions;
+      ++report.continuation_steps;
+    } else {
+      step /= 2;
+      if (step < least) return End::stuck;
+    }
+  }
+  return End::converged;
+}
+
+}  // namespace
+
+TargetShapeNewton::TargetShapeNewton(const Model& model, const TargetShapeSystem& system, const GlobalStep& global)
+    : global_(global), unknowns_(model, system) {}
+
+void TargetShapeNewton::solve(const Actuation& start, const StaticsOptions& options, const ProgressCallback& progress,
+                              Team& team, Equilibrium& result) const {
+  SolveReport& report = result.report;
+  report.solver = "newton";
+  report.continuation_steps = 1;
+  Points& positions = result.state.positions;
+  const Points begin = positions;
+  TargetShapeSearch search(unknowns_, global_, options, progress, team, report);
+  End end = search.run(result.actuation, patience, positions);
+  if (end == End::stuck) {
+    const Points stuck = positions;
+    positions = begin;
+    const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
+    end = follow(from, result.actuation, search, positions, report);
+    if (end == End::stuck) {
+      positions = stuck;
+      solve_local_global(unknowns_.system, global_, options, progress, team, result);
+      report.solver = "newton";
+      report.remark = report.status == Status::converged ? "" : "neither Newton's method nor Algorithm 1 converged";
+      return;
+    }
+  }
+  report.status = end == End::converged     ? Status::converged
+                  : end == End::interrupted ? Status::interrupted
+                                            : Status::not_converged;
+  if (end == End::exhausted) report.remark = "the iterations allowed were not enough";
+  report.estimated_error_mm = report.step_mm;
+}
+
+}  // namespace softkin

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <softkin/statics/local_global.hpp>
+#include <softkin/statics/target_shape_newton_tangent.hpp>
+
+namespace softkin {
+
+/// Newton's method for the fixed point of Algorithm 1: residual(x) = 0 with the same local step. Pattern, ordering and
+/// symbolic factorisation are made once.
+///
+/// Where the residual is a gradient (R_omega = 1, uniform ratios): the exact Hessian, element matrices made positive
+/// semidefinite where it is not positive definite, line search on the energy. Otherwise Newton-Krylov with the exact
+/// derivative and a line search on the residual, seen through the last preconditioner (Deuflhard's natural test). Where
+/// neither gets on, some accelerated local-global iterations; where these do not help, equilibria on the way from the
+/// start's actuation; at last Algorithm 1 to its end.
+class TargetShapeNewton {
+ public:
+  /// All must outlive the object.
+  TargetShapeNewton(const Model& model, const TargetShapeSystem& system, const GlobalStep& global);
+
+  /// From result.state.positions to the equilibrium at result.actuation; fills state.positions and the report, its
+  /// seconds aside. Stops at a full step that moves no vertex farther than report.tolerance_mm.
+  ///
+  /// start  the actuation that the start is an equilibrium of, or empty: then that of rest
+  void solve(const Actuation& start, const StaticsOptions& options, const ProgressCallback& progress, Team& team,
+             Equilibrium& result) const;
+
+ private:
+  const GlobalStep& global_;
+  TargetShapeUnknowns unknowns_;
+};
+
+}  // namespace softkin

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>   // DBG
+#include <cstdlib>  // DBG
+#include <softkin/statics/target_shape_newton_search.hpp>
+
+namespace softkin {
+
+namespace {
+
+/// Steps are halved so often at most.
+constexpr int most_halvings = 12;
+
+/// What GMRES leaves of the residual at most, and at least: below is rounding.
+constexpr double loosest = 1e-2, tightest = 1e-10;
+
+/// Accelerated local-global iterations at a time, and how many earlier ones each combines.
+const int rescue = 25, rescue_window = std::getenv("RW") ? std::atoi(std::getenv("RW")) : 6;
+
+}  // namespace
+
+TargetShapeSearch::TargetShapeSearch(const TargetShapeUnknowns& unknowns, const GlobalStep& global,
+                                     const StaticsOptions& options, const ProgressCallback& progress, Team& team,
+                                     SolveReport& report)
+    : unknowns_(unknowns),
+      global_(global),
+      options_(options),
+      progress_(progress),
+      team_(team),
+      report_(report),
+      tangent_(unknowns),
+      local_(unknowns.system.make_scratch()),
+      start_(unknowns.system.make_scratch()),
+      work_(unknowns.system.make_scratch()) {}
+
+/// Local step at positions, which supports put right before.
+void TargetShapeSearch::evaluate(const Actuation& actuation, Points& positions) {
+  poses_ = global_.project(positions);
+  energy_ = unknowns_.system.local_step(actuation, positions, local_, team_);
+}
+
+/// The exact step; false where none comes of it.
+bool TargetShapeSearch::exact_direction(const Points& positions) {
+  tangent_.reduce(local_.residual, positions, residual_);
+  if (!residual_.allFinite() || !tangent_.factorise(local_, positions, false, team_, report_)) return false;
+  if (!tangent_.symmetric()) {
+    // Eisenstat and Walker 1996, choice 2: as accurate as the last steps were successful, and as is needed at last
+    const double norm = natural_norm(positions), ratio = natural_start_ > 0 ? norm / natural_start_ : 1;
+    const double enough = 0.1 * report_.tolerance_mm / std::max(norm, report_.tolerance_mm);
+    tolerance_ = std::clamp(0.9 * ratio * ratio, std::clamp(enough, tightest, loosest), loosest);
+    natural_start_ = norm;
+  }
+  return tangent_.solve(local_, positions, residual_, tolerance_, team_, step_) && step_.allFinite();
+}
+
+/// The step with the positive semidefinite matrices near the exact ones: it goes down in the energy at fixed targets.
+bool TargetShapeSearch::projected_direction(const Points& positions) {
+  if (!residual_.allFinite() || !tangent_.factorise(local_, positions, true, team_, report_)) return false;
+  natural_start_ = 0;
+  step_ = residual_;
+  tangent_.precondition(step_, team_);
+  return step_.allFinite() && step_.dot(residual_) > 0;
+}
+
+/// Euclidean norm over the vertices of the residual seen through the preconditioner [mm].
+double TargetShapeSearch::natural_norm(const Points& positions) {
+  tangent_.reduce(local_.residual, positions, natural_);
+  tangent_.precondition(natural_, team_);
+  tangent_.freedoms().expand(natural_, positions, moves_);
+  return moves_.norm();
+}
+
+/// A whole step that ends the search: what it does to energy or residual may be rounding.
+bool TargetShapeSearch::negligible(int halvings, const Points& positions) const {
+  return halvings == 0 && (positions - before_).rowwise().norm().maxCoeff() < report_.tolerance_mm;
+}
+
+/// Backtracking to a sufficient decrease (Armijo) of the energy; below its rounding any step is as good.
+TargetShapeSearch::Step TargetShapeSearch::search_energy(const Actuation& actuation, Points& positions) {
+  constexpr double sufficient = 1e-4, rounding = 1e-12;
+  const double start = energy_, slope = -2 * residual_.dot(step_);
+  double scale = 1;
+  for (int i = 0; i <= most_halvings; ++i, scale /= 2) {
+    move(scale, positions);
+    evaluate(actuation, positions);
+    if (std::getenv("DBG"))
+      std::printf("   scale %g E %.6g -> %.6g slope %.3g\n", scale, start, energy_, slope);  // DBG
+    if (negligible(i, positions) || energy_ <= start + sufficient * scale * slope + rounding * start)
+      return i == 0 ? Step::full : Step::shortened;
+  }
+  return Step::none;
+}
+
+/// Backtracking until the residual, seen through one preconditioner, falls (Deuflhard 2004, Section 3.3), or the energy
+/// falls well below all there was: far from the fixed point that tells more.
+TargetShapeSearch::Step TargetShapeSearch::search_residual(const Actuation& actuation, Points& positions) {
+  constexpr double well_below = 0.9;
+  double scale = 1;
+  for (int i = 0; i <= most_halvings / 3; ++i, scale /= 2) {
+    move(scale, positions);
+    evaluate(actuation, positions);
+    const double norm = natural_norm(positions);
+    if (std::getenv("DBG"))
+      std::printf("   scale %g natural %.3e -> %.3e  products %d tol %.1e E %.6g\n", scale, natural_start_, norm,
+                  tangent_.products(), tolerance_, energy_);  // DBG
+    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * least_energy_)
+      return i == 0 ? Step::full : Step::shortened;
+  }
+  return Step::none;
+}
+
+/// Moves from before_ by a share of the step, with the turns that it makes the targets make: what bends far bends,
+/// instead of growing along the tangents.
+void TargetShapeSearch::move(double scale, Points& positions) {
+  scaled_ = scale * step_;
+  tangent_.freedoms().expand(scaled_, before_, moves_);
+  unknowns_.system.turned_move(start_, moves_, work_, team_);
+  positions = before_;
+  poses_ = poses_before_;
+  global_.step(work_.residual, positions, poses_, team_);
+}
+
+void TargetShapeSearch::take_back(const Actuation& actuation, Points& positions) {
+  positions = before_;
+  evaluate(actuation, positions);
+}
+
+TargetShapeSearch::Step TargetShapeSearch::newton_step(const Actuation& actuation, Points& positions) {
+  before_ = positions;
+  poses_before_ = poses_;
+  start_ = local_;
+  Step step = Step::none;
+  if (exact_direction(positions)) {
+    step = tangent_.symmetric() ? search_energy(actuation, positions) : search_residual(actuation, positions);
+    if (step == Step::none) take_back(actuation, positions);
+  }
+  if (step == Step::none && projected_direction(positions)) {
+    step = search_energy(actuation, positions);
+    if (step == Step::none) take_back(actuation, positions);
+  }
+  least_energy_ = std::min(least_energy_, energy_);
+  return step;
+}
+
+TargetShapeSearch::End TargetShapeSearch::enter(IterationRecord record) {
+  accept(record, options_.keep_history, report_);
+  if (progress_ && !progress_({report_.iterations, report_.step_mm, report_.tolerance_mm})) return End::interrupted;
+  return report_.iterations < options_.max_iterations ? End::stuck : End::exhausted;
+}
+
+/// stuck: go on
+TargetShapeSearch::End TargetShapeSearch::local_global(const Actuation& actuation, int count, Points& positions) {
+  LocalGlobal iteration(unknowns_.system, global_, rescue_window, positions);
+  End end = End::stuck;
+  for (int i = 0; i < count && end == End::stuck; ++i) {
+    if (i > 0) iteration.extrapolate();
+    IterationRecord record;
+    if (!iteration.iterate(actuation, local_, team_, record)) return End::exhausted;
+    end = enter(record);
+  }
+  evaluate(actuation, positions);
+  natural_start_ = 0;
+  return end;
+}
+
+TargetShapeSearch::End TargetShapeSearch::run(const Actuation& actuation, int patience, Points& positions) {
+  evaluate(actuation, positions);
+  natural_start_ = 0;
+  least_energy_ = energy_;
+  if (std::getenv("OPEN")) (void)local_global(actuation, std::atoi(std::getenv("OPEN")), positions);  // DBG
+  while (report_.iterations < options_.max_iterations) {
+    IterationRecord record;
+    record.energy = energy_;
+    record.gradient_norm = 2 * global_.free_norm(local_.residual, poses_);
+    const Step step = newton_step(actuation, positions);
+    if (step == Step::none) {
+      if (patience <= 0) return End::stuck;
+      patience -= rescue;
+      if (const End end = local_global(actuation, rescue, positions); end != End::stuck) return end;
+      continue;
+    }
+    record.step_mm = (positions - before_).rowwise().norm().maxCoeff();
+    const End end = enter(record);
+    if (step == Step::full && record.step_mm < report_.tolerance_mm) return End::converged;
+    if (end != End::stuck) return end;
+  }
+  return End::exhausted;
+}
+
+}  // namespace softkin

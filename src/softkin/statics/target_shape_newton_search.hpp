@@ -1,0 +1,52 @@
+#pragma once
+
+#include <softkin/statics/local_global.hpp>
+#include <softkin/statics/target_shape_newton_tangent.hpp>
+
+namespace softkin {
+
+/// One run of Newton's method after another, with the work space that they share.
+class TargetShapeSearch {
+ public:
+  enum class End { converged, stuck, interrupted, exhausted };
+
+  TargetShapeSearch(const TargetShapeUnknowns& unknowns, const GlobalStep& global, const StaticsOptions& options,
+                    const ProgressCallback& progress, Team& team, SolveReport& report);
+
+  /// From positions to the equilibrium at an actuation; positions are the last shape.
+  ///
+  /// patience  local-global iterations that may be put in where Newton's method does not get on
+  End run(const Actuation& actuation, int patience, Points& positions);
+
+ private:
+  enum class Step { full, shortened, none };
+
+  void evaluate(const Actuation& actuation, Points& positions);
+  void move(double scale, Points& positions);
+  [[nodiscard]] Step newton_step(const Actuation& actuation, Points& positions);
+  [[nodiscard]] bool exact_direction(const Points& positions);
+  [[nodiscard]] bool projected_direction(const Points& positions);
+  void take_back(const Actuation& actuation, Points& positions);
+  [[nodiscard]] Step search_energy(const Actuation& actuation, Points& positions);
+  [[nodiscard]] Step search_residual(const Actuation& actuation, Points& positions);
+  [[nodiscard]] bool negligible(int halvings, const Points& positions) const;
+  [[nodiscard]] double natural_norm(const Points& positions);
+  End local_global(const Actuation& actuation, int count, Points& positions);
+  [[nodiscard]] End enter(IterationRecord record);
+
+  const TargetShapeUnknowns& unknowns_;
+  const GlobalStep& global_;
+  const StaticsOptions& options_;
+  const ProgressCallback& progress_;
+  Team& team_;
+  SolveReport& report_;
+  TargetShapeTangent tangent_;
+  TargetShapeSystem::Scratch local_;         // of the last shape evaluated
+  TargetShapeSystem::Scratch start_, work_;  // of the shape that a step starts from
+  std::vector<Pose> poses_, poses_before_;
+  Points before_, moves_;
+  Eigen::VectorXd residual_, step_, scaled_, natural_;
+  double energy_ = 0, least_energy_ = 0, natural_start_ = 0, tolerance_ = 0;
+};
+
+}  // namespace softkin

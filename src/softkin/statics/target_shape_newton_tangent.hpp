@@ -1,0 +1,80 @@
+#pragma once
+
+#include <softkin/statics/freedoms.hpp>
+#include <softkin/statics/sparse_ldlt.hpp>
+#include <softkin/statics/target_shape_newton_matrix.hpp>
+
+namespace softkin {
+
+/// What the linear systems of all solves of one robot share: pattern, unknowns and symbolic factorisation.
+struct TargetShapeUnknowns {
+  TargetShapeUnknowns(const Model& robot, const TargetShapeSystem& target_shapes);
+
+  const Model& model;
+  const TargetShapeSystem& system;
+  TargetShapeMatrix matrix;
+  Freedoms freedoms;
+  SparseLdlt symbolic;  // copied, and factorised, by every solve
+  bool symmetric;       // is the residual's derivative symmetric
+};
+
+/// The derivative K of minus the residual over the unknowns at one shape, and its solutions: by its factor where it is
+/// symmetric, else by GMRES with the factor of a near matrix, and the exact coupling of least-norm ratios
+/// (Sherman-Morrison-Woodbury), as preconditioner.
+class TargetShapeTangent {
+ public:
+  explicit TargetShapeTangent(const TargetShapeUnknowns& unknowns);
+
+  /// Assembles and factorises at the shape of the last local_step: as it is; where that is not positive definite with
+  /// the elements' matrices projected; where that is not either, shifted by ever larger shares of its diagonal.
+  ///
+  /// local      the scratch of that local_step
+  /// positions  of it
+  /// projected  begins with the projected matrices
+  /// report     factorisations, projections and shifts are counted up
+  /// returns    false where no shift helps or a value is not finite
+  [[nodiscard]] bool factorise(const TargetShapeSystem::Scratch& local, const Points& positions, bool projected,
+                               Team& team, SolveReport& report);
+
+  /// The residual over the unknowns.
+  void reduce(const Points& residual, const Points& positions, Eigen::VectorXd& out) const;
+
+  /// Applies the preconditioner: K^-1 where K is symmetric and was neither projected nor shifted.
+  void precondition(Eigen::VectorXd& vector, Team& team);
+
+  /// Solves K step = right for the exact K.
+  ///
+  /// local, positions  those of factorise
+  /// tolerance         of the preconditioned residual, relative to the first
+  /// returns           whether GMRES reached it; step is the best it found. Always true where K is symmetric: there
+  /// step
+  ///                   is the factor's solution.
+  bool solve(const TargetShapeSystem::Scratch& local, const Points& positions, const Eigen::VectorXd& right,
+             double tolerance, Team& team, Eigen::VectorXd& step);
+
+  [[nodiscard]] const Freedoms& freedoms() const { return unknowns_.freedoms; }
+  [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
+  /// GMRES iterations of all solves so far.
+  [[nodiscard]] int products() const { return products_; }
+
+ private:
+  bool factorise_values(double shift, Team& team, SolveReport& report);
+  void update_coupling(const TargetShapeSystem::Scratch& local, const Points& positions, Team& team);
+  void multiply(const TargetShapeSystem::Scratch& local, const Points& positions, const Eigen::VectorXd& vector,
+                Eigen::VectorXd& product, Team& team);
+
+  const TargetShapeUnknowns& unknowns_;
+  SparseLdlt factor_;
+  std::vector<double> slots_, blocks_, values_, shifted_;
+  std::vector<TargetShapeSystem::Redistribution> redistributions_;
+  Eigen::MatrixXd sources_, targets_;  // of the redistributions over the unknowns: factor^-1 source, target
+  Eigen::MatrixXd capacitance_;        // inverse of I + targets^T sources
+  Eigen::MatrixXd column_;
+  TargetShapeSystem::Scratch work_;
+  Points gradient_, moved_, origin_;
+  Eigen::VectorXd turned_, unturned_;
+  std::vector<Eigen::VectorXd> basis_;
+  int products_ = 0;
+};
+
+}  // namespace softkin
