@@ -183,7 +183,7 @@ Demand demand_of(const PhysicalSystem& system, const Model& model, const State& 
 }  // namespace
 
 Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& start, const Options& options,
-                                   const ProgressCallback& progress) const {
+                                   const ProgressCallback& progress, Team& team) const {
   const Model& model = system_.model();
   Equilibrium result;
   result.actuation = actuation;
@@ -192,7 +192,6 @@ Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& star
   report.tolerance_mm = options.tolerance_mm;
   report.reached = 0;
   Lease lease(*this);
-  Team team(options.threads);
 
   const Demand from = demand_of(system_, model, start), to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators())};

@@ -15,13 +15,12 @@ class PhysicalStatics {
   struct Options {
     double tolerance_mm = 0;
     int max_iterations = 0;  // of all Newton steps together
-    int threads = 1;
     bool keep_history = true;
   };
 
   /// Arguments are checked already. report.seconds is left to the caller.
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const Options& options,
-                                  const ProgressCallback& progress) const;
+                                  const ProgressCallback& progress, Team& team) const;
 
   [[nodiscard]] const PhysicalSystem& system() const { return system_; }
 
