@@ -40,13 +40,14 @@ class ReferenceTable {
     return {at(row, name + "_x"), at(row, name + "_y"), at(row, name + "_z")};
   }
 
-  /// The rows that a test solves, without the one at rest: every `every`-th one and the last; all of them where the
-  /// environment sets SOFTKIN_EVERY_ROW.
-  [[nodiscard]] std::vector<std::size_t> chosen(std::size_t every) const {
+  /// The rows that a test solves, without the first, at rest, and the `lost` last ones: every `every`-th one and the
+  /// last; all of them where the environment sets SOFTKIN_EVERY_ROW.
+  [[nodiscard]] std::vector<std::size_t> chosen(std::size_t every, std::size_t lost = 0) const {
+    const std::size_t end = rows_.size() - lost;
     if (std::getenv("SOFTKIN_EVERY_ROW")) every = 1;
     std::vector<std::size_t> rows;
-    for (std::size_t row = every; row < rows_.size(); row += every) rows.push_back(row);
-    if (rows.empty() || rows.back() + 1 != rows_.size()) rows.push_back(rows_.size() - 1);
+    for (std::size_t row = every; row < end; row += every) rows.push_back(row);
+    if (rows.empty() || rows.back() + 1 != end) rows.push_back(end - 1);
     return rows;
   }
 

@@ -22,6 +22,7 @@ struct Sweep {
   bool quadratic;
   ReferenceLaw law;
   std::size_t every;
+  std::size_t lost = 0;  // rows at the end without a stable equilibrium
 };
 
 std::ostream& operator<<(std::ostream& out, const Sweep& sweep) {
@@ -59,7 +60,7 @@ TEST_P(FingerReference, TipAndPressureAtEqualVolume) {
   const ReferenceTable table(std::string(sweep.table) + ".csv");
   State state = statics.rest();
   Deviation largest;
-  for (const std::size_t row : table.chosen(sweep.every)) {
+  for (const std::size_t row : table.chosen(sweep.every, sweep.lost)) {
     const Equilibrium found = statics.solve(Actuation::Constant(1, table.at(row, "alpha")), state);
     ASSERT_EQ(found.report.status, Status::converged) << "row " << row << ": " << found.report.remark;
     state = found.state;
@@ -69,11 +70,18 @@ TEST_P(FingerReference, TipAndPressureAtEqualVolume) {
   largest.print(sweep.table);
   EXPECT_LT(largest.tip_mm, tip_tolerance);
   EXPECT_LT(largest.multiplier, multiplier_tolerance);
+  if (sweep.lost == 0) return;
+  // the reference's steps shrink to nothing here: its last rows stand at the limit of stability
+  const double last = table.at(table.rows() - 1, "alpha");
+  const Equilibrium beyond = statics.solve(Actuation::Constant(1, last + 0.05), state);
+  EXPECT_EQ(beyond.report.status, Status::limit);
+  EXPECT_NEAR(beyond.state.actuation[0], last, 1e-3);
+  EXPECT_LT((marker(model, beyond.state.positions) - table.point(table.rows() - 1, "tip")).norm(), tip_tolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Fem, FingerReference,
                          ::testing::Values(Sweep{"finger_5k", "finger_5k_c3d4_lin", false, ReferenceLaw::lin, 9},
-                                           Sweep{"finger_5k", "finger_5k_c3d10_lin", true, ReferenceLaw::lin, 12},
+                                           Sweep{"finger_5k", "finger_5k_c3d10_lin", true, ReferenceLaw::lin, 11, 2},
                                            Sweep{"finger_15k", "finger_15k_c3d4_lin", false, ReferenceLaw::lin, 11},
                                            Sweep{"finger_15k", "finger_15k_c3d4_nh", false, ReferenceLaw::nh, 11},
                                            Sweep{"finger_15k", "finger_15k_c3d10_lin", true, ReferenceLaw::lin, 24}),
