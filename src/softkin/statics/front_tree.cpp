@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <softkin/statics/front_kernel.hpp>
 #include <softkin/statics/front_tree.hpp>
 
 namespace softkin {
@@ -119,7 +120,7 @@ class Symbolic {
   double zeros_together_ = 0;
 };
 
-/// Where Schur complements wait for their parents: first fit into what is free.
+/// Where fronts wait for their parents: first fit into what is free.
 class Arena {
  public:
   std::int64_t take(std::int64_t size) {
@@ -161,11 +162,11 @@ class Arena {
   std::int64_t size_ = 0;
 };
 
-std::int64_t update_size(const Front& front) {
-  return static_cast<std::int64_t>(front.below) * front.below;
+std::int64_t place_of(const Front& front) {
+  return static_cast<std::int64_t>(front_stride(front.size())) * front.size();
 }
 
-/// Offsets of the Schur complements. Those of a piece's roots, which outlive the piece, stand in the top's arena.
+/// Offsets of the fronts. Those of a piece's roots, which outlive the piece, stand in the top's arena.
 void plan_arenas(FrontTree& tree) {
   const Index pieces = static_cast<Index>(tree.pieces.size()) - 2;
   const Index top = tree.pieces[pieces];
@@ -175,9 +176,11 @@ void plan_arenas(FrontTree& tree) {
     Arena& inside = p < pieces ? own : above;
     for (Index f = tree.pieces[p]; f < tree.pieces[p + 1]; ++f) {
       Front& front = tree.fronts[f];
+      Arena& arena = front.parent >= top ? above : inside;
+      front.offset = arena.take(place_of(front));
       for (Index c = tree.first_child[f]; c >= 0; c = tree.next_sibling[c])
-        inside.give(tree.fronts[c].update_offset, update_size(tree.fronts[c]));
-      front.update_offset = (front.parent >= top ? above : inside).take(update_size(front));
+        inside.give(tree.fronts[c].offset, place_of(tree.fronts[c]));
+      if (front.below == 0) arena.give(front.offset, place_of(front));
     }
     if (p < pieces) tree.arena_sizes.push_back(own.size());
   }
