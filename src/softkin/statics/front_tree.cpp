@@ -187,21 +187,34 @@ void plan_arenas(FrontTree& tree) {
   tree.arena_sizes.push_back(above.size());
 }
 
+void add_runs(const Front& child, const std::vector<Index>& place, FrontTree& tree) {
+  for (Index r = 0; r < child.below; ++r) {
+    const Index to = place[tree.rows[child.first_row + r]];
+    if (r > 0 && tree.runs.back().to + tree.runs.back().length == to)
+      ++tree.runs.back().length;
+    else
+      tree.runs.push_back({r, to, 1});
+  }
+}
+
 void place_rows(const BlockColumns& pattern, FrontTree& tree) {
-  tree.places.resize(tree.rows.size());
   tree.entry_places.resize(pattern.rows.size());
   std::vector<Index> place(static_cast<std::size_t>(pattern.size()));
-  for (std::size_t f = 0; f < tree.fronts.size(); ++f) {
-    const Front& front = tree.fronts[f];
+  const auto place_in = [&](const Front& front) {
     for (Index u = front.begin; u < front.end; ++u) place[u] = u - front.begin;
     for (Index r = 0; r < front.below; ++r) place[tree.rows[front.first_row + r]] = front.pivots() + r;
-    for (Index c = tree.first_child[f]; c >= 0; c = tree.next_sibling[c]) {
-      const Front& child = tree.fronts[c];
-      for (Index r = 0; r < child.below; ++r) tree.places[child.first_row + r] = place[tree.rows[child.first_row + r]];
+  };
+  for (const Front& front : tree.fronts) {
+    tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
+    if (front.parent >= 0) {
+      place_in(tree.fronts[front.parent]);
+      add_runs(front, place, tree);
     }
+    place_in(front);
     for (Index e = pattern.starts[front.begin_node]; e < pattern.starts[front.end_node]; ++e)
       tree.entry_places[e] = place[pattern.unknowns[pattern.rows[e]]];
   }
+  tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
 }
 
 }  // namespace

@@ -18,12 +18,18 @@ struct Front {
   [[nodiscard]] Index size() const { return pivots() + below; }
 };
 
+/// Rows below a front that stand together in its parent's, too.
+struct RowRun {
+  Index from, to, length;
+};
+
 /// Symbolic factorisation: fronts in postorder, cut into independent pieces.
 struct FrontTree {
   std::vector<Front> fronts;
   std::vector<Index> first_child, next_sibling;  // of each front; -1: none
   std::vector<Index> rows;                       // unknowns below each front
-  std::vector<Index> places;                     // of those rows in the parent's front
+  std::vector<RowRun> runs;                      // places of those rows in the parent's front
+  std::vector<std::int64_t> first_run;           // of each front, then their number
   std::vector<Index> entry_places;               // row of each entry of the pattern in its column's front
   std::vector<Index> pieces;                     // first front of every piece, then of the top, then their number
   std::vector<std::int64_t> arena_sizes;         // values, of every piece, then of the top

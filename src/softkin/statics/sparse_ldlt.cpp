@@ -40,7 +40,7 @@ double SparseLdlt::bytes() const {
   double values = static_cast<double>(lower_.size() + diagonal_.size());
   for (const Piece& piece : pieces_)
     values += static_cast<double>(piece.arena.size() + piece.work.plain.size() + piece.work.scaled.size());
-  return 8 * values + 4.0 * static_cast<double>(tree_.rows.size() + tree_.places.size() + pattern_.rows.size() +
+  return 8 * values + 4.0 * static_cast<double>(tree_.rows.size() + 3 * tree_.runs.size() + pattern_.rows.size() +
                                                 tree_.entry_places.size());
 }
 
@@ -68,11 +68,17 @@ void SparseLdlt::assemble(Index index, const std::vector<double>& values, double
     const Index child_stride = front_stride(child.size()), pivots = child.pivots();
     const double* update =
         piece.arena.data() + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
-    const Index* places = tree_.places.data() + child.first_row;
-    each_column(child.below, child.below, team, [&](Index c) {
-      double* column = front + static_cast<std::ptrdiff_t>(places[c]) * stride;
-      const double* from = update + static_cast<std::ptrdiff_t>(c) * child_stride;
-      for (Index r = c; r < child.below; ++r) column[places[r]] += from[r];
+    const RowRun* first = tree_.runs.data() + tree_.first_run[i];
+    const RowRun* last = tree_.runs.data() + tree_.first_run[i + 1];
+    each_column(static_cast<Index>(last - first), child.below, team, [&](Index k) {
+      for (Index c = 0; c < first[k].length; ++c) {
+        const Index column = first[k].from + c;
+        double* to = front + static_cast<std::ptrdiff_t>(first[k].to + c) * stride;
+        const double* from = update + static_cast<std::ptrdiff_t>(column) * child_stride;
+        for (Index r = c; r < first[k].length; ++r) to[first[k].to + r] += from[first[k].from + r];
+        for (const RowRun* run = first + k + 1; run < last; ++run)
+          for (Index r = 0; r < run->length; ++r) to[run->to + r] += from[run->from + r];
+      }
     });
   }
 }
