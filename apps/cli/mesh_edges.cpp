@@ -23,6 +23,17 @@ std::vector<std::array<Index, 3>> edges_of(const Mesh& mesh) {
   return edges;
 }
 
+/// Nodes that stand on several edges, once each.
+std::vector<Index> shared_nodes(const std::vector<std::array<Index, 3>>& edges) {
+  std::vector<Index> nodes, shared;
+  nodes.reserve(edges.size());
+  for (const auto& edge : edges) nodes.push_back(edge[2]);
+  std::sort(nodes.begin(), nodes.end());
+  for (std::size_t i = 1; i < nodes.size(); ++i)
+    if (nodes[i] == nodes[i - 1] && (shared.empty() || shared.back() != nodes[i])) shared.push_back(nodes[i]);
+  return shared;
+}
+
 }  // namespace
 
 EdgeCheck check_edges(const Mesh& mesh) {
@@ -38,6 +49,7 @@ EdgeCheck check_edges(const Mesh& mesh) {
       check.uneven.push_back(edges[i]);
     if (i > 0 && edges[i - 1][0] == a && edges[i - 1][1] == b) check.split.push_back({a, b, edges[i - 1][2], node});
   }
+  check.shared = shared_nodes(edges);
   return check;
 }
 

@@ -85,6 +85,8 @@ std::vector<Finding> findings_of(const Mesh& mesh, const MeshCheck& check) {
   if (quadratic) {
     collect.begin(Severity::error, "split_edges", "tetrahedra have different nodes on the edge: not connected there");
     collect.add_vertices(edges.split);
+    collect.begin(Severity::error, "shared_edge_nodes", "nodes of several edges");
+    collect.add_vertices(edges.shared);
     collect.begin(Severity::error, "far_edge_nodes", "more than a quarter of the edge's length from its middle");
     collect.add_vertices(edges.far);
   }
