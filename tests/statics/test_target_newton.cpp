@@ -129,24 +129,23 @@ TEST(TargetNewton, FromRandomStarts) {
   }
 }
 
-/// Residuals of the last steps: each is bounded by a multiple of the square of the one before, until rounding.
+/// Every small step is followed by one of at most the size of its square: Algorithm 1 takes off a few percent.
 TEST(TargetNewton, ConvergesQuadratically) {
-  for (const bool least_norm : {false, true}) {
-    const Model model = compile(finger_robot(least_norm));
-    const Statics statics(model);
-    const auto history = statics.solve(values({1.8}), statics.rest(), newton(1e-9)).report.history;
-    ASSERT_GT(history.size(), 4u);
-    const double first = history.front().gradient_norm;
-    EXPECT_LT(history.back().gradient_norm, 1e-9 * first);
-    // the order over the last steps above rounding: log r_{k+1} / log r_k, r relative to the first
-    double order = 0;
-    for (std::size_t k = 1; k < history.size(); ++k) {
-      const double before = history[k - 1].gradient_norm / first, after = history[k].gradient_norm / first;
-      if (before < 1e-2 && after > 1e-13) order = std::max(order, std::log(after) / std::log(before));
+  for (const bool least_norm : {false, true})
+    for (const double shape_ratio : {1.0, 0.5}) {
+      const Model model = compile(finger_robot(least_norm, shape_ratio));
+      const Statics statics(model);
+      const auto history = statics.solve(values({4.0}), statics.rest(), newton(1e-9)).report.history;
+      int pairs = 0;
+      for (std::size_t k = 1; k < history.size(); ++k) {
+        const double before = history[k - 1].step_mm, after = history[k].step_mm;
+        if (before > 0.3 || before < 1e-6) continue;
+        EXPECT_LT(after, 3 * before * before);
+        ++pairs;
+      }
+      EXPECT_GE(pairs, 2);
+      EXPECT_LT(history.back().gradient_norm, 1e-10 * history.front().gradient_norm);
     }
-    EXPECT_GT(order, 1.5);
-    EXPECT_LT(history.size(), 20u);
-  }
 }
 
 TEST(TargetNewton, UsesFewIterationsAndFactorisations) {
