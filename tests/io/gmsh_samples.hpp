@@ -155,6 +155,114 @@ $Elements
 $EndElements
 )";
 
+/// Written by Gmsh 4.8.4 with order 2: a tetrahedron, "base" its side z = 0, "edge" from (2, 0, 0) to "tip" (0, 0, 6).
+inline const std::string kQuadratic2 = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+4
+0 4 "tip"
+1 3 "edge"
+2 2 "base"
+3 1 "body"
+$EndPhysicalNames
+$Nodes
+10
+1 0 0 0
+2 2 0 0
+3 0 4 0
+4 0 0 6
+5 0.9999999999973436 0 0
+6 1.000000000002657 1.999999999994685 0
+7 0 2.000000000005322 0
+8 0 0 2.999999999990317
+9 1.000000000003171 0 2.999999999990488
+10 0 2.000000000006107 2.99999999999084
+$EndNodes
+$Elements
+4
+1 15 2 4 4 4
+2 8 2 3 5 2 4 9
+3 9 2 2 1 1 2 3 5 6 7
+4 11 2 1 1 1 3 4 2 7 10 8 5 9 6
+$EndElements
+)";
+inline const std::string kQuadratic4 = R"($MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+4
+0 4 "tip"
+1 3 "edge"
+2 2 "base"
+3 1 "body"
+$EndPhysicalNames
+$Entities
+4 6 4 1
+1 0 0 0 0 
+2 2 0 0 0 
+3 0 4 0 0 
+4 0 0 6 1 4 
+1 0 0 0 2 0 0 0 2 1 -2 
+2 0 0 0 2 4 0 0 2 2 -3 
+3 0 0 0 0 4 0 0 2 3 -1 
+4 0 0 0 0 0 6 0 2 1 -4 
+5 0 0 0 2 0 6 1 3 2 2 -4 
+6 0 0 0 0 4 6 0 2 3 -4 
+1 0 0 0 2 4 0 1 2 3 1 2 3 
+2 0 0 0 2 0 6 0 3 1 5 -4 
+3 0 0 0 2 4 6 0 3 2 6 -5 
+4 0 0 0 0 4 6 0 3 3 4 -6 
+1 0 0 0 2 4 6 1 1 4 1 2 3 4 
+$EndEntities
+$Nodes
+12 10 1 10
+0 1 0 1
+1
+0 0 0
+0 2 0 1
+2
+2 0 0
+0 3 0 1
+3
+0 4 0
+0 4 0 1
+4
+0 0 6
+1 1 0 1
+5
+0.9999999999973436 0 0
+1 2 0 1
+6
+1.000000000002657 1.999999999994685 0
+1 3 0 1
+7
+0 2.000000000005322 0
+1 4 0 1
+8
+0 0 2.999999999990317
+1 5 0 1
+9
+1.000000000003171 0 2.999999999990488
+1 6 0 1
+10
+0 2.000000000006107 2.99999999999084
+2 1 0 0
+3 1 0 0
+$EndNodes
+$Elements
+4 4 1 4
+0 4 15 1
+1 4 
+1 5 8 1
+2 2 4 9 
+2 1 9 1
+3 1 2 3 5 6 7 
+3 1 11 1
+4 1 3 4 2 7 10 8 5 9 6 
+$EndElements
+)";
+
 /// Written by Gmsh 4.8.4 (4.1 binary): the unit tetrahedron; "body" and "half" its volume, "base" (reversed) and 6
 /// (unnamed) share a side.
 inline std::string written_by_gmsh() {
@@ -247,21 +355,36 @@ inline std::string binary_format(const std::string& version, bool swapped) {
 }
 
 inline int node_count(std::int64_t type) {
-  return type == 15 ? 1 : type == 1 ? 2 : type == 2 ? 3 : type == 6 ? 6 : 4;
+  switch (type) {
+    case 15:
+      return 1;
+    case 1:
+      return 2;
+    case 2:
+    case 8:
+      return 3;
+    case 6:
+    case 9:
+      return 6;
+    case 11:
+      return 10;
+    default:
+      return 4;
+  }
 }
 
-/// kText2 in binary; neighbours of one type and number of tags share a header.
-inline std::string binary_2(bool swapped) {
-  Transcriber nodes(body(kText2, "Nodes"), swapped);
+/// A text in binary; neighbours of one type and number of tags share a header.
+inline std::string binary_2(bool swapped, const std::string& text = kText2) {
+  Transcriber nodes(body(text, "Nodes"), swapped);
   const int count = nodes.next<int>();
   for (int i = 0; i < count; ++i) {
     nodes.int_value();
     nodes.reals(3);
   }
   Transcriber elements("", swapped);
-  std::istringstream lines(body(kText2, "Elements"));
-  std::string line;
-  std::getline(lines, line);
+  std::istringstream lines(body(text, "Elements"));
+  std::string line, total;
+  std::getline(lines, total);
   std::vector<std::vector<int>> rows;
   while (std::getline(lines, line)) {
     std::istringstream words(line);
@@ -277,12 +400,13 @@ inline std::string binary_2(bool swapped) {
       for (std::size_t k = 0; k < rows[r].size(); ++k)
         if (k != 1 && k != 2) elements.put<std::int32_t>(rows[r][k]);
   }
-  return binary_format("2.2", swapped) + whole("PhysicalNames", body(kText2, "PhysicalNames")) +
-         whole("Nodes", "8\n" + nodes.bytes() + "\n") + whole("Elements", "11\n" + elements.bytes() + "\n");
+  return binary_format("2.2", swapped) + whole("PhysicalNames", body(text, "PhysicalNames")) +
+         whole("Nodes", std::to_string(count) + "\n" + nodes.bytes() + "\n") +
+         whole("Elements", total + "\n" + elements.bytes() + "\n");
 }
 
-inline std::string binary_entities_4(bool swapped) {
-  Transcriber out(body(kText4, "Entities"), swapped);
+inline std::string binary_entities_4(bool swapped, const std::string& text) {
+  Transcriber out(body(text, "Entities"), swapped);
   std::int64_t counts[4];
   for (std::int64_t& count : counts) count = out.size_value();
   for (int dimension = 0; dimension < 4; ++dimension)
@@ -295,8 +419,8 @@ inline std::string binary_entities_4(bool swapped) {
   return whole("Entities", out.bytes() + "\n");
 }
 
-inline std::string binary_nodes_4(bool swapped) {
-  Transcriber out(body(kText4, "Nodes"), swapped);
+inline std::string binary_nodes_4(bool swapped, const std::string& text) {
+  Transcriber out(body(text, "Nodes"), swapped);
   const std::int64_t blocks = out.size_value();
   for (int i = 0; i < 3; ++i) out.size_value();
   for (std::int64_t b = 0; b < blocks; ++b) {
@@ -310,8 +434,8 @@ inline std::string binary_nodes_4(bool swapped) {
   return whole("Nodes", out.bytes() + "\n");
 }
 
-inline std::string binary_elements_4(bool swapped) {
-  Transcriber out(body(kText4, "Elements"), swapped);
+inline std::string binary_elements_4(bool swapped, const std::string& text) {
+  Transcriber out(body(text, "Elements"), swapped);
   const std::int64_t blocks = out.size_value();
   for (int i = 0; i < 3; ++i) out.size_value();
   for (std::int64_t b = 0; b < blocks; ++b) {
@@ -322,11 +446,11 @@ inline std::string binary_elements_4(bool swapped) {
   return whole("Elements", out.bytes() + "\n");
 }
 
-/// kText4 in binary, with bytes that are no text in $Periodic.
-inline std::string binary_4(bool swapped) {
-  return binary_format("4.1", swapped) + whole("PhysicalNames", body(kText4, "PhysicalNames")) +
-         binary_entities_4(swapped) + binary_nodes_4(swapped) +
-         whole("Periodic", std::string("\x01\0\0\n$\xff\n\n", 8)) + binary_elements_4(swapped);
+/// A text in binary, with bytes that are no text in $Periodic.
+inline std::string binary_4(bool swapped, const std::string& text = kText4) {
+  return binary_format("4.1", swapped) + whole("PhysicalNames", body(text, "PhysicalNames")) +
+         binary_entities_4(swapped, text) + binary_nodes_4(swapped, text) +
+         whole("Periodic", std::string("\x01\0\0\n$\xff\n\n", 8)) + binary_elements_4(swapped, text);
 }
 
 inline std::string replaced(std::string text, const std::string& old, const std::string& fresh) {

@@ -4,8 +4,8 @@
 #include <string>
 
 /// Loaders in the place of files. Meshes: five vertices and two tetrahedra; "square.msh": five and five; "huge.msh":
-/// coordinates near the largest double. Sidecars: "tets.txt", "vertices.txt", "odd.txt" (three rows). Others are
-/// absent.
+/// coordinates near the largest double; "quadratic.msh": of order 2. Sidecars: "tets.txt", "vertices.txt", "odd.txt"
+/// (three rows). Others are absent.
 inline softkin::SceneFiles fake_files() {
   using namespace softkin;
   namespace fs = std::filesystem;
@@ -17,6 +17,7 @@ inline softkin::SceneFiles fake_files() {
     mesh.vertices << 0, 0, 0, 0.12, 0, 0, 0, 0.025, 0, 0, 0, 0.025, 1, 1, 1;
     if (path.filename() == "huge.msh") mesh.vertices *= 1e307;
     mesh.tetrahedra.assign(path.filename() == "square.msh" ? 5 : 2, {0, 1, 2, 3});
+    if (path.filename() == "quadratic.msh") mesh.edge_nodes.assign(2, {4, 4, 4, 4, 4, 4});
     return mesh;
   };
   files.surface = [](const fs::path& path) {
@@ -36,7 +37,7 @@ inline softkin::SceneFiles fake_files() {
   return files;
 }
 
-/// The example of DESIGN.md in metres, for the target-shape formulation, with every key that a scene may have.
+/// The example of DESIGN.md in metres, for the target-shape formulation, with every key that it may have.
 inline const char* const whole_scene = R"(softkin: 1
 units: {length: m}
 mesh: {file: finger.msh}
@@ -76,4 +77,29 @@ actuators:
 markers:
   - {name: tip, point: [0.120, 0.0125, 0]}
   - {name: cap, region: tip}
+)";
+
+/// A robot in metres for the physical formulation, with every key that this one has beside those of whole_scene.
+inline const char* const physical_scene = R"(softkin: 1
+units: {length: m}
+mesh: {file: finger.msh, order: 2}
+gravity: [0, 0.5, -9.81]
+materials:
+  - {youngs_modulus: 12, poisson_ratio: 0.4, density: 1130, shape_ratio: 0.5}
+  - {region: rib, law: corotational, youngs_modulus: 30, poisson_ratio: -0.2}
+  - {region: skin, law: mooney-rivlin, c10: 0.3, c01: -0.1, bulk_modulus: 100}
+  - {region: foam, law: yeoh, c10: 0.11, c20: -0.02, poisson_ratio: 0.49}
+  - {region: plate, shape_ratio: 1}
+actuators:
+  - {name: air, kind: pneumatic, region: chamber, control: pressure, range: [-20, 80], weight: 3, distribution: uniform}
+  - name: tendon
+    kind: cable
+    points: [[0, 0.012, 0.022], [0.06, 0.012, 0.022]]
+    apexes: [[0.03, 0.012, 0.01]]
+    control: tension
+    range: [0, 25]
+  - {name: bag, kind: pneumatic, surface: cavity.stl, range: [1, 2], control: volume}
+forces:
+  - {name: load, region: tip, force: [0, 0, -0.5]}
+  - {name: push, point: [0.12, 0, 0.01], force: [1, 0, 0]}
 )";

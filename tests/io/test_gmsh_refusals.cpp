@@ -146,15 +146,16 @@ TEST(GmshRefusals, Elements) {
       in_2("30 20 10\n", "30 20 10 40\n", 32, "unexpected '40' at the end of the line"),
       in_2("30 20 10\n", "30 20 1.5\n", 32, "node of an element must be an integer, not '1.5'"),
       in_2("10 4 2 1 2", "10 4 -2 1 2", 38, "number of tags of an element is -2, outside 0 to"),
-      in_2("10 4 2 1 2", "10 11 2 1 2", 38, "second-order tetrahedra (type 11) are not supported: mesh with order 1"),
+      in_2("10 4 2 1 2", "10 29 2 1 2", 38,
+           "third-order tetrahedra (type 29) are not supported: mesh with order 1 or 2"),
       in_2("10 4 2 1 2", "10 5 2 1 2", 38, "hexahedra (type 5) are not supported: mesh with tetrahedra or prisms"),
       in_2("10 4 2 1 2", "10 7 2 1 2", 38, "pyramids (type 7) are not supported: mesh with tetrahedra or prisms"),
-      in_2("4 2 2 1 1", "4 9 2 1 1", 32, "second-order triangles (type 9) are not supported: mesh with order 1"),
-      in_2("2 1 2 4 1", "2 8 2 4 1", 30, "second-order lines (type 8) are not supported: mesh with order 1"),
-      in_2("10 4 2 1 2", "10 92 2 1 2", 38, "elements of type 92 are not supported: mesh with order 1"),
+      in_2("4 2 2 1 1", "4 21 2 1 1", 32, "third-order triangles (type 21) are not supported: mesh with order 1 or 2"),
+      in_2("2 1 2 4 1", "2 26 2 4 1", 30, "third-order lines (type 26) are not supported: mesh with order 1 or 2"),
+      in_2("10 4 2 1 2", "10 92 2 1 2", 38, "elements of type 92 are not supported: mesh with order 1 or 2"),
       in_2("10 4 2 1 2", "10 999 2 1 2", 38, "unknown element type 999"),
       in_2("10 4 2 1 2", "10 0 2 1 2", 38, "unknown element type 0"),
-      in_4("3 2 4 1\n", "3 2 11 1\n", 66, "second-order tetrahedra (type 11) are not supported: mesh with order 1"),
+      in_4("3 2 4 1\n", "3 2 29 1\n", 66, "third-order tetrahedra (type 29) are not supported: mesh with order 1 or 2"),
       in_4("3 2 4 1\n", "3 5 4 1\n", 66, "elements of entity 5 of dimension 3, which is not in $Entities"),
       in_4("3 1 6 1\n", "2 1 6 1\n", 64, "elements of type 6 in an entity of dimension 2"),
       in_4("7 8 1 10", "8 8 1 10", 68, "dimension of an entity must be an integer, not '$EndElements'"),
@@ -207,7 +208,7 @@ TEST(GmshRefusals, Binary) {
       patched(four, nodes, 52, std::uint64_t{0}, "number of a node is 0, outside 1 to"),
       patched(four, nodes, 60, std::uint64_t{50}, "two nodes have the number 50"),
       patched(four, nodes, 92, nan, "x of a node must be a finite number"),
-      patched(four, elements, 40, std::int32_t{11}, "second-order tetrahedra (type 11) are not supported"),
+      patched(four, elements, 40, std::int32_t{29}, "third-order tetrahedra (type 29) are not supported"),
       patched(four, elements, 36, std::int32_t{3}, "elements of entity 3 of dimension 0, which is not in"),
       patched(four, elements, 60, std::uint64_t{6}, "element 1 names node 6, which does not exist"),
       patched(four, "$Entities\n", 60, huge, "number of physical tags is 9223372036854775808, outside 0 to"),
@@ -247,7 +248,17 @@ TEST(GmshRefusals, NoFile) {
 }
 
 std::vector<std::string> samples() {
-  return {kText2, kText4, binary_2(false), binary_2(true), binary_4(false), binary_4(true), written_by_gmsh()};
+  return {kText2,
+          kText4,
+          binary_2(false),
+          binary_2(true),
+          binary_4(false),
+          binary_4(true),
+          written_by_gmsh(),
+          kQuadratic2,
+          kQuadratic4,
+          binary_2(false, kQuadratic2),
+          binary_4(true, kQuadratic4)};
 }
 
 TEST(GmshRefusals, FilesThatEndAnywhere) {
@@ -267,6 +278,9 @@ void expect_consistent(const Mesh& mesh) {
   };
   for (const Tetrahedron& cell : mesh.tetrahedra)
     for (const Index v : cell) ASSERT_LT(static_cast<std::size_t>(v), static_cast<std::size_t>(mesh.vertices.rows()));
+  ASSERT_TRUE(mesh.edge_nodes.empty() || mesh.edge_nodes.size() == mesh.tetrahedra.size());
+  for (const EdgeNodes& nodes : mesh.edge_nodes)
+    for (const Index v : nodes) ASSERT_LT(static_cast<std::size_t>(v), static_cast<std::size_t>(mesh.vertices.rows()));
   for (const Prism& cell : mesh.prisms)
     for (const Index v : cell) ASSERT_LT(static_cast<std::size_t>(v), static_cast<std::size_t>(mesh.vertices.rows()));
   for (const Region& region : mesh.regions) {

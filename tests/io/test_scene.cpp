@@ -135,6 +135,109 @@ TEST(Scene, WholeSceneCableAndMarkers) {
   EXPECT_EQ(region(spec.markers[1].at), "tip");
 }
 
+TEST(Scene, PhysicalSceneMaterials) {
+  const RobotSpec spec = parse(physical_scene);
+  EXPECT_EQ(spec.formulation, Formulation::physical);
+  EXPECT_TRUE(spec.quadratic);
+  EXPECT_EQ(spec.gravity, Vec3(0, 0.5, -9.81));
+  ASSERT_EQ(spec.materials.size(), 5u);
+  const MaterialSpec &both = spec.materials[0], &rib = spec.materials[1], &plate = spec.materials[4];
+  ASSERT_TRUE(both.elastic && rib.elastic);
+  EXPECT_EQ(both.elastic->law, Law::neo_hookean);
+  EXPECT_EQ(both.elastic->youngs_modulus, 12);
+  EXPECT_EQ(both.elastic->poisson_ratio, 0.4);
+  EXPECT_FALSE(both.elastic->c10 || both.elastic->c01 || both.elastic->c20 || both.elastic->c30);
+  EXPECT_FALSE(both.elastic->bulk_modulus);
+  EXPECT_EQ(both.density, 1130);
+  EXPECT_EQ(both.shape_ratio, 0.5);
+  EXPECT_EQ(rib.elastic->law, Law::corotational);
+  EXPECT_EQ(rib.elastic->poisson_ratio, -0.2);
+  EXPECT_EQ(rib.density, 0);
+  EXPECT_FALSE(rib.shape_ratio);
+  EXPECT_FALSE(plate.elastic);
+  EXPECT_EQ(plate.shape_ratio, 1);
+}
+
+TEST(Scene, PhysicalSceneRubberLaws) {
+  const RobotSpec spec = parse(physical_scene);
+  const ElasticSpec &skin = spec.materials.at(2).elastic.value(), &foam = spec.materials.at(3).elastic.value();
+  EXPECT_EQ(skin.law, Law::mooney_rivlin);
+  EXPECT_EQ(skin.c10, 0.3);
+  EXPECT_EQ(skin.c01, -0.1);
+  EXPECT_EQ(skin.bulk_modulus, 100);
+  EXPECT_FALSE(skin.poisson_ratio || skin.youngs_modulus || skin.c20 || skin.c30);
+  EXPECT_EQ(foam.law, Law::yeoh);
+  EXPECT_EQ(foam.c10, 0.11);
+  EXPECT_EQ(foam.c20, -0.02);
+  EXPECT_EQ(foam.c30, 0);
+  EXPECT_EQ(foam.poisson_ratio, 0.49);
+  EXPECT_FALSE(foam.bulk_modulus || foam.youngs_modulus || foam.c01);
+}
+
+TEST(Scene, PhysicalSceneLoads) {
+  const RobotSpec spec = parse(physical_scene);
+  ASSERT_EQ(spec.actuators.size(), 3u);
+  const ActuatorSpec &air = spec.actuators[0], &tendon = spec.actuators[1], &bag = spec.actuators[2];
+  EXPECT_EQ(air.control, Control::load);
+  EXPECT_EQ(air.low, -20);
+  EXPECT_EQ(air.high, 80);
+  EXPECT_EQ(air.rest, 0);
+  EXPECT_EQ(air.weight, 3);
+  EXPECT_FALSE(air.least_norm);
+  EXPECT_EQ(tendon.control, Control::load);
+  EXPECT_EQ(tendon.low, 0);
+  EXPECT_EQ(tendon.high, 25);
+  EXPECT_EQ(tendon.rest, 0);
+  EXPECT_EQ(tendon.apexes.size(), 1u);
+  EXPECT_EQ(bag.control, Control::ratio);
+  EXPECT_EQ(bag.rest, 1);
+  ASSERT_EQ(spec.forces.size(), 2u);
+  EXPECT_EQ(spec.forces[0].name, "load");
+  EXPECT_EQ(region(spec.forces[0].at), "tip");
+  EXPECT_EQ(spec.forces[0].at.origin.line, 21u);
+  EXPECT_EQ(spec.forces[0].force, Vec3(0, 0, -0.5));
+  expect_near(position(spec.forces[1].at), 120, 0, 10);
+  EXPECT_EQ(spec.forces[1].force, Vec3(1, 0, 0));
+}
+
+TEST(Scene, EveryLawByItsName) {
+  const std::pair<const char*, Law> laws[] = {
+      {"law: st-venant-kirchhoff, youngs_modulus: 1, poisson_ratio: 0.3", Law::st_venant_kirchhoff},
+      {"law: corotational, youngs_modulus: 1, poisson_ratio: 0.3", Law::corotational},
+      {"law: neo-hookean, youngs_modulus: 1, poisson_ratio: 0.3", Law::neo_hookean},
+      {"youngs_modulus: 1, poisson_ratio: 0", Law::neo_hookean},
+      {"law: mooney-rivlin, c10: 1, bulk_modulus: 9", Law::mooney_rivlin},
+      {"law: yeoh, c10: 1, c30: 2, bulk_modulus: 9", Law::yeoh}};
+  for (const auto& [keys, law] : laws) {
+    const RobotSpec spec = parse_body("materials: [{" + std::string(keys) + "}]\n");
+    EXPECT_EQ(spec.materials.at(0).elastic.value().law, law) << keys;
+    EXPECT_EQ(spec.formulation, Formulation::physical) << keys;
+  }
+  EXPECT_EQ(parse_body("materials: [{law: mooney-rivlin, c10: 1, poisson_ratio: 0.4}]").materials.at(0).elastic->c01,
+            0);
+}
+
+TEST(Scene, FormulationFollowsTheMaterialsUnlessItIsGiven) {
+  const std::string soft = "materials: [{shape_ratio: 0.5}]\n";
+  const std::string elastic = "materials: [{shape_ratio: 0.5}, {region: a, youngs_modulus: 1, poisson_ratio: 0.3}]\n";
+  const auto formulation = [](const std::string& body) { return parse_body(body).formulation; };
+  EXPECT_EQ(formulation(""), Formulation::target_shape);
+  EXPECT_EQ(formulation(soft), Formulation::target_shape);
+  EXPECT_EQ(formulation(elastic), Formulation::physical);
+  EXPECT_EQ(formulation("formulation: target-shape\n" + elastic), Formulation::target_shape);
+  EXPECT_EQ(formulation("formulation: physical\n" + soft), Formulation::physical);
+}
+
+TEST(Scene, KeysOfThePhysicalFormulationAreAllowedInTheOther) {
+  const RobotSpec spec = parse(
+      "softkin: 1\nformulation: target-shape\nmesh: {file: quadratic.msh, order: 2}\ngravity: [0, 0, 1]\n"
+      "materials: [{shape_ratio: 1, youngs_modulus: 1, poisson_ratio: 0.3, density: 0}]\n"
+      "forces: [{name: f, region: tip, force: [1, 0, 0]}]\n");
+  EXPECT_TRUE(spec.quadratic);
+  EXPECT_EQ(spec.mesh.edge_nodes.size(), 2u);
+  EXPECT_EQ(spec.forces.size(), 1u);
+}
+
 TEST(Scene, EveryUnitOfLength) {
   const std::pair<const char*, double> units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"um", 1e-3}, {"in", 25.4}};
   for (const auto& [unit, mm] : units) {
@@ -149,6 +252,9 @@ TEST(Scene, EveryUnitOfLength) {
 TEST(Scene, LeastSceneHasDefaults) {
   const RobotSpec spec = parse("\xEF\xBB\xBF# a comment\r\nsoftkin: 1\r\nmesh: {file: a.msh}\r\n");
   EXPECT_EQ(spec.mesh.tetrahedra.size(), 2u);
+  EXPECT_FALSE(spec.quadratic);
+  EXPECT_EQ(spec.gravity, Vec3(0, 0, 0));
+  EXPECT_TRUE(spec.forces.empty());
   EXPECT_TRUE(spec.materials.empty() && spec.actuators.empty() && spec.fixed.empty() && spec.markers.empty());
 }
 
@@ -190,14 +296,20 @@ TEST(Scene, SidecarOfEqualCountsNeedsOf) {
   EXPECT_EQ(std::get<VertexList>(spec.regions.at(1).selector).vertices, std::vector<Index>{2});
 }
 
-TEST(Scene, ExampleOfTheManualIsAScene) {
+TEST(Scene, ExamplesOfTheManualAreScenes) {
   const std::string manual = read_file(SOFTKIN_SOURCE_DIR "/docs/scene.md"), fence = "```yaml\n";
-  const std::size_t begin = manual.find(fence);
-  ASSERT_NE(begin, std::string::npos);
-  const std::size_t end = manual.find("```", begin + fence.size());
-  const RobotSpec spec = parse(manual.substr(begin + fence.size(), end - begin - fence.size()));
-  EXPECT_EQ(spec.actuators.size(), 3u);
-  EXPECT_EQ(spec.markers.size(), 2u);
+  std::vector<RobotSpec> specs;
+  for (std::size_t begin = manual.find(fence); begin != std::string::npos; begin = manual.find(fence, begin)) {
+    begin += fence.size();
+    specs.push_back(parse(manual.substr(begin, manual.find("```", begin) - begin)));
+  }
+  ASSERT_EQ(specs.size(), 2u);
+  EXPECT_EQ(specs[0].actuators.size(), 3u);
+  EXPECT_EQ(specs[0].markers.size(), 2u);
+  EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
+  EXPECT_EQ(specs[1].formulation, Formulation::physical);
+  EXPECT_EQ(specs[1].actuators.at(0).control, Control::load);
+  EXPECT_EQ(specs[1].forces.size(), 1u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.
@@ -213,10 +325,9 @@ int outcome(const std::string& text) {
 
 TEST(SceneFuzz, FlippedBytesAreReadOrRefused) {
   std::mt19937 random(20);
-  const std::string good = whole_scene;
   int counts[2] = {0, 0};
-  for (int i = 0; i < 2000; ++i) {
-    std::string text = good;
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = i % 2 == 0 ? whole_scene : physical_scene;
     const int flips = 1 + static_cast<int>(random() % 3);
     for (int k = 0; k < flips; ++k) text[random() % text.size()] ^= static_cast<char>(1u << (random() % 8));
     ++counts[outcome(text)];
@@ -227,9 +338,10 @@ TEST(SceneFuzz, FlippedBytesAreReadOrRefused) {
 
 TEST(SceneFuzz, CutsInsertionsAndBracketsAreReadOrRefused) {
   std::mt19937 random(21);
-  const std::string good = whole_scene, marks = "[]{},:-?&*!|>'\"%@`#\n\t ~.\\";
+  const std::string marks = "[]{},:-?&*!|>'\"%@`#\n\t ~.\\";
   int counts[2] = {0, 0};
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 3000; ++i) {
+    const std::string good = i % 2 == 0 ? whole_scene : physical_scene;
     std::string text = good.substr(0, i % 4 == 0 ? random() % good.size() : good.size());
     for (int k = 0; k < 3; ++k) text.insert(random() % (text.size() + 1), 1, marks[random() % marks.size()]);
     ++counts[outcome(text)];

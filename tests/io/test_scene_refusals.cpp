@@ -42,11 +42,14 @@ TEST(SceneRefusals, WholeTexts) {
       {"softkin: '1'\n", "'softkin' must be an integer, not the quoted text '1'", 1},
       {"softkin: 1.0\n", "'softkin' must be an integer, not '1.0'", 1},
       {"softkin: 1\n", "the scene needs key 'mesh'", 1},
-      {"softkin: 1\nmesh: a.msh\n", "'mesh' must be a map with keys 'file', not 'a.msh'", 2},
+      {"softkin: 1\nmesh: a.msh\n", "'mesh' must be a map with keys 'file', 'order', not 'a.msh'", 2},
       {"softkin: 1\nmesh: {file: ''}\n", "'file' is empty", 2},
       {"softkin: 1\nmesh: {}\n", "'mesh' needs key 'file'", 2},
       {"softkin: 1\nmesh:\n  file: a.txt\n", "a.txt: no such file", 3},
       {"softkin: 1\nunits: {length: m}\nmesh: {file: huge.msh}\n", "coordinates are too large", 3},
+      {"softkin: 1\nmesh: {file: a.msh, order: 3}\n", "'order' must be 1 or 2, not 3", 2},
+      {"softkin: 1\nmesh: {file: a.msh, order: 2.0}\n", "'order' must be an integer", 2},
+      {"softkin: 1\nmesh:\n  file: quadratic.msh\n  order: 1\n", "the tetrahedra of the mesh are of order 2", 4},
       {"softkin: 1\nsoftkin: 1\n", "key 'softkin' appears twice in the scene; first in line 1", 2},
       {"softkin: 1\n---\nsoftkin: 1\n", "a second YAML document", 2},
       {"softkin: 1\n}\n", "not valid YAML", 2},
@@ -67,13 +70,16 @@ TEST(SceneRefusals, WholeTexts) {
 TEST(SceneRefusals, KeysAndUnits) {
   expect_all_refused({
       {"\nmarkerz: []\n", "unknown key 'markerz' in the scene; did you mean 'markers'?", 2},
-      {"gravity: 9.81\n", "unknown key 'gravity' in the scene; known: softkin, units, mesh", 1},
+      {"weather: 9.81\n", "unknown key 'weather' in the scene; known: softkin, units, mesh", 1},
+      {"gravity: 9.81\n", "'gravity' must be a list, not '9.81'", 1},
+      {"gravity: [0, -9.81]\n", "'gravity' must be a list of 3, not of 2", 1},
+      {"gravity: [0, 0, down]\n", "entry 3 of 'gravity' must be a finite number, not 'down'", 1},
+      {"gravity: [0, 0, .inf]\n", "entry 3 of 'gravity' must be a finite number", 1},
       {"<<: {void: []}\n", "unknown key '<<'", 1},
       {"units: {length: km}\n", "'length' must be one of 'mm', 'cm', 'm', 'um', 'in', not 'km'", 1},
       {"units: {lenght: m}\n", "did you mean 'length'?", 1},
       {"units: mm\n", "'units' must be a map", 1},
-      {"formulation: physical\n", "formulation 'physical' is not in this version of softkin; use 'target-shape'", 1},
-      {"formulation: fem\n", "'formulation' must be 'target-shape', not 'fem'", 1},
+      {"formulation: fem\n", "'formulation' must be one of 'target-shape', 'physical', not 'fem'", 1},
       {"markers:\n", "'markers' must be a list, not empty", 1},
       {"materials: {shape_ratio: 1}\n", "'materials' must be a list, not a map", 1},
   });
@@ -119,7 +125,9 @@ TEST(SceneRefusals, Regions) {
 
 TEST(SceneRefusals, MaterialsAndSupports) {
   expect_all_refused({
-      {"materials: [{region: body}]\n", "entry 1 of 'materials' needs key 'shape_ratio'", 1},
+      {"materials: [{region: body}]\n",
+       "entry 1 of 'materials' needs 'shape_ratio' (target-shape) or elastic constants (physical)", 1},
+      {"materials: [{region: body, density: 1000, weight: 1}]\n", "needs 'shape_ratio' (target-shape) or elastic", 1},
       {"materials: [{shape_ratio: 1.5}]\n", "'shape_ratio' must be from 0 to 1, not 1.5", 1},
       {"materials: [{shape_ratio: -0.1}]\n", "'shape_ratio' must be from 0 to 1", 1},
       {"materials: [{shape_ratio: '0.5'}]\n", "must be a finite number, not the quoted text '0.5'", 1},
@@ -131,10 +139,6 @@ TEST(SceneRefusals, MaterialsAndSupports) {
       {"materials: [{shape_ratio: 1, weight: 0}]\n", "'weight' must be greater than 0, not 0", 1},
       {"materials: [{shape_ratio: 1, linear_range: -0.2}]\n", "'linear_range' must be greater than 0", 1},
       {"materials: [{shape_ratio: ~}]\n", "'shape_ratio' must be a finite number, not empty", 1},
-      {"materials:\n  - region: body\n    youngs_modulus: 12\n",
-       "key 'youngs_modulus' belongs to the physical formulation", 3},
-      {"materials: [{poisson_ratio: 0.4}]\n", "key 'poisson_ratio' belongs to the physical formulation", 1},
-      {"materials: [{law: neo-hookean}]\n", "key 'law' belongs to the physical formulation", 1},
       {"void: chamber\n", "'void' must be a list, not 'chamber'", 1},
       {"void:\n  - a\n  -\n", "entry 2 of 'void' must be a word, not empty", 2},
       {"fixed: [base]\n", "entry 1 of 'fixed' must be a map with keys 'region', 'box'", 1},
@@ -145,6 +149,83 @@ TEST(SceneRefusals, MaterialsAndSupports) {
       {"rigid: [{region: a, box: [[0, 0, 0], [1, 1, 1]]}]\n", "has both 'region' and 'box'", 1},
       {"rigid: [[a]]\n", "entry 1 of 'rigid' must be a map", 1},
   });
+}
+
+TEST(SceneRefusals, ElasticConstants) {
+  const std::vector<Refusal> refusals{
+      {"law: neo", "'law' must be one of 'st-venant-kirchhoff', 'corotational', 'neo-hookean'", 0},
+      {"law: neo-hookean", "law 'neo-hookean' needs key 'youngs_modulus'", 0},
+      {"shape_ratio: 1, law: neo-hookean", "law 'neo-hookean' needs key 'youngs_modulus'", 0},
+      {"youngs_modulus: 12", "law 'neo-hookean' (the default) needs key 'poisson_ratio'", 0},
+      {"poisson_ratio: 0.4", "law 'neo-hookean' (the default) needs key 'youngs_modulus'", 0},
+      {"law: corotational, youngs_modulus: 12", "law 'corotational' needs key 'poisson_ratio'", 0},
+      {"youngs_modulus: 0, poisson_ratio: 0.4", "'youngs_modulus' must be greater than 0, not 0", 0},
+      {"youngs_modulus: -3, poisson_ratio: 0.4", "'youngs_modulus' must be greater than 0, not -3", 0},
+      {"youngs_modulus: nan, poisson_ratio: 0.4", "'youngs_modulus' must be a finite number", 0},
+      {"youngs_modulus: 12 MPa, poisson_ratio: 0.4", "'youngs_modulus' must be a finite number, not '12 MPa'", 0},
+      {"youngs_modulus: 1, poisson_ratio: 0.5", "incompressible material is not supported; take 0.49, and 'order: 2'",
+       0},
+      {"youngs_modulus: 1, poisson_ratio: 0.51", "greater than -1 and less than 0.5, not 0.51", 0},
+      {"youngs_modulus: 1, poisson_ratio: -1", "greater than -1 and less than 0.5, not -1", 0},
+      {"youngs_modulus: 1, poisson_ratio: .nan", "'poisson_ratio' must be a finite number", 0},
+      {"youngs_modulus: 1, poisson_ratio: 0.3, c10: 1",
+       "key 'c10' does not belong to law 'neo-hookean' (the default), which takes 'youngs_modulus', 'poisson_ratio'",
+       0},
+      {"c10: 1", "key 'c10' does not belong to law 'neo-hookean' (the default)", 0},
+      {"law: corotational, youngs_modulus: 1, poisson_ratio: 0.3, bulk_modulus: 1",
+       "key 'bulk_modulus' does not belong to law 'corotational'", 0},
+      {"law: st-venant-kirchhoff, youngs_modulus: 1, poisson_ratio: 0.3, c30: 1",
+       "key 'c30' does not belong to law 'st-venant-kirchhoff'", 0},
+      {"law: mooney-rivlin, c10: 1, c20: 1, bulk_modulus: 1",
+       "key 'c20' does not belong to law 'mooney-rivlin', which takes 'c10', 'c01', 'bulk_modulus', 'poisson_ratio'",
+       0},
+      {"law: mooney-rivlin, youngs_modulus: 1", "key 'youngs_modulus' does not belong to law 'mooney-rivlin'", 0},
+      {"law: mooney-rivlin, c01: 1, bulk_modulus: 1", "law 'mooney-rivlin' needs key 'c10'", 0},
+      {"law: mooney-rivlin, c10: 1", "needs one of 'bulk_modulus', 'poisson_ratio'", 0},
+      {"law: mooney-rivlin, c10: 1, bulk_modulus: 1, poisson_ratio: 0.4", "has both 'bulk_modulus' and 'poisson_ratio'",
+       0},
+      {"law: mooney-rivlin, c10: 1, bulk_modulus: 0", "'bulk_modulus' must be greater than 0", 0},
+      {"law: mooney-rivlin, c10: 0.1, c01: -0.1, bulk_modulus: 1", "'c10' + 'c01' must be greater than 0", 0},
+      {"law: mooney-rivlin, c10: 1, poisson_ratio: 0.5", "incompressible material is not supported", 0},
+      {"law: yeoh, c10: 1, c01: 1, bulk_modulus: 1", "key 'c01' does not belong to law 'yeoh'", 0},
+      {"law: yeoh, c10: -1, bulk_modulus: 1", "'c10' must be greater than 0", 0},
+      {"law: yeoh, c10: 1, c20: soft, bulk_modulus: 1", "'c20' must be a finite number, not 'soft'", 0},
+      {"law: yeoh, c20: 1, bulk_modulus: 1", "law 'yeoh' needs key 'c10'", 0},
+      {"law: yeoh, c10: 1", "needs one of 'bulk_modulus', 'poisson_ratio'", 0},
+      {"shape_ratio: 1, density: -1", "'density' must not be negative: -1", 0},
+      {"shape_ratio: 1, density: inf", "'density' must be a finite number", 0},
+      {"shape_ratio: 1, young_modulus: 1", "did you mean 'youngs_modulus'?", 0},
+  };
+  for (const Refusal& each : refusals)
+    expect_refused("softkin: 1\nmesh: {file: a.msh}\nmaterials:\n  - {region: a, shape_ratio: 1}\n  - {" +
+                       std::string(each.text) + "}\n",
+                   each.fragment, 5);
+}
+
+TEST(SceneRefusals, LoadsAndForces) {
+  const std::vector<Refusal> refusals{
+      {"actuators: [{name: a, kind: pneumatic, region: r, range: [2, -2], control: pressure}]", "2 is above -2", 4},
+      {"actuators: [{name: a, kind: pneumatic, region: r, range: [-1, inf], control: pressure}]", "finite number", 4},
+      {"actuators: [{name: a, kind: pneumatic, region: r, range: [0, 1], control: volume}]",
+       "entry 1 of 'range' must be greater than 0, not 0", 4},
+      {"actuators: [{name: a, kind: cable, points: [[0, 0, 0], [1, 0, 0]], range: [-1, 9], control: tension}]",
+       "entry 1 of 'range' must not be negative, since a cable only pulls: -1", 4},
+      {"actuators: [{name: a, kind: pneumatic, region: r, range: [1, 2], control: tension}]",
+       "control of kind 'pneumatic' must be one of 'volume', 'pressure', not 'tension'", 4},
+      {"actuators: [{name: a, kind: dea, region: r, range: [1, 2], control: pressure}]",
+       "control of kind 'dea' must be 'area', not 'pressure'", 4},
+      {"forces: [{name: f, region: tip}]", "entry 1 of 'forces' needs key 'force'", 4},
+      {"forces: [{name: f, force: [0, 0, 1]}]", "needs one of 'point', 'region'", 4},
+      {"forces: [{region: tip, force: [0, 0, 1]}]", "needs key 'name'", 4},
+      {"forces: [{name: f, region: a, point: [0, 0, 0], force: [0, 0, 1]}]", "has both 'region' and 'point'", 4},
+      {"forces: [{name: f, region: tip, force: 3}]", "'force' must be a list, not '3'", 4},
+      {"forces: [{name: f, region: tip, force: [0, 0, nan]}]", "must be a finite number, not 'nan'", 4},
+      {"forces:\n  - {name: f, region: a, force: [0, 0, 1]}\n  - {name: f, region: b, force: [0, 0, 1]}",
+       "the name 'f' is taken; it is given in line 5", 6},
+  };
+  for (const Refusal& each : refusals)
+    expect_refused("softkin: 1\nmesh: {file: a.msh}\nformulation: physical\n" + std::string(each.text) + "\n",
+                   each.fragment, each.line);
 }
 
 TEST(SceneRefusals, ActuatorsAndMarkers) {
@@ -172,10 +253,13 @@ TEST(SceneRefusals, ActuatorsAndMarkers) {
       {"actuators: [{name: a, kind: pneumatic, surface: s.ply, range: [1, 2]}]\n", "s.ply:7: no facet", 1},
       {"actuators: [{name: a, kind: pneumatic, region: r, range: [1, 2], control: pressure}]\n",
        "control 'pressure' belongs to the physical formulation", 1},
+      {"formulation: target-shape\nmaterials: [{youngs_modulus: 1, poisson_ratio: 0.3}]\nactuators:\n  - name: a\n"
+       "    kind: pneumatic\n    region: r\n    range: [1, 2]\n    control: pressure\n",
+       "control 'pressure' belongs to the physical formulation", 8},
       {"actuators: [{name: a, kind: cable, points: [[0, 0, 0], [1, 0, 0]], range: [0.5, 1], control: tension}]\n",
        "control 'tension' belongs to the physical formulation", 1},
       {"actuators: [{name: a, kind: pneumatic, region: r, range: [1, 2], control: length}]\n",
-       "control of kind 'pneumatic' must be 'volume', not 'length'", 1},
+       "control of kind 'pneumatic' must be one of 'volume', 'pressure', not 'length'", 1},
       {"actuators: [{name: a, kind: cable, range: [0.5, 1]}]\n", "needs key 'points'", 1},
       {"actuators: [{name: a, kind: cable, points: [[0, 0, 0]], range: [0.5, 1]}]\n", "at least 2 points", 1},
       {"actuators: [{name: a, kind: cable, points: [[0, 0, 0], [1, 0, 0]], apexes: [], range: [0.5, 1]}]\n",

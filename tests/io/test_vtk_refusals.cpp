@@ -40,6 +40,14 @@ std::string changed(const std::string& from, const std::string& to) {
   return replaced(kLegacy, from, to);
 }
 
+/// A tetrahedron of order 2 and one of order 1 in its place.
+std::string quadratic_and_linear() {
+  std::string file = replaced(kQuadraticLegacy, "CELLS 4 24", "CELLS 5 29");
+  file = replaced(file, "10 0 2 3 1", "4 0 1 2 3\n10 0 2 3 1");
+  file = replaced(file, "CELL_TYPES 4\n1\n21\n22\n24\n", "CELL_TYPES 5\n1\n21\n22\n10\n24\n");
+  return file.substr(0, file.find("CELL_DATA"));
+}
+
 TEST(VtkRefusals, Legacy) {
   expect_refused(
       {
@@ -67,12 +75,14 @@ TEST(VtkRefusals, Legacy) {
           {"a.vtk:10: cell 0 has 400 vertices, which does not fit", changed("4 0 1 2 3", "400 0 1 2 3")},
           {"a.vtk:11: the cells hold 10 values, but CELLS announces 11", changed("CELLS 2 10", "CELLS 2 11")},
           {"a.vtk:12: there are 3 cell types for 2 cells", changed("CELL_TYPES 2", "CELL_TYPES 3")},
-          {"a.vtk:13: cell 0 is a second-order tetrahedron (VTK type 24)", changed("10\n10\n", "24\n10\n")},
+          {"a.vtk:13: cell 0 has 4 vertices, but a second-order tetrahedron has 10", changed("10\n10\n", "24\n10\n")},
+          {"a.vtk:13: cell 0 is a second-order hexahedron (VTK type 25)", changed("10\n10\n", "25\n10\n")},
           {"a.vtk:14: cell 1 is a hexahedron (VTK type 12)", changed("10\n10\n", "10\n12\n")},
           {"a.vtk:13: cell 0 is a pyramid (VTK type 14)", changed("10\n10\n", "14\n10\n")},
           {"a.vtk:13: cell 0 is a cell of a type that softkin does not know (VTK type 99)",
            changed("10\n10\n", "99\n10\n")},
           {"a.vtk:13: cell 0 has 4 vertices, but a wedge has 6", changed("10\n10\n", "13\n10\n")},
+          {"a.vtk: tetrahedra of order 1 and of order 2 in one mesh", quadratic_and_linear()},
           {"a.vtk: holds no tetrahedron and no wedge", changed("10\n10\n", "9\n9\n")},
           {"a.vtk:15: CELL_DATA is for 3, but the file has 2 cells", changed("CELL_DATA 2", "CELL_DATA 3")},
           {"a.vtk:15: POINT_DATA is for 2, but the file has 5 points", changed("CELL_DATA 2", "POINT_DATA 2")},
@@ -283,6 +293,9 @@ void damage(const std::string& whole, const std::string& name, std::uint64_t see
 
 TEST(VtkRefusals, DamagedLegacyAscii) {
   damage(kLegacy, "a.vtk", 1);
+}
+TEST(VtkRefusals, DamagedLegacyOfOrder2) {
+  damage(kQuadraticLegacy, "a.vtk", 9);
 }
 TEST(VtkRefusals, DamagedLegacyBinary) {
   damage(legacy_file(true, false), "a.vtk", 2);

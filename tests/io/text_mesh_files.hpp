@@ -95,6 +95,35 @@ inline const std::string abaqus_file =
     "*MATERIAL, NAME=rubber\n*ELASTIC\n12., 0.4\n"
     "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nfeet, 1, 3\n*NODE PRINT, NSET=all\nU\n*END STEP\n";
 
+// Two tetrahedra of order 2, edge nodes in the middle of the edges: the corner (0, 2, 4, 6) and its mirror image below.
+
+/// Written by Gmsh 4.8.4 (but for the mirror image and the reals' digits).
+inline const std::string quadratic_medit_file =
+    " MeshVersionFormatted 2\n Dimension\n 3\n Vertices\n 14\n"
+    " 0 0 0 1\n 2 0 0 2\n 0 4 0 3\n 0 0 6 4\n 1 0 0 1\n 1 2 0 2\n 0 2 0 3\n 0 0 3 4\n 1 0 3 5\n 0 2 3 6\n"
+    " 0 0 -6 7\n 0 0 -3 7\n 1 0 -3 7\n 0 2 -3 7\n"
+    " EdgesP2\n 1\n 2 4 9 5\n TrianglesP2\n 1\n 1 2 3 5 6 7 1\n"
+    " TetrahedraP2\n 2\n 1 3 4 2 7 10 8 5 6 9 1\n 1 2 3 11 5 6 7 12 13 14 2\n End\n";
+
+/// As -o2 -nn writes it; the edge nodes of a face and the elements at it are of no use.
+inline const Files quadratic_tetgen_files = {
+    {"q.node",
+     "14 3 0 0\n1 0 0 0\n2 2 0 0\n3 0 4 0\n4 0 0 6\n5 1 0 0\n6 1 2 0\n7 0 2 0\n8 0 0 3\n9 1 0 3\n10 0 2 3\n"
+     "11 0 0 -6\n12 0 0 -3\n13 1 0 -3\n14 0 2 -3\n"},
+    {"q.ele", "2 10 1\n1 1 3 4 2 9 5 7 10 6 8 1\n2 1 2 3 11 14 12 5 6 13 7 2\n"},
+    {"q.face", "1 1\n1 1 2 3 6 7 5 4 1 2\n"}};
+
+inline const std::string quadratic_abaqus_file =
+    "*NODE\n"
+    "1, 0, 0, 0\n2, 2, 0, 0\n3, 0, 4, 0\n4, 0, 0, 6\n5, 1, 0, 0\n6, 1, 2, 0\n7, 0, 2, 0\n8, 0, 0, 3\n9, 1, 0, 3\n"
+    "10, 0, 2, 3\n11, 0, 0, -6\n12, 0, 0, -3\n13, 1, 0, -3\n14, 0, 2, -3\n"
+    "*ELEMENT, TYPE=C3D10, ELSET=upper\n"
+    "1, 1, 3, 4, 2, 7, 10, 8, 5, 6,\n9\n"
+    "*ELEMENT, TYPE=C3D10, ELSET=lower\n"
+    "2, 1, 2, 3, 11, 5, 6, 7, 12, 13, 14\n"
+    "*NSET, NSET=of_lower, ELSET=lower\n"
+    "*SURFACE, NAME=between\n2, S1\n";
+
 inline const std::string tet_file =
     "5 vertices\n2 tets\n"
     "0 0 0\n1.0000000000000002 0 0\n0 1 0\n0 0 1\n0 0 -1\n"
@@ -109,6 +138,8 @@ inline void expect_consistent(const Mesh& mesh) {
       for (const Index v : cell) ASSERT_TRUE(v >= 0 && v < vertices);
   };
   check_cells(mesh.tetrahedra);
+  check_cells(mesh.edge_nodes);
+  EXPECT_TRUE(mesh.edge_nodes.empty() || mesh.edge_nodes.size() == mesh.tetrahedra.size());
   check_cells(mesh.prisms);
   check_cells(mesh.triangles);
   check_cells(mesh.quads);

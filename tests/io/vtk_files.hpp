@@ -153,6 +153,44 @@ inline void expect_reference_mesh(const softkin::Mesh& mesh) {
   EXPECT_EQ(region(mesh, "material_5_0d").vertices, Indices{7});
 }
 
+/// Written by Gmsh 4.8.4 with order 2: a vertex, a line, a triangle and a tetrahedron.
+inline const std::string kQuadraticLegacy = R"(# vtk DataFile Version 2.0
+t, Created by Gmsh
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 10 double
+0 0 0
+2 0 0
+0 4 0
+0 0 6
+0.9999999999973436 0 0
+1.000000000002657 1.999999999994685 0
+0 2.000000000005322 0
+0 0 2.999999999990317
+1.000000000003171 0 2.999999999990488
+0 2.000000000006107 2.99999999999084
+
+CELLS 4 24
+1 3
+3 1 3 8
+6 0 1 2 4 5 6
+10 0 2 3 1 6 9 7 4 5 8
+
+CELL_TYPES 4
+1
+21
+22
+24
+
+CELL_DATA 4
+SCALARS CellEntityIds int 1
+LOOKUP_TABLE default
+4
+3
+2
+1
+)";
+
 /// How xml_file() writes its arrays.
 struct XmlForm {
   enum class Format { ascii, binary, raw, base64 } format = Format::ascii;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/core/error.hpp>
 #include <softkin/energy/elastic.hpp>
 
 namespace softkin {
@@ -186,6 +187,7 @@ void dispatch(Law law, const Work& work) {
     case Law::yeoh:
       return work.template operator()<Law::yeoh>();
   }
+  throw InvalidInput("elastic law " + std::to_string(static_cast<int>(law)) + ": there is no such law");
 }
 
 }  // namespace softkin

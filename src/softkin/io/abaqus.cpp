@@ -2,6 +2,7 @@
 #include <map>
 #include <softkin/io/abaqus_cards.hpp>
 #include <softkin/io/abaqus_deck.hpp>
+#include <softkin/io/element_order.hpp>
 #include <softkin/io/text_meshes.hpp>
 #include <unordered_map>
 #include <utility>
@@ -101,14 +102,27 @@ class MeshBuilder {
       if (!elements_.emplace(element.id, static_cast<Index>(elements_.size())).second)
         throw InvalidInput(cards_.origin(element.line),
                            "element " + std::to_string(element.id) + " is defined a second time");
-      place_.push_back(element.corners == 4 ? mesh_.tetrahedra.size() : mesh_.prisms.size());
-      Index corners[6] = {};
-      for (std::size_t i = 0; i < element.corners; ++i) corners[i] = node_of(element, element.nodes[i]);
-      if (element.corners == 4)
-        mesh_.tetrahedra.push_back({corners[0], corners[1], corners[2], corners[3]});
-      else
-        mesh_.prisms.push_back({corners[0], corners[1], corners[2], corners[3], corners[4], corners[5]});
+      add_element(element);
+      const std::string refusal =
+          refusal_of_orders(mesh_.tetrahedra.size(), mesh_.edge_nodes.size(), mesh_.prisms.size());
+      if (!refusal.empty()) throw InvalidInput(cards_.origin(element.line), refusal);
     }
+  }
+
+  void add_element(const AbaqusElement& element) {
+    place_.push_back(element.is_tetrahedron() ? mesh_.tetrahedra.size() : mesh_.prisms.size());
+    if (element.is_tetrahedron())
+      mesh_.tetrahedra.push_back(nodes_of<4>(element, 0));
+    else
+      mesh_.prisms.push_back(nodes_of<6>(element, 0));
+    if (element.count == 10) mesh_.edge_nodes.push_back(nodes_of<6>(element, 4));  // edges in softkin's order
+  }
+
+  template <std::size_t N>
+  std::array<Index, N> nodes_of(const AbaqusElement& element, std::size_t first) const {
+    std::array<Index, N> nodes;
+    for (std::size_t i = 0; i < N; ++i) nodes[i] = node_of(element, element.nodes[first + i]);
+    return nodes;
   }
 
   Index node_of(const AbaqusElement& element, std::int64_t id) const {
@@ -156,7 +170,7 @@ class MeshBuilder {
   /// The corners of an element, from 0.
   std::pair<const Index*, std::size_t> corners_of(Index element) const {
     const auto i = static_cast<std::size_t>(element);
-    if (cards_.elements[i].corners == 4) return {mesh_.tetrahedra[place_[i]].data(), 4};
+    if (cards_.elements[i].is_tetrahedron()) return {mesh_.tetrahedra[place_[i]].data(), 4};
     return {mesh_.prisms[place_[i]].data(), 6};
   }
 
@@ -164,6 +178,9 @@ class MeshBuilder {
     for (const Index element : elements) {
       const auto [corners, count] = corners_of(element);
       members.insert(members.end(), corners, corners + count);
+      if (mesh_.edge_nodes.empty()) continue;
+      const EdgeNodes& nodes = mesh_.edge_nodes[place_[static_cast<std::size_t>(element)]];
+      members.insert(members.end(), nodes.begin(), nodes.end());
     }
     sort_unique(members);
   }
@@ -188,7 +205,7 @@ class MeshBuilder {
   Index face_of(Index element, const AbaqusItem& item) {
     const auto [corners, count] = corners_of(element);
     if (item.face > (count == 4 ? 4 : 5))
-      throw InvalidInput(cards_.origin(item.line), "a C3D4 element has no face S" + std::to_string(item.face));
+      throw InvalidInput(cards_.origin(item.line), "a tetrahedron has no face S" + std::to_string(item.face));
     const auto key = std::int64_t{element} * 8 + item.face;
     const auto [found, added] = face_numbers_.emplace(key, static_cast<Index>(faces_.size()));
     if (!added) return found->second;
@@ -208,7 +225,7 @@ class MeshBuilder {
         element_sets_,
         [&](Region& region, Index element) {
           const auto i = static_cast<std::size_t>(element);
-          (cards_.elements[i].corners == 4 ? region.tetrahedra : region.prisms)
+          (cards_.elements[i].is_tetrahedron() ? region.tetrahedra : region.prisms)
               .push_back(static_cast<Index>(place_[i]));
         },
         3);

@@ -61,40 +61,43 @@ class CardReader {
   void read_elements() {
     deck_.allow({"TYPE", "ELSET"});
     refuse_in_assembly();
-    const std::size_t corners = corners_of(upper_case(deck_.required("TYPE")));
+    const std::size_t count = nodes_of(upper_case(deck_.required("TYPE")));
     const std::size_t line = deck_.line();
     const std::string set = deck_.has("ELSET") ? deck_.required("ELSET") : "";
     std::vector<AbaqusItem> numbers;
     while (deck_.next_data()) {
-      cards_.elements.push_back(read_element(corners));
+      cards_.elements.push_back(read_element(count));
       append_number(numbers, cards_.elements.back().id);
     }
     if (!set.empty()) add_set(set, AbaqusSetKind::elements, std::move(numbers), line);
   }
 
-  std::size_t corners_of(const std::string& type) const {
+  std::size_t nodes_of(const std::string& type) const {
     if (type == "C3D4" || type == "C3D4H") return 4;
     if (type == "C3D6" || type == "C3D6H") return 6;
-    const std::string only = "; only C3D4, C3D4H, C3D6 and C3D6H are read";
-    for (const char* second_order : {"C3D10", "C3D15", "C3D20", "C3D27"})
+    if (type == "C3D10") return 10;
+    const std::string only = "; only C3D4, C3D4H, C3D6, C3D6H and C3D10 are read";
+    if (type.starts_with("C3D10"))
+      deck_.fail("element type " + type + " is another formulation than the tetrahedron of order 2" + only);
+    for (const char* second_order : {"C3D15", "C3D20", "C3D27"})
       if (type.starts_with(second_order)) deck_.fail("second-order element type " + type + " is not supported" + only);
     deck_.fail("element type " + type.substr(0, 40) + " is not supported" + only);
   }
 
-  AbaqusElement read_element(std::size_t corners) {
+  AbaqusElement read_element(std::size_t nodes) {
     AbaqusElement element;
-    element.corners = corners;
+    element.count = nodes;
     element.line = deck_.line();
     element.id = deck_.integer(0, "element number");
     std::size_t count = 0;
     for (std::size_t field = 1;;) {
       for (; field < deck_.fields().size(); ++field) {
-        if (count == corners) deck_.fail("element has more than " + std::to_string(corners) + " nodes");
+        if (count == nodes) deck_.fail("element has more than " + std::to_string(nodes) + " nodes");
         element.nodes[count++] = deck_.integer(field, "node number");
       }
-      if (count == corners) return element;
+      if (count == nodes) return element;
       if (!deck_.continued() || !deck_.next_data())
-        deck_.fail("element has " + std::to_string(count) + " nodes, needs " + std::to_string(corners));
+        deck_.fail("element has " + std::to_string(count) + " nodes, needs " + std::to_string(nodes));
       field = 0;
     }
   }

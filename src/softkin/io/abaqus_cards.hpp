@@ -20,9 +20,11 @@ struct AbaqusNode {
 
 struct AbaqusElement {
   std::int64_t id = 0;
-  std::array<std::int64_t, 6> nodes{};
-  std::size_t corners = 0;  // 4: C3D4, 6: C3D6
+  std::array<std::int64_t, 10> nodes{};
+  std::size_t count = 0;  // of nodes; 4: C3D4, 6: C3D6, 10: C3D10
   std::size_t line = 0;
+
+  [[nodiscard]] bool is_tetrahedron() const { return count != 6; }
 };
 
 /// A set by name, or the numbers first, first + step, ... last.

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <softkin/io/cell_grid.hpp>
+#include <softkin/io/element_order.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,7 +30,11 @@ constexpr CellKind kTriangle{5, 2, 3, "triangle"};
 constexpr CellKind kQuad{9, 2, 4, "quad"};
 constexpr CellKind kTetrahedron{10, 3, 4, "tetrahedron"};
 constexpr CellKind kWedge{13, 3, 6, "wedge"};
-constexpr std::array kKinds{kVertex, kLine, kTriangle, kQuad, kTetrahedron, kWedge};
+constexpr CellKind kQuadraticLine{21, 1, 3, "second-order line"};
+constexpr CellKind kQuadraticTriangle{22, 2, 6, "second-order triangle"};
+constexpr CellKind kQuadraticTetrahedron{24, 3, 10, "second-order tetrahedron"};
+constexpr std::array kKinds{
+    kVertex, kLine, kTriangle, kQuad, kTetrahedron, kWedge, kQuadraticLine, kQuadraticTriangle, kQuadraticTetrahedron};
 
 const CellKind* kind_of(std::int64_t type) {
   const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const CellKind& k) { return k.type == type; });
@@ -48,10 +53,7 @@ std::string refused_name(std::int64_t type) {
                                                          {14, "pyramid"},
                                                          {15, "pentagonal prism"},
                                                          {16, "hexagonal prism"},
-                                                         {21, "second-order line"},
-                                                         {22, "second-order triangle"},
                                                          {23, "second-order quad"},
-                                                         {24, "second-order tetrahedron"},
                                                          {25, "second-order hexahedron"},
                                                          {26, "second-order wedge"},
                                                          {27, "second-order pyramid"},
@@ -80,6 +82,9 @@ class MeshBuilder {
     for (std::size_t cell = 0; cell < grid_.types.size(); ++cell) place(cell);
     if (mesh_.tetrahedra.empty() && mesh_.prisms.empty())
       throw InvalidInput(origin, "holds no tetrahedron and no wedge, so no volume");
+    const std::string refusal =
+        refusal_of_orders(mesh_.tetrahedra.size(), mesh_.edge_nodes.size(), mesh_.prisms.size());
+    if (!refusal.empty()) throw InvalidInput(origin, refusal);
     for (const CellLabels* labels : labels_) add_regions(*labels);
     return std::move(mesh_);
   }
@@ -143,6 +148,9 @@ bool MeshBuilder::is_named(std::size_t cell) const {
 void MeshBuilder::place(std::size_t cell) {
   const Index* vertices = grid_.connectivity.data() + grid_.starts[cell];
   switch (grid_.types[cell]) {
+    case kQuadraticTetrahedron.type:  // edges in softkin's order
+      append(mesh_.edge_nodes, vertices + 4);
+      [[fallthrough]];
     case kTetrahedron.type:
       place_[cell] = append(mesh_.tetrahedra, vertices);
       break;
@@ -150,6 +158,7 @@ void MeshBuilder::place(std::size_t cell) {
       place_[cell] = append(mesh_.prisms, vertices);
       break;
     case kTriangle.type:
+    case kQuadraticTriangle.type:
       if (is_named(cell)) place_[cell] = append(mesh_.triangles, vertices);
       break;
     case kQuad.type:
@@ -163,12 +172,14 @@ void MeshBuilder::place(std::size_t cell) {
 void MeshBuilder::add_cell(Region& region, std::size_t cell) const {
   switch (grid_.types[cell]) {
     case kTetrahedron.type:
+    case kQuadraticTetrahedron.type:
       region.tetrahedra.push_back(place_[cell]);
       break;
     case kWedge.type:
       region.prisms.push_back(place_[cell]);
       break;
     case kTriangle.type:
+    case kQuadraticTriangle.type:
       region.triangles.push_back(place_[cell]);
       break;
     case kQuad.type:
@@ -207,7 +218,7 @@ std::string cell_refusal(std::size_t cell, std::int64_t type, std::size_t vertic
   const std::string subject = "cell " + std::to_string(cell) + " ";
   if (kind == nullptr)
     return subject + "is a " + refused_name(type) + " (VTK type " + std::to_string(type) +
-           "); softkin takes linear tetrahedra (10) and wedges (13)";
+           "); softkin takes tetrahedra (10, 24) and linear wedges (13)";
   if (vertices != kind->vertices)
     return subject + "has " + std::to_string(vertices) + " vertices, but a " + kind->name + " has " +
            std::to_string(kind->vertices);

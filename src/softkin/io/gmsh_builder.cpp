@@ -1,3 +1,4 @@
+#include <softkin/io/element_order.hpp>
 #include <softkin/io/gmsh_builder.hpp>
 
 namespace softkin::gmsh {
@@ -16,11 +17,13 @@ void sort_unique(std::vector<Index>& indices) {
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
+/// Index of the cell of the first N vertices, new or known.
 template <std::size_t N>
-void add_cell(CellStore<N>& store, std::span<const Index> vertices, std::span<Region* const> groups,
-              std::vector<Index> Region::*list) {
+Index add_cell(CellStore<N>& store, std::span<const Index> vertices, std::span<Region* const> groups,
+               std::vector<Index> Region::*list) {
   const Index cell = store.add(to_array<N>(vertices));
   for (Region* group : groups) (group->*list).push_back(cell);
+  return cell;
 }
 
 }  // namespace
@@ -60,23 +63,49 @@ Region& Builder::group(int dimension, int tag) {
   return place->second;
 }
 
-void Builder::add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
+std::string Builder::add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
   switch (type) {
     case CellType::tetrahedron:
-      return add_cell(tetrahedra_, vertices, groups, &Region::tetrahedra);
+    case CellType::quadratic_tetrahedron:
     case CellType::prism:
-      return add_cell(prisms_, vertices, groups, &Region::prisms);
+      return add_volume(type, vertices, groups);
     case CellType::triangle:
+    case CellType::quadratic_triangle:
       if (!groups.empty()) add_cell(triangles_, vertices, groups, &Region::triangles);
-      return;
+      return "";
     case CellType::quad:
       if (!groups.empty()) add_cell(quads_, vertices, groups, &Region::quads);
-      return;
+      return "";
     case CellType::line:
+    case CellType::quadratic_line:
     case CellType::point:
       for (Region* group : groups) group->vertices.insert(group->vertices.end(), vertices.begin(), vertices.end());
-      return;
+      return "";
   }
+  return "";
+}
+
+std::string Builder::add_volume(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
+  has_linear_ = has_linear_ || type == CellType::tetrahedron;
+  has_quadratic_ = has_quadratic_ || type == CellType::quadratic_tetrahedron;
+  const std::size_t prisms = prisms_.size() + (type == CellType::prism ? 1 : 0);
+  std::string refusal =
+      refusal_of_orders((has_linear_ ? 1 : 0) + (has_quadratic_ ? 1 : 0), has_quadratic_ ? 1 : 0, prisms);
+  if (!refusal.empty()) return refusal;
+  if (type != CellType::prism) return add_tetrahedron(type, vertices, groups);
+  add_cell(prisms_, vertices, groups, &Region::prisms);
+  return "";
+}
+
+std::string Builder::add_tetrahedron(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
+  const auto place = static_cast<std::size_t>(add_cell(tetrahedra_, vertices, groups, &Region::tetrahedra));
+  if (type == CellType::tetrahedron) return "";
+  EdgeNodes nodes = reordered(to_array<6>(vertices.subspan(4)));
+  if (place == edge_nodes_.size()) edge_nodes_.push_back(nodes);
+  EdgeNodes known = edge_nodes_[place];
+  std::sort(known.begin(), known.end());
+  std::sort(nodes.begin(), nodes.end());
+  return nodes == known ? "" : "two tetrahedra have the same corners but different edge nodes";
 }
 
 std::string Builder::name_group(int dimension, int tag, const std::string& name) {
@@ -121,6 +150,7 @@ Mesh Builder::take() {
   Mesh mesh;
   mesh.vertices = std::move(positions_);
   mesh.tetrahedra = tetrahedra_.take();
+  mesh.edge_nodes = std::move(edge_nodes_);
   mesh.prisms = prisms_.take();
   mesh.triangles = triangles_.take();
   mesh.quads = quads_.take();

@@ -49,7 +49,7 @@ class CellStore {
     }
     return slot;
   }
-  [[nodiscard]] bool empty() const { return cells_.empty(); }
+  [[nodiscard]] std::size_t size() const { return cells_.size(); }
   std::vector<Cell> take() { return std::move(cells_); }
 
  private:
@@ -97,9 +97,9 @@ class Builder {
 
   /// The physical group of a dimension and tag; the reference stays valid.
   Region& group(int dimension, int tag);
-  /// vertices holds shape_of(type).nodes rows.
-  void add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
-  [[nodiscard]] bool has_volume_elements() const { return !tetrahedra_.empty() || !prisms_.empty(); }
+  /// vertices holds shape_of(type).nodes rows. Why the element cannot stand beside the others, or "".
+  std::string add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
+  [[nodiscard]] bool has_volume_elements() const { return tetrahedra_.size() + prisms_.size() > 0; }
 
   /// Why the group cannot get that name, or "".
   std::string name_group(int dimension, int tag, const std::string& name);
@@ -111,6 +111,8 @@ class Builder {
  private:
   using Key = std::pair<int, int>;  // dimension, tag
 
+  std::string add_volume(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
+  std::string add_tetrahedron(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
   void move_to_regions(const Key& key, const std::string& name);
 
   Points positions_;
@@ -118,6 +120,8 @@ class Builder {
   NodeNumbers numbers_;
   CellStore<3> triangles_;
   CellStore<4> quads_, tetrahedra_;
+  std::vector<EdgeNodes> edge_nodes_;
+  bool has_linear_ = false, has_quadratic_ = false;  // tetrahedra
   CellStore<6> prisms_;
   std::map<Key, Region> groups_;
   std::map<Key, std::string> names_;

@@ -58,6 +58,8 @@ std::string problem_of(const Mesh& mesh) {
   if (!mesh.vertices.allFinite()) return "a vertex has a coordinate that is not finite";
   if (mesh.tetrahedra.empty() && mesh.prisms.empty()) return "the mesh has no volume elements";
   std::string problem = problem_of_cells(mesh.tetrahedra, n, "tetrahedron");
+  if (problem.empty()) problem = problem_of_cells(mesh.edge_nodes, n, "tetrahedron");
+  if (problem.empty()) problem = refusal_of_orders(mesh.tetrahedra.size(), mesh.edge_nodes.size(), mesh.prisms.size());
   if (problem.empty()) problem = problem_of_cells(mesh.prisms, n, "prism");
   if (problem.empty()) problem = problem_of_cells(mesh.triangles, n, "triangle");
   if (problem.empty()) problem = problem_of_cells(mesh.quads, n, "quad");

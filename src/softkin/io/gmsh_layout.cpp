@@ -28,13 +28,15 @@ class RegionSets {
 
 class Planner {
  public:
-  explicit Planner(const Mesh& mesh) : mesh_(mesh) {}
+  explicit Planner(const Mesh& mesh) : mesh_(mesh) { layout_.quadratic_triangles = quadratic_triangles(mesh); }
 
   Layout plan() {
     plan_points();
-    plan_cells(CellType::triangle, mesh_.triangles, &Region::triangles);
+    plan_cells(layout_.quadratic_triangles.empty() ? CellType::triangle : CellType::quadratic_triangle, mesh_.triangles,
+               &Region::triangles);
     plan_cells(CellType::quad, mesh_.quads, &Region::quads);
-    plan_cells(CellType::tetrahedron, mesh_.tetrahedra, &Region::tetrahedra);
+    plan_cells(mesh_.edge_nodes.empty() ? CellType::tetrahedron : CellType::quadratic_tetrahedron, mesh_.tetrahedra,
+               &Region::tetrahedra);
     plan_cells(CellType::prism, mesh_.prisms, &Region::prisms);
     return std::move(layout_);
   }

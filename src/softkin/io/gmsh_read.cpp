@@ -22,6 +22,12 @@ CellType known_type(const Source& in, std::int64_t type) {
   return static_cast<CellType>(type);
 }
 
+void add_element(const Source& in, Builder& builder, CellType type, std::span<const Index> vertices,
+                 std::span<Region* const> groups) {
+  const std::string failure = builder.add_element(type, vertices, groups);
+  if (!failure.empty()) in.fail(failure);
+}
+
 Index vertex(const Source& in, const Builder& builder, std::int64_t element, std::int64_t number) {
   const Index row = builder.find_node(number);
   if (row < 0)

@@ -33,6 +33,9 @@ void number_node(const Source& in, Builder& builder, std::int64_t number);
 void place_node(Source& in, Builder& builder, Index row);
 /// The type, or the failure that says why it is refused.
 [[nodiscard]] CellType known_type(const Source& in, std::int64_t type);
+/// Adds an element that is complete; fails where it cannot stand beside the others.
+void add_element(const Source& in, Builder& builder, CellType type, std::span<const Index> vertices,
+                 std::span<Region* const> groups);
 /// Turns the node number at the cursor into a vertex.
 [[nodiscard]] Index vertex(const Source& in, const Builder& builder, std::int64_t element, std::int64_t number);
 

@@ -18,15 +18,15 @@ std::int64_t read_tags(Source& in, std::int64_t count) {
 void read_element(Source& in, Builder& builder, std::int64_t element, CellType type, std::int64_t tags) {
   const auto physical = static_cast<int>(read_tags(in, tags));
   const CellShape shape = shape_of(type);
-  std::array<Index, 6> vertices{};
+  std::array<Index, kMostNodes> vertices{};
   for (int i = 0; i < shape.nodes; ++i)
     vertices[static_cast<std::size_t>(i)] =
         vertex(in, builder, element, in.int_value("node of an element", 1, kMaxInt));
   in.end_record();
   const std::span<const Index> nodes(vertices.data(), static_cast<std::size_t>(shape.nodes));
-  if (physical == 0) return builder.add_element(type, nodes, {});
+  if (physical == 0) return add_element(in, builder, type, nodes, {});
   Region* const groups[] = {&builder.group(shape.dimension, physical)};
-  builder.add_element(type, nodes, groups);
+  add_element(in, builder, type, nodes, groups);
 }
 
 constexpr const char* kElement = "number of an element";

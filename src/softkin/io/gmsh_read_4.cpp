@@ -104,7 +104,7 @@ void read_element_block(Source& in, Builder& builder, const std::optional<Entiti
   if (shape.dimension != dimension)
     in.fail("elements of type " + std::to_string(number) + " in an entity of dimension " + std::to_string(dimension));
   const std::int64_t count = read_block_size(in, "number of elements in the block", left);
-  std::array<Index, 6> vertices{};
+  std::array<Index, kMostNodes> vertices{};
   const std::span<const Index> nodes(vertices.data(), static_cast<std::size_t>(shape.nodes));
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t element = in.size_value("number of an element", 0, kMaxSize);
@@ -112,7 +112,7 @@ void read_element_block(Source& in, Builder& builder, const std::optional<Entiti
       vertices[static_cast<std::size_t>(k)] =
           vertex(in, builder, element, in.size_value("node of an element", 1, kMaxSize));
     in.end_record();
-    builder.add_element(type, nodes, groups);
+    add_element(in, builder, type, nodes, groups);
   }
   left -= count;
 }

@@ -14,15 +14,9 @@ std::string_view name_of(std::int64_t type) {
       return "hexahedra";
     case 7:
       return "pyramids";
-    case 8:
-      return "second-order lines";
-    case 9:
-      return "second-order triangles";
     case 10:
     case 16:
       return "second-order quads";
-    case 11:
-      return "second-order tetrahedra";
     case 12:
     case 17:
       return "second-order hexahedra";
@@ -44,7 +38,7 @@ std::string_view name_of(std::int64_t type) {
 }
 
 bool is_read(std::int64_t type) {
-  return (type >= 1 && type <= 4) || type == 6 || type == 15;
+  return (type >= 1 && type <= 4) || type == 6 || type == 8 || type == 9 || type == 11 || type == 15;
 }
 
 }  // namespace
@@ -55,12 +49,18 @@ CellShape shape_of(CellType type) {
       return {0, 1};
     case CellType::line:
       return {1, 2};
+    case CellType::quadratic_line:
+      return {1, 3};
     case CellType::triangle:
       return {2, 3};
+    case CellType::quadratic_triangle:
+      return {2, 6};
     case CellType::quad:
       return {2, 4};
     case CellType::tetrahedron:
       return {3, 4};
+    case CellType::quadratic_tetrahedron:
+      return {3, 10};
     case CellType::prism:
       return {3, 6};
   }
@@ -74,8 +74,9 @@ std::string refusal_of_type(std::int64_t type) {
   if (type == 5 || type == 7)
     return std::string(name_of(type)) + " (type " + number + ") are not supported: mesh with tetrahedra or prisms";
   const std::string_view name = name_of(type);
-  if (name.empty()) return "elements of type " + number + " are not supported: mesh with order 1";
-  return std::string(name) + " (type " + number + ") are not supported: mesh with order 1";
+  if (name.empty()) return "elements of type " + number + " are not supported: mesh with order 1 or 2";
+  return std::string(name) + " (type " + number + ") are not supported: mesh with order 1" +
+         (name.starts_with("second") ? "" : " or 2");
 }
 
 bool is_unquotable(std::string_view name) {

@@ -73,16 +73,16 @@ void write_nodes(Sink& out, const Points& vertices) {
 
 class ElementWriter {
  public:
-  ElementWriter(Sink& out, const Mesh& mesh) : out_(out), mesh_(mesh) {}
+  ElementWriter(Sink& out, const Mesh& mesh, const Layout& layout) : out_(out), mesh_(mesh), layout_(layout) {}
 
-  void write(const Layout& layout) {
+  void write() {
     std::uint64_t count = 0;
-    for (const Block& block : layout.blocks) count += static_cast<std::uint64_t>(block.count);
+    for (const Block& block : layout_.blocks) count += static_cast<std::uint64_t>(block.count);
     out_.open_section("Elements");
-    for (const std::uint64_t value : {std::uint64_t{layout.blocks.size()}, count, std::uint64_t{1}, count})
+    for (const std::uint64_t value : {std::uint64_t{layout_.blocks.size()}, count, std::uint64_t{1}, count})
       out_.size_value(value);
     out_.end_record();
-    for (const Block& block : layout.blocks) write_block(block);
+    for (const Block& block : layout_.blocks) write_block(block);
     out_.close_section("Elements");
   }
 
@@ -97,13 +97,18 @@ class ElementWriter {
         return write_element(std::array<Index, 1>{block.first});
       case CellType::triangle:
         return write_cells(mesh_.triangles, block);
+      case CellType::quadratic_triangle:
+        return write_cells(layout_.quadratic_triangles, block);
       case CellType::quad:
         return write_cells(mesh_.quads, block);
       case CellType::tetrahedron:
         return write_cells(mesh_.tetrahedra, block);
+      case CellType::quadratic_tetrahedron:
+        return write_quadratic_tetrahedra(block);
       case CellType::prism:
         return write_cells(mesh_.prisms, block);
       case CellType::line:
+      case CellType::quadratic_line:
         return;  // lay_out makes none
     }
   }
@@ -111,6 +116,17 @@ class ElementWriter {
   template <std::size_t N>
   void write_cells(const std::vector<std::array<Index, N>>& cells, const Block& block) {
     for (Index i = 0; i < block.count; ++i) write_element(cells[static_cast<std::size_t>(block.first + i)]);
+  }
+
+  void write_quadratic_tetrahedra(const Block& block) {
+    for (Index i = 0; i < block.count; ++i) {
+      const auto place = static_cast<std::size_t>(block.first + i);
+      const EdgeNodes edge_nodes = reordered(mesh_.edge_nodes[place]);
+      std::array<Index, 10> nodes;
+      std::copy(edge_nodes.begin(), edge_nodes.end(),
+                std::copy(mesh_.tetrahedra[place].begin(), mesh_.tetrahedra[place].end(), nodes.begin()));
+      write_element(nodes);
+    }
   }
 
   template <std::size_t N>
@@ -122,6 +138,7 @@ class ElementWriter {
 
   Sink& out_;
   const Mesh& mesh_;
+  const Layout& layout_;
   std::uint64_t number_ = 0;
 };
 
@@ -138,7 +155,7 @@ void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary
   gmsh::write_names(out, mesh.regions);
   gmsh::write_entities(out, layout);
   gmsh::write_nodes(out, mesh.vertices);
-  gmsh::ElementWriter(out, mesh).write(layout);
+  gmsh::ElementWriter(out, mesh, layout).write();
   write_file(path, out.content());
 }
 

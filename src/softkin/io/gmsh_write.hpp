@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <softkin/io/element_order.hpp>
 #include <softkin/io/gmsh_types.hpp>
 #include <softkin/model/mesh.hpp>
 #include <string>
@@ -20,7 +21,7 @@ struct Entity {
   Eigen::AlignedBox3d box;
 };
 
-/// Consecutive cells of one type in one entity.
+/// Consecutive cells of one type in one entity; of order 2 they are placed by their corners.
 struct Block {
   CellType type;
   int entity;
@@ -30,8 +31,9 @@ struct Block {
 
 /// One entity per set of regions that cells are in and dimension; points: one per vertex that a region names.
 struct Layout {
-  std::array<std::vector<Entity>, 4> entities;  // by dimension
-  std::vector<Block> blocks;                    // in runs, so that cells keep their order
+  std::array<std::vector<Entity>, 4> entities;         // by dimension
+  std::vector<Block> blocks;                           // in runs, so that cells keep their order
+  std::vector<QuadraticTriangle> quadratic_triangles;  // mesh.triangles with their edge nodes, where these are known
 };
 [[nodiscard]] Layout lay_out(const Mesh& mesh);
 

@@ -1,4 +1,5 @@
 #include <set>
+#include <softkin/io/element_order.hpp>
 #include <softkin/io/text_mesh_tools.hpp>
 #include <softkin/io/text_meshes.hpp>
 #include <string>
@@ -15,6 +16,7 @@ const std::map<std::string, std::size_t>& skipped_sections() {
                                                               {"RequiredVertices", 1},
                                                               {"ParallelVertices", 1},
                                                               {"Edges", 3},
+                                                              {"EdgesP2", 4},
                                                               {"Ridges", 1},
                                                               {"RequiredEdges", 1},
                                                               {"ParallelEdges", 1},
@@ -34,8 +36,8 @@ const std::map<std::string, std::size_t>& skipped_sections() {
 }
 
 std::vector<std::string> known_sections() {
-  std::vector<std::string> names = {"Dimension", "Vertices",       "Tetrahedra", "Prisms",
-                                    "Triangles", "Quadrilaterals", "End"};
+  std::vector<std::string> names = {"Dimension", "Vertices",    "Tetrahedra",     "TetrahedraP2", "Prisms",
+                                    "Triangles", "TrianglesP2", "Quadrilaterals", "End"};
   for (const auto& [name, numbers] : skipped_sections()) names.push_back(name);
   return names;
 }
@@ -50,6 +52,9 @@ class MeditReader {
     (void)scanner_.integer("MeshVersionFormatted", 0, 4);
     for (std::string name(scanner_.token("End")); name != "End"; name = scanner_.token("End")) read_section(name);
     expect_elements(mesh_, scanner_);
+    const std::string refusal =
+        refusal_of_orders(mesh_.tetrahedra.size(), mesh_.edge_nodes.size(), mesh_.prisms.size());
+    if (!refusal.empty()) scanner_.fail(refusal);
     expect_end(scanner_);
     append_regions(mesh_, std::move(volumes_), "ref_", 3);
     append_regions(mesh_, std::move(surfaces_), "surface_ref_", 2);
@@ -66,10 +71,14 @@ class MeditReader {
       read_vertices();
     else if (name == "Tetrahedra")
       read_elements("tetrahedra", mesh_.tetrahedra, volumes_, &Region::tetrahedra);
+    else if (name == "TetrahedraP2")
+      read_elements("tetrahedra of order 2", mesh_.tetrahedra, volumes_, &Region::tetrahedra, 10, &mesh_.edge_nodes);
     else if (name == "Prisms")
       read_elements("prisms", mesh_.prisms, volumes_, &Region::prisms);
     else if (name == "Triangles")
       read_elements("triangles", mesh_.triangles, surfaces_, &Region::triangles);
+    else if (name == "TrianglesP2")
+      read_elements("triangles of order 2", mesh_.triangles, surfaces_, &Region::triangles, 6);
     else if (name == "Quadrilaterals")
       read_elements("quadrilaterals", mesh_.quads, surfaces_, &Region::quads);
     else if (skipped != skipped_sections().end())
@@ -92,17 +101,26 @@ class MeditReader {
     }
   }
 
+  /// Appends elements of so many nodes by their K corners; the nodes after them are on edges, in softkin's order.
   template <std::size_t K>
   void read_elements(const char* what, std::vector<std::array<Index, K>>& elements, LabelledRegions& regions,
-                     std::vector<Index> Region::*members) {
+                     std::vector<Index> Region::*members, std::size_t nodes = K,
+                     std::vector<EdgeNodes>* edge_nodes = nullptr) {
     if (!seen_.contains("Vertices")) scanner_.fail(std::string("Vertices must stand before ") + what);
-    const Index count = read_count(scanner_, what, 0, 2 * (K + 1));
-    elements.resize(static_cast<std::size_t>(count));
+    const Index count = read_count(scanner_, what, 0, 2 * (nodes + 1));
     for (Index i = 0; i < count; ++i) {
-      for (Index& vertex : elements[static_cast<std::size_t>(i)])
-        vertex = read_index(scanner_, "vertex number", 1, static_cast<Index>(mesh_.vertices.rows())) - 1;
-      (regions[read_label(scanner_, "reference")].*members).push_back(i);
+      std::array<Index, K> corners;
+      for (Index& vertex : corners) vertex = read_vertex();
+      EdgeNodes others{};
+      for (std::size_t k = K; k < nodes; ++k) others[k - K] = read_vertex();
+      (regions[read_label(scanner_, "reference")].*members).push_back(static_cast<Index>(elements.size()));
+      elements.push_back(corners);
+      if (edge_nodes != nullptr) edge_nodes->push_back(others);
     }
+  }
+
+  Index read_vertex() {
+    return read_index(scanner_, "vertex number", 1, static_cast<Index>(mesh_.vertices.rows())) - 1;
   }
 
   void skip_numbers(const std::string& name, std::size_t numbers) {
@@ -116,8 +134,10 @@ class MeditReader {
       if (read_count(scanner_, name.c_str(), 0, 2) == 0) return;
       throw InvalidInput(origin, name + " are not supported, only tetrahedra and prisms");
     }
+    if (name.ends_with("Ordering"))
+      scanner_.fail(name + " is not supported: edge nodes are read in the usual order, edges 12, 23, 13, 14, 24, 34");
     if (name.size() > 2 && name[name.size() - 2] == 'P' && name.back() >= '2' && name.back() <= '4')
-      scanner_.fail(name + ": elements of higher order are not supported");
+      scanner_.fail(name + ": elements of this order are not supported");
     scanner_.fail("unknown section '" + name.substr(0, 40) + "'" + suggest_name(name.substr(0, 40), known_sections()));
   }
 

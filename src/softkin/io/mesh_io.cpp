@@ -2,13 +2,13 @@
 #include <iterator>
 #include <map>
 #include <softkin/core/error.hpp>
+#include <softkin/io/element_order.hpp>
 #include <softkin/io/gmsh.hpp>
 #include <softkin/io/mesh_io.hpp>
 #include <softkin/io/stl.hpp>
 #include <softkin/io/text_mesh_tools.hpp>
 #include <softkin/io/text_meshes.hpp>
 #include <softkin/io/vtk.hpp>
-#include <softkin/model/boundary.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +56,7 @@ VtuContent vtu_content(const Mesh& mesh) {
   VtuContent content;
   content.points = mesh.vertices;
   content.tetrahedra = mesh.tetrahedra;
+  content.edge_nodes = mesh.edge_nodes;
   content.prisms = mesh.prisms;
   content.cell_regions.assign(mesh.tetrahedra.size() + mesh.prisms.size(), -1);
   for (const Region& region : mesh.regions) {
@@ -74,12 +75,14 @@ VtuContent vtu_content(const Mesh& mesh) {
 
 void write_boundary(const fs::path& path, const Mesh& mesh) {
   std::vector<Tetrahedron> tetrahedra = mesh.tetrahedra;
+  std::vector<EdgeNodes> edge_nodes = mesh.edge_nodes;
   std::vector<Prism> prisms = mesh.prisms;
-  for (Tetrahedron& t : tetrahedra)
-    if (signed_volume(mesh.vertices, t) < 0) std::swap(t[2], t[3]);
+  for (std::size_t i = 0; i < tetrahedra.size(); ++i)
+    if (signed_volume(mesh.vertices, tetrahedra[i]) < 0)
+      reverse(tetrahedra[i], edge_nodes.empty() ? nullptr : &edge_nodes[i]);
   for (Prism& p : prisms)
     if (signed_volume(mesh.vertices, p) < 0) p = {p[3], p[4], p[5], p[0], p[1], p[2]};
-  write_stl(path, mesh.vertices, triangulated(boundary_of(tetrahedra, prisms)));
+  write_stl(path, mesh.vertices, boundary_triangles(tetrahedra, edge_nodes, prisms));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <softkin/io/length_unit.hpp>
 #include <softkin/io/plain_text.hpp>
@@ -12,8 +13,6 @@ namespace scene {
 
 namespace {
 
-constexpr const char* not_in_this_version = "is not in this version of softkin";
-
 void check_version(const Node& root) {
   if (root.kind != Node::Kind::map) fail(root, "a scene must be a map that begins with 'softkin: 1'");
   for (const Node::Entry& entry : root.entries) {
@@ -25,45 +24,37 @@ void check_version(const Node& root) {
   fail(root, "the scene needs key 'softkin', its version: 'softkin: 1'");
 }
 
-void check_formulation(const Node& node) {
-  if (text(node) == "physical")
-    fail(node, std::string("formulation 'physical' ") + not_in_this_version + "; use 'target-shape'");
-  (void)choice(node, {"target-shape"});
-}
-
 double read_length_unit(const Node& node) {
   const Map map(node, {"length"});
   const Node* length = map.find("length");
   return length ? mm_per(length_units()[choice(*length, length_units())]) : 1;
 }
 
-Mesh read_mesh_of(const Context& context, const Node& node) {
-  const Map map(node, {"file"});
-  const Node& file = map.at("file");
-  Mesh mesh = load_file(context, file, context.files.mesh);
-  mesh.vertices *= context.to_mm;
-  if (!mesh.vertices.allFinite()) fail(file, "the mesh's coordinates are too large");
-  return mesh;
+std::int64_t read_order(const Node& node) {
+  const std::int64_t order = integer(node);
+  if (order != 1 && order != 2) fail(node, node.name + " must be 1 or 2, not " + node.text);
+  return order;
 }
 
-MaterialSpec read_material(const Node& node) {
-  const Keys physical{"youngs_modulus", "poisson_ratio", "law"};
-  const Map map(node, {"region", "shape_ratio", "weight", "linear_range", physical[0], physical[1], physical[2]});
-  for (const std::string& key : physical)
-    if (const Node::Entry* entry = map.entry(key))
-      throw InvalidInput(entry->origin, "key '" + key + "' belongs to the physical formulation, which " +
-                                            not_in_this_version + "; use 'shape_ratio'");
-  MaterialSpec material;
-  material.origin = node.origin;
-  const Node* region = map.find("region");
-  material.region = region ? text(*region) : "all";
-  const Node& ratio = map.at("shape_ratio");
-  material.shape_ratio = number(ratio);
-  if (material.shape_ratio < 0 || material.shape_ratio > 1)
-    fail(ratio, "'shape_ratio' must be from 0 to 1, not " + ratio.text);
-  if (const Node* weight = map.find("weight")) material.weight = positive(*weight);
-  if (const Node* range = map.find("linear_range")) material.linear_range = positive(*range);
-  return material;
+void read_mesh_of(const Context& context, const Node& node, RobotSpec& spec) {
+  const Map map(node, {"file", "order"});
+  const Node& file = map.at("file");
+  const Node* order = map.find("order");
+  const bool quadratic = order && read_order(*order) == 2;
+  spec.mesh = load_file(context, file, context.files.mesh);
+  spec.mesh.vertices *= context.to_mm;
+  if (!spec.mesh.vertices.allFinite()) fail(file, "the mesh's coordinates are too large");
+  if (order && !quadratic && !spec.mesh.edge_nodes.empty())
+    fail(*order, "'order' is 1, but the tetrahedra of the mesh are of order 2");
+  spec.quadratic = quadratic;
+}
+
+Formulation read_formulation(const Map& map, const std::vector<MaterialSpec>& materials) {
+  if (const Node* node = map.find("formulation"))
+    return choice(*node, {"target-shape", "physical"}) == 0 ? Formulation::target_shape : Formulation::physical;
+  const bool elastic = std::any_of(materials.begin(), materials.end(),
+                                   [](const MaterialSpec& material) { return material.elastic.has_value(); });
+  return elastic ? Formulation::physical : Formulation::target_shape;
 }
 
 std::array<bool, 3> read_axes(const Node& node) {
@@ -94,25 +85,39 @@ RigidSpec read_rigid(const Context& context, const Node& node, std::size_t numbe
   return rigid;
 }
 
+PointRef read_point_or_region(const Context& context, const Map& map) {
+  const Node::Entry& at = map.one_of({"point", "region"});
+  if (at.key == "region") return {text(*at.value), map.node().origin};
+  return {read_position(context, *at.value), map.node().origin};
+}
+
 MarkerSpec read_marker(const Context& context, const Node& node, Names& names) {
   const Map map(node, {"name", "point", "region"});
-  const std::string& name = names.add_label(map.at("name"));
-  const Node::Entry& at = map.one_of({"point", "region"});
-  if (at.key == "region") return {name, {text(*at.value), node.origin}};
-  return {name, {read_position(context, *at.value), node.origin}};
+  return {names.add_label(map.at("name")), read_point_or_region(context, map)};
+}
+
+ForceSpec read_force(const Context& context, const Node& node, Names& names) {
+  const Map map(node, {"name", "point", "region", "force"});
+  return {names.add_label(map.at("name")), read_point_or_region(context, map), read_vector(map.at("force"))};
 }
 
 void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   if (const Node* node = map.find("materials"))
     for (const auto& item : list(*node)) spec.materials.push_back(read_material(*item));
+  spec.formulation = read_formulation(map, spec.materials);
+  if (const Node* node = map.find("gravity")) spec.gravity = read_vector(*node);
   if (const Node* node = map.find("void"))
     for (const auto& item : list(*node)) spec.voids.push_back(read_region_name(*item));
   if (const Node* node = map.find("fixed"))
     for (const auto& item : list(*node)) spec.fixed.push_back(read_fixed(context, *item));
   if (const Node* node = map.find("rigid"))
     for (const auto& item : list(*node)) spec.rigid.push_back(read_rigid(context, *item, spec.rigid.size() + 1));
-  if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, *node);
+  if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
+  if (const Node* node = map.find("forces")) {
+    Names names;
+    for (const auto& item : list(*node)) spec.forces.push_back(read_force(context, *item, names));
+  }
   if (const Node* node = map.find("markers")) {
     Names names;
     for (const auto& item : list(*node)) spec.markers.push_back(read_marker(context, *item, names));
@@ -127,13 +132,12 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
   const auto root = scene::parse_yaml(yaml_text, file_name);
   scene::check_version(*root);
   const scene::Map map(*root, {"softkin", "units", "mesh", "formulation", "regions", "materials", "void", "fixed",
-                               "rigid", "actuators", "markers"});
-  if (const scene::Node* node = map.find("formulation")) scene::check_formulation(*node);
+                               "rigid", "actuators", "gravity", "forces", "markers"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   RobotSpec spec;
   spec.name = file_name;
-  spec.mesh = scene::read_mesh_of(context, map.at("mesh"));
+  scene::read_mesh_of(context, map.at("mesh"), spec);
   context.vertices = spec.mesh.vertices.rows();
   context.tetrahedra = static_cast<std::int64_t>(spec.mesh.tetrahedra.size());
   scene::read_parts(context, map, spec);

@@ -9,17 +9,18 @@ namespace {
 struct Kind {
   ActuatorKind kind;
   const char* name;
-  const char* control;
-  Keys keys;  // beside the common ones
+  Keys controls;  // the ratio, then the load where there is one
+  Keys keys;      // beside the common ones
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
 const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch"};
 
 const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all{{ActuatorKind::pneumatic, "pneumatic", "volume", {"region", "surface"}},
-                                     {ActuatorKind::cable, "cable", "length", {"points", "apexes"}},
-                                     {ActuatorKind::dea, "dea", "area", {"region", "prestretch"}}};
+  static const std::vector<Kind> all{
+      {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface"}},
+      {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes"}},
+      {ActuatorKind::dea, "dea", {"area"}, {"region", "prestretch"}}};
   return all;
 }
 
@@ -35,21 +36,34 @@ const Kind& read_kind(const Map& map) {
   return kind;
 }
 
-void check_control(const Node& node, const Kind& kind) {
-  const std::string& control = text(node);
-  if (control == "pressure" || control == "tension")
-    fail(node, "control '" + control +
-                   "' belongs to the physical formulation, which is not in this version of softkin; use '" +
-                   kind.control + "'");
-  if (control != kind.control)
-    fail(node,
-         "control of kind '" + std::string(kind.name) + "' must be '" + kind.control + "', not " + excerpt(control));
+Control read_control(const Map& map, const Kind& kind, Formulation formulation) {
+  const Node* node = map.find("control");
+  if (!node) return Control::ratio;
+  const std::string& control = text(*node);
+  const auto found = std::find(kind.controls.begin(), kind.controls.end(), control);
+  if (found == kind.controls.end())
+    fail(*node, "control of kind '" + std::string(kind.name) + "' must be " +
+                    (kind.controls.size() > 1 ? "one of " : "") + joined(kind.controls) + ", not " + excerpt(control));
+  if (found == kind.controls.begin()) return Control::ratio;
+  if (formulation != Formulation::physical)
+    fail(*node, "control '" + control + "' belongs to the physical formulation, and this scene is of 'target-shape': " +
+                    "give elastic constants and 'formulation: physical', or use '" + kind.controls[0] + "'");
+  return Control::load;
+}
+
+/// Ratios are positive; a tension pulls; a pressure may be below that around the robot.
+double read_low(const Node& node, const ActuatorSpec& actuator) {
+  if (actuator.control == Control::ratio) return positive(node);
+  const double low = number(node);
+  if (actuator.kind == ActuatorKind::cable && low < 0)
+    fail(node, node.name + " must not be negative, since a cable only pulls: " + node.text);
+  return low;
 }
 
 void read_range(const Node& node, ActuatorSpec& actuator) {
   const auto& items = list_of(2, node);
-  actuator.low = positive(*items[0]);
-  actuator.high = positive(*items[1]);
+  actuator.low = read_low(*items[0], actuator);
+  actuator.high = actuator.control == Control::ratio ? positive(*items[1]) : number(*items[1]);
   if (actuator.low > actuator.high)
     fail(node, node.name + " must be [low, high], but " + items[0]->text + " is above " + items[1]->text);
 }
@@ -81,13 +95,14 @@ void read_cable(const Context& context, const Map& map, ActuatorSpec& actuator) 
                       " points, at most one for each segment of the cable");
 }
 
-ActuatorSpec read_actuator(const Context& context, const Map& map, Names& names) {
+ActuatorSpec read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
   ActuatorSpec actuator;
   actuator.origin = map.node().origin;
   actuator.name = names.add_label(map.at("name"));
   const Kind& kind = read_kind(map);
   actuator.kind = kind.kind;
-  if (const Node* node = map.find("control")) check_control(*node, kind);
+  actuator.control = read_control(map, kind, formulation);
+  if (actuator.control == Control::load) actuator.rest = 0;
   read_range(map.at("range"), actuator);
   if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
   if (const Node* node = map.find("distribution")) actuator.least_norm = choice(*node, {"least-norm", "uniform"}) == 0;
@@ -100,12 +115,13 @@ ActuatorSpec read_actuator(const Context& context, const Map& map, Names& names)
 
 }  // namespace
 
-std::vector<ActuatorSpec> read_actuators(const Context& context, const Node& node) {
+std::vector<ActuatorSpec> read_actuators(const Context& context, Formulation formulation, const Node& node) {
   Keys known = common_keys;
   known.insert(known.end(), kind_keys.begin(), kind_keys.end());
   std::vector<ActuatorSpec> actuators;
   Names names;
-  for (const auto& item : list(node)) actuators.push_back(read_actuator(context, Map(*item, known), names));
+  for (const auto& item : list(node))
+    actuators.push_back(read_actuator(context, formulation, Map(*item, known), names));
   return actuators;
 }
 

@@ -45,6 +45,10 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 [[nodiscard]] RegionRef read_region_name(const Node& node);
 
 [[nodiscard]] std::vector<RegionSpec> read_regions(const Context& context, const Node& node);
-[[nodiscard]] std::vector<ActuatorSpec> read_actuators(const Context& context, const Node& node);
+/// Target-shape keys, elastic constants, or both.
+[[nodiscard]] MaterialSpec read_material(const Node& node);
+/// Loads are commanded in the physical formulation alone.
+[[nodiscard]] std::vector<ActuatorSpec> read_actuators(const Context& context, Formulation formulation,
+                                                       const Node& node);
 
 }  // namespace softkin::scene

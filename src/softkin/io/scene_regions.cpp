@@ -45,8 +45,7 @@ Selector read_cylinder(const Context& context, const Node& node) {
 Selector read_halfspace(const Context& context, const Node& node) {
   const Map map(node, {"point", "normal"});
   const Node& direction = map.at("normal");
-  const auto& items = list_of(3, direction);
-  const Vec3 normal(number(*items[0]), number(*items[1]), number(*items[2]));
+  const Vec3 normal = read_vector(direction);
   const double largest = normal.cwiseAbs().maxCoeff();
   if (largest == 0) fail(direction, direction.name + " must not be zero");
   return Halfspace{read_position(context, map.at("point")), (normal / largest).normalized()};

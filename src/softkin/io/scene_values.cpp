@@ -25,16 +25,16 @@ std::string shown(const Node& node) {
   fail(node, node.name + " must be " + expected + ", not " + shown(node));
 }
 
-std::string joined(const Keys& keys) {
-  std::string text;
-  for (const std::string& key : keys) text += (text.empty() ? "'" : ", '") + key + "'";
-  return text;
-}
-
 }  // namespace
 
 void fail(const Node& node, const std::string& message) {
   throw InvalidInput(node.origin, message);
+}
+
+std::string joined(const Keys& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += (text.empty() ? "'" : ", '") + key + "'";
+  return text;
 }
 
 Map::Map(const Node& node, const Keys& known) : node_(node) {
@@ -121,6 +121,11 @@ const std::vector<std::shared_ptr<const Node>>& list_of(std::size_t count, const
     fail(node,
          node.name + " must be a list of " + std::to_string(count) + ", not of " + std::to_string(node.items.size()));
   return node.items;
+}
+
+Vec3 read_vector(const Node& node) {
+  const auto& items = list_of(3, node);
+  return {number(*items[0]), number(*items[1]), number(*items[2])};
 }
 
 }  // namespace softkin::scene

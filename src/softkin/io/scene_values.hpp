@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <softkin/core/types.hpp>
 #include <softkin/io/scene_tree.hpp>
 #include <string_view>
 
@@ -25,11 +26,15 @@ class Map {
 
 [[noreturn]] void fail(const Node& node, const std::string& message);
 
+/// "'a', 'b'"
+[[nodiscard]] std::string joined(const Keys& keys);
+
 // Each fails, naming key and line, where the value is not of its kind.
 [[nodiscard]] double number(const Node& node);
 [[nodiscard]] double positive(const Node& node);
 [[nodiscard]] std::int64_t integer(const Node& node);
 [[nodiscard]] const std::string& text(const Node& node);
+[[nodiscard]] Vec3 read_vector(const Node& node);  // three numbers
 /// Position of the value among choices.
 [[nodiscard]] std::size_t choice(const Node& node, const Keys& choices);
 [[nodiscard]] const std::vector<std::shared_ptr<const Node>>& list(const Node& node);

@@ -1,9 +1,11 @@
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <softkin/io/text_mesh_tools.hpp>
 #include <softkin/io/text_meshes.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace softkin {
 
@@ -75,13 +77,34 @@ Index whole_attribute(TetgenFile& file) {
   return static_cast<Index>(value);
 }
 
+/// The six nodes that TetGen's -o2 adds to the tetrahedron that was read last: on its edges 23, 03, 01, 12, 13, 02
+/// (`edge2ver` of TetGen 1.5 and 1.6).
+void read_edge_nodes(TetgenFile& file, Index first, Mesh& mesh) {
+  constexpr std::size_t place[6] = {5, 3, 0, 1, 4, 2};
+  EdgeNodes written, nodes;
+  file.vertices(written, first, mesh);
+  for (std::size_t i = 0; i < 6; ++i) nodes[place[i]] = written[i];
+  const Tetrahedron& corners = mesh.tetrahedra[mesh.edge_nodes.size()];
+  mesh.edge_nodes.push_back(nodes);
+  const auto at = [&](Index vertex) { return Vec3(mesh.vertices.row(vertex).transpose()); };
+  const auto distance = [&](Index node, const int(&edge)[2]) {
+    const Vec3 middle =
+        (at(corners[static_cast<std::size_t>(edge[0])]) + at(corners[static_cast<std::size_t>(edge[1])])) / 2;
+    return (at(node) - middle).norm();
+  };
+  // other versions wrote another order, which the file does not tell
+  for (std::size_t i = 0; i < 6; ++i)
+    for (const auto& edge : tetrahedron_edges)
+      if (2 * distance(nodes[i], edge) < distance(nodes[i], tetrahedron_edges[i]))
+        file.scanner.fail("the edge nodes are not in the order of TetGen 1.5 and 1.6, edges 34, 14, 12, 23, 24, 13");
+}
+
 void read_tetrahedra(const fs::path& path, Index first, Mesh& mesh) {
   TetgenFile file(path);
   Scanner& scanner = file.scanner;
   const Index count = read_count(scanner, "tetrahedra", 1, 10);
   const Index nodes = file.option("nodes per element", max_columns, 4);
-  if (nodes == 10) scanner.fail("elements of second order (10 nodes) are not supported");
-  if (nodes != 4) scanner.fail("elements have " + std::to_string(nodes) + " nodes, not 4");
+  if (nodes != 4 && nodes != 10) scanner.fail("elements have " + std::to_string(nodes) + " nodes, not 4 or 10");
   const Index attributes = file.option("number of attributes", max_columns, 0);
   scanner.end_line();
   LabelledRegions regions;
@@ -89,12 +112,27 @@ void read_tetrahedra(const fs::path& path, Index first, Mesh& mesh) {
   for (Index i = 0; i < count; ++i) {
     file.entry_number(first + i);
     file.vertices(mesh.tetrahedra[static_cast<std::size_t>(i)], first, mesh);
+    if (nodes == 10) read_edge_nodes(file, first, mesh);
     for (Index a = 1; a < attributes; ++a) (void)file.real("attribute");
     if (attributes > 0) regions[whole_attribute(file)].tetrahedra.push_back(i);
     scanner.end_line();
   }
   expect_end(scanner);
   append_regions(mesh, std::move(regions), "attribute_", 3);
+}
+
+/// The boundary marker of the face whose vertices were read last. Before it -o2 writes the three nodes on the face's
+/// edges, after it -nn the two elements at the face; the header tells of neither.
+std::optional<Index> read_marker(TetgenFile& file, bool marked, bool quadratic) {
+  std::vector<Index> numbers;
+  while (file.scanner.line_has_more() && numbers.size() < 6) numbers.push_back(file.label("number of a face"));
+  const std::size_t markers = marked ? 1 : 0;
+  const std::size_t edge_nodes = quadratic && numbers.size() >= 3 + markers ? 3 : 0;
+  if (numbers.size() != edge_nodes + markers && numbers.size() != edge_nodes + markers + 2)
+    file.scanner.fail("a face has " + std::to_string(numbers.size()) +
+                      " numbers after its vertices, which are not edge nodes (3), marker (1) and elements (2)");
+  if (!marked) return std::nullopt;
+  return numbers[edge_nodes];
 }
 
 void read_faces(const fs::path& path, Index first, Mesh& mesh) {
@@ -108,12 +146,10 @@ void read_faces(const fs::path& path, Index first, Mesh& mesh) {
     Triangle triangle;
     file.entry_number(first + i);
     file.vertices(triangle, first, mesh);
-    if (markers) {
-      regions[file.label("boundary marker")].triangles.push_back(i);
+    if (const std::optional<Index> marker = read_marker(file, markers, !mesh.edge_nodes.empty())) {
+      regions[*marker].triangles.push_back(i);
       mesh.triangles.push_back(triangle);
     }
-    if (scanner.line_has_more())  // -nn adds the two elements at the face
-      for (int side = 0; side < 2; ++side) (void)file.label("element at the face");
     scanner.end_line();
   }
   expect_end(scanner);

@@ -7,10 +7,11 @@
 
 namespace softkin {
 
-/// Legacy .vtk unstructured grid, versions 2.0 to 5.1, ASCII and binary. Cells: tetrahedra and wedges; triangles,
-/// quads, lines and vertices only as parts of regions. Integer cell arrays of one component with at most 1000 distinct
-/// values become regions "ARRAY_VALUE"; where a value covers cells of several dimensions, the highest has that name and
-/// the others "ARRAY_VALUE_2d", "_1d", "_0d". Other arrays are not read. Wedges keep the order of their vertices.
+/// Legacy .vtk unstructured grid, versions 2.0 to 5.1, ASCII and binary. Cells: tetrahedra (of order 1 or 2)
+/// and wedges; triangles, quads, lines and vertices only as parts of regions, triangles of order 2 by their corners.
+/// Integer cell arrays of one component with at most 1000 distinct values become regions "ARRAY_VALUE"; where a value
+/// covers cells of several dimensions, the highest has that name and the others "ARRAY_VALUE_2d", "_1d", "_0d". Other
+/// arrays are not read. Wedges keep the order of their vertices.
 ///
 /// throws  InvalidInput naming file and line (byte in binary files)
 [[nodiscard]] Mesh read_vtk(const std::filesystem::path& path);
@@ -35,6 +36,7 @@ struct Field {
 struct VtuContent {
   Points points;  // [mm]
   std::vector<Tetrahedron> tetrahedra;
+  std::vector<EdgeNodes> edge_nodes;  // order 2: of every tetrahedron, and no prisms; order 1: empty
   std::vector<Prism> prisms;
   std::vector<Field> point_fields, cell_fields;
   std::vector<Index> cell_regions;  // per cell, index into region_names or -1; empty: none
@@ -45,7 +47,8 @@ struct VtuContent {
 /// the cell array "region" (Int32), their names the field array "region_names" (strings).
 ///
 /// throws  InvalidInput naming the field, cell or region: no points, a value that is not finite, a length other than
-///         count * components, a vertex or region outside its range, names that are empty, repeated or not printable
+///         count * components, a vertex or region outside its range, tetrahedra of two orders or of order 2 beside
+///         prisms, names that are empty, repeated or not printable
 void write_vtu(const std::filesystem::path& path, const VtuContent& content);
 
 /// Collection of .vtu files over a parameter; `file` is relative to the .pvd's folder.

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <set>
 #include <softkin/core/error.hpp>
+#include <softkin/io/element_order.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/vtk.hpp>
 #include <string>
@@ -118,7 +119,11 @@ void VtuWriter::check() const {
     if (!content_.points.row(static_cast<Index>(i)).allFinite())
       fail("points: point " + std::to_string(i) + " is not finite");
   check_vertices(content_.tetrahedra, "tetrahedron");
+  check_vertices(content_.edge_nodes, "tetrahedron");
   check_vertices(content_.prisms, "prism");
+  const std::string refusal =
+      refusal_of_orders(content_.tetrahedra.size(), content_.edge_nodes.size(), content_.prisms.size());
+  if (!refusal.empty()) fail(refusal);
   check_fields(content_.point_fields, points_, "point field", false);
   check_fields(content_.cell_fields, cells_, "cell field", !content_.cell_regions.empty());
   check_regions();
@@ -189,15 +194,23 @@ void VtuWriter::write_cells() {
   std::vector<Index> connectivity;
   std::vector<std::int64_t> offsets;
   std::vector<std::uint8_t> types;
-  const auto add = [&](const auto& cells, std::uint8_t type) {
-    for (const auto& cell : cells) {
-      connectivity.insert(connectivity.end(), cell.begin(), cell.end());
-      offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-      types.push_back(type);
-    }
+  const auto append = [&](const auto& vertices) {
+    connectivity.insert(connectivity.end(), vertices.begin(), vertices.end());
   };
-  add(content_.tetrahedra, 10);
-  add(content_.prisms, 13);
+  const auto end_cell = [&](std::uint8_t type) {
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+    types.push_back(type);
+  };
+  const bool quadratic = !content_.edge_nodes.empty();
+  for (std::size_t i = 0; i < content_.tetrahedra.size(); ++i) {
+    append(content_.tetrahedra[i]);
+    if (quadratic) append(content_.edge_nodes[i]);  // edges in VTK's order
+    end_cell(quadratic ? 24 : 10);
+  }
+  for (const Prism& prism : content_.prisms) {
+    append(prism);
+    end_cell(13);
+  }
   xml_ += "<Cells>\n";
   write_array("connectivity", 1, connectivity.data(), connectivity.size());
   write_array("offsets", 1, offsets.data(), offsets.size());

@@ -29,6 +29,10 @@ class Parts {
 Parts connected_parts(const Model& model) {
   Parts parts(static_cast<std::size_t>(model.rest.rows()));
   for (const Tetrahedron& t : model.tetrahedra) parts.join(t);
+  for (std::size_t e = 0; e < model.edge_nodes.size(); ++e) {
+    parts.join(model.edge_nodes[e]);
+    parts.join(std::array{model.tetrahedra[e][0], model.edge_nodes[e][0]});
+  }
   for (const Prism& p : model.prisms) parts.join(p);
   for (const RigidRegion& rigid : model.rigid) parts.join(rigid.vertices);
   for (const Actuator& actuator : model.actuators)

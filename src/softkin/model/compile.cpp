@@ -26,7 +26,12 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& orig
   if (!point.allFinite()) throw InvalidInput(origin, what + " is not finite");
   if (c.embedder->empty())
     throw InvalidInput(origin, what + " needs a body to lie in, but every element belongs to a chamber");
-  EmbeddedPoint embedded = c.embedder->embed(point);
+  EmbeddedPoint embedded;
+  try {
+    embedded = c.embedder->embed(point);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(origin, what + ": " + error.what());
+  }
   const std::string distance = number_text(embedded.distance_mm);
   if (embedded.distance_mm > 0.1 * c.model.diagonal_mm)
     throw InvalidInput(origin, what + " is " + distance + " mm from the mesh");
@@ -43,7 +48,7 @@ EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::
   const Region& region = c.regions.find(name, reference.origin);
   EmbeddedPoint mean;
   try {
-    mean = mean_of(region, c.spec.mesh);
+    mean = mean_of(region, c.mesh, c.regions.edges());
   } catch (const InvalidInput& error) {
     throw InvalidInput(reference.origin, what + ": " + error.what());
   }
@@ -64,8 +69,35 @@ void compile_markers(Compilation& c) {
   }
 }
 
+namespace {
+
+/// The mesh where the model takes it in another order than it has.
+std::optional<Mesh> in_other_order(const RobotSpec& spec, std::vector<std::string>& notes) {
+  const Origin origin{.file = spec.name};
+  const bool is_quadratic = !spec.mesh.edge_nodes.empty();
+  if (spec.formulation == Formulation::physical) {
+    if (!spec.quadratic || is_quadratic) return std::nullopt;
+    if (!spec.mesh.prisms.empty())
+      throw InvalidInput(origin, "a mesh with prisms cannot be of order 2: prisms are linear");
+    check_cells(spec.mesh, origin);
+    return elevated(spec.mesh);
+  }
+  if (is_quadratic)
+    notes.emplace_back("The mesh is of order 2: its edge nodes are left out, target shapes are of linear elements.");
+  else if (spec.quadratic)
+    notes.emplace_back("The elements stay linear: target shapes are not of order 2.");
+  if (!is_quadratic) return std::nullopt;
+  check_cells(spec.mesh, origin);
+  return lowered(spec.mesh);
+}
+
+}  // namespace
+
 Model compile(const RobotSpec& spec) {
-  Compilation c(spec);
+  std::vector<std::string> notes;
+  const std::optional<Mesh> other = in_other_order(spec, notes);
+  Compilation c(spec, other ? *other : spec.mesh);
+  c.model.notes = std::move(notes);
   c.model.name = spec.name;
   c.model.formulation = spec.formulation;
   compile_elements(c);

@@ -149,6 +149,15 @@ void check_contact(Compilation& c, const ActuatorSpec& spec, const std::vector<C
                             " to no element of the body and stay" + (loose == 1 ? "s" : "") + " in place.");
 }
 
+CavityFace cavity_face(const Compilation& c, const Triangle& corners, Index element) {
+  CavityFace face{corners};
+  if (c.chamber_edge_nodes.empty()) return face;
+  for (int i = 0; i < 3; ++i)
+    face.edges[i] =
+        edge_node(c.chamber_tetrahedra[element], c.chamber_edge_nodes[element], corners[i], corners[(i + 1) % 3]);
+  return face;
+}
+
 void fill_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   std::vector<Index> elements;
   take(c, spec, in_model(spec, chamber_region(c, spec), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
@@ -156,7 +165,9 @@ void fill_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   std::vector<Tetrahedron> tetrahedra;
   tetrahedra.reserve(elements.size());
   for (const Index i : elements) tetrahedra.push_back(c.chamber_tetrahedra[i]);
-  for (const Triangle& corners : boundary_of(tetrahedra, {}).triangles) actuator.cavity.push_back({corners});
+  const Boundary boundary = boundary_of(tetrahedra, {});
+  for (std::size_t i = 0; i < boundary.triangles.size(); ++i)
+    actuator.cavity.push_back(cavity_face(c, boundary.triangles[i], elements[boundary.triangle_owners[i]]));
   check_contact(c, spec, actuator.cavity);
   actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
 }
@@ -231,7 +242,11 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
   std::size_t outside = 0;
   double farthest = 0;
   for (Index i = 0; i < vertices.rows(); ++i) {
-    actuator.points.push_back(c.embedder->embed(vertex_at(vertices, i)));
+    try {
+      actuator.points.push_back(c.embedder->embed(vertex_at(vertices, i)));
+    } catch (const InvalidInput& error) {
+      refuse(spec, "has a surface whose vertex " + std::to_string(i) + " (from 0) cannot be embedded: " + error.what());
+    }
     const double distance = actuator.points.back().distance_mm;
     farthest = std::max(farthest, distance);
     if (distance > 1e-6 * c.model.diagonal_mm) ++outside;

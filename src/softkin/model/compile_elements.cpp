@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/model/compile_parts.hpp>
+#include <softkin/model/quadratic_tetrahedron.hpp>
 #include <softkin/model/triangle_geometry.hpp>
 
 namespace softkin {
@@ -54,7 +55,7 @@ std::vector<bool> void_elements(const Compilation& c, std::vector<Index> Region:
 
 /// Physical: tetrahedra of pneumatic chambers, which are no elements of the model.
 std::vector<bool> chamber_elements(const Compilation& c) {
-  std::vector<bool> inside(c.spec.mesh.tetrahedra.size());
+  std::vector<bool> inside(c.mesh.tetrahedra.size());
   if (c.spec.formulation != Formulation::physical) return inside;
   for (const ActuatorSpec& spec : c.spec.actuators) {
     if (spec.kind != ActuatorKind::pneumatic || !spec.region) continue;
@@ -82,11 +83,11 @@ struct Refused {
   }
 };
 
-template <class Element>
-void refuse(const Compilation& c, const Kind<Element>& kind, const Refused& refused, const std::string& what) {
+void refuse(const Compilation& c, const std::string& one, const std::string& many, const Refused& refused,
+            const std::string& what) {
   if (refused.count == 0) return;
-  throw InvalidInput(c.origin, count_text(refused.count, kind.one, kind.many) + " " + what + "; the first is " +
-                                   kind.one + " " + std::to_string(refused.first) + " (from 0)");
+  throw InvalidInput(c.origin, count_text(refused.count, one, many) + " " + what + "; the first is " + one + " " +
+                                   std::to_string(refused.first) + " (from 0)");
 }
 
 /// Fills in the elements of a kind and returns how many it reversed.
@@ -98,8 +99,8 @@ std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind
   for (std::size_t i = 0; i < kind.mesh_elements.size(); ++i) {
     if (left_out[i]) continue;
     Element element = kind.mesh_elements[i];
-    double volume = signed_volume(c.spec.mesh.vertices, element);
-    const double edge = longest_edge(c.spec.mesh.vertices, element);
+    double volume = signed_volume(c.mesh.vertices, element);
+    const double edge = longest_edge(c.mesh.vertices, element);
     if (!(std::abs(volume) > std::max(least_volume, flat * edge * edge * edge))) {
       empty.add(static_cast<Index>(i));
       continue;
@@ -109,15 +110,46 @@ std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind
       volume = -volume;
       ++reversed;
     }
-    if (folds_over(c.spec.mesh.vertices, element)) folded.add(static_cast<Index>(i));
+    if (folds_over(c.mesh.vertices, element)) folded.add(static_cast<Index>(i));
     kind.at[i] = static_cast<Index>(kind.elements.size());
     kind.of.push_back(static_cast<Index>(i));
     kind.elements.push_back(element);
     kind.volumes.push_back(volume);
   }
-  refuse(c, kind, empty, empty.count == 1 ? "has no volume" : "have no volume");
-  refuse(c, kind, folded, folded.count == 1 ? "folds over at a corner" : "fold over at a corner");
+  refuse(c, kind.one, kind.many, empty, empty.count == 1 ? "has no volume" : "have no volume");
+  refuse(c, kind.one, kind.many, folded, folded.count == 1 ? "folds over at a corner" : "fold over at a corner");
   return reversed;
+}
+
+bool has_stray_node(const TetrahedronNodes& nodes) {
+  for (int e = 0; e < 6; ++e) {
+    const auto start = nodes.row(tetrahedron_edges[e][0]), end = nodes.row(tetrahedron_edges[e][1]);
+    if (!((nodes.row(e + 4) - 0.5 * (start + end)).norm() <= 0.25 * (end - start).norm())) return true;
+  }
+  return false;
+}
+
+/// Order 2: gives elements that were oriented the edge nodes that they have in the mesh, checks them and measures the
+/// elements with their curved edges.
+void take_edge_nodes(const Compilation& c, const std::vector<Tetrahedron>& elements, const std::vector<Index>& of,
+                     std::vector<EdgeNodes>& edge_nodes, std::vector<double>& volumes) {
+  Refused stray, folded;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    EdgeNodes nodes = c.mesh.edge_nodes[of[e]];
+    if (elements[e] != c.mesh.tetrahedra[of[e]]) exchange_corners_2_and_3(nodes);
+    edge_nodes.push_back(nodes);
+    const TetrahedronNodes positions = nodes_of(c.mesh.vertices, elements[e], nodes);
+    volumes[e] = shape_integrals(positions).sum();
+    if (has_stray_node(positions))
+      stray.add(of[e]);
+    else if (!(least_jacobian(positions) > 0))
+      folded.add(of[e]);
+  }
+  refuse(c, "tetrahedron", "tetrahedra", stray,
+         std::string(stray.count == 1 ? "has" : "have") +
+             " an edge node more than a quarter of its edge's length from the middle");
+  refuse(c, "tetrahedron", "tetrahedra", folded,
+         std::string(folded.count == 1 ? "folds" : "fold") + " over: the edge nodes make the Jacobian negative");
 }
 
 void find_used_vertices(Compilation& c) {
@@ -125,6 +157,8 @@ void find_used_vertices(Compilation& c) {
   model.used.assign(static_cast<std::size_t>(model.rest.rows()), false);
   for (const Tetrahedron& t : model.tetrahedra)
     for (const Index v : t) model.used[v] = true;
+  for (const EdgeNodes& nodes : model.edge_nodes)
+    for (const Index v : nodes) model.used[v] = true;
   for (const Prism& p : model.prisms)
     for (const Index v : p) model.used[v] = true;
   Bounds bounds;
@@ -132,6 +166,8 @@ void find_used_vertices(Compilation& c) {
   std::vector<bool> of_chamber(model.used.size());
   for (const Tetrahedron& t : c.chamber_tetrahedra)
     for (const Index v : t) of_chamber[v] = true;
+  for (const EdgeNodes& nodes : c.chamber_edge_nodes)
+    for (const Index v : nodes) of_chamber[v] = true;
   std::size_t unused = 0;
   for (std::size_t v = 0; v < model.used.size(); ++v) {
     if (model.used[v]) {
@@ -167,7 +203,7 @@ void name_regions(Compilation& c) {
 
 void compile_elements(Compilation& c) {
   Model& model = c.model;
-  const Mesh& mesh = c.spec.mesh;
+  const Mesh& mesh = c.mesh;
   if (mesh.tetrahedra.empty() && mesh.prisms.empty()) throw InvalidInput(c.origin, "the mesh has no element");
   std::vector<bool> not_body = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
   std::vector<bool> not_chamber = chamber_elements(c);
@@ -200,6 +236,10 @@ void compile_elements(Compilation& c) {
   if (reversed > 0)
     model.notes.push_back(count_text(reversed, "element was", "elements were") +
                           " reordered, because the order of the vertices made the volume negative.");
+  if (!mesh.edge_nodes.empty()) {
+    take_edge_nodes(c, model.tetrahedra, c.tetrahedron_of, model.edge_nodes, model.tetrahedron_volumes);
+    take_edge_nodes(c, c.chamber_tetrahedra, c.chamber_of, c.chamber_edge_nodes, c.chamber_volumes);
+  }
   model.tetrahedron_roles.resize(model.tetrahedra.size());
   model.prism_roles.resize(model.prisms.size());
   c.chamber_roles.resize(c.chamber_tetrahedra.size());

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <softkin/model/compile_parts.hpp>
-#include <softkin/model/triangle_geometry.hpp>
+#include <softkin/model/quadratic_tetrahedron.hpp>
 
 namespace softkin {
 
@@ -13,7 +13,7 @@ using PrismIntegrals = Eigen::Matrix<double, 6, 1>;
 
 /// Integrals of a prism's shape functions L_i (1 -+ z) / 2 over it [mm^3]. They are of degree 2 in the triangle and 3
 /// along z: three points by two are exact.
-PrismIntegrals shape_integrals(const Points& vertices, const Prism& prism) {
+PrismIntegrals prism_integrals(const Points& vertices, const Prism& prism) {
   Eigen::Matrix<double, 6, 3> nodes;
   for (int i = 0; i < 6; ++i) nodes.row(i) = vertices.row(prism[i]);
   const double gauss = 1 / std::sqrt(3.0);
@@ -37,11 +37,18 @@ void add_weight(Compilation& c) {
     return Eigen::RowVector3d(model.materials[role.material].density * cubic_metres * c.spec.gravity.transpose());
   };
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-    const Eigen::RowVector3d quarter = model.tetrahedron_volumes[e] / 4 * per_volume(model.tetrahedron_roles[e]);
-    for (const Index v : model.tetrahedra[e]) model.dead_load.row(v) += quarter;
+    const Eigen::RowVector3d weight = per_volume(model.tetrahedron_roles[e]);
+    if (model.edge_nodes.empty()) {
+      for (const Index v : model.tetrahedra[e]) model.dead_load.row(v) += model.tetrahedron_volumes[e] / 4 * weight;
+      continue;
+    }
+    const TetrahedronWeights integrals =
+        shape_integrals(nodes_of(model.rest, model.tetrahedra[e], model.edge_nodes[e]));
+    for (int i = 0; i < 10; ++i)
+      model.dead_load.row(i < 4 ? model.tetrahedra[e][i] : model.edge_nodes[e][i - 4]) += integrals[i] * weight;
   }
   for (std::size_t e = 0; e < model.prisms.size(); ++e) {
-    const PrismIntegrals integrals = shape_integrals(model.rest, model.prisms[e]);
+    const PrismIntegrals integrals = prism_integrals(model.rest, model.prisms[e]);
     const Eigen::RowVector3d weight = per_volume(model.prism_roles[e]);
     for (int i = 0; i < 6; ++i) model.dead_load.row(model.prisms[e][i]) += integrals[i] * weight;
   }

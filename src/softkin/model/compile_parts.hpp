@@ -8,10 +8,12 @@ namespace softkin {
 
 /// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
 struct Compilation {
-  explicit Compilation(const RobotSpec& robot) : spec(robot), origin{.file = robot.name}, regions(robot) {}
+  Compilation(const RobotSpec& robot, const Mesh& its_mesh)
+      : spec(robot), mesh(its_mesh), origin{.file = robot.name}, regions(robot, its_mesh) {}
 
   const RobotSpec& spec;
-  Origin origin;  // of what has no line of its own
+  const Mesh& mesh;  // of the order that the model takes: spec.mesh, or made from it
+  Origin origin;     // of what has no line of its own
   RegionTable regions;
   Model model;
   // index in the model of each element of the mesh; -1: void
@@ -20,6 +22,7 @@ struct Compilation {
   std::vector<Index> tetrahedron_of, prism_of;
   // physical: tetrahedra of pneumatic chambers, oriented as the model's, and what is known of them
   std::vector<Tetrahedron> chamber_tetrahedra;
+  std::vector<EdgeNodes> chamber_edge_nodes;
   std::vector<double> chamber_volumes;
   std::vector<ElementRole> chamber_roles;
   std::vector<Index> chamber_at, chamber_of;  // as tetrahedron_at and tetrahedron_of

@@ -24,7 +24,8 @@ struct MeshCheck {
                 // Jacobian of its corners over their edges' lengths, 2/sqrt(3) times; reversed as if not
 };
 
-/// Linear in the number of elements but for sorting. The mesh's indices must be in range.
+/// Linear in the number of elements but for sorting. The mesh's indices must be in range. Of elements of order 2 the
+/// corners are checked; their edge nodes are no unreferenced vertices and belong to their parts.
 [[nodiscard]] MeshCheck check_mesh(const Mesh& mesh);
 
 }  // namespace softkin

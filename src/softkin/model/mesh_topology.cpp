@@ -75,6 +75,7 @@ class TopologyCheck {
     check_faces();
     check_edges();
     list_elements_of_vertices();
+    find_edge_nodes();
     check_vertices();
     find_parts();
   }
@@ -186,12 +187,18 @@ class TopologyCheck {
       for (const Index v : corners_of(mesh_, e)) around_[next[size(v)]++] = e;
   }
 
+  void find_edge_nodes() {
+    on_edge_.assign(size(static_cast<Index>(points_.rows())), false);
+    for (const EdgeNodes& nodes : mesh_.edge_nodes)
+      for (const Index v : nodes) on_edge_[size(v)] = true;
+  }
+
   /// Elements around a vertex belong together where they share another vertex.
   void check_vertices() {
     std::vector<Index> seen_from(size(static_cast<Index>(points_.rows())), -1), seen_by(seen_from);
     for (Index v = 0; v < points_.rows(); ++v) {
       const std::size_t begin = starts_[size(v)], count = starts_[size(v) + 1] - begin;
-      if (count == 0) check_.unreferenced.push_back(v);
+      if (count == 0 && !on_edge_[size(v)]) check_.unreferenced.push_back(v);
       DisjointSets groups(count);
       for (std::size_t i = 0; i < count; ++i)
         for (const Index w : corners_of(mesh_, around_[begin + i])) {
@@ -211,9 +218,11 @@ class TopologyCheck {
     DisjointSets sets(count);
     for (Index e = 0; e < element_count(mesh_); ++e)
       for (const Index v : corners_of(mesh_, e)) sets.join(v, *corners_of(mesh_, e).begin());
+    for (std::size_t t = 0; t < mesh_.edge_nodes.size(); ++t)
+      for (const Index v : mesh_.edge_nodes[t]) sets.join(v, mesh_.tetrahedra[t][0]);
     std::vector<Index> part_of_root(count, -1);
     for (Index v = 0; v < points_.rows(); ++v) {
-      if (starts_[size(v)] == starts_[size(v) + 1]) continue;
+      if (starts_[size(v)] == starts_[size(v) + 1] && !on_edge_[size(v)]) continue;
       Index& part = part_of_root[size(sets.find(v))];
       if (part < 0) {
         part = static_cast<Index>(check_.parts.size());
@@ -231,6 +240,7 @@ class TopologyCheck {
   std::vector<bool> kept_;   // per element: not a duplicate
   std::vector<bool> solid_;  // per element: not degenerate
   std::vector<std::array<Index, 2>> boundary_edges_;
+  std::vector<bool> on_edge_;        // per vertex: the node of an edge
   std::vector<std::size_t> starts_;  // of each vertex's elements in around_
   std::vector<Index> around_;
 };

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <softkin/model/quadratic_triangle.hpp>
 
 namespace softkin {
@@ -26,6 +27,15 @@ std::array<TrianglePoint, 6> make_rule() {
 const std::array<TrianglePoint, 6>& triangle_rule() {
   static const std::array<TrianglePoint, 6> rule = make_rule();
   return rule;
+}
+
+Eigen::Matrix<double, 6, 1> shape_integrals(const TriangleNodes& nodes) {
+  Eigen::Matrix<double, 6, 1> integrals = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const TrianglePoint& point : triangle_rule()) {
+    const Vec3 u = nodes.transpose() * point.along_u, v = nodes.transpose() * point.along_v;
+    integrals += point.weight * u.cross(v).norm() * point.shape;
+  }
+  return integrals;
 }
 
 }  // namespace softkin

@@ -19,4 +19,8 @@ struct TrianglePoint {
 /// source  D. A. Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the triangle, 1985
 [[nodiscard]] const std::array<TrianglePoint, 6>& triangle_rule();
 
+/// Integrals of the shape functions over a curved triangle [mm^2]; their sum is its area. Exact where it is flat with
+/// straight edges: 0 at the corners and a third of the area at each edge.
+[[nodiscard]] Eigen::Matrix<double, 6, 1> shape_integrals(const TriangleNodes& nodes);
+
 }  // namespace softkin

@@ -4,6 +4,8 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <softkin/model/quadratic_tetrahedron.hpp>
+#include <softkin/model/quadratic_triangle.hpp>
 #include <softkin/model/regions.hpp>
 #include <softkin/model/selectors.hpp>
 #include <softkin/model/triangle_geometry.hpp>
@@ -22,6 +24,12 @@ void add_vertices(const std::vector<Cell>& cells, const std::vector<Index>& whic
   for (const Index i : which) vertices.insert(vertices.end(), cells[i].begin(), cells[i].end());
 }
 
+void add_element_vertices(const Mesh& mesh, Region& region) {
+  add_vertices(mesh.tetrahedra, region.tetrahedra, region.vertices);
+  if (!mesh.edge_nodes.empty()) add_vertices(mesh.edge_nodes, region.tetrahedra, region.vertices);
+  add_vertices(mesh.prisms, region.prisms, region.vertices);
+}
+
 void check_indices(const std::vector<Index>& indices, std::size_t count, const std::string& owner,
                    const std::string& what, const Origin& origin) {
   for (const Index i : indices)
@@ -30,17 +38,20 @@ void check_indices(const std::vector<Index>& indices, std::size_t count, const s
                                      std::to_string(count) + " (counted from 0)");
 }
 
-Region complete(Region region, const Mesh& mesh, const Origin& origin) {
+Region complete(Region region, const Mesh& mesh, const EdgeTable& edges, const Origin& origin) {
   const std::string owner = "region '" + region.name + "' of the mesh";
   check_indices(region.tetrahedra, mesh.tetrahedra.size(), owner, "tetrahedron", origin);
   check_indices(region.prisms, mesh.prisms.size(), owner, "prism", origin);
   check_indices(region.triangles, mesh.triangles.size(), owner, "triangle", origin);
   check_indices(region.quads, mesh.quads.size(), owner, "quad", origin);
   check_indices(region.vertices, static_cast<std::size_t>(mesh.vertices.rows()), owner, "vertex", origin);
-  add_vertices(mesh.tetrahedra, region.tetrahedra, region.vertices);
-  add_vertices(mesh.prisms, region.prisms, region.vertices);
+  add_element_vertices(mesh, region);
   add_vertices(mesh.triangles, region.triangles, region.vertices);
   add_vertices(mesh.quads, region.quads, region.vertices);
+  if (!edges.empty())
+    for (const Index i : region.triangles)
+      for (const Index node : edges.of(mesh.triangles[i]))
+        if (node >= 0) region.vertices.push_back(node);
   for (auto* list : {&region.tetrahedra, &region.prisms, &region.triangles, &region.quads, &region.vertices})
     sort_unique(*list);
   return region;
@@ -68,11 +79,12 @@ Region every_element(const Mesh& mesh) {
   all.prisms.resize(mesh.prisms.size());
   std::iota(all.tetrahedra.begin(), all.tetrahedra.end(), 0);
   std::iota(all.prisms.begin(), all.prisms.end(), 0);
-  add_vertices(mesh.tetrahedra, all.tetrahedra, all.vertices);
-  add_vertices(mesh.prisms, all.prisms, all.vertices);
+  add_element_vertices(mesh, all);
   sort_unique(all.vertices);
   return all;
 }
+
+}  // namespace
 
 void check_cells(const Mesh& mesh, const Origin& origin) {
   const auto check = [&](const auto& cells, const std::string& what) {
@@ -87,22 +99,38 @@ void check_cells(const Mesh& mesh, const Origin& origin) {
   check(mesh.prisms, "prism");
   check(mesh.triangles, "triangle");
   check(mesh.quads, "quad");
+  if (!mesh.edge_nodes.empty()) {
+    if (mesh.edge_nodes.size() != mesh.tetrahedra.size() || !mesh.prisms.empty())
+      throw InvalidInput(origin, "a mesh of order 2 needs edge nodes for every element, and prisms have none");
+    check(mesh.edge_nodes, "the edges of tetrahedron");
+  }
   for (Index i = 0; i < mesh.vertices.rows(); ++i)
     if (!mesh.vertices.row(i).allFinite())
       throw InvalidInput(origin, "vertex " + std::to_string(i) + " (from 0) is not finite");
 }
 
+namespace {
+
+EdgeTable checked_edges(const Mesh& mesh, const Origin& origin) {
+  check_cells(mesh, origin);
+  try {
+    return EdgeTable(mesh);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(origin, error.what());
+  }
+}
+
 }  // namespace
 
-RegionTable::RegionTable(const RobotSpec& spec) : mesh_(spec.mesh) {
+RegionTable::RegionTable(const RobotSpec& spec, const Mesh& mesh)
+    : mesh_(mesh), edges_(checked_edges(mesh, {.file = spec.name})) {
   const Origin origin{.file = spec.name};
-  check_cells(mesh_, origin);
   if (mesh_.vertices.rows() > 0)
     tolerance_ = 1e-9 * (mesh_.vertices.colwise().maxCoeff() - mesh_.vertices.colwise().minCoeff()).norm();
   all_ = every_element(mesh_);
   std::set<std::string> names{"all"};
   for (const Region& region : mesh_.regions) {
-    regions_.push_back(complete(region, mesh_, origin));
+    regions_.push_back(complete(region, mesh_, edges_, origin));
     const Region& added = regions_.back();
     if (region.name == "all" && (added.tetrahedra != all_.tetrahedra || added.prisms != all_.prisms))
       throw InvalidInput(origin, "the mesh has a region 'all' that is not every element: rename it");
@@ -153,11 +181,14 @@ Region RegionTable::select(const Selector& selector, const std::string& name, co
     region.tetrahedra = cells_where(mesh_.tetrahedra, accept);
     region.prisms = cells_where(mesh_.prisms, accept);
     region.dimension = 0;
+    const std::vector<Index> nodes = edges_.between(region.vertices);
+    region.vertices.insert(region.vertices.end(), nodes.begin(), nodes.end());
+    sort_unique(region.vertices);
   } else if (const auto* elements = std::get_if<ElementList>(&selector)) {
     region.tetrahedra = elements->tetrahedra;
     check_indices(region.tetrahedra, mesh_.tetrahedra.size(), owner, "tetrahedron", origin);
     sort_unique(region.tetrahedra);
-    add_vertices(mesh_.tetrahedra, region.tetrahedra, region.vertices);
+    add_element_vertices(mesh_, region);
     sort_unique(region.vertices);
   } else {
     const auto accept = [&](const auto& cell) { return holds(selector, centroid(mesh_.vertices, cell), tolerance_); };
@@ -197,12 +228,50 @@ void spread_quad(const Points& vertices, const Quad& q, VertexWeights& weights) 
     spread(t, 0.5 * area(vertices, t), weights);
 }
 
+void spread_quadratic(const Mesh& mesh, Index tetrahedron, VertexWeights& weights) {
+  const Tetrahedron& corners = mesh.tetrahedra[tetrahedron];
+  const EdgeNodes& edge_nodes = mesh.edge_nodes[tetrahedron];
+  TetrahedronWeights integrals = shape_integrals(nodes_of(mesh.vertices, corners, edge_nodes));
+  if (integrals.sum() < 0) integrals = -integrals;  // in the file's order the corners may be reversed
+  for (int i = 0; i < 10; ++i) weights[i < 4 ? corners[i] : edge_nodes[i - 4]] += integrals[i];
+}
+
+void spread_quadratic(const Points& vertices, const Triangle& corners, const std::array<Index, 3>& edge_nodes,
+                      VertexWeights& weights) {
+  if (*std::min_element(edge_nodes.begin(), edge_nodes.end()) < 0)
+    throw InvalidInput("a triangle of the region is not a face of an element of order 2");
+  TriangleNodes nodes;
+  for (int i = 0; i < 3; ++i) {
+    nodes.row(i) = vertices.row(corners[i]);
+    nodes.row(i + 3) = vertices.row(edge_nodes[i]);
+  }
+  const Eigen::Matrix<double, 6, 1> integrals = shape_integrals(nodes);
+  for (int i = 0; i < 6; ++i) weights[i < 3 ? corners[i] : edge_nodes[i - 3]] += integrals[i];
+}
+
+/// By integrals of the shape functions over the region's cells.
+VertexWeights integrated(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
+  VertexWeights weights;
+  if (region.dimension == 3)
+    for (const Index i : region.tetrahedra) spread_quadratic(mesh, i, weights);
+  else
+    for (const Index i : region.triangles)
+      spread_quadratic(mesh.vertices, mesh.triangles[i], edges.of(mesh.triangles[i]), weights);
+  double total = 0;
+  for (const auto& [vertex, weight] : weights) total += weight;
+  // corners of straight cells weigh nothing, but for rounding
+  std::erase_if(weights, [&](const auto& entry) { return std::abs(entry.second) < 1e-15 * total; });
+  return weights;
+}
+
 }  // namespace
 
-EmbeddedPoint mean_of(const Region& region, const Mesh& mesh) {
+EmbeddedPoint mean_of(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
   const Points& vertices = mesh.vertices;
   VertexWeights weights;
-  if (region.dimension == 3) {
+  if (region.dimension >= 2 && !edges.empty()) {
+    weights = integrated(region, mesh, edges);
+  } else if (region.dimension == 3) {
     for (const Index i : region.tetrahedra)
       spread(mesh.tetrahedra[i], std::abs(signed_volume(vertices, mesh.tetrahedra[i])), weights);
     for (const Index i : region.prisms)

@@ -221,36 +221,45 @@ void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pos
       for (const int axis : groups_[g].axes) positions(groups_[g].free[i], axis) += moves[g](i, axis);
 }
 
+Pose GlobalStep::pose_of(const Region& region, const Points& positions) const {
+  Vec3 center = Vec3::Zero();
+  for (const Index v : region.vertices) center += positions.row(v).transpose();
+  center /= static_cast<double>(region.vertices.size());
+  Mat3 correlation = Mat3::Zero();
+  for (std::size_t i = 0; i < region.vertices.size(); ++i)
+    correlation += (positions.row(region.vertices[i]).transpose() - center) * region.offsets.row(static_cast<Index>(i));
+  Pose pose{center, Mat3::Identity()};
+  if (region.turns[0] && region.turns[1] && region.turns[2]) {
+    pose.rotation = best_rotation(correlation);
+  } else {
+    for (int about = 0; about < 3; ++about)
+      if (region.turns[about]) {
+        const int i = (about + 1) % 3, j = (about + 2) % 3;
+        const double angle = std::atan2(correlation(j, i) - correlation(i, j), correlation(i, i) + correlation(j, j));
+        pose.rotation = rotation_about(angle * Vec3::Unit(about));
+      }
+  }
+  return pose;
+}
+
+std::vector<Pose> GlobalStep::poses(const Points& positions) const {
+  std::vector<Pose> poses;
+  for (const Region& region : regions_) poses.push_back(pose_of(region, positions));
+  return poses;
+}
+
 std::vector<Pose> GlobalStep::project(Points& positions) const {
   for (Index v = 0; v < rest_.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
       if (fixed_[v][axis]) positions(v, axis) = held_(v, axis);
-  std::vector<Pose> poses;
-  for (const Region& region : regions_) {
-    Vec3 center = Vec3::Zero();
-    for (const Index v : region.vertices) center += positions.row(v).transpose();
-    center /= static_cast<double>(region.vertices.size());
-    Mat3 correlation = Mat3::Zero();
-    for (std::size_t i = 0; i < region.vertices.size(); ++i)
-      correlation +=
-          (positions.row(region.vertices[i]).transpose() - center) * region.offsets.row(static_cast<Index>(i));
-    Pose pose{center, Mat3::Identity()};
-    if (region.turns[0] && region.turns[1] && region.turns[2]) {
-      pose.rotation = best_rotation(correlation);
-    } else {
-      for (int about = 0; about < 3; ++about)
-        if (region.turns[about]) {
-          const int i = (about + 1) % 3, j = (about + 2) % 3;
-          const double angle = std::atan2(correlation(j, i) - correlation(i, j), correlation(i, i) + correlation(j, j));
-          pose.rotation = rotation_about(angle * Vec3::Unit(about));
-        }
-    }
+  std::vector<Pose> all = poses(positions);
+  for (std::size_t r = 0; r < regions_.size(); ++r) {
     for (int axis = 0; axis < 3; ++axis)
-      if (!region.slides[axis]) pose.center[axis] = region.rest_center[axis] + region.displacement[axis];
-    place(region, pose, positions);
-    poses.push_back(pose);
+      if (!regions_[r].slides[axis])
+        all[r].center[axis] = regions_[r].rest_center[axis] + regions_[r].displacement[axis];
+    place(regions_[r], all[r], positions);
   }
-  return poses;
+  return all;
 }
 
 double GlobalStep::free_norm(const Points& residual, const std::vector<Pose>& poses) const {

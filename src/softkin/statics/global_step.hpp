@@ -28,6 +28,9 @@ class GlobalStep {
   /// Puts fixed vertices back and rigid regions into their best-fit poses.
   [[nodiscard]] std::vector<Pose> project(Points& positions) const;
 
+  /// Poses that fit best.
+  [[nodiscard]] std::vector<Pose> poses(const Points& positions) const;
+
   /// residual without what supports carry: fixed axes are zero, rigid regions keep net force and torque only, as
   /// the root of the sum of squares [unit of residual].
   [[nodiscard]] double free_norm(const Points& residual, const std::vector<Pose>& poses) const;
@@ -52,6 +55,7 @@ class GlobalStep {
 
   void add_regions(const Model& model);
   void make_group(const Eigen::SparseMatrix<double>& matrix, Group& group);
+  [[nodiscard]] Pose pose_of(const Region& region, const Points& positions) const;
   void place(const Region& region, const Pose& pose, Points& positions) const;
   [[nodiscard]] Handles handles_of(const Points& residual) const;
   [[nodiscard]] Handles handles_of(const std::vector<Pose>& poses) const;

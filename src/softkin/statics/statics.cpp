@@ -2,6 +2,8 @@
 #include <chrono>
 #include <softkin/core/error.hpp>
 #include <softkin/statics/local_global.hpp>
+#include <softkin/statics/measure.hpp>
+#include <softkin/statics/physical_statics.hpp>
 #include <softkin/statics/statics.hpp>
 #include <softkin/statics/target_shape_newton.hpp>
 
@@ -39,7 +41,17 @@ int worthwhile_threads(const Model& model) {
       std::clamp<std::size_t>(elements / elements_each, 1, std::max(1u, std::thread::hardware_concurrency())));
 }
 
+const char* commanded(const Actuator& actuator) {
+  if (actuator.control == Control::ratio) return "ratio";
+  return actuator.kind == ActuatorKind::cable ? "tension" : "pressure";
+}
+
 }  // namespace
+
+const char* unit_of_command(const Actuator& actuator) {
+  if (actuator.control == Control::ratio) return "";
+  return actuator.kind == ActuatorKind::cable ? " N" : " kPa";
+}
 
 void check_actuation(const Model& model, const Actuation& actuation) {
   if (actuation.size() != static_cast<Index>(model.actuators.size()))
@@ -49,18 +61,29 @@ void check_actuation(const Model& model, const Actuation& actuation) {
     const Actuator& actuator = model.actuators[a];
     const double value = actuation[static_cast<Index>(a)];
     if (!(value >= actuator.low && value <= actuator.high))
-      throw InvalidInput("actuator '" + actuator.name + "': the ratio " + number(value) + " is outside its range " +
-                         number(actuator.low) + " to " + number(actuator.high));
+      throw InvalidInput("actuator '" + actuator.name + "': the " + commanded(actuator) + " " + number(value) +
+                         " is outside its range " + number(actuator.low) + " to " + number(actuator.high) +
+                         unit_of_command(actuator));
   }
 }
 
 struct Statics::Parts {
-  explicit Parts(const Model& robot)
-      : model(robot), system(robot), global(robot, system.global_matrix()), newton(robot, system, global) {}
+  explicit Parts(const Model& robot) : model(robot) {
+    if (robot.formulation == Formulation::physical)
+      physical.emplace(robot);
+    else
+      target_shape.emplace(robot);
+  }
+  struct TargetShape {
+    explicit TargetShape(const Model& robot)
+        : system(robot), global(robot, system.global_matrix()), newton(robot, system, global) {}
+    TargetShapeSystem system;
+    GlobalStep global;
+    TargetShapeNewton newton;
+  };
   const Model& model;
-  TargetShapeSystem system;
-  GlobalStep global;
-  TargetShapeNewton newton;
+  std::optional<TargetShape> target_shape;
+  std::optional<PhysicalStatics> physical;
 };
 
 Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
@@ -83,16 +106,26 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));
   const double paper_tolerance = 8e-8 * model.diagonal_mm;
 
+  const double tolerance = options.step_tolerance_mm > 0 ? options.step_tolerance_mm : paper_tolerance;
   Equilibrium result;
-  result.actuation = actuation;
-  result.state.positions = start.positions;
+  if (parts_->physical) {
+    if (options.solver == Solver::local_global)
+      throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
+    result = parts_->physical->solve(actuation, start, {tolerance, options.max_iterations, options.keep_history},
+                                     progress, team);
+  } else {
+    result.actuation = actuation;
+    result.state.positions = start.positions;
+    result.report.tolerance_mm = tolerance;
+    const Parts::TargetShape& parts = *parts_->target_shape;
+    if (options.solver == Solver::newton)
+      parts.newton.solve(start.actuation, options, progress, team, result);
+    else
+      solve_local_global(parts.system, parts.global, options, progress, team, result);
+    if (result.report.status == Status::converged) result.state.actuation = actuation;
+    result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
+  }
   SolveReport& report = result.report;
-  report.tolerance_mm = options.step_tolerance_mm > 0 ? options.step_tolerance_mm : paper_tolerance;
-  if (options.solver == Solver::newton)
-    parts_->newton.solve(start.actuation, options, progress, team, result);
-  else
-    solve_local_global(parts_->system, parts_->global, options, progress, team, result);
-  if (report.status == Status::converged) result.state.actuation = actuation;
   report.seconds = seconds_since(begin);
   return result;
 }

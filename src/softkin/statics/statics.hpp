@@ -10,6 +10,9 @@ namespace softkin {
 /// throws  InvalidInput on a size mismatch or a value outside its actuator's range
 void check_actuation(const Model& model, const Actuation& actuation);
 
+/// Unit of what the user commands, with a space before it: "" (a ratio), " N" or " kPa".
+[[nodiscard]] const char* unit_of_command(const Actuator& actuator);
+
 /// newton: the fixed point of Algorithm 1 by Newton's method. local_global: Algorithm 1 itself.
 enum class Solver { newton, local_global };
 
@@ -35,14 +38,18 @@ class Statics {
 
   [[nodiscard]] State rest() const;
 
-  /// Equilibrium shape under one actuation, target-shape formulation.
+  /// Equilibrium shape under one actuation.
   ///
-  /// actuation  m ratios in model.actuators order: length, area or volume over that at rest [-]
+  /// actuation  m values in model.actuators order: length, area or volume over that at rest [-], or tension [N] or
+  /// gauge
+  ///            pressure [kPa] where control is load
   /// start      where the search begins; its positions are n x 3 [mm]; fixed vertices and rigid regions of it are
   ///            projected to what holds them
-  /// returns    positions n x 3 [mm] and report; not converging is report.status
-  /// source     Fang et al. 2020, Alg. 1, Eqs. (1)-(10) as corrected in docs/paper.md; Newton: same equilibrium
-  /// throws     InvalidInput on a size mismatch, a start that is not finite, or a value outside its actuator's range
+  /// returns    positions n x 3 [mm], multipliers [N or kPa] (physical formulation, else 0) and report; not converging
+  ///            is report.status
+  /// source     target-shape: Fang et al. 2020, Alg. 1, Eqs. (1)-(10) as corrected in docs/paper.md; Newton: same
+  /// equilibrium throws     InvalidInput on a size mismatch, a start that is not finite, or a value outside its
+  /// actuator's range
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions& options = {},
                                   const ProgressCallback& progress = {}) const;
 

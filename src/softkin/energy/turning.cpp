@@ -1,0 +1,76 @@
+#include <softkin/energy/elastic_polar.hpp>
+#include <softkin/energy/rotation.hpp>
+#include <softkin/energy/turning.hpp>
+
+namespace softkin {
+
+namespace {
+
+template <int K>
+Pack33 gradient_of(const Shape<K>& nodes, const Pack3 (&slope)[K]) {
+  Pack33 f{};
+  for (int a = 0; a < K; ++a) {
+    f.row[0] = f.row[0] + nodes[a].x * slope[a];
+    f.row[1] = f.row[1] + nodes[a].y * slope[a];
+    f.row[2] = f.row[2] + nodes[a].z * slope[a];
+  }
+  return f;
+}
+
+Pack33 times(const Pack33& a, const Pack33& b) {
+  Pack33 c;
+  for (int i = 0; i < 3; ++i) c.row[i] = a.row[i].x * b.row[0] + a.row[i].y * b.row[1] + a.row[i].z * b.row[2];
+  return c;
+}
+
+/// Rate w at which the rotation R of F = R S turns, in space: R^T w = (tr(S) I - S)^-1 axial(R^T F' - F'^T R).
+Pack3 spin(const Polar& polar, const Pack33& rate) {
+  const Pack33 q = transpose_times(polar.rotation, rate);
+  const Pack3 axial{q.row[2].y - q.row[1].z, q.row[0].z - q.row[2].x, q.row[1].x - q.row[0].y};
+  const Pack3 w = polar.rotation * (turn_compliance(polar.stretch) * axial);
+  // more than two turns: the rotation was not unique, and has no rate
+  return select(norm(w) < 12, pack(1), pack(0)) * w;
+}
+
+PackRotation exponential(const Pack3& turn) {
+  const Pack angle = norm(turn);
+  PackRotation q;
+  Pack scale;
+  for (int l = 0; l < lanes; ++l) {
+    q.w[l] = std::cos(0.5 * angle[l]);
+    scale[l] = angle[l] > 1e-8 ? std::sin(0.5 * angle[l]) / angle[l] : 0.5;
+  }
+  q.x = scale * turn.x;
+  q.y = scale * turn.y;
+  q.z = scale * turn.z;
+  return q;
+}
+
+}  // namespace
+
+template <int K, int Q>
+void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull) {
+  for (int a = 0; a < K; ++a) pull[a] = Pack3{pack(0), pack(0), pack(0)};
+  for (int q = 0; q < Q; ++q) {
+    const Pack33 gradient = gradient_of<K>(current, block.slope[q]), rate = gradient_of<K>(step, block.slope[q]);
+    const Pack3 w = spin(polar(gradient), rate);
+    Pack33 ahead, still;
+    for (int i = 0; i < 3; ++i) ahead.row[i] = gradient.row[i] + rate.row[i];
+    still.row[0] = ahead.row[0] - (w.y * gradient.row[2] - w.z * gradient.row[1]);
+    still.row[1] = ahead.row[1] - (w.z * gradient.row[0] - w.x * gradient.row[2]);
+    still.row[2] = ahead.row[2] - (w.x * gradient.row[1] - w.y * gradient.row[0]);
+    const Pack33 turned = times(to_matrix(exponential(w)), still);
+    for (int a = 0; a < K; ++a) {
+      const Pack3 slope = block.volume[q] * block.slope[q][a];
+      pull[a].x += dot(turned.row[0] - ahead.row[0], slope);
+      pull[a].y += dot(turned.row[1] - ahead.row[1], slope);
+      pull[a].z += dot(turned.row[2] - ahead.row[2], slope);
+    }
+  }
+}
+
+template void turning_pull<4, 1>(const ElasticBlock<4, 1>&, const Shape<4>&, const Shape<4>&, Shape<4>&);
+template void turning_pull<10, 4>(const ElasticBlock<10, 4>&, const Shape<10>&, const Shape<10>&, Shape<10>&);
+template void turning_pull<6, 6>(const ElasticBlock<6, 6>&, const Shape<6>&, const Shape<6>&, Shape<6>&);
+
+}  // namespace softkin

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <softkin/core/progress.hpp>
+#include <softkin/model/equilibrium.hpp>
+#include <softkin/statics/physical_system.hpp>
+
+namespace softkin {
+
+/// Newton's method on the equations of equilibrium under one demand, damped by the natural monotonicity test.
+///
+/// source  Deuflhard 2011, NLEQ-ERR: a step is as long as the simplified next one shrinks, which is measured with the
+///         factor at hand and does not depend on how the equations are scaled
+class PhysicalNewton {
+ public:
+  struct Settings {
+    double tolerance_mm = 0;  // largest move of a vertex by a step
+    int max_iterations = 30;
+    bool keep_history = true;
+  };
+  enum class Outcome { converged, unstable, stuck, interrupted };
+
+  PhysicalNewton(const PhysicalSystem& system, PhysicalSystem::Workspace& work, Team& team, const Settings& settings,
+                 const ProgressCallback& progress, SolveReport& report);
+
+  /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
+  /// factorisation.
+  Outcome solve(const Demand& demand, const std::vector<bool>& active, Iterate& at);
+
+ private:
+  bool factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active);
+  void record(double step_mm);
+
+  const PhysicalSystem& system_;
+  PhysicalSystem::Workspace& work_;
+  Team& team_;
+  Settings settings_;
+  const ProgressCallback& progress_;
+  SolveReport& report_;
+  PhysicalSystem::Balance balance_, next_balance_;
+  Iterate trial_;
+  int negative_ = 0;  // of the last factorisation
+};
+
+}  // namespace softkin

@@ -1,0 +1,213 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical_statics.hpp>
+
+namespace softkin {
+
+/// A workspace, for the time of a solve.
+class PhysicalStatics::Lease {
+ public:
+  explicit Lease(const PhysicalStatics& owner) : owner_(owner) {
+    const std::lock_guard lock(owner_.mutex_);
+    if (owner_.idle_.empty()) {
+      work_ = std::make_unique<PhysicalSystem::Workspace>(owner_.system_);
+    } else {
+      work_ = std::move(owner_.idle_.back());
+      owner_.idle_.pop_back();
+    }
+  }
+  ~Lease() {
+    const std::lock_guard lock(owner_.mutex_);
+    owner_.idle_.push_back(std::move(work_));
+  }
+  Lease(const Lease&) = delete;
+  Lease& operator=(const Lease&) = delete;
+  [[nodiscard]] PhysicalSystem::Workspace& work() { return *work_; }
+
+ private:
+  const PhysicalStatics& owner_;
+  std::unique_ptr<PhysicalSystem::Workspace> work_;
+};
+
+namespace {
+
+/// Shortest step of the continuation, over the way asked for.
+constexpr double least_advance = 1e-4;
+
+class Continuation {
+ public:
+  Continuation(const PhysicalSystem& system, PhysicalSystem::Workspace& work, Team& team,
+               const PhysicalStatics::Options& options, const ProgressCallback& progress, SolveReport& report)
+      : system_(system),
+        work_(work),
+        team_(team),
+        newton_(system, work, team, {options.tolerance_mm, 30, options.keep_history}, progress, report),
+        max_iterations_(options.max_iterations),
+        report_(report) {}
+
+  /// Follows the equilibrium from `from` to `to`; at is the last good one.
+  Status follow(const Demand& from, const Demand& to, Iterate& at) {
+    active_.resize(static_cast<std::size_t>(system_.actuators()));
+    for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
+    double done = 0, advance = 1;
+    Demand here = from;
+    bool factorised = false;
+    while (done < 1) {
+      const double next = std::min(1.0, done + advance);
+      const Demand there = between(from, to, next);
+      Iterate trial = at;
+      if (!factorised && !prepare(here, at)) return limit(done, "the stiffness at the start is not stable");
+      factorised = true;
+      predict(here, there, trial);
+      const int before = report_.iterations;
+      const auto outcome = settle(there, trial);
+      if (outcome == PhysicalNewton::Outcome::interrupted) return Status::interrupted;
+      if (outcome == PhysicalNewton::Outcome::converged) {
+        at = std::move(trial);
+        here = there;
+        done = next;
+        ++report_.continuation_steps;
+        report_.reached = done;
+        const int used = report_.iterations - before;
+        advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
+      } else {
+        factorised = false;
+        advance = 0.4 * (next - done);
+        if (advance < least_advance)
+          return limit(done, outcome == PhysicalNewton::Outcome::unstable
+                                 ? "beyond this point the shape is unstable and snaps away"
+                                 : "beyond this point no equilibrium follows");
+      }
+      if (done < 1 && report_.iterations >= max_iterations_) {
+        report_.remark = "the limit of iterations was reached";
+        return Status::not_converged;
+      }
+    }
+    return Status::converged;
+  }
+
+ private:
+  static Demand between(const Demand& from, const Demand& to, double share) {
+    if (share == 1) return to;
+    return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share)};
+  }
+
+  Status limit(double done, const std::string& why) {
+    report_.reached = done;
+    report_.remark = why;
+    return Status::limit;
+  }
+
+  /// Factorises at an equilibrium, for the predictor.
+  bool prepare(const Demand& here, const Iterate& at) {
+    PhysicalSystem::Balance balance;
+    system_.evaluate(at, here, active_, work_, balance, team_);
+    ++report_.factorisations;
+    (void)system_.factorise(at, here, active_, PhysicalSystem::Stiffness::exact, 0, work_, team_);
+    return balance.force.allFinite();
+  }
+
+  /// First-order change of shape and multipliers, with the factor at hand.
+  void predict(const Demand& here, const Demand& there, Iterate& at) {
+    PhysicalSystem::Balance balance;
+    Eigen::VectorXd step, change;
+    system_.upset(at, here, there, active_, work_, balance, team_);
+    system_.step(balance, work_, step, change, team_);
+    const Points before = at.positions;
+    if (step.allFinite() && change.allFinite()) {
+      system_.advance(step, 1, work_, at.positions, team_);
+      at.multipliers += change;
+    }
+    system_.freedoms().hold(there.share, at.positions);
+    for (Index a = 0; a < system_.actuators(); ++a)
+      if (!system_.constrains(a) && system_.measures().measures(a))
+        at.multipliers[a] = system_.unit(a) * there.actuation[a];
+  }
+
+  /// Newton, with cables released where they would push and taken up where they are too long.
+  PhysicalNewton::Outcome settle(const Demand& demand, Iterate& at) {
+    const std::vector<bool> before = active_;
+    for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
+      const auto outcome = newton_.solve(demand, active_, at);
+      if (outcome != PhysicalNewton::Outcome::converged) {
+        active_ = before;
+        return outcome;
+      }
+      if (!change_active(demand, at)) return outcome;
+    }
+    active_ = before;
+    return PhysicalNewton::Outcome::stuck;
+  }
+
+  bool change_active(const Demand& demand, Iterate& at) {
+    bool changed = false;
+    for (Index a = 0; a < system_.actuators(); ++a) {
+      if (!system_.constrains(a) || system_.sign(a) < 0) continue;  // a chamber pushes and pulls
+      const double target = system_.target(a, demand);
+      if (active_[a] && at.multipliers[a] < 0) {
+        active_[a] = false;
+        at.multipliers[a] = 0;
+        changed = true;
+      } else if (!active_[a] && system_.measures().value(a, at.positions) > target * (1 + 1e-12)) {
+        active_[a] = true;
+        changed = true;
+      }
+    }
+    return changed;
+  }
+
+  const PhysicalSystem& system_;
+  PhysicalSystem::Workspace& work_;
+  Team& team_;
+  PhysicalNewton newton_;
+  int max_iterations_;
+  SolveReport& report_;
+  std::vector<bool> active_;
+};
+
+/// What the start is an equilibrium of, as far as it tells.
+Demand demand_of(const PhysicalSystem& system, const Model& model, const State& start) {
+  if (start.actuation.size() > 0) return {start.actuation, 1};
+  Demand demand{model.rest_actuation(), start.positions == model.rest ? 0.0 : 1.0};
+  for (Index a = 0; a < system.actuators(); ++a) {
+    if (system.constrains(a))
+      demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
+    else if (model.actuators[a].kind == ActuatorKind::dea)
+      demand.actuation[a] = 1;
+    else
+      demand.actuation[a] = start.multipliers.size() > 0 ? start.multipliers[a] : 0;
+  }
+  return demand;
+}
+
+}  // namespace
+
+Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& start, const Options& options,
+                                   const ProgressCallback& progress, Team& team) const {
+  const Model& model = system_.model();
+  Equilibrium result;
+  result.actuation = actuation;
+  SolveReport& report = result.report;
+  report.solver = "newton";
+  report.tolerance_mm = options.tolerance_mm;
+  report.reached = 0;
+  Lease lease(*this);
+
+  const Demand from = demand_of(system_, model, start), to{actuation, 1};
+  Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators())};
+  system_.freedoms().hold(from.share, at.positions);
+  if (start.multipliers.size() > 0)
+    for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
+  Continuation continuation(system_, lease.work(), team, options, progress, report);
+  report.status = continuation.follow(from, to, at);
+  report.estimated_error_mm = report.step_mm;
+  result.state.positions = std::move(at.positions);
+  result.state.actuation = actuation;
+  if (report.status != Status::converged)
+    result.state.actuation = from.actuation + report.reached * (actuation - from.actuation);
+  result.state.multipliers = at.multipliers;
+  for (Index a = 0; a < system_.actuators(); ++a) result.state.multipliers[a] /= system_.unit(a);
+  return result;
+}
+
+}  // namespace softkin

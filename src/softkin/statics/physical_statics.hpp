@@ -1,0 +1,34 @@
+#pragma once
+
+#include <mutex>
+#include <softkin/statics/physical_newton.hpp>
+
+namespace softkin {
+
+/// Equilibria of a robot in the physical formulation: Newton along a path of demands from the start's to the one asked
+/// for, in steps as long as Newton allows, each begun with a tangent predictor.
+class PhysicalStatics {
+ public:
+  /// model must outlive the object. throws InvalidInput where some part of the robot is not held
+  explicit PhysicalStatics(const Model& model) : system_(model) {}
+
+  struct Options {
+    double tolerance_mm = 0;
+    int max_iterations = 0;  // of all Newton steps together
+    bool keep_history = true;
+  };
+
+  /// Arguments are checked already. report.seconds is left to the caller.
+  [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const Options& options,
+                                  const ProgressCallback& progress, Team& team) const;
+
+  [[nodiscard]] const PhysicalSystem& system() const { return system_; }
+
+ private:
+  class Lease;
+  PhysicalSystem system_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<PhysicalSystem::Workspace>> idle_;  // from earlier solves
+};
+
+}  // namespace softkin

@@ -1,0 +1,161 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical_system.hpp>
+
+namespace softkin {
+
+PhysicalSystem::PhysicalSystem(const Model& model) : model_(model), elastic_(model), measures_(model) {
+  Cliques cliques;
+  elastic_.add_cliques(cliques);
+  measures_.add_cliques(cliques);
+  slots_ = cliques.slots.back();
+  pattern_ = std::make_unique<BlockPattern>(static_cast<Index>(model.rest.rows()), cliques);
+  freedoms_ = std::make_unique<Freedoms>(model, *pattern_);
+  turning_ = std::make_unique<GlobalStep>(model, elastic_.laplacian());
+}
+
+PhysicalSystem::Workspace::Workspace(const PhysicalSystem& system)
+    : elastic(system.elastic_.make_scratch()),
+      slots(9 * static_cast<std::size_t>(system.slots_)),
+      slopes(system.model_.actuators.size()),
+      factor(system.freedoms_->columns()) {}
+
+bool PhysicalSystem::constrains(Index actuator) const {
+  const Actuator& a = model_.actuators[actuator];
+  return a.kind != ActuatorKind::dea && a.control == Control::ratio;
+}
+
+void PhysicalSystem::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
+                              Balance& balance, Team& team) const {
+  const ElasticSystem::Result elastic =
+      elastic_.force(demand.actuation, at.positions, work.elastic, work.gradient, team);
+  balance.energy = elastic.energy;
+  balance.forbidden = elastic.forbidden;
+  if (any_dead_load()) {
+    balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();
+    work.gradient -= demand.share * model_.dead_load;
+  }
+  balance.constraint.setZero(actuators());
+  for (Index a = 0; a < actuators(); ++a) {
+    if (!measures_.measures(a) || (!active[a] && at.multipliers[a] == 0)) continue;
+    const double value = measures_.value(a, at.positions, &work.slopes[a]);
+    if (active[a]) balance.constraint[a] = value - target(a, demand);
+    work.gradient += sign(a) * at.multipliers[a] * work.slopes[a];
+  }
+  balance.force.resize(freedoms_->size());
+  freedoms_->reduce(work.gradient, at.positions, balance.force);
+}
+
+int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
+                              double shift, Workspace& work, Team& team) const {
+  elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
+  Eigen::VectorXd scale(actuators());
+  for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
+  measures_.second_derivatives(at.positions, scale, work.slots);
+  pattern_->gather(work.slots, work.blocks, team);
+  freedoms_->reduce_matrix(work.blocks, work.gradient, at.positions, work.values, team);
+
+  const BlockColumns& columns = freedoms_->columns();
+  double trace = 0;
+  const auto each_diagonal = [&](const auto& visit) {
+    for (Index node = 0; node < columns.nodes(); ++node)
+      for (Index i = 0; i < columns.width(node); ++i)
+        visit(work.values[columns.offsets[columns.starts[node]] + i * (columns.width(node) + 1)]);
+  };
+  each_diagonal([&](double value) { trace += std::abs(value); });
+  const double mean = trace / std::max<Index>(1, columns.size());
+  if (shift > 0) each_diagonal([&](double& value) { value += shift * mean; });
+  int negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
+
+  work.active.clear();
+  for (Index a = 0; a < actuators(); ++a)
+    if (active[a]) work.active.push_back(a);
+  const Index count = static_cast<Index>(work.active.size());
+  work.constraint_slopes.resize(columns.size(), count);
+  for (Index i = 0; i < count; ++i) {
+    freedoms_->reduce(work.slopes[work.active[i]], at.positions, work.constraint_slopes.col(i));
+    work.constraint_slopes.col(i) *= sign(work.active[i]);
+  }
+  if (count == 0) return negative;
+  work.responses = work.constraint_slopes;
+  work.factor.solve(work.responses, team);
+  const Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;
+  work.schur.compute(schur);
+  const Eigen::VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (schur + schur.transpose()), Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  for (Index i = 0; i < count; ++i) negative -= eigenvalues[i] < 0;
+  return negative;
+}
+
+void PhysicalSystem::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,
+                          Team& team) const {
+  step = -balance.force;
+  work.factor.solve(step, team);
+  change.setZero(actuators());
+  const Index count = static_cast<Index>(work.active.size());
+  if (count == 0) return;
+  Eigen::VectorXd asked(count);
+  for (Index i = 0; i < count; ++i) asked[i] = sign(work.active[i]) * balance.constraint[work.active[i]];
+  asked += work.constraint_slopes.transpose() * step;
+  const Eigen::VectorXd multipliers = work.schur.solve(asked);
+  step -= work.responses * multipliers;
+  for (Index i = 0; i < count; ++i) change[work.active[i]] = multipliers[i];
+}
+
+void PhysicalSystem::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
+                           Workspace& work, Balance& balance, Team& team) const {
+  balance.constraint.setZero(actuators());
+  Points moves = at.positions, force;
+  freedoms_->hold(to.share, moves);
+  moves -= at.positions;
+  pattern_->multiply(work.blocks, moves, force, team);
+  bool layers = false;
+  for (Index a = 0; a < actuators(); ++a) {
+    const double change = to.actuation[a] - from.actuation[a];
+    if (change == 0) continue;
+    if (active[a]) {
+      balance.constraint[a] = target(a, from) - target(a, to);
+    } else if (model_.actuators[a].kind == ActuatorKind::dea) {
+      layers = true;
+    } else if (!constrains(a)) {
+      (void)measures_.value(a, at.positions, &work.slopes[a]);
+      force += sign(a) * unit(a) * change * work.slopes[a];
+    }
+  }
+  if (any_dead_load()) force -= (to.share - from.share) * model_.dead_load;
+  if (layers) {  // the stretch of layers: central difference of the elastic force
+    Demand low = from, high = from;
+    constexpr double reach = 1e-4;
+    low.actuation -= reach * (to.actuation - from.actuation);
+    high.actuation += reach * (to.actuation - from.actuation);
+    Points below, above;
+    elastic_.force(low.actuation, at.positions, work.elastic, below, team);
+    elastic_.force(high.actuation, at.positions, work.elastic, above, team);
+    force += (above - below) / (2 * reach);
+  }
+  balance.force.resize(freedoms_->size());
+  freedoms_->reduce(force, at.positions, balance.force);
+}
+
+void PhysicalSystem::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions,
+                             Team& team) const {
+  freedoms_->expand(scale * step, positions, work.moves);
+  elastic_.turning(positions, work.moves, work.elastic, work.lacking, team);
+  freedoms_->move(step, scale, positions);
+  std::vector<Pose> poses = turning_->poses(positions);
+  turning_->step(work.lacking, positions, poses, team);
+}
+
+PhysicalSystem::Size PhysicalSystem::size_of(const Eigen::VectorXd& unknowns, const Points& positions) const {
+  Points moves;
+  freedoms_->expand(unknowns, positions, moves);
+  Size size;
+  const Eigen::VectorXd squares = moves.rowwise().squaredNorm();
+  size.largest = std::sqrt(squares.maxCoeff());
+  size.mean = std::sqrt(squares.mean());
+  return size;
+}
+
+}  // namespace softkin

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <softkin/statics/elastic_system.hpp>
+#include <softkin/statics/freedoms.hpp>
+#include <softkin/statics/global_step.hpp>
+#include <softkin/statics/measures.hpp>
+#include <softkin/statics/sparse_ldlt.hpp>
+
+namespace softkin {
+
+/// What is asked of a robot in the physical formulation.
+struct Demand {
+  Eigen::VectorXd actuation;  // m, as the user commands it
+  double share = 1;           // of dead loads and of the displacement of what is held [-]
+};
+
+/// Shape and multipliers; a point of the path that Newton follows.
+struct Iterate {
+  Points positions;             // #V by 3 [mm]
+  Eigen::VectorXd multipliers;  // m: tension [N], gauge pressure [MPa]; 0: dea
+};
+
+/// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
+/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers.
+class PhysicalSystem {
+ public:
+  explicit PhysicalSystem(const Model& model);
+
+  /// Everything that is written while solving; one per thread of control. Nothing is allocated per iteration.
+  struct Workspace {
+    explicit Workspace(const PhysicalSystem& system);
+
+    ElasticSystem::Scratch elastic;
+    std::vector<double> slots, blocks, values;
+    Points gradient;             // of the Lagrangian in x
+    Points moves, lacking;       // of advance()
+    std::vector<Points> slopes;  // of each active measure
+    SparseLdlt factor;
+    Eigen::MatrixXd responses;                // K^-1 G, a column per active constraint, in the order of `active`
+    Eigen::MatrixXd constraint_slopes;        // G: sign_a times the gradient of measure_a
+    Eigen::FullPivLU<Eigen::MatrixXd> schur;  // G^T K^-1 G
+    std::vector<Index> active;                // constraints of the factorisation
+  };
+
+  struct Balance {
+    Eigen::VectorXd force;       // of the unknowns, what is not in balance [N, N mm]
+    Eigen::VectorXd constraint;  // m: measure minus demand, 0 where not active [mm, mm^3]
+    double energy = 0;           // elastic, less the work of dead loads [mJ]
+    bool forbidden = false;      // inverted where the law has no energy
+  };
+
+  /// active: per actuator, is its measure held at the demand (else its multiplier is given).
+  void evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
+                Balance& balance, Team& team) const;
+
+  enum class Stiffness { exact, projected };
+  /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added.
+  /// returns  how many negative eigenvalues it has on the changes that keep the active measures: 0 at a stable
+  ///          equilibrium
+  int factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind, double shift,
+                Workspace& work, Team& team) const;
+
+  /// Newton step of the last factorisation: K step + G change = -force, G^T step = -sign constraint.
+  void step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change, Team& team) const;
+
+  /// Balance that a change of demand upsets, to first order: for the tangent predictor.
+  void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
+             Balance& balance, Team& team) const;
+
+  /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first
+  /// order, and far better where a step bends the robot.
+  void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
+
+  /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
+  struct Size {
+    double largest = 0, mean = 0;
+  };
+  [[nodiscard]] Size size_of(const Eigen::VectorXd& unknowns, const Points& positions) const;
+
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const Freedoms& freedoms() const { return *freedoms_; }
+  [[nodiscard]] const Measures& measures() const { return measures_; }
+  [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
+  /// Is the actuator's measure commanded (else its load, or it is a dea).
+  [[nodiscard]] bool constrains(Index actuator) const;
+  [[nodiscard]] double sign(Index actuator) const {
+    return model_.actuators[actuator].kind == ActuatorKind::cable ? 1 : -1;
+  }
+  /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
+  [[nodiscard]] double unit(Index actuator) const {
+    return model_.actuators[actuator].kind == ActuatorKind::pneumatic ? 1e-3 : 1;
+  }
+  /// Demanded measure [mm, mm^3].
+  [[nodiscard]] double target(Index actuator, const Demand& demand) const {
+    return demand.actuation[actuator] * measures_.rest(actuator);
+  }
+  [[nodiscard]] bool any_dead_load() const { return model_.dead_load.rows() > 0; }
+
+ private:
+  const Model& model_;
+  ElasticSystem elastic_;
+  Measures measures_;
+  std::int64_t slots_ = 0;
+  std::unique_ptr<BlockPattern> pattern_;
+  std::unique_ptr<Freedoms> freedoms_;
+  std::unique_ptr<GlobalStep> turning_;
+};
+
+}  // namespace softkin
