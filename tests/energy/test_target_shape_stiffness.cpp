@@ -378,6 +378,32 @@ TEST(TargetShapeStiffness, MatrixOfRedistributedRatiosIsPositiveAndLeavesGrowthF
     EXPECT_LT((matrix<4>(stiffness, l) * get<4>(change, l)).norm(), 1e-10 * matrix<4>(stiffness, l).norm());
 }
 
+/// A rotation's tangent turns an element at rest instead of stretching it; small changes stay what they are.
+TEST(TargetShapeStiffness, TurnedMovesBend) {
+  const BodyBlock<4> block = body<4>(1);
+  const Local<4> here = local<4>(block, rest_shape<4>());
+  const Vec3 turn(0.3, -0.8, 1.1);
+  const Rows<4> at = centred<4>(rest_shape<4>());
+  Rows<4> along;
+  for (int i = 0; i < 4; ++i) along.row(i) = turn.cross(Vec3(at.row(i).transpose())).transpose();
+  Shape<4> change, out;
+  set<4>(change, along);
+  turned_move_of_body<4>(block, here.current, here.rotation, change, out);
+  const double angle = 2 * std::atan(turn.norm() / 2);
+  const Mat3 rotation = Eigen::AngleAxisd(angle, turn.normalized()).toRotationMatrix();
+  Shape<4> expected;
+  set<4>(expected, 1.7 * (at * rotation.transpose() - at));
+  for (int l = 0; l < lanes; ++l) expect_near<4>(get<4>(out, l), get<4>(expected, l), 1e-12);
+
+  const ActuationBlock<6> skin = actuation<6>();
+  const Local<6> there = local<6>(skin, pack(1.3), rest_shape<6>() + random_rows<6>(0.2));
+  const Rows<6> small = 1e-5 * centred<6>(random_rows<6>(1));
+  Shape<6> little, moved;
+  set<6>(little, small);
+  turned_move_of_actuation<6>(skin, pack(1.3), there.current, there.rotation, little, moved);
+  for (int l = 0; l < lanes; ++l) EXPECT_LT((get<6>(moved, l) - 1.7 * get<6>(little, l)).norm(), 1e-8);
+}
+
 TEST(TargetShapeStiffness, FlatAndVanishedElementsStayFinite) {
   for (const double ratio : {1.0, 0.5, 0.0})
     for (const int kind : {0, 1, 2}) {

@@ -13,8 +13,14 @@ using testing::finger_robot;
 using testing::mixed_robot;
 using testing::noise;
 
-StaticsOptions to_the_end(int anderson) {
+StaticsOptions local_global() {
   StaticsOptions options;
+  options.solver = Solver::local_global;
+  return options;
+}
+
+StaticsOptions to_the_end(int anderson) {
+  StaticsOptions options = local_global();
   options.step_tolerance_mm = 1e-11;
   options.max_iterations = 200000;
   options.anderson = anderson;
@@ -36,7 +42,7 @@ TEST(LocalGlobal, EnergyFallsAtEveryIterationWhereTargetsAreFixed) {
   const Model model = compile(mixed_robot(false));
   const Statics statics(model);
   std::mt19937 engine(5);
-  StaticsOptions options;
+  StaticsOptions options = local_global();
   options.anderson = 0;
   options.max_iterations = 60;
   for (int round = 0; round < 100; ++round) {
@@ -90,7 +96,7 @@ TEST(LocalGlobal, EstimatedErrorBoundsTheTrueOne) {
   const Statics statics(model);
   const Points end = statics.solve(one(1.5), statics.rest(), to_the_end(6)).state.positions;
   for (const int anderson : {0, 6}) {
-    StaticsOptions options;
+    StaticsOptions options = local_global();
     options.step_tolerance_mm = 1e-4;
     options.anderson = anderson;
     const Equilibrium found = statics.solve(one(1.5), statics.rest(), options);
@@ -137,7 +143,7 @@ TEST(LocalGlobal, ScalingTheSceneScalesTheResult) {
     EXPECT_LT(largest_distance(b / scale, a), 1e-9 * here.diagonal_mm) << "scale " << scale;
     // the default tolerance scales with the robot
     EXPECT_NEAR(statics_there.solve(actuation, statics_there.rest()).report.tolerance_mm,
-                scale * statics.solve(actuation, statics.rest()).report.tolerance_mm, 1e-12 * scale);
+                scale * statics.solve(actuation, statics.rest(), local_global()).report.tolerance_mm, 1e-12 * scale);
   }
 }
 
@@ -145,7 +151,7 @@ TEST(LocalGlobal, ResultDoesNotDependOnThreads) {
   const Model model = compile(mixed_robot(true, 0.5));
   const Statics statics(model);
   const Actuation actuation = (Actuation(3) << 0.8, 1.6, 0.85).finished();
-  StaticsOptions options;
+  StaticsOptions options = local_global();
   options.max_iterations = 50;
   options.threads = 1;
   const Points one_thread = statics.solve(actuation, statics.rest(), options).state.positions;
@@ -173,7 +179,7 @@ TEST(LocalGlobal, SoftAndNearlyRigidNeighboursStayWellPosed) {
     for (const bool slice : {false, true}) {
       const Model model = compile(with_inclusion(ratio, slice));
       const Statics statics(model);
-      const Equilibrium found = statics.solve(one(1.6), statics.rest(), {});
+      const Equilibrium found = statics.solve(one(1.6), statics.rest(), local_global());
       EXPECT_EQ(found.report.status, Status::converged);
       const ElementDeformation deformation = deformation_of(model, found.state.positions);
       EXPECT_GT(*std::min_element(deformation.volume_ratio.begin(), deformation.volume_ratio.end()), 0.5);
@@ -186,7 +192,7 @@ TEST(LocalGlobal, SoftAndNearlyRigidNeighboursStayWellPosed) {
   fluid.materials.push_back(floor_material);
   const Model mechanism = compile(fluid);
   const Statics fluid_statics(mechanism);
-  StaticsOptions few;
+  StaticsOptions few = local_global();
   few.max_iterations = 2000;
   const Equilibrium drifting = fluid_statics.solve(one(1.6), fluid_statics.rest(), few);
   EXPECT_EQ(drifting.report.status, Status::not_converged);
@@ -200,7 +206,7 @@ TEST(LocalGlobal, SoftAndNearlyRigidNeighboursStayWellPosed) {
   spec.materials.push_back(floor);
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = statics.solve(one(1.6), statics.rest(), {});
+  const Equilibrium found = statics.solve(one(1.6), statics.rest(), local_global());
   EXPECT_EQ(found.report.status, Status::converged);
   const ElementDeformation deformation = deformation_of(model, found.state.positions);
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
@@ -241,7 +247,7 @@ TEST(LocalGlobal, RefusesWhatItCannotSolve) {
   EXPECT_THROW((void)statics.solve(Actuation(2), start), InvalidInput);
   EXPECT_THROW((void)statics.solve(one(4.1), start), InvalidInput);
   EXPECT_THROW((void)statics.solve(one(std::nan("")), start), InvalidInput);
-  StaticsOptions options;
+  StaticsOptions options = local_global();
   options.max_iterations = 0;
   EXPECT_THROW((void)statics.solve(one(1.2), start, options), InvalidInput);
   start.positions(3, 1) = std::nan("");
@@ -255,7 +261,7 @@ TEST(LocalGlobal, OverflowEndsAsNotConvergedWithFiniteNumbers) {
   const Statics statics(model);
   State start = statics.rest();
   start.positions += noise(static_cast<Index>(model.rest.rows()), 1e200, 3);
-  const Equilibrium found = statics.solve(one(1.5), start);
+  const Equilibrium found = statics.solve(one(1.5), start, local_global());
   EXPECT_EQ(found.report.status, Status::not_converged);
   EXPECT_TRUE(found.state.positions.allFinite());
   const SolveReport& r = found.report;
@@ -265,7 +271,7 @@ TEST(LocalGlobal, OverflowEndsAsNotConvergedWithFiniteNumbers) {
 TEST(LocalGlobal, WhenIterationsRunOutTheShapeIsOneThatWasSolvedFor) {
   const Model model = compile(finger_robot(false));
   const Statics statics(model);
-  StaticsOptions options;
+  StaticsOptions options = local_global();
   options.max_iterations = 12;
   const Equilibrium stopped = statics.solve(one(1.5), statics.rest(), options);
   options.max_iterations = 1;
@@ -276,16 +282,16 @@ TEST(LocalGlobal, WhenIterationsRunOutTheShapeIsOneThatWasSolvedFor) {
 TEST(LocalGlobal, ReportsWhatHappened) {
   const Model model = compile(finger_robot(true));
   const Statics statics(model);
-  StaticsOptions options;
+  StaticsOptions options = local_global();
   options.max_iterations = 3;
   EXPECT_EQ(statics.solve(one(1.5), statics.rest(), options).report.status, Status::not_converged);
   int calls = 0;
-  const Equilibrium stopped =
-      statics.solve(one(1.5), statics.rest(), {}, [&](const Progress& p) { return ++calls, p.iteration < 4; });
+  const Equilibrium stopped = statics.solve(one(1.5), statics.rest(), local_global(),
+                                            [&](const Progress& p) { return ++calls, p.iteration < 4; });
   EXPECT_EQ(stopped.report.status, Status::interrupted);
   EXPECT_EQ(stopped.report.iterations, 4);
   EXPECT_EQ(calls, 4);
-  const Equilibrium found = statics.solve(one(1.5), statics.rest());
+  const Equilibrium found = statics.solve(one(1.5), statics.rest(), local_global());
   EXPECT_EQ(found.report.status, Status::converged);
   EXPECT_EQ(found.report.iterations, static_cast<int>(found.report.history.size()));
   EXPECT_LT(found.report.step_mm, found.report.tolerance_mm);
@@ -296,7 +302,7 @@ TEST(LocalGlobal, ReportsWhatHappened) {
 TEST(LocalGlobal, GradientNormIsThatOfTheEnergy) {
   const Model model = compile(finger_robot(false));
   const Statics statics(model);
-  StaticsOptions options;
+  StaticsOptions options = local_global();
   options.max_iterations = 1;
   State start = statics.rest();
   start.positions += noise(static_cast<Index>(model.rest.rows()), 0.3, 1);

@@ -1,3 +1,4 @@
+#include <softkin/energy/elastic_polar.hpp>
 #include <softkin/energy/rotation.hpp>
 #include <softkin/energy/turning.hpp>
 
@@ -23,22 +24,12 @@ Pack33 times(const Pack33& a, const Pack33& b) {
 }
 
 /// Rate w at which the rotation R of F = R S turns, in space: R^T w = (tr(S) I - S)^-1 axial(R^T F' - F'^T R).
-Pack3 spin(const Pack33& rotation, const Pack33& gradient, const Pack33& rate) {
-  const Pack33 s = transpose_times(rotation, gradient), q = transpose_times(rotation, rate);
+Pack3 spin(const Polar& polar, const Pack33& rate) {
+  const Pack33 q = transpose_times(polar.rotation, rate);
   const Pack3 axial{q.row[2].y - q.row[1].z, q.row[0].z - q.row[2].x, q.row[1].x - q.row[0].y};
-  const Pack xy = 0.5 * (s.row[0].y + s.row[1].x), xz = 0.5 * (s.row[0].z + s.row[2].x),
-             yz = 0.5 * (s.row[1].z + s.row[2].y);
-  const Pack xx = s.row[1].y + s.row[2].z, yy = s.row[0].x + s.row[2].z, zz = s.row[0].x + s.row[1].y;
-  // adjugate of tr(S) I - S
-  const Pack cxx = yy * zz - yz * yz, cyy = xx * zz - xz * xz, czz = xx * yy - xy * xy;
-  const Pack cxy = xz * yz + xy * zz, cxz = xy * yz + xz * yy, cyz = xy * xz + yz * xx;
-  const Pack determinant = xx * cxx - xy * cxy - xz * cxz;
-  // an element flat in two directions has no rate of rotation
-  const Pack inverse = select(determinant > 1e-3, 1 / max(determinant, pack(1e-3)), pack(0));
-  const Pack3 body{inverse * (cxx * axial.x + cxy * axial.y + cxz * axial.z),
-                   inverse * (cxy * axial.x + cyy * axial.y + cyz * axial.z),
-                   inverse * (cxz * axial.x + cyz * axial.y + czz * axial.z)};
-  return rotation * body;
+  const Pack3 w = polar.rotation * (turn_compliance(polar.stretch) * axial);
+  // more than two turns: the rotation was not unique, and has no rate
+  return select(norm(w) < 12, pack(1), pack(0)) * w;
 }
 
 PackRotation exponential(const Pack3& turn) {
@@ -60,11 +51,9 @@ PackRotation exponential(const Pack3& turn) {
 template <int K, int Q>
 void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull) {
   for (int a = 0; a < K; ++a) pull[a] = Pack3{pack(0), pack(0), pack(0)};
-  PackRotation start;
   for (int q = 0; q < Q; ++q) {
     const Pack33 gradient = gradient_of<K>(current, block.slope[q]), rate = gradient_of<K>(step, block.slope[q]);
-    best_rotation(gradient, start);
-    const Pack3 w = spin(to_matrix(start), gradient, rate);
+    const Pack3 w = spin(polar(gradient), rate);
     Pack33 ahead, still;
     for (int i = 0; i < 3; ++i) ahead.row[i] = gradient.row[i] + rate.row[i];
     still.row[0] = ahead.row[0] - (w.y * gradient.row[2] - w.z * gradient.row[1]);

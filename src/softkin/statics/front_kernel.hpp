@@ -17,6 +17,9 @@ struct FrontWork {
   return (size + 14) / 8 * 8;
 }
 
+/// Values after a front's last column that kernels may read.
+inline constexpr Index front_slack = 8;
+
 /// First columns of a dense symmetric matrix eliminated: A = L D L^T without pivoting.
 ///
 /// front     size columns of front_stride(size) rows, column-major, lower triangle; the rows beyond `size` hold finite

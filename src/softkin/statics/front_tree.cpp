@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <softkin/statics/front_kernel.hpp>
 #include <softkin/statics/front_tree.hpp>
 
 namespace softkin {
@@ -119,7 +120,7 @@ class Symbolic {
   double zeros_together_ = 0;
 };
 
-/// Where Schur complements wait for their parents: first fit into what is free.
+/// Where fronts wait for their parents: first fit into what is free.
 class Arena {
  public:
   std::int64_t take(std::int64_t size) {
@@ -161,11 +162,11 @@ class Arena {
   std::int64_t size_ = 0;
 };
 
-std::int64_t update_size(const Front& front) {
-  return static_cast<std::int64_t>(front.below) * front.below;
+std::int64_t place_of(const Front& front) {
+  return static_cast<std::int64_t>(front_stride(front.size())) * front.size();
 }
 
-/// Offsets of the Schur complements. Those of a piece's roots, which outlive the piece, stand in the top's arena.
+/// Offsets of the fronts. Those of a piece's roots, which outlive the piece, stand in the top's arena.
 void plan_arenas(FrontTree& tree) {
   const Index pieces = static_cast<Index>(tree.pieces.size()) - 2;
   const Index top = tree.pieces[pieces];
@@ -175,30 +176,45 @@ void plan_arenas(FrontTree& tree) {
     Arena& inside = p < pieces ? own : above;
     for (Index f = tree.pieces[p]; f < tree.pieces[p + 1]; ++f) {
       Front& front = tree.fronts[f];
+      Arena& arena = front.parent >= top ? above : inside;
+      front.offset = arena.take(place_of(front));
       for (Index c = tree.first_child[f]; c >= 0; c = tree.next_sibling[c])
-        inside.give(tree.fronts[c].update_offset, update_size(tree.fronts[c]));
-      front.update_offset = (front.parent >= top ? above : inside).take(update_size(front));
+        inside.give(tree.fronts[c].offset, place_of(tree.fronts[c]));
+      if (front.below == 0) arena.give(front.offset, place_of(front));
     }
     if (p < pieces) tree.arena_sizes.push_back(own.size());
   }
   tree.arena_sizes.push_back(above.size());
 }
 
+void add_runs(const Front& child, const std::vector<Index>& place, FrontTree& tree) {
+  for (Index r = 0; r < child.below; ++r) {
+    const Index to = place[tree.rows[child.first_row + r]];
+    if (r > 0 && tree.runs.back().to + tree.runs.back().length == to)
+      ++tree.runs.back().length;
+    else
+      tree.runs.push_back({r, to, 1});
+  }
+}
+
 void place_rows(const BlockColumns& pattern, FrontTree& tree) {
-  tree.places.resize(tree.rows.size());
   tree.entry_places.resize(pattern.rows.size());
   std::vector<Index> place(static_cast<std::size_t>(pattern.size()));
-  for (std::size_t f = 0; f < tree.fronts.size(); ++f) {
-    const Front& front = tree.fronts[f];
+  const auto place_in = [&](const Front& front) {
     for (Index u = front.begin; u < front.end; ++u) place[u] = u - front.begin;
     for (Index r = 0; r < front.below; ++r) place[tree.rows[front.first_row + r]] = front.pivots() + r;
-    for (Index c = tree.first_child[f]; c >= 0; c = tree.next_sibling[c]) {
-      const Front& child = tree.fronts[c];
-      for (Index r = 0; r < child.below; ++r) tree.places[child.first_row + r] = place[tree.rows[child.first_row + r]];
+  };
+  for (const Front& front : tree.fronts) {
+    tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
+    if (front.parent >= 0) {
+      place_in(tree.fronts[front.parent]);
+      add_runs(front, place, tree);
     }
+    place_in(front);
     for (Index e = pattern.starts[front.begin_node]; e < pattern.starts[front.end_node]; ++e)
       tree.entry_places[e] = place[pattern.unknowns[pattern.rows[e]]];
   }
+  tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
 }
 
 }  // namespace

@@ -91,9 +91,8 @@ int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std
 
 void PhysicalSystem::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,
                           Team& team) const {
-  Eigen::MatrixXd solution = -balance.force;
-  work.factor.solve(solution, team);
-  step = solution.col(0);
+  step = -balance.force;
+  work.factor.solve(step, team);
   change.setZero(actuators());
   const Index count = static_cast<Index>(work.active.size());
   if (count == 0) return;

@@ -29,22 +29,18 @@ SparseLdlt::SparseLdlt(const BlockColumns& pattern)
       diagonal_(static_cast<std::size_t>(pattern.size())),
       pieces_(tree_.arena_sizes.size()) {
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
-    std::size_t largest = 0;
-    for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f) {
-      const Index size = tree_.fronts[f].size();
-      largest = std::max(largest, static_cast<std::size_t>(front_stride(size)) * size);
-    }
-    pieces_[p].front.resize(largest + 8);
-    pieces_[p].arena.resize(static_cast<std::size_t>(tree_.arena_sizes[p]));
+    Index below = 0;
+    for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f) below = std::max(below, tree_.fronts[f].below);
+    pieces_[p].arena.resize(static_cast<std::size_t>(tree_.arena_sizes[p]) + front_slack);
+    pieces_[p].rows.resize(below);
   }
 }
 
 double SparseLdlt::bytes() const {
   double values = static_cast<double>(lower_.size() + diagonal_.size());
   for (const Piece& piece : pieces_)
-    values += static_cast<double>(piece.front.size() + piece.arena.size() + piece.work.plain.size() +
-                                  piece.work.scaled.size());
-  return 8 * values + 4.0 * static_cast<double>(tree_.rows.size() + tree_.places.size() + pattern_.rows.size() +
+    values += static_cast<double>(piece.arena.size() + piece.work.plain.size() + piece.work.scaled.size());
+  return 8 * values + 4.0 * static_cast<double>(tree_.rows.size() + 3 * tree_.runs.size() + pattern_.rows.size() +
                                                 tree_.entry_places.size());
 }
 
@@ -69,12 +65,20 @@ void SparseLdlt::assemble(Index index, const std::vector<double>& values, double
   }
   for (Index i = tree_.first_child[index]; i >= 0; i = tree_.next_sibling[i]) {
     const Front& child = tree_.fronts[i];
-    const double* update = piece.arena.data() + child.update_offset;
-    const Index* places = tree_.places.data() + child.first_row;
-    each_column(child.below, child.below, team, [&](Index c) {
-      double* column = front + static_cast<std::ptrdiff_t>(places[c]) * stride;
-      const double* from = update + static_cast<std::ptrdiff_t>(c) * child.below;
-      for (Index r = c; r < child.below; ++r) column[places[r]] += from[r];
+    const Index child_stride = front_stride(child.size()), pivots = child.pivots();
+    const double* update =
+        piece.arena.data() + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
+    const RowRun* first = tree_.runs.data() + tree_.first_run[i];
+    const RowRun* last = tree_.runs.data() + tree_.first_run[i + 1];
+    each_column(static_cast<Index>(last - first), child.below, team, [&](Index k) {
+      for (Index c = 0; c < first[k].length; ++c) {
+        const Index column = first[k].from + c;
+        double* to = front + static_cast<std::ptrdiff_t>(first[k].to + c) * stride;
+        const double* from = update + static_cast<std::ptrdiff_t>(column) * child_stride;
+        for (Index r = c; r < first[k].length; ++r) to[first[k].to + r] += from[first[k].from + r];
+        for (const RowRun* run = first + k + 1; run < last; ++run)
+          for (Index r = 0; r < run->length; ++r) to[run->to + r] += from[run->from + r];
+      }
     });
   }
 }
@@ -82,18 +86,14 @@ void SparseLdlt::assemble(Index index, const std::vector<double>& values, double
 void SparseLdlt::factor(Index index, const std::vector<double>& values, double least, Piece& piece, Team& team) {
   const Front& own = tree_.fronts[index];
   const Index size = own.size(), pivots = own.pivots(), stride = front_stride(size);
-  double* front = piece.front.data();
+  Piece& home = own.parent >= top_front() ? pieces_.back() : piece;
+  double* front = home.arena.data() + own.offset;
   assemble(index, values, front, piece, team);
   piece.negative += factor_front(front, size, pivots, least, diagonal_.data() + own.begin, piece.work, team);
   const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
   each_column(pivots, size, team, [&](Index c) {
     std::copy(column(c) + c, column(c) + size,
               lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size + c);
-  });
-  Piece& home = own.parent >= top_front() ? pieces_.back() : piece;
-  each_column(own.below, own.below, team, [&](Index c) {
-    std::copy(column(pivots + c) + pivots + c, column(pivots + c) + size,
-              home.arena.data() + own.update_offset + static_cast<std::int64_t>(c) * own.below + c);
   });
 }
 
@@ -114,69 +114,62 @@ SparseLdlt::Pivots SparseLdlt::factorise(const std::vector<double>& values, doub
 
 /// x: the unknowns; above: what is to be subtracted from unknowns from `top` on; work: as many rows as a front has
 /// below.
-template <class Columns>
-void SparseLdlt::forward(const Front& front, Columns& x, Columns& above, Columns& work, Index top) const {
+void SparseLdlt::forward(const Front& front, Vector& x, Vector& above, Vector& work, Index top) const {
   const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
                     Eigen::OuterStride<>(front.size()));
-  auto own = x.middleRows(front.begin, front.pivots());
-  panel.topRows(front.pivots()).template triangularView<Eigen::UnitLower>().solveInPlace(own);
+  auto own = x.segment(front.begin, front.pivots());
+  panel.topRows(front.pivots()).triangularView<Eigen::UnitLower>().solveInPlace(own);
   if (front.below == 0) return;
-  auto moved = work.topRows(front.below);
+  auto moved = work.head(front.below);
   moved.noalias() = panel.bottomRows(front.below) * own;
   const Index* rows = tree_.rows.data() + front.first_row;
-  for (Index c = 0; c < x.cols(); ++c)
-    for (Index r = 0; r < front.below; ++r) {
-      if (rows[r] < top)
-        x(rows[r], c) -= moved(r, c);
-      else
-        above(rows[r] - top, c) += moved(r, c);
-    }
+  for (Index r = 0; r < front.below; ++r) {
+    if (rows[r] < top)
+      x[rows[r]] -= moved[r];
+    else
+      above[rows[r] - top] += moved[r];
+  }
 }
 
-template <class Columns>
-void SparseLdlt::backward(const Front& front, Columns& x, Columns& work) const {
+void SparseLdlt::backward(const Front& front, Vector& x, Vector& work) const {
   const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
                     Eigen::OuterStride<>(front.size()));
-  auto own = x.middleRows(front.begin, front.pivots());
-  for (Index c = 0; c < x.cols(); ++c)
-    for (Index r = 0; r < front.pivots(); ++r) own(r, c) /= diagonal_[front.begin + r];
+  auto own = x.segment(front.begin, front.pivots());
+  for (Index r = 0; r < front.pivots(); ++r) own[r] /= diagonal_[front.begin + r];
   if (front.below > 0) {
-    auto known = work.topRows(front.below);
+    auto known = work.head(front.below);
     const Index* rows = tree_.rows.data() + front.first_row;
-    for (Index c = 0; c < x.cols(); ++c)
-      for (Index r = 0; r < front.below; ++r) known(r, c) = x(rows[r], c);
+    for (Index r = 0; r < front.below; ++r) known[r] = x[rows[r]];
     own.noalias() -= panel.bottomRows(front.below).transpose() * known;
   }
-  panel.topRows(front.pivots()).transpose().template triangularView<Eigen::UnitUpper>().solveInPlace(own);
+  panel.topRows(front.pivots()).transpose().triangularView<Eigen::UnitUpper>().solveInPlace(own);
 }
 
-template <class Columns>
-void SparseLdlt::solve_columns(Columns& x, Team& team) const {
+void SparseLdlt::solve_column(Team& team) {
   const Index count = static_cast<Index>(pieces_.size()) - 1, first_top = top_front();
   const Index end = static_cast<Index>(tree_.fronts.size());
   const Index top = first_top < end ? tree_.fronts[first_top].begin : size();
-  Index most_below = 0;
-  for (const Front& front : tree_.fronts) most_below = std::max(most_below, front.below);
-  std::vector<Columns> above(count), work(count);
   team.each(count, [&](Index p) {
-    above[p] = Columns::Zero(size() - top, x.cols());
-    work[p] = Columns(most_below, x.cols());
-    for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f) forward(tree_.fronts[f], x, above[p], work[p], top);
+    pieces_[p].above.setZero(size() - top);
+    for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f)
+      forward(tree_.fronts[f], solution_, pieces_[p].above, pieces_[p].rows, top);
   });
-  for (const Columns& part : above) x.bottomRows(size() - top) -= part;
-  Columns none, rows(most_below, x.cols());
-  for (Index f = first_top; f < end; ++f) forward(tree_.fronts[f], x, none, rows, size());
-  for (Index f = end - 1; f >= first_top; --f) backward(tree_.fronts[f], x, rows);
+  for (Index p = 0; p < count; ++p) solution_.tail(size() - top) -= pieces_[p].above;
+  Piece& last = pieces_.back();
+  for (Index f = first_top; f < end; ++f) forward(tree_.fronts[f], solution_, last.above, last.rows, size());
+  for (Index f = end - 1; f >= first_top; --f) backward(tree_.fronts[f], solution_, last.rows);
   team.each(count, [&](Index p) {
-    for (Index f = tree_.pieces[p + 1] - 1; f >= tree_.pieces[p]; --f) backward(tree_.fronts[f], x, work[p]);
+    for (Index f = tree_.pieces[p + 1] - 1; f >= tree_.pieces[p]; --f)
+      backward(tree_.fronts[f], solution_, pieces_[p].rows);
   });
 }
 
-void SparseLdlt::solve(Eigen::MatrixXd& right_side, Team& team) const {
-  if (right_side.cols() != 1) return solve_columns(right_side, team);
-  Eigen::VectorXd column = right_side.col(0);
-  solve_columns(column, team);
-  right_side.col(0) = column;
+void SparseLdlt::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+  for (Index c = 0; c < right_sides.cols(); ++c) {
+    solution_ = right_sides.col(c);
+    solve_column(team);
+    right_sides.col(c) = solution_;
+  }
 }
 
 }  // namespace softkin

@@ -21,8 +21,8 @@ class SparseLdlt {
   /// values: as the pattern's offsets say. least: magnitude below which a pivot is replaced.
   Pivots factorise(const std::vector<double>& values, double least, Team& team);
 
-  /// right_side, size() x k in the pattern's order of unknowns, becomes the solution.
-  void solve(Eigen::MatrixXd& right_side, Team& team) const;
+  /// Every column of right_sides, in the pattern's order of unknowns, becomes its solution.
+  void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
   [[nodiscard]] Index size() const { return pattern_.size(); }
   [[nodiscard]] std::int64_t nonzeros() const { return tree_.values; }
@@ -32,24 +32,24 @@ class SparseLdlt {
  private:
   struct Piece {
     FrontWork work;
-    std::vector<double> front, arena;
+    std::vector<double> arena;    // fronts that wait for their parents
+    Eigen::VectorXd above, rows;  // of a solve: what goes to the top, what a front has below
     Index negative = 0;
   };
 
   void factor(Index front, const std::vector<double>& values, double least, Piece& piece, Team& team);
   void assemble(Index index, const std::vector<double>& values, double* front, const Piece& piece, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_.pieces[tree_.pieces.size() - 2]; }
-  template <class Columns>
-  void forward(const Front& front, Columns& x, Columns& above, Columns& work, Index top) const;
-  template <class Columns>
-  void backward(const Front& front, Columns& x, Columns& work) const;
-  template <class Columns>
-  void solve_columns(Columns& x, Team& team) const;
+  using Vector = Eigen::VectorXd;
+  void forward(const Front& front, Vector& x, Vector& above, Vector& work, Index top) const;
+  void backward(const Front& front, Vector& x, Vector& work) const;
+  void solve_column(Team& team);
 
   BlockColumns pattern_;
   FrontTree tree_;
   std::vector<double> lower_, diagonal_;
   std::vector<Piece> pieces_;  // the top's is the last
+  Vector solution_;
 };
 
 }  // namespace softkin

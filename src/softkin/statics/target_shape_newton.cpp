@@ -23,7 +23,7 @@ End follow(const Actuation& from, const Actuation& to, TargetShapeSearch& search
     const double next = std::min(1.0, share + step);
     positions = reached;
     const End end = search.run(from + next * (to - from), 0, positions);
-    if (end == End::interrupted || end == End::exhausted) return end;
+    if (end == End::interrupted || end == End::exhausted || end == End::astray) return end;
     if (end == End::converged) {
       share = next;
       step *= 2;
@@ -52,12 +52,11 @@ void TargetShapeNewton::solve(const Actuation& start, const StaticsOptions& opti
   TargetShapeSearch search(unknowns_, global_, options, progress, team, report);
   End end = search.run(result.actuation, patience, positions);
   if (end == End::stuck) {
-    const Points stuck = positions;
     positions = begin;
     const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
     end = follow(from, result.actuation, search, positions, report);
     if (end == End::stuck) {
-      positions = stuck;
+      positions = begin;
       solve_local_global(unknowns_.system, global_, options, progress, team, result);
       report.solver = "newton";
       report.remark = report.status == Status::converged ? "" : "neither Newton's method nor Algorithm 1 converged";
@@ -68,6 +67,7 @@ void TargetShapeNewton::solve(const Actuation& start, const StaticsOptions& opti
                   : end == End::interrupted ? Status::interrupted
                                             : Status::not_converged;
   if (end == End::exhausted) report.remark = "the iterations allowed were not enough";
+  if (end == End::astray) report.remark = "coordinates too large to compute with";
   report.estimated_error_mm = report.step_mm;
 }
 

@@ -1,21 +1,24 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>   // DBG
-#include <cstdlib>  // DBG
 #include <softkin/statics/target_shape_newton_search.hpp>
+#include <utility>
 
 namespace softkin {
 
 namespace {
 
-/// Steps are halved so often at most.
-constexpr int most_halvings = 12;
+/// Steps are halved so often at most: where the energy decides to the end, and where something else can be tried.
+constexpr int most_halvings = 12, few_halvings = 2;
 
-/// What GMRES leaves of the residual at most, and at least: below is rounding.
+/// What GMRES leaves of the residual at most, and at least: below is rounding. Directions less exact lead astray on
+/// slender robots.
 constexpr double loosest = 1e-2, tightest = 1e-10;
 
+/// Steps of one run, and those of them that move nothing and yet do not end it.
+constexpr int most_steps = 200, most_idle_steps = 4;
+
 /// Accelerated local-global iterations at a time, and how many earlier ones each combines.
-const int rescue = 25, rescue_window = std::getenv("RW") ? std::atoi(std::getenv("RW")) : 6;
+constexpr int rescue = 50, rescue_window = 6;
 
 }  // namespace
 
@@ -41,8 +44,8 @@ void TargetShapeSearch::evaluate(const Actuation& actuation, Points& positions) 
 
 /// The exact step; false where none comes of it.
 bool TargetShapeSearch::exact_direction(const Points& positions) {
-  tangent_.reduce(local_.residual, positions, residual_);
-  if (!residual_.allFinite() || !tangent_.factorise(local_, positions, false, team_, report_)) return false;
+  if (!keep_factor_ && !tangent_.factorise(local_, positions, false, team_, report_)) return false;
+  keep_factor_ = false;
   if (!tangent_.symmetric()) {
     // Eisenstat and Walker 1996, choice 2: as accurate as the last steps were successful, and as is needed at last
     const double norm = natural_norm(positions), ratio = natural_start_ > 0 ? norm / natural_start_ : 1;
@@ -50,13 +53,15 @@ bool TargetShapeSearch::exact_direction(const Points& positions) {
     tolerance_ = std::clamp(0.9 * ratio * ratio, std::clamp(enough, tightest, loosest), loosest);
     natural_start_ = norm;
   }
+  exact_ = !tangent_.symmetric() || !tangent_.shifted();
   return tangent_.solve(local_, positions, residual_, tolerance_, team_, step_) && step_.allFinite();
 }
 
 /// The step with the positive semidefinite matrices near the exact ones: it goes down in the energy at fixed targets.
 bool TargetShapeSearch::projected_direction(const Points& positions) {
-  if (!residual_.allFinite() || !tangent_.factorise(local_, positions, true, team_, report_)) return false;
+  if (!tangent_.factorise(local_, positions, true, team_, report_)) return false;
   natural_start_ = 0;
+  exact_ = false;
   step_ = residual_;
   tangent_.precondition(step_, team_);
   return step_.allFinite() && step_.dot(residual_) > 0;
@@ -70,9 +75,21 @@ double TargetShapeSearch::natural_norm(const Points& positions) {
   return moves_.norm();
 }
 
-/// A whole step that ends the search: what it does to energy or residual may be rounding.
+/// A whole, exact step that ends the search: what it does to energy or residual may be rounding.
 bool TargetShapeSearch::negligible(int halvings, const Points& positions) const {
-  return halvings == 0 && (positions - before_).rowwise().norm().maxCoeff() < report_.tolerance_mm;
+  return halvings == 0 && exact_ && (positions - before_).rowwise().norm().maxCoeff() < report_.tolerance_mm;
+}
+
+/// The step that the last factor asks for from here on, taken if it ends the search.
+bool TargetShapeSearch::close(const Actuation& actuation, Points& positions, double& step_mm) {
+  constexpr double safely = 0.1;
+  if (tangent_.shifted()) return false;
+  (void)natural_norm(positions);
+  step_mm = moves_.rowwise().norm().maxCoeff();
+  if (!(step_mm < safely * report_.tolerance_mm)) return false;
+  tangent_.freedoms().move(natural_, 1, positions);
+  evaluate(actuation, positions);
+  return true;
 }
 
 /// Backtracking to a sufficient decrease (Armijo) of the energy; below its rounding any step is as good.
@@ -80,11 +97,10 @@ TargetShapeSearch::Step TargetShapeSearch::search_energy(const Actuation& actuat
   constexpr double sufficient = 1e-4, rounding = 1e-12;
   const double start = energy_, slope = -2 * residual_.dot(step_);
   double scale = 1;
-  for (int i = 0; i <= most_halvings; ++i, scale /= 2) {
+  const int halvings = tangent_.symmetric() ? most_halvings : few_halvings;
+  for (int i = 0; i <= halvings; ++i, scale /= 2) {
     move(scale, positions);
     evaluate(actuation, positions);
-    if (std::getenv("DBG"))
-      std::printf("   scale %g E %.6g -> %.6g slope %.3g\n", scale, start, energy_, slope);  // DBG
     if (negligible(i, positions) || energy_ <= start + sufficient * scale * slope + rounding * start)
       return i == 0 ? Step::full : Step::shortened;
   }
@@ -94,17 +110,16 @@ TargetShapeSearch::Step TargetShapeSearch::search_energy(const Actuation& actuat
 /// Backtracking until the residual, seen through one preconditioner, falls (Deuflhard 2004, Section 3.3), or the energy
 /// falls well below all there was: far from the fixed point that tells more.
 TargetShapeSearch::Step TargetShapeSearch::search_residual(const Actuation& actuation, Points& positions) {
-  constexpr double well_below = 0.9;
+  constexpr double well_below = 0.9, still_near = 0.1;
   double scale = 1;
-  for (int i = 0; i <= most_halvings / 3; ++i, scale /= 2) {
+  for (int i = 0; i <= few_halvings; ++i, scale /= 2) {
     move(scale, positions);
     evaluate(actuation, positions);
     const double norm = natural_norm(positions);
-    if (std::getenv("DBG"))
-      std::printf("   scale %g natural %.3e -> %.3e  products %d tol %.1e E %.6g\n", scale, natural_start_, norm,
-                  tangent_.products(), tolerance_, energy_);  // DBG
-    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * least_energy_)
+    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * least_energy_) {
+      keep_factor_ = i == 0 && norm < still_near * natural_start_;
       return i == 0 ? Step::full : Step::shortened;
+    }
   }
   return Step::none;
 }
@@ -130,7 +145,9 @@ TargetShapeSearch::Step TargetShapeSearch::newton_step(const Actuation& actuatio
   poses_before_ = poses_;
   start_ = local_;
   Step step = Step::none;
-  if (exact_direction(positions)) {
+  tangent_.reduce(local_.residual, positions, residual_);
+  if (!residual_.allFinite()) return Step::none;
+  if (!std::exchange(projected_next_, false) && exact_direction(positions)) {
     step = tangent_.symmetric() ? search_energy(actuation, positions) : search_residual(actuation, positions);
     if (step == Step::none) take_back(actuation, positions);
   }
@@ -142,7 +159,7 @@ TargetShapeSearch::Step TargetShapeSearch::newton_step(const Actuation& actuatio
   return step;
 }
 
-TargetShapeSearch::End TargetShapeSearch::enter(IterationRecord record) {
+TargetShapeSearch::End TargetShapeSearch::enter(const IterationRecord& record) {
   accept(record, options_.keep_history, report_);
   if (progress_ && !progress_({report_.iterations, report_.step_mm, report_.tolerance_mm})) return End::interrupted;
   return report_.iterations < options_.max_iterations ? End::stuck : End::exhausted;
@@ -155,23 +172,32 @@ TargetShapeSearch::End TargetShapeSearch::local_global(const Actuation& actuatio
   for (int i = 0; i < count && end == End::stuck; ++i) {
     if (i > 0) iteration.extrapolate();
     IterationRecord record;
-    if (!iteration.iterate(actuation, local_, team_, record)) return End::exhausted;
+    if (!iteration.iterate(actuation, local_, team_, record)) return End::astray;
     end = enter(record);
   }
   evaluate(actuation, positions);
   natural_start_ = 0;
+  keep_factor_ = false;
   return end;
+}
+
+/// Energy and gradient norm of the last shape evaluated.
+IterationRecord TargetShapeSearch::here() const {
+  IterationRecord record;
+  record.energy = energy_;
+  record.gradient_norm = 2 * global_.free_norm(local_.residual, poses_);
+  return record;
 }
 
 TargetShapeSearch::End TargetShapeSearch::run(const Actuation& actuation, int patience, Points& positions) {
   evaluate(actuation, positions);
   natural_start_ = 0;
+  keep_factor_ = false;
+  projected_next_ = !tangent_.symmetric();
   least_energy_ = energy_;
-  if (std::getenv("OPEN")) (void)local_global(actuation, std::atoi(std::getenv("OPEN")), positions);  // DBG
-  while (report_.iterations < options_.max_iterations) {
-    IterationRecord record;
-    record.energy = energy_;
-    record.gradient_norm = 2 * global_.free_norm(local_.residual, poses_);
+  int idle = 0;
+  for (int i = 0; i < most_steps && idle < most_idle_steps && report_.iterations < options_.max_iterations; ++i) {
+    IterationRecord record = here();
     const Step step = newton_step(actuation, positions);
     if (step == Step::none) {
       if (patience <= 0) return End::stuck;
@@ -181,10 +207,17 @@ TargetShapeSearch::End TargetShapeSearch::run(const Actuation& actuation, int pa
     }
     record.step_mm = (positions - before_).rowwise().norm().maxCoeff();
     const End end = enter(record);
-    if (step == Step::full && record.step_mm < report_.tolerance_mm) return End::converged;
+    const bool whole = step == Step::full && exact_;
+    if (whole && record.step_mm < report_.tolerance_mm) return End::converged;
     if (end != End::stuck) return end;
+    idle = record.step_mm < report_.tolerance_mm ? idle + 1 : 0;
+    record = here();
+    if (whole && close(actuation, positions, record.step_mm)) {
+      (void)enter(record);
+      return End::converged;
+    }
   }
-  return End::exhausted;
+  return report_.iterations < options_.max_iterations ? End::stuck : End::exhausted;
 }
 
 }  // namespace softkin

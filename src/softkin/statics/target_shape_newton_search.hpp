@@ -8,7 +8,8 @@ namespace softkin {
 /// One run of Newton's method after another, with the work space that they share.
 class TargetShapeSearch {
  public:
-  enum class End { converged, stuck, interrupted, exhausted };
+  /// exhausted: no more iterations are allowed. astray: a number is not finite.
+  enum class End { converged, stuck, interrupted, exhausted, astray };
 
   TargetShapeSearch(const TargetShapeUnknowns& unknowns, const GlobalStep& global, const StaticsOptions& options,
                     const ProgressCallback& progress, Team& team, SolveReport& report);
@@ -29,10 +30,12 @@ class TargetShapeSearch {
   void take_back(const Actuation& actuation, Points& positions);
   [[nodiscard]] Step search_energy(const Actuation& actuation, Points& positions);
   [[nodiscard]] Step search_residual(const Actuation& actuation, Points& positions);
+  [[nodiscard]] bool close(const Actuation& actuation, Points& positions, double& step_mm);
   [[nodiscard]] bool negligible(int halvings, const Points& positions) const;
   [[nodiscard]] double natural_norm(const Points& positions);
   End local_global(const Actuation& actuation, int count, Points& positions);
-  [[nodiscard]] End enter(IterationRecord record);
+  [[nodiscard]] End enter(const IterationRecord& record);
+  [[nodiscard]] IterationRecord here() const;
 
   const TargetShapeUnknowns& unknowns_;
   const GlobalStep& global_;
@@ -47,6 +50,9 @@ class TargetShapeSearch {
   Points before_, moves_;
   Eigen::VectorXd residual_, step_, scaled_, natural_;
   double energy_ = 0, least_energy_ = 0, natural_start_ = 0, tolerance_ = 0;
+  bool exact_ = false;           // is step_ that of the exact derivative
+  bool projected_next_ = false;  // far from equilibria the exact derivative tells little
+  bool keep_factor_ = false;     // the last one is still good
 };
 
 }  // namespace softkin

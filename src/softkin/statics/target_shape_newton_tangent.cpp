@@ -9,7 +9,7 @@ namespace softkin {
 namespace {
 
 /// Columns kept before GMRES starts anew, and how often it may.
-constexpr int krylov_columns = 40, krylov_rounds = 4;
+constexpr int krylov_columns = 40, krylov_rounds = 1;
 
 }  // namespace
 
@@ -33,6 +33,7 @@ TargetShapeTangent::TargetShapeTangent(const TargetShapeUnknowns& unknowns)
 
 bool TargetShapeTangent::factorise_values(double shift, Team& team, SolveReport& report) {
   const BlockColumns& columns = unknowns_.freedoms.columns();
+  shift_ = shift;
   double largest = 0;
   shifted_ = values_;
   for (Index node = 0; node < columns.nodes(); ++node) {
@@ -108,7 +109,6 @@ void TargetShapeTangent::precondition(Eigen::VectorXd& vector, Team& team) {
 void TargetShapeTangent::multiply(const TargetShapeSystem::Scratch& local, const Points& positions,
                                   const Eigen::VectorXd& vector, Eigen::VectorXd& product, Team& team) {
   const Freedoms& freedoms = unknowns_.freedoms;
-  ++products_;
   freedoms.expand(vector, positions, moved_);
   unknowns_.system.residual_change(local, moved_, work_, team);
   freedoms.reduce(work_.residual, positions, product);

@@ -54,8 +54,8 @@ class TargetShapeTangent {
 
   [[nodiscard]] const Freedoms& freedoms() const { return unknowns_.freedoms; }
   [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
-  /// GMRES iterations of all solves so far.
-  [[nodiscard]] int products() const { return products_; }
+  /// Was the last factor's matrix shifted?
+  [[nodiscard]] bool shifted() const { return shift_ > 0; }
 
  private:
   bool factorise_values(double shift, Team& team, SolveReport& report);
@@ -74,7 +74,7 @@ class TargetShapeTangent {
   Points gradient_, moved_, origin_;
   Eigen::VectorXd turned_, unturned_;
   std::vector<Eigen::VectorXd> basis_;
-  int products_ = 0;
+  double shift_ = 0;  // share of the diagonal in the last factor
 };
 
 }  // namespace softkin

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <softkin/io/scene.hpp>
+#include <softkin/statics/measure.hpp>
+#include <softkin/statics/statics.hpp>
+
+#include "statics/robots.hpp"
+
+namespace softkin {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> scenes() {
+  std::vector<fs::path> found;
+  for (const auto& folder : fs::directory_iterator(fs::path(SOFTKIN_SOURCE_DIR) / "examples")) {
+    if (!folder.is_directory()) continue;
+    for (const auto& file : fs::directory_iterator(folder))
+      if (file.path().extension() == ".yaml") found.push_back(file.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+class NewtonExample : public ::testing::TestWithParam<fs::path> {
+ protected:
+  NewtonExample() : model_(compile(read_scene(GetParam()))), statics_(model_) {}
+
+  /// One call from rest with the default options.
+  Equilibrium expect_solved(const Actuation& actuation) {
+    SCOPED_TRACE(actuation.transpose());
+    const Equilibrium found = statics_.solve(actuation, statics_.rest());
+    EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+    EXPECT_EQ(found.report.continuation_steps, 1);
+    EXPECT_LE(found.report.iterations, 150);
+    const ElementDeformation deformation = deformation_of(model_, found.state.positions);
+    EXPECT_GT(*std::min_element(deformation.volume_ratio.begin(), deformation.volume_ratio.end()), 0);
+    return found;
+  }
+
+  const Model model_;
+  const Statics statics_;
+};
+
+std::string test_name(const ::testing::TestParamInfo<fs::path>& scene) {
+  std::string name = scene.param.parent_path().filename().string();
+  if (scene.param.stem() != name) name += "_" + scene.param.stem().string();
+  return name;
+}
+
+}  // namespace
+
+TEST_P(NewtonExample, FromRestToEveryCornerOfTheRangesInOneCall) {
+  const std::size_t count = model_.actuators.size();
+  for (unsigned corner = 0; corner < 1u << count; ++corner) {
+    Actuation actuation(static_cast<Index>(count));
+    for (std::size_t a = 0; a < count; ++a)
+      actuation[static_cast<Index>(a)] = corner >> a & 1 ? model_.actuators[a].high : model_.actuators[a].low;
+    expect_solved(actuation);
+  }
+}
+
+TEST_P(NewtonExample, FromRestToValuesInside) {
+  std::mt19937 engine(8);
+  for (int round = 0; round < 4; ++round) {
+    Actuation actuation = model_.rest_actuation();
+    for (std::size_t a = 0; a < model_.actuators.size(); ++a)
+      actuation[static_cast<Index>(a)] =
+          std::uniform_real_distribution<double>(model_.actuators[a].low, model_.actuators[a].high)(engine);
+    const Equilibrium found = expect_solved(actuation);
+    if (round > 0) continue;
+    StaticsOptions options;
+    options.solver = Solver::local_global;
+    const Equilibrium slow = statics_.solve(actuation, statics_.rest(), options);
+    EXPECT_EQ(slow.report.status, Status::converged);
+    const double distance = (slow.state.positions - found.state.positions).rowwise().norm().maxCoeff();
+    EXPECT_LT(distance, 2 * slow.report.estimated_error_mm);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, NewtonExample, ::testing::ValuesIn(scenes()), test_name);
+
+}  // namespace softkin
