@@ -46,9 +46,8 @@ void add_fk(CLI::App& app, Run& run) {
   const auto options = std::make_shared<FkOptions>();
   add_options(*command, *options);
   command->footer(
-      "Lengths are in mm, pressures in kPa (gauge), tensions and forces in N. Exit code: 0 done, 1 not converged, a "
-      "limit\n"
-      "or interrupted, 2 bad usage or bad input.\n"
+      "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 not converged, a limit or\n"
+      "interrupted, 2 bad usage or bad input.\n"
       "Example:\n"
       "  softkin fk examples/pneumatic_finger/pneumatic_finger.yaml --set air=1.5 -o finger.vtu");
   command->callback([options, &run] { run = [options] { return run_fk(*options); }; });
