@@ -1,8 +1,8 @@
 #include "fk_files.hpp"
 
+#include <softkin/io/element_order.hpp>
 #include <softkin/io/picture.hpp>
 #include <softkin/io/vtk.hpp>
-#include <softkin/model/boundary.hpp>
 
 namespace softkin::cli {
 
@@ -13,11 +13,13 @@ namespace {
 /// Boundary of what has substance: the body and dielectric elastomers, not the air in chambers.
 std::vector<Triangle> visible_surface(const Model& model) {
   std::vector<Tetrahedron> tetrahedra;
-  std::vector<Prism> prisms;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
-    if (model.tetrahedron_roles[e].material >= 0) tetrahedra.push_back(model.tetrahedra[e]);
-  for (const Prism& prism : model.prisms) prisms.push_back(prism);
-  return triangulated(boundary_of(tetrahedra, prisms));
+  std::vector<EdgeNodes> edge_nodes;
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    if (model.tetrahedron_roles[e].material < 0) continue;
+    tetrahedra.push_back(model.tetrahedra[e]);
+    if (!model.edge_nodes.empty()) edge_nodes.push_back(model.edge_nodes[e]);
+  }
+  return boundary_triangles(tetrahedra, edge_nodes, model.prisms);
 }
 
 std::vector<ElementRole> all_roles(const Model& model) {
@@ -33,6 +35,7 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
   VtuContent content;
   content.points = positions;
   content.tetrahedra = model.tetrahedra;
+  content.edge_nodes = model.edge_nodes;
   content.prisms = model.prisms;
   const Points moved = positions - model.rest;
   content.point_fields.push_back({"displacement_mm", 3, {moved.data(), moved.data() + moved.size()}});

@@ -25,6 +25,7 @@ struct SceneVerdict {
 
 struct CheckReport {
   std::string file;
+  int order = 1;
   std::size_t vertices = 0, tetrahedra = 0, prisms = 0;
   std::vector<Finding> findings;
   std::vector<PartMeasures> parts;
@@ -41,6 +42,7 @@ struct CheckReport {
 CheckReport check(const Mesh& mesh, const std::string& file) {
   const MeshCheck found = check_mesh(mesh);
   return {file,
+          order_of(mesh),
           static_cast<std::size_t>(mesh.vertices.rows()),
           mesh.tetrahedra.size(),
           mesh.prisms.size(),
@@ -147,7 +149,7 @@ std::string verdict_text(const CheckReport& report) {
 
 std::string check_text(const CheckReport& report) {
   return report.file + ": " + counted(report.vertices, "vertex", "vertices") + ", " +
-         counted(report.tetrahedra, "tetrahedron", "tetrahedra") + ", " + counted(report.prisms, "prism") +
+         tetrahedra_text(report.tetrahedra, report.order) + ", " + counted(report.prisms, "prism") +
          ", each numbered from 0\n" + findings_text(report.findings) + parts_text(report) +
          (report.scene ? scene_text(*report.scene) : "") + verdict_text(report);
 }
@@ -174,8 +176,10 @@ Json check_json(const CheckReport& report) {
   for (const PartMeasures& part : report.parts)
     parts.push_back(
         {{"vertices", part.vertices}, {"volume_mm3", part.volume}, {"centroid_mm", point_json(part.centroid)}});
-  Json json{{"file", report.file},     {"vertices", report.vertices}, {"tetrahedra", report.tetrahedra},
-            {"prisms", report.prisms}, {"findings", findings},        {"parts", parts}};
+  Json json{{"file", report.file},     {"vertices", report.vertices},
+            {"order", report.order},   {"tetrahedra", report.tetrahedra},
+            {"prisms", report.prisms}, {"findings", findings},
+            {"parts", parts}};
   if (report.scene) {
     json["scene"]["notes"] = report.scene->notes;
     json["scene"]["error"] = report.scene->error ? Json(*report.scene->error) : Json(nullptr);

@@ -38,7 +38,8 @@ void add_info(CLI::App& mesh, Run& run) {
   add_unit(command, *options);
   add_json(command, *options);
   command.footer(
-      "Box, volume and area are those of the elements, reversed ones included.\n"
+      "Box, volume and area are those of the elements, reversed ones included; volume, area, quality and edge lengths "
+      "of order 2 are those of the corners.\n"
       "Example:\n  softkin mesh info finger.msh --unit cm");
   command.callback([&run, options] { run = [options] { return mesh_info(*options); }; });
 }

@@ -6,6 +6,7 @@
 
 #include "command.hpp"
 #include "mesh_command.hpp"
+#include "mesh_measures.hpp"
 #include "mesh_text.hpp"
 
 namespace softkin::cli {
@@ -15,6 +16,7 @@ namespace {
 constexpr std::size_t most_losses = 20;
 
 struct Conversion {
+  int order = 1;
   std::size_t vertices = 0, tetrahedra = 0, prisms = 0, facets = 0;
   std::vector<std::string> regions, not_kept;
 };
@@ -47,6 +49,7 @@ Conversion review_mesh(const Mesh& mesh, const std::string& file) {
   const Mesh written = read_mesh(file);
   Conversion result;
   result.vertices = static_cast<std::size_t>(written.vertices.rows());
+  result.order = order_of(written);
   result.tetrahedra = written.tetrahedra.size();
   result.prisms = written.prisms.size();
   for (const Region& region : written.regions) result.regions.push_back(region.name);
@@ -62,7 +65,7 @@ Conversion review_surface(const Mesh& mesh, const std::string& file) {
   Conversion result;
   result.vertices = static_cast<std::size_t>(written.vertices.rows());
   result.facets = written.triangles.size();
-  result.not_kept = {"the elements: " + counted(mesh.tetrahedra.size(), "tetrahedron", "tetrahedra") + ", " +
+  result.not_kept = {"the elements: " + tetrahedra_text(mesh.tetrahedra.size(), order_of(mesh)) + ", " +
                          counted(mesh.prisms.size(), "prism"),
                      "digits of the coordinates beyond single precision"};
   for (const Region& region : mesh.regions) result.not_kept.push_back(loss_of(region, {}));
@@ -75,8 +78,8 @@ std::string conversion_text(const MeshOptions& options, const Conversion& result
   if (result.facets > 0)
     text += ", " + counted(result.facets, "facet") + " of the boundary\n";
   else
-    text += ", " + counted(result.tetrahedra, "tetrahedron", "tetrahedra") + ", " + counted(result.prisms, "prism") +
-            ", " + counted(result.regions.size(), "region") + "\n";
+    text += ", " + tetrahedra_text(result.tetrahedra, result.order) + ", " + counted(result.prisms, "prism") + ", " +
+            counted(result.regions.size(), "region") + "\n";
   if (result.not_kept.empty()) return text;
   return text + "not kept:\n" + joined(cut(result.not_kept, most_losses), "    ");
 }
@@ -84,7 +87,10 @@ std::string conversion_text(const MeshOptions& options, const Conversion& result
 Json conversion_json(const MeshOptions& options, const Conversion& result) {
   Json json{{"input", options.input},      {"output", options.output},        {"form", mesh_form(options.output)},
             {"vertices", result.vertices}, {"tetrahedra", result.tetrahedra}, {"prisms", result.prisms}};
-  if (result.facets > 0) json["facets"] = result.facets;
+  if (result.facets > 0)
+    json["facets"] = result.facets;
+  else
+    json["order"] = result.order;
   json["regions"] = result.regions;
   json["not_kept"] = result.not_kept;
   return json;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "mesh_edges.hpp"
 #include "mesh_measures.hpp"
 
 namespace softkin::cli {
@@ -79,6 +80,16 @@ std::vector<Finding> findings_of(const Mesh& mesh, const MeshCheck& check) {
   collect.begin(Severity::error, "nonmanifold_faces", "faces of more than two elements");
   collect.add_vertices(check.nonmanifold_faces);
   collect.add_vertices(check.nonmanifold_quads);
+  const EdgeCheck edges = check_edges(mesh);
+  const bool quadratic = !mesh.edge_nodes.empty();
+  if (quadratic) {
+    collect.begin(Severity::error, "split_edges", "tetrahedra have different nodes on the edge: not connected there");
+    collect.add_vertices(edges.split);
+    collect.begin(Severity::error, "shared_edge_nodes", "nodes of several edges");
+    collect.add_vertices(edges.shared);
+    collect.begin(Severity::error, "far_edge_nodes", "more than a quarter of the edge's length from its middle");
+    collect.add_vertices(edges.far);
+  }
   collect.begin(Severity::warning, "duplicate_vertices", "same place as an earlier vertex: not connected there");
   collect.add_vertices(check.duplicate_vertices);
   collect.begin(Severity::warning, "nonmanifold_edges", "the body touches itself along an edge only");
@@ -87,6 +98,10 @@ std::vector<Finding> findings_of(const Mesh& mesh, const MeshCheck& check) {
   collect.add_vertices(check.nonmanifold_vertices);
   collect.begin(Severity::remark, "negative_elements", "vertices in reversed order: softkin reorders them");
   collect.add_elements(check.negative);
+  if (quadratic) {
+    collect.begin(Severity::remark, "uneven_edges", "node off the middle of the edge: curved, or of uneven halves");
+    collect.add_vertices(edges.uneven);
+  }
   collect.begin(Severity::remark, "unreferenced_vertices", "of no element: they stay where they are");
   collect.add_vertices(check.unreferenced);
   return findings;

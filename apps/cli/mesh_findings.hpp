@@ -24,7 +24,7 @@ struct Finding {
   std::vector<Place> first;  // at most five
 };
 
-/// Every kind that a mesh can be checked for, worst first.
+/// Every kind that a mesh of its order can be checked for, worst first.
 [[nodiscard]] std::vector<Finding> findings_of(const Mesh& mesh, const MeshCheck& check);
 
 }  // namespace softkin::cli

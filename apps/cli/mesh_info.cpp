@@ -28,8 +28,8 @@ std::string info_text(const MeshOptions& options, const MeshMeasures& m) {
   const std::vector<std::vector<std::string>> rows{
       {"file", options.input + " (" + mesh_form(options.input) + ", lengths in " + options.unit + ")"},
       {"vertices", std::to_string(m.vertices)},
-      {"elements", counted(m.tetrahedra, "tetrahedron", "tetrahedra") + ", " + counted(m.prisms, "prism") + " in " +
-                       counted(m.parts, "part")},
+      {"elements",
+       tetrahedra_text(m.tetrahedra, m.order) + ", " + counted(m.prisms, "prism") + " in " + counted(m.parts, "part")},
       {"surface cells", counted(m.triangles, "triangle") + ", " + counted(m.quads, "quad")},
       {"bounding box", point_text(m.low) + " to " + point_text(m.high)},
       {"size", number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " mm"},
@@ -64,6 +64,7 @@ Json info_json(const MeshOptions& options, const MeshMeasures& m) {
           {"form", mesh_form(options.input)},
           {"unit", options.unit},
           {"vertices", m.vertices},
+          {"order", m.order},
           {"tetrahedra", m.tetrahedra},
           {"prisms", m.prisms},
           {"parts", m.parts},

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <softkin/io/element_order.hpp>
 #include <softkin/model/boundary.hpp>
 #include <utility>
+
+#include "mesh_text.hpp"
 
 namespace softkin::cli {
 
@@ -67,7 +70,15 @@ void add_cells(const std::vector<Cell>& cells, const std::vector<Index>& chosen,
   measures.cells += chosen.size();
 }
 
-RegionMeasures measure_region(const Mesh& mesh, const Region& region) {
+template <class Nodes>
+void add_edge_nodes(const std::vector<Nodes>& nodes, const std::vector<Index>& chosen, std::vector<Index>& vertices) {
+  if (nodes.empty()) return;
+  for (const Index i : chosen)
+    vertices.insert(vertices.end(), nodes[static_cast<std::size_t>(i)].begin(),
+                    nodes[static_cast<std::size_t>(i)].end());
+}
+
+RegionMeasures measure_region(const Mesh& mesh, const std::vector<QuadraticTriangle>& triangles, const Region& region) {
   RegionMeasures measures{region.name, region.dimension};
   std::vector<Index> vertices = region.vertices;
   const auto volume_of = [&](const auto& element) { return volume(mesh.vertices, element); };
@@ -76,6 +87,8 @@ RegionMeasures measure_region(const Mesh& mesh, const Region& region) {
   add_cells(mesh.prisms, region.prisms, volume_of, measures, vertices);
   add_cells(mesh.triangles, region.triangles, area_of, measures, vertices);
   add_cells(mesh.quads, region.quads, area_of, measures, vertices);
+  add_edge_nodes(mesh.edge_nodes, region.tetrahedra, vertices);
+  add_edge_nodes(triangles, region.triangles, vertices);
   std::sort(vertices.begin(), vertices.end());
   measures.vertices = static_cast<std::size_t>(std::unique(vertices.begin(), vertices.end()) - vertices.begin());
   return measures;
@@ -102,8 +115,17 @@ void add_to_parts(const Mesh& mesh, const std::vector<Element>& elements, const 
 
 }  // namespace
 
+int order_of(const Mesh& mesh) {
+  return mesh.edge_nodes.empty() ? 1 : 2;
+}
+
+std::string tetrahedra_text(std::size_t count, int order) {
+  return counted(count, "tetrahedron", "tetrahedra") + (order == 2 ? " of order 2" : "");
+}
+
 MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   MeshMeasures measures;
+  measures.order = order_of(mesh);
   measures.vertices = static_cast<std::size_t>(mesh.vertices.rows());
   measures.tetrahedra = mesh.tetrahedra.size();
   measures.prisms = mesh.prisms.size();
@@ -123,7 +145,8 @@ MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   const std::vector<double> lengths = edge_lengths(mesh);
   const double length_shares[] = {0, 0.5, 1};
   for (int i = 0; i < 3; ++i) measures.edge_length[i] = percentile(lengths, length_shares[i]);
-  for (const Region& region : mesh.regions) measures.regions.push_back(measure_region(mesh, region));
+  const std::vector<QuadraticTriangle> triangles = quadratic_triangles(mesh);
+  for (const Region& region : mesh.regions) measures.regions.push_back(measure_region(mesh, triangles, region));
   return measures;
 }
 

@@ -12,12 +12,14 @@ struct RegionMeasures {
   std::string name;
   int dimension = 3;
   std::size_t cells = 0;     // dimension 3: elements, 2: faces
-  std::size_t vertices = 0;  // of the cells, or the region's own
+  std::size_t vertices = 0;  // of the cells, edge nodes included, or the region's own
   double measure = 0;        // dimension 3: volume [mm^3], 2: area [mm^2]
 };
 
-/// What `mesh info` tells. Reversed elements count with their volume as if they were not.
+/// What `mesh info` tells. Reversed elements count with their volume as if they were not; sizes and quality of elements
+/// of order 2 are those of their corners.
 struct MeshMeasures {
+  int order = 1;
   std::size_t vertices = 0, tetrahedra = 0, prisms = 0, triangles = 0, quads = 0, parts = 0;
   Vec3 low, high;              // bounding box of the elements [mm]
   double volume = 0;           // [mm^3]
@@ -26,6 +28,12 @@ struct MeshMeasures {
   double edge_length[3] = {};  // least, median, most [mm]
   std::vector<RegionMeasures> regions;
 };
+
+/// 1 or 2
+[[nodiscard]] int order_of(const Mesh& mesh);
+
+/// "24 tetrahedra of order 2"
+[[nodiscard]] std::string tetrahedra_text(std::size_t count, int order);
 
 /// mesh in mm, with an element. check: of the mesh.
 [[nodiscard]] MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,7 +14,8 @@ namespace softkin::testing {
 /// Writes Gmsh 2.2 ASCII by hand.
 struct GmshText {
   struct Element {
-    int type, group;            // 15 point, 2 triangle, 3 quad, 4 tetrahedron, 6 prism; 0: no group
+    // type: 15 point, 2 triangle, 3 quad, 4 tetrahedron, 6 prism; of order 2: 9 triangle, 11 tetrahedron. group: 0 none
+    int type, group;
     std::vector<int> vertices;  // from 0
   };
   std::vector<std::string> names;  // lines: dimension, group, name in double quotes
@@ -63,6 +66,31 @@ inline GmshText cube() {
   mesh.elements.push_back({2, 3, {0, 1, 3}});
   mesh.elements.push_back({2, 3, {0, 3, 2}});
   mesh.elements.push_back({15, 4, {0}});
+  return mesh;
+}
+
+/// The mesh with its tetrahedra and triangles of order 2, nodes in the middle of the edges.
+inline GmshText quadratic(GmshText mesh) {
+  std::map<std::pair<int, int>, int> nodes;
+  const auto node_between = [&](int a, int b) {
+    const auto [place, fresh] =
+        nodes.try_emplace(std::pair(std::min(a, b), std::max(a, b)), static_cast<int>(mesh.vertices.size()));
+    if (!fresh) return place->second;
+    const std::array<double, 3> p = mesh.vertices[static_cast<std::size_t>(a)],
+                                q = mesh.vertices[static_cast<std::size_t>(b)];
+    mesh.vertices.push_back({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2});
+    return place->second;
+  };
+  const std::vector<std::array<int, 2>> of_triangle{{0, 1}, {1, 2}, {2, 0}},
+      of_tetrahedron{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
+  for (GmshText::Element& element : mesh.elements) {
+    if (element.type != 2 && element.type != 4) continue;
+    const std::vector<int> corners = element.vertices;
+    for (const auto& [a, b] : element.type == 2 ? of_triangle : of_tetrahedron)
+      element.vertices.push_back(
+          node_between(corners[static_cast<std::size_t>(a)], corners[static_cast<std::size_t>(b)]));
+    element.type = element.type == 2 ? 9 : 11;
+  }
   return mesh;
 }
 

@@ -209,6 +209,66 @@ std::string scene(const std::string& rest) {
   return "softkin: 1\nunits: {length: cm}\nmesh: {file: cube.msh}\nmaterials: [{shape_ratio: 1}]\n" + rest;
 }
 
+/// Counts of the kinds that only meshes of order 2 have.
+Counts edge_counts(const json& report) {
+  Counts found;
+  for (const char* kind : {"split_edges", "shared_edge_nodes", "far_edge_nodes", "uneven_edges"})
+    if (finding(report, kind)["count"] != 0) found[kind] = finding(report, kind)["count"];
+  return found;
+}
+
+TEST(MeshCheckCommand, EdgesOfOrder2) {
+  const TemporaryFolder folder;
+  GmshText mesh =
+      quadratic(tetrahedra({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {4, 4, 4}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}));
+  const auto check_now = [&] { return check(folder.write("a.msh", mesh.text())); };
+  const Check clean = check_now();
+  EXPECT_EQ(clean.exit_code, 0);
+  EXPECT_EQ(clean.report["order"], 2);
+  EXPECT_EQ(clean.report["findings"].size(), 13u);
+  EXPECT_EQ(edge_counts(clean.report), Counts{});
+
+  // vertex 5 is in the middle of the edge from 0 to 1, of length 4
+  mesh.vertices[5] = {2, -0.5, 0};
+  const Check curved = check_now();
+  EXPECT_EQ(curved.exit_code, 0);
+  EXPECT_EQ(edge_counts(curved.report), (Counts{{"uneven_edges", 1}}));
+  EXPECT_EQ(finding(curved.report, "uneven_edges")["severity"], "remark");
+  EXPECT_EQ(finding(curved.report, "uneven_edges")["first"][0]["vertices"], json({0, 1, 5}));
+
+  mesh.vertices[5] = {0.9, 0, 0};
+  const Check far = check_now();
+  EXPECT_EQ(far.exit_code, 1);
+  EXPECT_EQ(edge_counts(far.report), (Counts{{"far_edge_nodes", 1}}));
+}
+
+TEST(MeshCheckCommand, EdgesWithTwoNodesBlock) {
+  const TemporaryFolder folder;
+  GmshText mesh =
+      quadratic(tetrahedra({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, {4, 4, 4}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}));
+  const int shared = mesh.elements[1].vertices[4];  // between vertices 1 and 2
+  mesh.elements[1].vertices[4] = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.push_back({2, 2, 0});
+  const std::string file = folder.write("a.msh", mesh.text());
+  const auto [exit_code, report] = check(file);
+  EXPECT_EQ(exit_code, 1);
+  EXPECT_EQ(edge_counts(report), (Counts{{"split_edges", 1}}));
+  EXPECT_EQ(finding(report, "split_edges")["first"][0]["vertices"], json({1, 2, shared, mesh.vertices.size() - 1}));
+  const std::string text = run_program({"mesh", "check", file}).output;
+  EXPECT_NE(text.find("2 tetrahedra of order 2, 0 prisms"), std::string::npos) << text;
+  EXPECT_NE(text.find("not usable: split edges (1)"), std::string::npos) << text;
+}
+
+TEST(MeshCheckCommand, NodesOfTwoEdgesBlock) {
+  const TemporaryFolder folder;
+  GmshText mesh = quadratic(tetrahedra({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}, {{0, 1, 2, 3}}));
+  mesh.elements[0].vertices[5] = mesh.elements[0].vertices[4];
+  const auto [exit_code, report] = check(folder.write("a.msh", mesh.text()));
+  EXPECT_EQ(exit_code, 1);
+  EXPECT_EQ(edge_counts(report), (Counts{{"shared_edge_nodes", 1}, {"far_edge_nodes", 1}}));
+  EXPECT_EQ(finding(report, "shared_edge_nodes")["first"][0]["vertices"], json({4}));
+}
+
 TEST(MeshCheckCommand, SceneHoldsTheMesh) {
   GmshText mesh = cube();
   mesh.vertices.push_back({5, 5, 5});

@@ -37,6 +37,7 @@ TEST(MeshInfo, MeasuresCube) {
   const TemporaryFolder folder;
   const json info = run_json({"mesh", "info", folder.write("cube.msh", cube().text())});
   EXPECT_EQ(info["form"], "Gmsh");
+  EXPECT_EQ(info["order"], 1);
   EXPECT_EQ(info["vertices"], 8);
   EXPECT_EQ(info["tetrahedra"], 6);
   EXPECT_EQ(info["prisms"], 0);
@@ -73,6 +74,22 @@ TEST(MeshInfo, ListsRegions) {
   EXPECT_EQ(regions[2]["vertices"], 4);
   EXPECT_NEAR(regions[2]["area_mm2"], 4, 1e-12);
   EXPECT_EQ(regions[3], json({{"name", "corner"}, {"dimension", 0}, {"vertices", 1}}));
+}
+
+TEST(MeshInfo, StatesOrder2) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("cube.msh", quadratic(cube()).text());
+  const json info = run_json({"mesh", "info", file});
+  EXPECT_EQ(info["order"], 2);
+  EXPECT_EQ(info["vertices"], 8 + 19);
+  EXPECT_EQ(info["tetrahedra"], 6);
+  EXPECT_EQ(info["parts"], 1);
+  EXPECT_NEAR(info["volume_mm3"], 8, 1e-12);
+  EXPECT_NEAR(info["boundary_area_mm2"], 24, 1e-12);
+  EXPECT_NEAR(info["edge_lengths_mm"]["max"], 2 * std::sqrt(3), 1e-12);
+  EXPECT_EQ(info["regions"][0]["vertices"], 7 + 15);  // body: four tetrahedra around an edge
+  EXPECT_EQ(info["regions"][2]["vertices"], 4 + 5);   // base: two triangles
+  expect_contains(run_program({"mesh", "info", file}).output, "6 tetrahedra of order 2, 0 prisms in 1 part");
 }
 
 TEST(MeshInfo, UnitScalesPrism) {
@@ -134,12 +151,13 @@ void expect_same_elements(const Mesh& a, const Mesh& b) {
   ASSERT_EQ(a.vertices.rows(), b.vertices.rows());
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.tetrahedra, b.tetrahedra);
+  EXPECT_EQ(a.edge_nodes, b.edge_nodes);
   EXPECT_EQ(a.prisms, b.prisms);
 }
 
 TEST(MeshConvert, GmshKeepsEverything) {
   const TemporaryFolder folder;
-  for (const GmshText& sample : {cube(), prism()}) {
+  for (const GmshText& sample : {cube(), prism(), quadratic(cube())}) {
     const std::string in = folder.write("in.msh", sample.text()), out = folder / "out.msh";
     for (const bool ascii : {false, true}) {
       std::vector<std::string> arguments{"mesh", "convert", in, out};
@@ -195,6 +213,18 @@ TEST(MeshConvert, VtuNamesRegionsThatLoseElements) {
   expect_contains(result.output, "    region 'all' (3D, 5 elements)\n");
 }
 
+TEST(MeshConvert, VtuKeepsOrder2) {
+  const TemporaryFolder folder;
+  const std::string in = folder.write("in.msh", quadratic(cube()).text()), out = folder / "out.vtu";
+  const json report = run_json({"mesh", "convert", in, out});
+  EXPECT_EQ(report["order"], 2);
+  EXPECT_EQ(report["vertices"], 27);
+  EXPECT_EQ(report["regions"], json({"body", "chamber"}));
+  EXPECT_EQ(read_mesh(out).edge_nodes.size(), 6u);
+  expect_same_elements(read_mesh(in), read_mesh(out));
+  expect_contains(run_program({"mesh", "convert", in, out}).output, "27 vertices, 6 tetrahedra of order 2, 0 prisms");
+}
+
 TEST(MeshConvert, StlHoldsBoundary) {
   const TemporaryFolder folder;
   const auto convert = [&](const GmshText& mesh) {
@@ -207,6 +237,7 @@ TEST(MeshConvert, StlHoldsBoundary) {
     return std::pair(surface.triangles.size(), enclosed_volume(surface.vertices, surface.triangles));
   };
   EXPECT_EQ(convert(cube()), std::pair(std::size_t{12}, 8.0));
+  EXPECT_EQ(convert(quadratic(cube())), std::pair(std::size_t{48}, 8.0));
   EXPECT_EQ(convert(prism()), std::pair(std::size_t{8}, 30.0));
 }
 

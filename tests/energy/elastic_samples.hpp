@@ -10,8 +10,6 @@ namespace softkin {
 
 template <int K>
 using Nodes = Eigen::Matrix<double, K, 3>;
-template <int K>
-using NodeMatrix = Eigen::Matrix<double, 3 * K, 3 * K>;
 
 inline constexpr Law all_laws[] = {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin,
                                    Law::yeoh};
@@ -149,20 +147,20 @@ Nodes<K> gradient_of(const ElasticForce<K>& force, int lane) {
 
 /// Full matrices, node by node, of all lanes.
 template <int K, int Q>
-std::vector<NodeMatrix<K>> stiffness_of(const ElasticBlock<K, Q>& block, const std::vector<Nodes<K>>& current,
-                                        bool projected = false) {
+std::vector<Eigen::MatrixXd> stiffness_of(const ElasticBlock<K, Q>& block, const std::vector<Nodes<K>>& current,
+                                          bool projected = false) {
   Shape<K> shape;
   pack_nodes<K>(current, shape);
   ElasticStiffness<K> out;
   elastic_stiffness(block, shape, projected, out);
-  std::vector<NodeMatrix<K>> k(lanes);
+  std::vector<Eigen::MatrixXd> k(lanes, Eigen::MatrixXd::Zero(3 * K, 3 * K));
   for (int l = 0; l < lanes; ++l)
     for (int a = 0, ab = 0; a < K; ++a)
       for (int b = 0; b <= a; ++b, ++ab) {
         Mat3 part;
         for (int i = 0; i < 3; ++i) part.row(i) = get_lane(out.block[ab].row[i], l).transpose();
-        k[l].template block<3, 3>(3 * b, 3 * a) = part.transpose();
-        k[l].template block<3, 3>(3 * a, 3 * b) = part;
+        k[l].block<3, 3>(3 * b, 3 * a) = part.transpose();
+        k[l].block<3, 3>(3 * a, 3 * b) = part;
       }
   return k;
 }

@@ -26,8 +26,8 @@ std::vector<Nodes<K>> differences_of_energy(const Sample<K, Q>& sample, double s
 }
 
 template <int K, int Q>
-std::vector<NodeMatrix<K>> differences_of_gradient(const Sample<K, Q>& sample, double step) {
-  std::vector<NodeMatrix<K>> result(lanes);
+std::vector<Eigen::MatrixXd> differences_of_gradient(const Sample<K, Q>& sample, double step) {
+  std::vector<Eigen::MatrixXd> result(lanes, Eigen::MatrixXd::Zero(3 * K, 3 * K));
   for (int a = 0; a < K; ++a)
     for (int i = 0; i < 3; ++i) {
       std::vector<Nodes<K>> ahead = sample.current, behind = sample.current;
@@ -35,7 +35,7 @@ std::vector<NodeMatrix<K>> differences_of_gradient(const Sample<K, Q>& sample, d
       const ElasticForce<K> up = force_of(sample.block, ahead), down = force_of(sample.block, behind);
       for (int l = 0; l < lanes; ++l)
         for (int b = 0; b < K; ++b)
-          result[l].template block<3, 1>(3 * b, 3 * a + i) =
+          result[l].block<3, 1>(3 * b, 3 * a + i) =
               (get_lane(up.gradient[b], l) - get_lane(down.gradient[b], l)) / (2 * step);
     }
   return result;

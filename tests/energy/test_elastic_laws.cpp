@@ -28,15 +28,15 @@ Mat3 stress_at(const ElasticLaw& law, const Mat3& f) {
 
 /// Stiffness of linear elasticity, sum of volume B^T D B in Voigt's notation.
 template <int K, int Q>
-NodeMatrix<K> linear_stiffness(const ElasticRest<K, Q>& rest, double youngs_modulus, double poisson_ratio) {
+Eigen::MatrixXd linear_stiffness(const ElasticRest<K, Q>& rest, double youngs_modulus, double poisson_ratio) {
   const double e = youngs_modulus, nu = poisson_ratio;
   Eigen::Matrix<double, 6, 6> d = Eigen::Matrix<double, 6, 6>::Zero();
   d.topLeftCorner<3, 3>().setConstant(nu);
   for (int i = 0; i < 3; ++i) d(i, i) = 1 - nu, d(3 + i, 3 + i) = (1 - 2 * nu) / 2;
   d *= e / ((1 + nu) * (1 - 2 * nu));
-  NodeMatrix<K> k = NodeMatrix<K>::Zero();
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * K, 3 * K);
   for (int q = 0; q < Q; ++q) {
-    Eigen::Matrix<double, 6, 3 * K> b = Eigen::Matrix<double, 6, 3 * K>::Zero();
+    Eigen::MatrixXd b = Eigen::MatrixXd::Zero(6, 3 * K);
     for (int a = 0; a < K; ++a) {
       const auto g = rest.slope[q].row(a);
       for (int i = 0; i < 3; ++i) b(i, 3 * a + i) = g[i];
@@ -82,8 +82,8 @@ TYPED_TEST(ElasticLaws, RigidMotionKeepsTheEnergyAndTurnsForceAndStiffness) {
       moved.current[l] = (sample.current[l] * r.transpose()).rowwise() + Eigen::RowVector3d(30, -20, 50);
     const ElasticForce<K> before = force_of(sample.block, sample.current), after = force_of(moved.block, moved.current);
     const auto stiff = stiffness_of(sample.block, sample.current), turned = stiffness_of(moved.block, moved.current);
-    NodeMatrix<K> turn = NodeMatrix<K>::Zero();
-    for (int a = 0; a < K; ++a) turn.template block<3, 3>(3 * a, 3 * a) = r;
+    Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(3 * K, 3 * K);
+    for (int a = 0; a < K; ++a) turn.block<3, 3>(3 * a, 3 * a) = r;
     for (int l = 0; l < lanes; ++l) {
       EXPECT_NEAR(after.energy[l], before.energy[l], 1e-11 * before.energy[l]);
       const Nodes<K> expected = gradient_of(before, l) * r.transpose();
@@ -103,7 +103,7 @@ TYPED_TEST(ElasticLaws, StiffnessAtRestIsThatOfLinearElasticity) {
     for (const bool projected : {false, true}) {
       const auto k = stiffness_of(sample.block, sample.rest, projected);
       for (int l = 0; l < lanes; ++l) {
-        const NodeMatrix<K> expected = linear_stiffness(elastic_rest(sample.rest[l]), e, nu);
+        const Eigen::MatrixXd expected = linear_stiffness(elastic_rest(sample.rest[l]), e, nu);
         EXPECT_LT((k[l] - expected).norm(), 1e-13 * expected.norm()) << "law " << static_cast<int>(law);
       }
     }
@@ -119,8 +119,8 @@ TYPED_TEST(ElasticLaws, ResultsAreTheSameInEveryLane) {
     auto all = random_sample<K, TypeParam::Q>(law, random, mirrored, 0.02);
     const Nodes<K> rest = all.rest[1], current = all.current[1];
     const ElasticForce<K> force = force_of(all.block, all.current);
-    const NodeMatrix<K> stiffness = stiffness_of(all.block, all.current)[1];
-    const NodeMatrix<K> projected = stiffness_of(all.block, all.current, true)[1];
+    const Eigen::MatrixXd stiffness = stiffness_of(all.block, all.current)[1];
+    const Eigen::MatrixXd projected = stiffness_of(all.block, all.current, true)[1];
     for (int l = 0; l < lanes; ++l) {
       auto other = random_sample<K, TypeParam::Q>(law, random, mirrored, 0.02);
       other.set(l, rest, current);

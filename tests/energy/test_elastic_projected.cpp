@@ -8,8 +8,6 @@ namespace softkin {
 
 namespace {
 
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-
 template <class ElementKind>
 class ElasticProjected : public testing::Test {};
 using Kinds = testing::Types<Kind<4, 1>, Kind<10, 4>, Kind<6, 6>>;
@@ -17,7 +15,7 @@ TYPED_TEST_SUITE(ElasticProjected, Kinds);
 
 /// d^2W/dF^2 (entry (i, k) of F at 3 k + i), from the exact stiffness of the tetrahedron whose slopes at nodes 1 to 3
 /// are the unit vectors.
-Matrix9 second_derivative(const LawBlock& law, const Mat3& f) {
+Eigen::MatrixXd second_derivative(const LawBlock& law, const Mat3& f) {
   Nodes<4> unit;
   unit << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
   Sample<4, 1> sample;
@@ -26,24 +24,24 @@ Matrix9 second_derivative(const LawBlock& law, const Mat3& f) {
   return 6 * stiffness_of(sample.block, sample.current)[0].bottomRightCorner<9, 9>();
 }
 
-Matrix9 nearest_semidefinite(const Matrix9& a, bool& definite) {
-  const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(a);
+Eigen::MatrixXd nearest_semidefinite(const Eigen::MatrixXd& a, bool& definite) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a);
   definite = definite && eigen.eigenvalues()[0] >= 0;
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 /// The projected stiffness by brute force; definite: nothing was projected.
 template <int K, int Q>
-NodeMatrix<K> brute_force(const Sample<K, Q>& sample, int lane, bool& definite) {
+Eigen::MatrixXd brute_force(const Sample<K, Q>& sample, int lane, bool& definite) {
   const ElasticRest<K, Q> rest = elastic_rest(sample.rest[lane]);
-  NodeMatrix<K> k = NodeMatrix<K>::Zero();
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * K, 3 * K);
   definite = true;
   for (int q = 0; q < Q; ++q) {
     const Mat3 f = sample.current[lane].transpose() * rest.slope[q];
-    Eigen::Matrix<double, 9, 3 * K> by_nodes = Eigen::Matrix<double, 9, 3 * K>::Zero();
+    Eigen::MatrixXd by_nodes = Eigen::MatrixXd::Zero(9, 3 * K);
     for (int a = 0; a < K; ++a)
-      for (int j = 0; j < 3; ++j) by_nodes.template block<3, 3>(3 * j, 3 * a) = rest.slope[q](a, j) * Mat3::Identity();
-    const Matrix9 a = nearest_semidefinite(second_derivative(sample.block.law, f), definite);
+      for (int j = 0; j < 3; ++j) by_nodes.block<3, 3>(3 * j, 3 * a) = rest.slope[q](a, j) * Mat3::Identity();
+    const Eigen::MatrixXd a = nearest_semidefinite(second_derivative(sample.block.law, f), definite);
     k += rest.volume[q] * by_nodes.transpose() * a * by_nodes;
   }
   return k;
@@ -75,7 +73,7 @@ TYPED_TEST(ElasticProjected, IsTheNearestSemidefiniteOneAtEveryPoint) {
       const auto projected = stiffness_of(sample.block, sample.current, true);
       for (int l = 0; l < lanes; ++l) {
         bool definite;
-        const NodeMatrix<K> expected = brute_force(sample, l, definite);
+        const Eigen::MatrixXd expected = brute_force(sample, l, definite);
         EXPECT_LT((projected[l] - expected).norm(), 1e-11 * expected.norm()) << "law " << static_cast<int>(law);
         ++(definite ? exact_lanes : projected_lanes);
         if (definite) {
@@ -100,9 +98,9 @@ TYPED_TEST(ElasticProjected, HasNoNegativeEigenvalue) {
       const auto exact = stiffness_of(sample.block, sample.current);
       const auto projected = stiffness_of(sample.block, sample.current, true);
       for (int l = 0; l < lanes; ++l) {
-        const Eigen::SelfAdjointEigenSolver<NodeMatrix<K>> eigen(projected[l], Eigen::EigenvaluesOnly);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(projected[l], Eigen::EigenvaluesOnly);
         EXPECT_GT(eigen.eigenvalues()[0], -1e-13 * eigen.eigenvalues()[3 * K - 1]);
-        const Eigen::SelfAdjointEigenSolver<NodeMatrix<K>> indefinite(exact[l], Eigen::EigenvaluesOnly);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> indefinite(exact[l], Eigen::EigenvaluesOnly);
         worst_exact = std::min(worst_exact, indefinite.eigenvalues()[0]);
       }
     }

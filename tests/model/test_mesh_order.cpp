@@ -77,6 +77,11 @@ TEST(MeshOrder, EdgeTableFindsNodes) {
   const Index node = cracked.edge_nodes[0][3];
   cracked.edge_nodes[0][3] = node + 1;
   EXPECT_THROW((void)EdgeTable(cracked), InvalidInput);
+  Mesh joined = mesh;
+  for (EdgeNodes& nodes : joined.edge_nodes)
+    for (Index& v : nodes)
+      if (v == node) v = node + 1;
+  EXPECT_THROW((void)EdgeTable(joined), InvalidInput);
 }
 
 TEST(MeshOrder, ExchangingCornersExchangesTheirEdges) {

@@ -206,11 +206,11 @@ void compile_elements(Compilation& c) {
   const Mesh& mesh = c.mesh;
   if (mesh.tetrahedra.empty() && mesh.prisms.empty()) throw InvalidInput(c.origin, "the mesh has no element");
   std::vector<bool> not_body = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
-  std::vector<bool> not_chamber = chamber_elements(c);
+  const std::vector<bool> of_chamber = chamber_elements(c);
+  std::vector<bool> not_chamber = not_body;
   for (std::size_t i = 0; i < not_body.size(); ++i) {
-    const bool of_chamber = not_chamber[i];
-    not_chamber[i] = !of_chamber || not_body[i];
-    not_body[i] = not_body[i] || of_chamber;
+    not_chamber[i] = not_chamber[i] || !of_chamber[i];
+    not_body[i] = not_body[i] || of_chamber[i];
   }
   const std::vector<bool> void_prisms = void_elements(c, &Region::prisms, mesh.prisms.size());
   model.rest = mesh.vertices;

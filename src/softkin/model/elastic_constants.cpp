@@ -70,7 +70,8 @@ void set_coefficients(const Constants& c, ElasticLaw& law) {
     law.c20 = c.optional(c.spec.c20, "c20");
     law.c30 = c.optional(c.spec.c30, "c30");
   }
-  const double half_shear = c.positive(law.c10 + law.c01, law.law == Law::yeoh ? "c10" : "c10 + c01");
+  const std::string sum = law.law == Law::yeoh ? "c10" : "c10 + c01";
+  const double half_shear = c.positive(c.finite(law.c10 + law.c01, sum), sum);
   law.bulk = bulk_modulus(c, 2 * half_shear);
 }
 

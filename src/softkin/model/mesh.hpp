@@ -42,7 +42,7 @@ struct TriangleSurface {
   std::vector<Triangle> triangles;
 };
 
-/// Signed volume, positive where the vertex order is the standard one.
+/// Signed volume, positive where the vertex order is the standard one; of an element of order 2 that of its corners.
 [[nodiscard]] double signed_volume(const Points& vertices, const Tetrahedron& element);
 /// Signed volume of the prism with bilinear sides (exact integral of the linear prism's Jacobian).
 [[nodiscard]] double signed_volume(const Points& vertices, const Prism& element);

@@ -25,6 +25,12 @@ EdgeTable::EdgeTable(const Mesh& mesh) {
     throw InvalidInput("the edge between the vertices " + std::to_string(twice->low) + " and " +
                        std::to_string(twice->high) + " (from 0) has two nodes, " + std::to_string(twice->node) +
                        " and " + std::to_string(std::next(twice)->node));
+  std::vector<Index> nodes;
+  nodes.reserve(edges_.size());
+  for (const Edge& edge : edges_) nodes.push_back(edge.node);
+  std::sort(nodes.begin(), nodes.end());
+  if (const auto shared = std::adjacent_find(nodes.begin(), nodes.end()); shared != nodes.end())
+    throw InvalidInput("vertex " + std::to_string(*shared) + " (from 0) is the node of two edges");
 }
 
 Index EdgeTable::find(Index a, Index b) const {

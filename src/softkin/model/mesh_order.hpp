@@ -8,7 +8,7 @@ namespace softkin {
 class EdgeTable {
  public:
   /// The mesh's indices must be in range.
-  /// throws  InvalidInput where an edge has different nodes in two elements
+  /// throws  InvalidInput where an edge has different nodes in two elements, or two edges have the same node
   explicit EdgeTable(const Mesh& mesh);
 
   [[nodiscard]] bool empty() const { return edges_.empty(); }
@@ -26,7 +26,7 @@ class EdgeTable {
   std::vector<Edge> edges_;  // ascending
 };
 
-/// Exchanges two nodes of a mesh's edges as exchanging the corners 2 and 3 of its element does.
+/// Reorders the edge nodes of an element as exchanging its corners 2 and 3 does.
 void exchange_corners_2_and_3(EdgeNodes& edge_nodes);
 
 /// The node on the edge between two corners of an element, which must be there.
