@@ -27,19 +27,21 @@ void PhysicalNewton::record(double step_mm) {
   if (settings_.keep_history) report_.history.push_back(entry);
 }
 
-/// The exact stiffness where it is stable under the constraints; else made so element by element, then by a shift.
-bool PhysicalNewton::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active) {
+/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, then by
+/// a shift.
+bool PhysicalNewton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = PhysicalSystem::Stiffness;
-  ++report_.factorisations;
-  negative_ = system_.factorise(at, demand, active, Stiffness::exact, 0, work_, team_);
-  if (negative_ == 0) return true;
+  const auto negative = [&](Stiffness kind, double shift) {
+    ++report_.factorisations;
+    return system_.factorise(at, *demand_, *active_, kind, shift, work_, team_);
+  };
+  negative_ = negative(Stiffness::exact, 0);
+  if (negative_ == 0 || policy == Policy::follow) return true;
   ++report_.projections;
-  ++report_.factorisations;
-  if (system_.factorise(at, demand, active, Stiffness::projected, 0, work_, team_) == 0) return true;
+  if (negative(Stiffness::projected, 0) == 0) return true;
   for (double shift = 1e-4; shift < 100; shift *= 10) {
     ++report_.shifts;
-    ++report_.factorisations;
-    if (system_.factorise(at, demand, active, Stiffness::projected, shift, work_, team_) == 0) return true;
+    if (negative(Stiffness::projected, shift) == 0) return true;
   }
   return false;
 }
@@ -63,7 +65,7 @@ bool PhysicalNewton::accept(double moved_mm, Iterate& at) {
   record(moved_mm);
   std::swap(at, trial_);
   std::swap(balance_, trial_balance_);
-  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm});
+  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
 }
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
@@ -110,7 +112,8 @@ PhysicalNewton::Advance PhysicalNewton::simplified_steps(Iterate& at) {
   return Advance::made;
 }
 
-PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::vector<bool>& active, Iterate& at) {
+PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy,
+                                              Iterate& at) {
   demand_ = &demand;
   active_ = &active;
   system_.evaluate(at, demand, active, work_, balance_, team_);
@@ -118,7 +121,7 @@ PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::v
   Advance advance = Advance::made;
   double damping = 1;
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
-    if (!factorise(at, demand, active)) return Outcome::stuck;
+    if (!factorise(at, policy)) return Outcome::stuck;
     advance = damped_step(at, damping);
     if (advance != Advance::made || damping < 1) continue;
     if (step_.size.largest < settings_.tolerance_mm)

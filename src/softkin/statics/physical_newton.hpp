@@ -22,9 +22,16 @@ class PhysicalNewton {
   PhysicalNewton(const PhysicalSystem& system, PhysicalSystem::Workspace& work, Team& team, const Settings& settings,
                  const ProgressCallback& progress, SolveReport& report);
 
+  /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact one,
+  /// towards the nearest equilibrium, stable or not.
+  enum class Policy { descend, follow };
+
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation.
-  Outcome solve(const Demand& demand, const std::vector<bool>& active, Iterate& at);
+  Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at);
+
+  /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
+  [[nodiscard]] int unstable_modes() const { return negative_; }
 
  private:
   struct Step {
@@ -33,7 +40,7 @@ class PhysicalNewton {
   };
   enum class Advance { none, made, arrived, interrupted };
 
-  bool factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active);
+  bool factorise(const Iterate& at, Policy policy);
   void find(const PhysicalSystem::Balance& balance, const Points& positions, Step& step);
   bool attempt(const Step& step, double damping, const Iterate& from);
   bool accept(double moved_mm, Iterate& at);
