@@ -278,6 +278,28 @@ TEST(FkLimit, IsToldWithTheLastGoodShape) {
   expect_same_markers(step, same, 1e-4);
 }
 
+TEST(FkLimit, OfLoadsAndDisplacementsIsTold) {
+  const BlockFolder folder(physical_scene());
+  const ProgramResult result = run_fk(folder.scene, {"--force", "payload=-1000,0,0"});  // a column gives way
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.errors.rfind("softkin: limit: ", 0), 0u) << result.errors;
+  EXPECT_NE(result.errors.find(" % of the loads and displacements were reached: "), std::string::npos) << result.errors;
+}
+
+TEST(FkLimit, TooFewIterationsAreNoLimit) {
+  const BlockFolder folder(loaded_scene());
+  const ProgramResult result =
+      run_fk(folder.scene, {"--set", "air=3000", "--max-iterations", "3", "--report", folder / "a.json"});
+  EXPECT_EQ(result.exit_code, 1);
+  const json step = json::parse(read_text(folder / "a.json"))["steps"][0];
+  EXPECT_EQ(step["status"], "not converged");
+  EXPECT_LT(step["reached"], 1);
+  EXPECT_EQ(result.errors.rfind("softkin: not converged: air reached ", 0), 0u) << result.errors;
+  EXPECT_NE(result.errors.find(" kPa of 3000 kPa: the limit of iterations was reached; the shape is the last good one"),
+            std::string::npos)
+      << result.errors;
+}
+
 TEST(FkLimit, APathGoesOnFromTheLastGoodShape) {
   const BlockFolder folder(loaded_scene());
   const std::string path = folder.write("path.csv", "air_kPa\n50\n3000\n2000\n50\n");
