@@ -89,7 +89,7 @@ Polar polar(const Pack33& gradient) {
   return result;
 }
 
-Pack33 turn_compliance(const Pack33& s) {
+Pack33 polar_turn_compliance(const Pack33& s) {
   // below this the smallest of the three stiffnesses is rounding
   constexpr double singular = 1e-9, smallest = 1e-60;
   const Pack total = trace(s);

@@ -13,7 +13,7 @@ struct Polar {
 /// (tr(S) I - S)^-1, which gives the turn of R: R^T dR = [w]_x, (tr(S) I - S) w = axial(R^T dF - dF^T R). It is
 /// positive semidefinite; where it is singular (two mirrored stretches of the same size: R is not unique) the result
 /// is large but finite.
-[[nodiscard]] Pack33 turn_compliance(const Pack33& stretch);
+[[nodiscard]] Pack33 polar_turn_compliance(const Pack33& stretch);
 
 /// Eigenvalues and eigenvectors (the columns of `axes`, right-handed or not) of a symmetric matrix, in every lane:
 /// matrix = axes diag(value) axes^T.

@@ -90,7 +90,7 @@ class CorotationalTangent {
     twice_mu_ = 2 * volume * constants.mu;
     lambda_ = volume * constants.lambda;
     const Pack of_turn = lambda_ * (trace(p.stretch) - 3) - twice_mu_;
-    turn_ = times(times(p.rotation, turn_compliance(p.stretch)), transposed(p.rotation));
+    turn_ = times(times(p.rotation, polar_turn_compliance(p.stretch)), transposed(p.rotation));
     for (Pack3& row : turn_.row) row = of_turn * row;
     for (int a = 0; a < K; ++a) turned_[a] = p.rotation * slope[a];
   }

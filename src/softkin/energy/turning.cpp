@@ -27,7 +27,7 @@ Pack33 times(const Pack33& a, const Pack33& b) {
 Pack3 spin(const Polar& polar, const Pack33& rate) {
   const Pack33 q = transpose_times(polar.rotation, rate);
   const Pack3 axial{q.row[2].y - q.row[1].z, q.row[0].z - q.row[2].x, q.row[1].x - q.row[0].y};
-  const Pack3 w = polar.rotation * (turn_compliance(polar.stretch) * axial);
+  const Pack3 w = polar.rotation * (polar_turn_compliance(polar.stretch) * axial);
   // more than two turns: the rotation was not unique, and has no rate
   return select(norm(w) < 12, pack(1), pack(0)) * w;
 }
