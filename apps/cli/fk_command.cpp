@@ -3,15 +3,12 @@
 #include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <memory>
-#include <softkin/io/file.hpp>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/io/scene.hpp>
-#include <softkin/io/stl.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "command.hpp"
 #include "fk_options.hpp"
 #include "fk_outputs.hpp"
+#include "fk_robot.hpp"
 #include "fk_run.hpp"
 #include "fk_steps.hpp"
 #include "fk_table.hpp"
@@ -24,24 +21,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The scene; adds the files that it names to inputs.
-RobotSpec read_scene_and(std::vector<fs::path>& inputs, const std::string& scene) {
-  const auto noting = [&inputs](auto read) {
-    return [&inputs, read](const fs::path& path) {
-      inputs.push_back(path);
-      return read(path);
-    };
-  };
-  return parse_scene(read_file(scene), scene, {noting(read_mesh), noting(read_stl), noting(read_sidecar)});
-}
-
 int run_fk(const FkOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.scene};
   if (!options.path.empty()) inputs.emplace_back(options.path);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const Model model = compile(read_scene_and(inputs, options.scene));
+  const Model model = asked_robot(options, inputs);
   const std::vector<Step> steps = asked_steps(model, options);
   check_outputs(options, inputs, steps.size());
   line.show(-1, "assembling");
@@ -49,7 +35,7 @@ int run_fk(const FkOptions& options) {
   line.clear();
   catch_interrupt();
   const OutputFolders folders(options);
-  if (!options.json) print(options.scene + ": " + summary(model) + "\n");
+  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
   return run_steps(model, statics, options, steps);
 }
 
@@ -60,8 +46,8 @@ void add_fk(CLI::App& app, Run& run) {
   const auto options = std::make_shared<FkOptions>();
   add_options(*command, *options);
   command->footer(
-      "Lengths are in mm, actuation in ratios to rest [-]. Exit code: 0 done, 1 not converged or interrupted, 2 bad\n"
-      "usage or bad input.\n"
+      "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 not converged, a limit or\n"
+      "interrupted, 2 bad usage or bad input.\n"
       "Example:\n"
       "  softkin fk examples/pneumatic_finger/pneumatic_finger.yaml --set air=1.5 -o finger.vtu");
   command->callback([options, &run] { run = [options] { return run_fk(*options); }; });

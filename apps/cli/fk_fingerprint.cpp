@@ -52,14 +52,16 @@ class Hash {
   }
   void put(const std::optional<double>& value) { add(value.has_value(), value.value_or(0)); }
   void put(const ElementRole& role) { add(role.material, role.actuator, role.region); }
-  void put(const Material& m) { add(m.region, m.shape_ratio, m.weight, m.linear_range); }
+  void put(const ElasticLaw& e) { add(e.law, e.mu, e.lambda, e.c10, e.c01, e.c20, e.c30, e.bulk); }
+  void put(const Material& m) { add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range); }
+  void put(const CavityFace& face) { add(face.corners, face.edges); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
   void put(const Marker& marker) { add(marker.name, marker.point); }
   void put(const RigidRegion& region) { add(region.name, region.vertices); }
   void put(const Actuator& a) {
-    add(a.name, a.kind, a.rest, a.weight, a.least_norm, a.tetrahedra, a.prisms, a.points, a.surface, a.gaps,
-        a.rest_measure);
+    add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.points,
+        a.surface, a.gaps, a.rest_measure);
   }
 
   std::uint64_t state_ = 0xcbf29ce484222325;
@@ -69,8 +71,9 @@ class Hash {
 
 std::string fingerprint_of(const Model& model) {
   Hash hash;
-  hash.add(model.rest, model.tetrahedra, model.prisms, model.tetrahedron_roles, model.prism_roles, model.region_names,
-           model.materials, model.actuators, model.markers, model.rigid, model.fixed, model.held);
+  hash.add(model.formulation, model.rest, model.tetrahedra, model.edge_nodes, model.prisms, model.tetrahedron_roles,
+           model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
+           model.fixed, model.held, model.dead_load);
   return hash.text();
 }
 

@@ -36,9 +36,10 @@ CLI::Validator finite_number(bool negative_too) {
 void add_files(CLI::App& command, FkOptions& options) {
   command.add_option("SCENE", options.scene, "Scene, YAML (docs/scene.md)")->type_name("")->required();
   command
-      .add_option("--path", options.path,
-                  "A column per actuator, a row per step, each step solved from\nthe last; "
-                  "a column t_s is the time in the series [s]")
+      .add_option(
+          "--path", options.path,
+          "A column per actuator (air; with a load's unit if you like:\nair_kPa), a row per step, each step solved "
+          "from the last; a\ncolumn t_s is the time in the series [s]")
       ->type_name("F.csv");
   command.add_option("-o,--output", options.output, "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...")
       ->type_name("F");
@@ -47,30 +48,44 @@ void add_files(CLI::App& command, FkOptions& options) {
   command.add_option("--image", options.image, "Picture of the last shape")->type_name("F.png");
 }
 
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  return CLI::IsMember(names).description("");
+}
+
 void add_solver(CLI::App& command, FkOptions& options) {
+  const StaticsOptions defaults;
   command
-      .add_option("--solver", options.solver, "local-global: Algorithm 1 of Fang et al. 2020; there is no other yet")
+      .add_option("--formulation", options.formulation,
+                  "physical: elastic laws, pressures, tensions and forces;\ntarget-shape: Fang et al. 2020; default: "
+                  "the scene's")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"local-global"}).description(""));
+      ->check(one_of({"physical", "target-shape"}));
   command
-      .add_option("--tolerance", options.statics.step_tolerance_mm,
+      .add_option("--solver", options.solver_name,
+                  "newton (default), or local-global: Algorithm 1 of Fang et al.\n2020, target-shape only, with the "
+                  "same equilibria but slower")
+      ->type_name("NAME")
+      ->check(one_of({"newton", "local-global"}));
+  command
+      .add_option("--tolerance", options.tolerance_mm,
                   "Stop when no vertex moves farther than this in an iteration\n[mm]; default: 8e-8 of the robot's "
                   "diagonal, which is the\npaper's 1e-5 mm on its robots")
       ->type_name("MM")
       ->check(finite_number(false));
   command
-      .add_option("--max-iterations", options.statics.max_iterations,
-                  "Give up on a step after so many (default: " + std::to_string(options.statics.max_iterations) + ")")
+      .add_option("--max-iterations", options.max_iterations,
+                  "Give up on a step after so many, of Newton's method or of\nAlgorithm 1 (default: " +
+                      std::to_string(defaults.max_iterations) + ")")
       ->type_name("N")
       ->check(integer_from(1, most_iterations));
   command
-      .add_option("--anderson", options.statics.anderson,
-                  "Earlier iterations that Anderson acceleration combines,\n0 to 20; 0: Algorithm 1 as printed "
-                  "(default: " +
-                      std::to_string(options.statics.anderson) + ")")
+      .add_option("--anderson", options.anderson,
+                  "local-global: earlier iterations that Anderson acceleration\ncombines, 0 to 20; 0: Algorithm 1 as "
+                  "printed (default: " +
+                      std::to_string(defaults.anderson) + ")")
       ->type_name("N")
       ->check(integer_from(0, 20));
-  command.add_option("--threads", options.statics.threads, "0: as many as the machine has (default)")
+  command.add_option("--threads", options.threads, "0: as many as the machine has (default)")
       ->type_name("N")
       ->check(integer_from(0, most_threads));
 }
@@ -81,12 +96,35 @@ bool FkOptions::series() const {
   return lower_extension(output) == ".pvd";
 }
 
+Solver FkOptions::solver() const {
+  return solver_name == "local-global" ? Solver::local_global : Solver::newton;
+}
+
+StaticsOptions FkOptions::statics() const {
+  StaticsOptions result;
+  result.solver = solver();
+  result.step_tolerance_mm = tolerance_mm;
+  result.max_iterations = max_iterations;
+  result.anderson = anderson.value_or(result.anderson);
+  result.threads = threads;
+  return result;
+}
+
 void add_options(CLI::App& command, FkOptions& options) {
   add_files(command, options);
   command
       .add_option("--set", options.settings,
-                  "ACTUATOR=RATIO: length, area or volume over that at rest\n[-]; repeatable; other actuators rest")
-      ->type_name("A=R")
+                  "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
+                  "controlled by that (air=50,\nair=50kPa, tendon=3N); repeatable; other actuators rest")
+      ->type_name("A=V")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option(
+          "--force", options.forces,
+          "NAME=FX,FY,FZ: another size and direction for the scene's\nforce of that name [N], such as a payload; "
+          "physical; repeatable")
+      ->type_name("N=F")
       ->expected(1)
       ->take_all();
   command
@@ -111,6 +149,8 @@ void check_usage(const FkOptions& options) {
     throw InvalidInput("--view is the view of the picture: it needs --image F.png");
   if (!options.view.empty() && std::hypot(options.view[0], options.view[1], options.view[2]) == 0)
     throw InvalidInput("--view 0 0 0: must be a direction, so not zero");
+  if (options.anderson && options.solver() != Solver::local_global)
+    throw InvalidInput("--anderson accelerates Algorithm 1: it needs --solver local-global");
   if (options.resume && (options.path.empty() || !options.series() || options.report.empty()))
     throw InvalidInput("--resume needs the --path, --report and --output F.pvd of the run that was interrupted");
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <optional>
 #include <softkin/statics/statics.hpp>
 #include <string>
 #include <vector>
@@ -11,13 +12,20 @@ namespace softkin::cli {
 struct FkOptions {
   std::string scene, path;
   std::string output, report, image;
-  std::string solver = "local-global";
-  std::vector<std::string> settings;  // ACTUATOR=RATIO
+  std::string solver_name = "newton";
+  std::string formulation;            // empty: the scene's
+  std::vector<std::string> settings;  // ACTUATOR=VALUE
+  std::vector<std::string> forces;    // NAME=FX,FY,FZ
   std::vector<double> view;           // from the robot to the eye; empty: the picture's default
-  StaticsOptions statics;
+  double tolerance_mm = StaticsOptions().step_tolerance_mm;
+  int max_iterations = StaticsOptions().max_iterations;
+  std::optional<int> anderson;  // local-global
+  int threads = StaticsOptions().threads;
   bool json = false, resume = false;
 
   [[nodiscard]] bool series() const;  // every step's shape, .pvd
+  [[nodiscard]] Solver solver() const;
+  [[nodiscard]] StaticsOptions statics() const;
 };
 
 void add_options(CLI::App& command, FkOptions& options);

@@ -68,6 +68,24 @@ std::string torn_name(std::string name) {
   return dot == std::string::npos || name[dot] != '.' || dot + 1 == name.size() ? "" : name.substr(0, dot);
 }
 
+constexpr const char* probe_begin = ".softkin.";
+
+/// What OutputFolders writes to see whether it can.
+std::string probe_name() {
+  return probe_begin + std::to_string(::getpid());
+}
+
+bool is_probe(const std::string& name) {
+  const std::string begin = probe_begin;
+  return name.starts_with(begin) && name.size() > begin.size() &&
+         name.find_first_not_of("0123456789", begin.size()) == std::string::npos;
+}
+
+bool is_left_over(const std::string& file, const std::set<std::string>& outputs) {
+  const std::string torn = torn_name(file);
+  return outputs.count(torn) > 0 || is_probe(torn) || is_probe(file);
+}
+
 }  // namespace
 
 fs::path series_file(const fs::path& pvd, std::size_t step) {
@@ -97,7 +115,7 @@ OutputFolders::OutputFolders(const FkOptions& options) {
     const fs::path folder = folder_of(output.file);
     try {
       make(folder);
-      const fs::path probe = folder / (".softkin." + std::to_string(::getpid()));
+      const fs::path probe = folder / probe_name();
       write_file(probe, "");  // asks what permissions do not tell, before the work and not after it
       fs::remove(probe);
     } catch (const fs::filesystem_error& failure) {
@@ -133,7 +151,7 @@ void remove_torn_files(const FkOptions& options, std::size_t steps) {
       for (std::size_t i = 0; i < steps; ++i) names.insert(series_file(output.file, i).filename().string());
     std::vector<fs::path> torn;
     for (const auto& entry : fs::directory_iterator(folder_of(output.file)))
-      if (names.count(torn_name(entry.path().filename().string())) > 0) torn.push_back(entry.path());
+      if (is_left_over(entry.path().filename().string(), names)) torn.push_back(entry.path());
     std::error_code ignored;
     for (const fs::path& file : torn) fs::remove(file, ignored);
   }

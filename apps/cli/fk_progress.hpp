@@ -18,6 +18,8 @@ class FkProgress {
   void clear() { line_.clear(); }
 
  private:
+  [[nodiscard]] double share_of_moves(const Progress& progress) const;
+
   ProgressLine line_;
   std::size_t first_, steps_, step_;
   double start_;           // [s]

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fk_fingerprint.hpp"
+#include "fk_units.hpp"
 
 namespace softkin::cli {
 
@@ -17,7 +18,17 @@ namespace {
 constexpr const char* converged = "converged";
 
 const char* name_of(Status status) {
-  return status == Status::converged ? converged : status == Status::interrupted ? "interrupted" : "not converged";
+  switch (status) {
+    case Status::converged:
+      return converged;
+    case Status::interrupted:
+      return "interrupted";
+    case Status::limit:
+      return "limit";
+    case Status::not_converged:
+      break;
+  }
+  return "not converged";
 }
 
 /// JSON knows no NaN: what a diverged solve does not know is null.
@@ -59,10 +70,85 @@ Json history_json(const std::vector<IterationRecord>& history) {
 }
 
 Json solver_json(const FkOptions& options) {
-  return {{"name", options.solver},
-          {"tolerance_mm", options.statics.step_tolerance_mm},
-          {"max_iterations", options.statics.max_iterations},
-          {"anderson", options.statics.anderson}};
+  const StaticsOptions statics = options.statics();
+  Json json = {{"name", options.solver_name},
+               {"tolerance_mm", statics.step_tolerance_mm},
+               {"max_iterations", statics.max_iterations}};
+  if (statics.solver == Solver::local_global) json["anderson"] = statics.anderson;
+  return json;
+}
+
+Json elastic_json(const ElasticLaw& e) {
+  if (e.law == Law::mooney_rivlin) return {{"c10_MPa", e.c10}, {"c01_MPa", e.c01}, {"bulk_modulus_MPa", e.bulk}};
+  if (e.law == Law::yeoh)
+    return {{"c10_MPa", e.c10}, {"c20_MPa", e.c20}, {"c30_MPa", e.c30}, {"bulk_modulus_MPa", e.bulk}};
+  return {{"mu_MPa", e.mu}, {"lambda_MPa", e.lambda}};
+}
+
+Json materials_json(const Model& model) {
+  Json materials = Json::array();
+  for (const Material& material : model.materials) {
+    Json json = {{"region", material.region}};
+    if (model.formulation == Formulation::physical) {
+      json["law"] = law_name(material.elastic.law);
+      json.update(elastic_json(material.elastic));
+      json["density_kg_m3"] = material.density;
+    } else {
+      json["shape_ratio"] = material.shape_ratio;
+      json["weight"] = material.weight;
+    }
+    materials.push_back(json);
+  }
+  return materials;
+}
+
+Json actuators_json(const Model& model) {
+  Json actuators = Json::object();
+  for (const Actuator& actuator : model.actuators) {
+    const std::string unit = command_unit(actuator);
+    actuators[actuator.name] = {{"kind", kind_name(actuator)},
+                                {"control", control_name(actuator)},
+                                {"unit", unit.empty() ? "ratio to rest" : unit},
+                                {"range", {actuator.low, actuator.high}}};
+  }
+  return actuators;
+}
+
+Json units_json(const Model& model) {
+  const bool physical = model.formulation == Formulation::physical;
+  return {{"markers", "mm"},
+          {"requested", "the unit of each actuator"},
+          {"achieved", "ratio to rest"},
+          {"strain", "stretch minus 1"},
+          {"energy", physical ? "mJ" : "mm^5"},
+          {"residual", physical ? "N" : "mm^4"}};
+}
+
+/// A cable under length control that carries nothing because its path is shorter than the cable.
+bool is_slack(const Actuator& actuator, double achieved, double length, double tension) {
+  constexpr double rounding = 1e-9;
+  return actuator.kind == ActuatorKind::cable && actuator.control == Control::ratio && tension == 0 &&
+         achieved < length * (1 - rounding);
+}
+
+/// Share of the way from the step before to what was asked for.
+Json reached_json(const Model& model, const SolveReport& report) {
+  if (report.status == Status::converged) return 1.0;
+  return model.formulation == Formulation::physical ? known(report.reached) : Json();
+}
+
+Json actuator_json(const Model& model, const Equilibrium& found, std::size_t a) {
+  const Actuator& actuator = model.actuators[a];
+  const auto i = static_cast<Index>(a);
+  const double achieved = achieved_ratio(model, actuator, found.state.positions);
+  Json json = {{"requested", found.actuation[i]}, {"achieved", known(achieved)}};
+  const std::string key = multiplier_key(actuator);
+  if (model.formulation != Formulation::physical || key.empty()) return json;
+  const double multiplier = found.state.multipliers[i];
+  json[key] = known(multiplier);
+  if (actuator.kind == ActuatorKind::cable)
+    json["slack"] = is_slack(actuator, achieved, found.state.actuation[i], multiplier);
+  return json;
 }
 
 std::string line_of(const Json& json) {
@@ -76,7 +162,14 @@ Json step_json(const Model& model, const Equilibrium& equilibrium, const Element
   const Points& positions = equilibrium.state.positions;
   Json step = {{"actuation", Json::object()},
                {"status", name_of(report.status)},
+               {"reached", reached_json(model, report)},
+               {"remark", report.remark},
+               {"shape_actuation", Json()},
                {"iterations", report.iterations},
+               {"factorisations", report.factorisations},
+               {"projections", report.projections},
+               {"shifts", report.shifts},
+               {"continuation_steps", report.continuation_steps},
                {"residual", known(report.gradient_norm)},
                {"step_mm", known(report.step_mm)},
                {"tolerance_mm", report.tolerance_mm},
@@ -91,12 +184,13 @@ Json step_json(const Model& model, const Equilibrium& equilibrium, const Element
     step["markers"][marker.name] = {p.x(), p.y(), p.z()};
   }
   step["actuators"] = Json::object();
+  const bool is_known = equilibrium.state.actuation.size() == equilibrium.actuation.size();
+  if (is_known) step["shape_actuation"] = Json::object();
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const Actuator& actuator = model.actuators[a];
-    const double requested = equilibrium.actuation[static_cast<Index>(a)];
-    step["actuation"][actuator.name] = requested;
-    step["actuators"][actuator.name] = {{"requested", requested},
-                                        {"achieved", achieved_ratio(model, actuator, positions)}};
+    const std::string& name = model.actuators[a].name;
+    step["actuation"][name] = equilibrium.actuation[static_cast<Index>(a)];
+    if (is_known) step["shape_actuation"][name] = equilibrium.state.actuation[static_cast<Index>(a)];
+    step["actuators"][name] = actuator_json(model, equilibrium, a);
   }
   step["strain"] = strain_json(strain_histogram(model, deformation));
   step["history"] = history_json(report.history);
@@ -104,25 +198,27 @@ Json step_json(const Model& model, const Equilibrium& equilibrium, const Element
 }
 
 Report::Report(const Model& model, const FkOptions& options)
-    : head_{
-          {"softkin", SOFTKIN_VERSION},
-          {"scene", options.scene},
-          {"robot_fingerprint", fingerprint_of(model)},
-          {"formulation", "target-shape"},
-          {"solver", solver_json(options)},
-          {"units",
-           {{"markers", "mm"},
-            {"actuators", "ratio to rest"},
-            {"strain", "stretch minus 1"},
-            {"energy", "mm^5"},
-            {"residual", "mm^4"}}},
-          {"mesh",
-           {{"vertices", model.rest.rows()}, {"tetrahedra", model.tetrahedra.size()}, {"prisms", model.prisms.size()}}},
-          {"notes", model.notes}} {}
+    : head_{{"softkin", SOFTKIN_VERSION},
+            {"scene", options.scene},
+            {"robot_fingerprint", fingerprint_of(model)},
+            {"formulation", formulation_name(model.formulation)},
+            {"materials", materials_json(model)},
+            {"actuators", actuators_json(model)},
+            {"solver", solver_json(options)},
+            {"units", units_json(model)},
+            {"mesh",
+             {{"order", model.edge_nodes.empty() ? 1 : 2},
+              {"vertices", model.rest.rows()},
+              {"tetrahedra", model.tetrahedra.size()},
+              {"prisms", model.prisms.size()}}},
+            {"notes", model.notes}} {}
 
 void Report::add(Json step) {
   seconds_ += step.at("seconds").get<double>();
-  if (step.at("status").get<std::string>() != converged) unconverged_.push_back(lines_.size());
+  if (step.at("status").get<std::string>() != converged) {
+    unconverged_.push_back({lines_.size(), step});
+    unconverged_.back().step.erase("history");
+  }
   lines_.push_back(line_of(step));
   last_ = std::move(step);
 }

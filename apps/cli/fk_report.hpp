@@ -18,14 +18,18 @@ class Report {
 
   Report(const Model& model, const FkOptions& options);
 
-  /// What it is about: version, scene, robot, solver, units, mesh, notes.
+  /// What it is about: version, scene, robot, formulation, materials, actuators, solver, units, mesh, notes.
   [[nodiscard]] const Json& head() const { return head_; }
   /// Throws Json::exception on a step that step_json did not make.
   void add(Json step);
   [[nodiscard]] std::size_t size() const { return lines_.size(); }
   [[nodiscard]] const Json& last() const { return last_; }
-  /// The numbers of the steps that did not converge.
-  [[nodiscard]] const std::vector<std::size_t>& unconverged() const { return unconverged_; }
+  /// A step that did not converge, without its history.
+  struct Unconverged {
+    std::size_t number = 0;
+    Json step;
+  };
+  [[nodiscard]] const std::vector<Unconverged>& unconverged() const { return unconverged_; }
 
   /// JSON, a line for each key and each step. Grows by what add() brings, so that it can be written after every step.
   [[nodiscard]] std::string text() const;
@@ -33,7 +37,7 @@ class Report {
  private:
   Json head_, last_;
   std::vector<std::string> lines_;
-  std::vector<std::size_t> unconverged_;
+  std::vector<Unconverged> unconverged_;
   double seconds_ = 0;
 };
 

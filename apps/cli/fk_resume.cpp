@@ -9,7 +9,7 @@
 
 #include "fk_fingerprint.hpp"
 #include "fk_outputs.hpp"
-#include "terminal.hpp"
+#include "fk_units.hpp"
 
 namespace softkin::cli {
 
@@ -62,8 +62,8 @@ class ReportOnDisk {
       const std::string& name = model_.actuators[a].name;
       const double before = actuation.at(name).get<double>(), now = asked_[i].actuation[static_cast<Index>(a)];
       if (before != now)
-        refuse(number_of_step + " was solved for " + name + " = " + number(before, 12) + ", but " + where +
-               " asks for " + number(now, 12) + "; the path has changed");
+        refuse(number_of_step + " was solved for " + name + " = " + command_text(model_.actuators[a], before, 12) +
+               ", but " + where + " asks for " + command_text(model_.actuators[a], now, 12) + "; the path has changed");
     }
     const std::optional<double> time =
         step.contains("time_s") ? std::optional(step.at("time_s").get<double>()) : std::nullopt;
@@ -81,6 +81,22 @@ class ReportOnDisk {
     return std::nullopt;
   }
 
+  /// What the next step starts from, as if the step had just been solved.
+  [[nodiscard]] State state(const Json& step, Points positions) const {
+    State result{std::move(positions), {}, Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size()))};
+    const Json& actuation = step.at("shape_actuation");
+    if (!actuation.is_null()) result.actuation = Actuation::Zero(result.multipliers.size());
+    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+      const Actuator& actuator = model_.actuators[a];
+      const auto i = static_cast<Index>(a);
+      if (!actuation.is_null()) result.actuation[i] = actuation.at(actuator.name).get<double>();
+      const std::string key = multiplier_key(actuator);
+      if (model_.formulation == Formulation::physical && !key.empty())
+        result.multipliers[i] = step.at("actuators").at(actuator.name).at(key).get<double>();
+    }
+    return result;
+  }
+
   Finished take_steps(Report& report) const {
     Finished finished;
     const Json& steps = json_.at("steps");
@@ -92,7 +108,7 @@ class ReportOnDisk {
         break;
       }
       report.add(steps.at(i));
-      finished.positions = std::move(*positions);
+      finished.state = state(steps.at(i), std::move(*positions));
       ++finished.steps;
     }
     return finished;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace softkin::cli {
 /// What an interrupted run has left.
 struct Finished {
   std::size_t steps = 0;  // added to the report
-  Points positions;       // of the last of them
+  State state;            // of the last of them
   std::string remark;     // for the user
 };
 

@@ -12,6 +12,7 @@
 #include "fk_report.hpp"
 #include "fk_resume.hpp"
 #include "fk_table.hpp"
+#include "fk_units.hpp"
 #include "mesh_text.hpp"
 #include "terminal.hpp"
 
@@ -56,7 +57,7 @@ class FkRun {
     remove_torn_files(options_, steps_.size());
     if (!finished.remark.empty()) say(finished.remark);
     if (finished.steps == 0) return say("nothing to resume: starting with step 0");
-    state_.positions = std::move(finished.positions);
+    state_ = std::move(finished.state);
     write_collection();
     const std::string count = std::to_string(finished.steps) + " of " + counted(steps_.size(), "step");
     say(count +
@@ -72,7 +73,7 @@ class FkRun {
       return !interrupted();
     };
     if (interrupted()) return false;
-    Equilibrium found = statics_.solve(steps_[i].actuation, state_, options_.statics, go_on);
+    Equilibrium found = statics_.solve(steps_[i].actuation, state_, options_.statics(), go_on);
     progress.clear();
     if (found.report.status == Status::interrupted) return false;
     keep(found, i);
@@ -106,7 +107,7 @@ class FkRun {
 
   [[nodiscard]] bool last_converged() const {
     const auto& unconverged = report_.unconverged();
-    return unconverged.empty() || unconverged.back() + 1 != report_.size();
+    return unconverged.empty() || unconverged.back().number + 1 != report_.size();
   }
 
   /// What shows the last finished step.
@@ -121,13 +122,17 @@ class FkRun {
 
   [[nodiscard]] std::string image_title() const {
     std::string title;
-    for (const auto& [name, ratio] : report_.last().at("actuation").items())
-      title += (title.empty() ? "" : ", ") + name + " = " + number(ratio.get<double>(), 4) + " [-]";
-    return last_converged() ? title : title + (title.empty() ? "not converged" : ": not converged");
+    for (const Actuator& actuator : model_.actuators) {
+      const double value = report_.last().at("actuation").at(actuator.name).get<double>();
+      title += (title.empty() ? "" : ", ") + actuator.name + " = " + command_text(actuator, value, 4) +
+               (actuator.control == Control::ratio ? " [-]" : "");
+    }
+    const auto status = report_.last().at("status").get<std::string>();
+    return last_converged() ? title : title + (title.empty() ? status : ": " + status);
   }
 
   void say_findings() const {
-    say(findings(report_.last()));
+    say(findings(model_, report_.last()));
     if (!options_.output.empty()) say("shapes: " + options_.output + " (open it in ParaView)");
     if (!options_.image.empty()) say("picture: " + options_.image);
     if (!options_.report.empty()) say("report: " + options_.report);
@@ -147,14 +152,25 @@ class FkRun {
   }
 
   [[nodiscard]] int judge() const {
-    const auto& unconverged = report_.unconverged();
-    if (unconverged.empty()) return done;
-    std::string text = "not converged";
-    if (steps_.size() > 1)
-      text += unconverged.size() == 1 ? " in step " + list_text(unconverged) : " in steps " + list_text(unconverged);
-    std::fprintf(stderr, "softkin: %s: the shape is that after %s, not an equilibrium\n", text.c_str(),
-                 counted(static_cast<std::size_t>(options_.statics.max_iterations), "iteration").c_str());
+    if (report_.unconverged().empty()) return done;
+    for (const char* status : {"not converged", "limit"}) complain(status);
     return not_converged;
+  }
+
+  /// Tells which steps ended so, and of the last of them how.
+  void complain(const std::string& status) const {
+    std::vector<std::size_t> numbers;
+    const Report::Json* last = nullptr;
+    for (const Report::Unconverged& each : report_.unconverged()) {
+      if (each.step.at("status").get<std::string>() != status) continue;
+      numbers.push_back(each.number);
+      last = &each.step;
+    }
+    if (numbers.empty()) return;
+    std::string text = status;
+    if (steps_.size() > 1) text += (numbers.size() == 1 ? " in step " : " in steps ") + list_text(numbers);
+    text += numbers.size() > 1 ? "; in the last of them " : ": ";
+    std::fprintf(stderr, "softkin: %s%s\n", text.c_str(), shortfall(model_, *last).c_str());
   }
 
   const Model& model_;

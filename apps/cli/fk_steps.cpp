@@ -7,6 +7,7 @@
 #include <softkin/io/scanner.hpp>
 #include <string_view>
 
+#include "fk_units.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -33,12 +34,8 @@ std::optional<Index> find_actuator(const Model& model, const std::string& name) 
   return std::nullopt;
 }
 
-bool in_range(const Actuator& actuator, double ratio) {
-  return ratio >= actuator.low && ratio <= actuator.high;
-}
-
-std::string range_text(const Actuator& actuator) {
-  return "its range, " + number(actuator.low) + " to " + number(actuator.high) + " [-]";
+bool in_range(const Actuator& actuator, double value) {
+  return value >= actuator.low && value <= actuator.high;
 }
 
 /// What --set asks for, per actuator.
@@ -49,17 +46,17 @@ Settings read_settings(const Model& model, const std::vector<std::string>& setti
   for (const std::string& setting : settings) {
     const auto refuse = [&](const std::string& why) { throw InvalidInput("--set " + excerpt(setting) + ": " + why); };
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) refuse("expected ACTUATOR=RATIO, for example --set air=1.5");
+    if (equals == std::string::npos) refuse("expected ACTUATOR=VALUE, for example --set air=1.5");
     const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
     const std::optional<Index> a = find_actuator(model, name);
     if (!a) refuse(unknown_actuator(model, name));
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
-    double ratio = 0;
-    if (!parse_real(text, ratio))
-      refuse("the ratio to rest must be a finite number without unit, not " + excerpt(text));
-    if (!in_range(actuator, ratio)) refuse("the ratio is outside " + range_text(actuator));
+    double value = 0;
+    if (!parse_command(actuator, text, value)) refuse(expected_command(actuator) + ", not " + excerpt(text));
+    if (!in_range(actuator, value))
+      refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator));
     if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");
-    values[static_cast<std::size_t>(*a)] = ratio;
+    values[static_cast<std::size_t>(*a)] = value;
   }
   return values;
 }
@@ -71,16 +68,44 @@ Actuation start_actuation(const Model& model, const Settings& settings) {
   return actuation;
 }
 
+/// An actuator that is controlled by its load may have the unit in its column's name: air_kPa, tendon_N.
+std::string column_with_unit(const Actuator& actuator) {
+  const std::string unit = command_unit(actuator);
+  return unit.empty() ? "" : actuator.name + "_" + unit;
+}
+
+std::optional<Index> actuator_of_column(const Model& model, const std::string& column) {
+  if (const std::optional<Index> a = find_actuator(model, column)) return a;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (column == column_with_unit(model.actuators[a])) return static_cast<Index>(a);
+  return std::nullopt;
+}
+
+/// Where a column names an actuator with a unit that it does not take, says so; else what an unknown name says.
+std::string unknown_column(const Model& model, const std::string& column) {
+  const std::size_t underscore = column.rfind('_');
+  const std::optional<Index> a =
+      underscore == std::string::npos ? std::nullopt : find_actuator(model, column.substr(0, underscore));
+  if (!a) return unknown_actuator(model, column) + "; a time is column t_s [s]";
+  const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
+  const std::string with_unit = column_with_unit(actuator);
+  return "actuator '" + actuator.name + "' takes a " + command_name(actuator) +
+         (with_unit.empty() ? " without unit: its column is '" + actuator.name + "'"
+                            : ": its column is '" + actuator.name + "' or '" + with_unit + "'");
+}
+
 std::vector<Index> column_targets(const Model& model, const std::string& file, const CsvTable& table,
                                   const Settings& settings) {
   std::vector<Index> targets;
   for (const std::string& column : table.columns) {
-    const std::optional<Index> a = find_actuator(model, column);
+    const std::optional<Index> a = actuator_of_column(model, column);
     if (!a && column != time_column)
-      throw InvalidInput(
-          {file}, "column " + excerpt(column) + ": " + unknown_actuator(model, column) + "; a time is column t_s [s]");
+      throw InvalidInput({file}, "column " + excerpt(column) + ": " + unknown_column(model, column));
     if (a && settings[static_cast<std::size_t>(*a)])
-      throw InvalidInput("--set " + column + ": the path " + file + " has a column for this actuator");
+      throw InvalidInput("--set " + model.actuators[static_cast<std::size_t>(*a)].name + ": the path " + file +
+                         " has a column for this actuator");
+    if (a && std::find(targets.begin(), targets.end(), *a) != targets.end())
+      throw InvalidInput({file}, "column " + excerpt(column) + ": another column is of the same actuator");
     targets.push_back(a.value_or(time_target));
   }
   if (std::all_of(targets.begin(), targets.end(), [](Index target) { return target == time_target; }))
@@ -124,7 +149,8 @@ class PathReader {
       }
       const Actuator& actuator = model_.actuators[static_cast<std::size_t>(targets_[column])];
       if (!in_range(actuator, value))
-        fail(row, "column '" + actuator.name + "': " + number(value, 12) + " is outside " + range_text(actuator));
+        fail(row,
+             "column '" + table_.columns[column] + "': " + number(value, 12) + " is outside " + range_text(actuator));
       step.actuation[targets_[column]] = value;
     }
     return step;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fk_units.hpp"
 #include "mesh_text.hpp"
 #include "terminal.hpp"
 
@@ -12,7 +13,8 @@ namespace softkin::cli {
 namespace {
 
 constexpr std::size_t longest_name = 24;
-constexpr int ratio_decimals = 4;
+constexpr std::size_t load_width = 12;
+constexpr int value_decimals = 4;  // of ratios and loads
 
 std::string fixed(double value, int decimals) {
   char text[400];
@@ -51,11 +53,49 @@ std::string percent(const nlohmann::ordered_json& share) {
   return fixed(100 * share.get<double>(), 1) + " %";
 }
 
-const char* kind_of(const Actuator& actuator) {
-  return actuator.kind == ActuatorKind::cable ? "cable" : actuator.kind == ActuatorKind::dea ? "dea" : "pneumatic";
+/// "pressure [kPa]" or "tension [N]" where the robot answers with one, else "".
+std::string load_header(const Model& model, const Actuator& actuator) {
+  if (model.formulation != Formulation::physical || actuator.kind == ActuatorKind::dea) return "";
+  return actuator.kind == ActuatorKind::cable ? "tension [N]" : "pressure [kPa]";
 }
 
-const char* unit_of(const Actuator& actuator) {
+std::string fixed_or_unknown(const nlohmann::ordered_json& value) {
+  return value.is_null() ? "unknown" : fixed(value.get<double>(), value_decimals);
+}
+
+/// The materials' laws, each once.
+std::string laws(const Model& model) {
+  std::vector<std::string> names;
+  for (const Material& material : model.materials) {
+    const std::string name = law_name(material.elastic.law);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string command_range(const Actuator& actuator) {
+  const std::string unit = command_unit(actuator);
+  return std::string(command_name(actuator)) + " " + number(actuator.low) + " to " + number(actuator.high) + " " +
+         (unit.empty() ? "[-]" : unit);
+}
+
+/// "air reached 1.62 of 1.8, tendon reached 2 N of 3 N".
+std::string reached_text(const Model& model, const nlohmann::ordered_json& step) {
+  std::string text;
+  for (const Actuator& actuator : model.actuators) {
+    const double asked = step.at("actuation").at(actuator.name).get<double>();
+    const double reached = step.at("shape_actuation").at(actuator.name).get<double>();
+    if (reached == asked) continue;
+    text += (text.empty() ? "" : ", ") + actuator.name + " reached " + command_text(actuator, reached) + " of " +
+            command_text(actuator, asked);
+  }
+  if (!text.empty()) return text;
+  return percent(step.at("reached")) + " of the loads and displacements were reached";
+}
+
+const char* unit_of_measure(const Actuator& actuator) {
   return actuator.kind == ActuatorKind::cable ? "mm" : actuator.kind == ActuatorKind::dea ? "mm^2" : "mm^3";
 }
 
@@ -67,9 +107,11 @@ StepTable::StepTable(const Model& model, std::size_t steps) : model_(model) {
   length_width_ = std::max(length_width_, fixed(-farthest, decimals_).size());
   add("step", std::to_string(steps).size());
   for (const Actuator& actuator : model.actuators) {
-    const std::size_t width = fixed(actuator.high, ratio_decimals).size();
-    add(short_name(actuator.name) + " [-]", width);
+    const std::size_t width =
+        std::max(fixed(actuator.high, value_decimals).size(), fixed(actuator.low, value_decimals).size());
+    add(short_name(actuator.name) + " " + bracketed_unit(actuator), width);
     add("achieved [-]", width);
+    if (const std::string load = load_header(model, actuator); !load.empty()) add(load, load_width);
   }
   for (const Marker& marker : model.markers) add(short_name(marker.name) + " x, y, z [mm]", 3 * length_width_ + 2);
   add("iterations", 7);
@@ -95,9 +137,12 @@ std::string StepTable::header() const {
 
 std::string StepTable::row(std::size_t step, const nlohmann::ordered_json& json) const {
   std::vector<std::string> cells{std::to_string(step)};
-  for (const Actuator& actuator : model_.actuators)
-    for (const char* key : {"requested", "achieved"})
-      cells.push_back(fixed(json.at("actuators").at(actuator.name).at(key).get<double>(), ratio_decimals));
+  for (const Actuator& actuator : model_.actuators) {
+    const auto& values = json.at("actuators").at(actuator.name);
+    for (const char* key : {"requested", "achieved"}) cells.push_back(fixed_or_unknown(values.at(key)));
+    if (!load_header(model_, actuator).empty())
+      cells.push_back(values.value("slack", false) ? "slack" : fixed_or_unknown(values.at(multiplier_key(actuator))));
+  }
   for (const Marker& marker : model_.markers) {
     std::string point;
     for (const auto& x : json.at("markers").at(marker.name))
@@ -110,33 +155,55 @@ std::string StepTable::row(std::size_t step, const nlohmann::ordered_json& json)
   return line(cells);
 }
 
-std::string summary(const Model& model) {
+std::string summary(const Model& model, const std::string& solver) {
   std::string text = grouped(static_cast<std::size_t>(model.rest.rows())) + " vertices";
-  if (!model.tetrahedra.empty()) text += ", " + grouped(model.tetrahedra.size()) + " tetrahedra";
+  if (!model.tetrahedra.empty())
+    text += ", " + grouped(model.tetrahedra.size()) + " tetrahedra of order " + (model.edge_nodes.empty() ? "1" : "2");
   if (!model.prisms.empty()) text += ", " + grouped(model.prisms.size()) + " prisms";
+  text += std::string("; ") + formulation_name(model.formulation) + " formulation";
+  if (model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
+  text += ", solver " + solver;
   for (const Actuator& a : model.actuators)
-    text += "\nactuator " + a.name + ": " + kind_of(a) + ", " + number(a.rest_measure) + " " + unit_of(a) +
-            " at rest, ratio " + number(a.low) + " to " + number(a.high) + " [-]";
+    text += "\nactuator " + a.name + ": " + kind_name(a) + ", " + number(a.rest_measure) + " " + unit_of_measure(a) +
+            " at rest, " + command_range(a);
   for (const std::string& note : model.notes) text += "\nnote: " + note;
   return text;
 }
 
-std::string findings(const nlohmann::ordered_json& step) {
+std::string findings(const Model& model, const nlohmann::ordered_json& step) {
   const auto& strain = step.at("strain");
   std::string text;
+  const auto say = [&text](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
   if (!strain.at("volume_shares").empty())
-    text += "principal strain of the body: " + percent(strain.at("least")) + " to " + percent(strain.at("greatest")) +
-            ", 95 % of the volume within " + percent(strain.at("magnitude_percentile_95")) + "\n";
+    say("principal strain of the body: " + percent(strain.at("least")) + " to " + percent(strain.at("greatest")) +
+        ", 95 % of the volume within " + percent(strain.at("magnitude_percentile_95")));
   for (const auto& beyond : strain.at("beyond_linear_range"))
-    text += percent(beyond.at("volume_share")) + " of region '" + beyond.at("region").get<std::string>() +
-            "' is strained beyond its linear range of " + percent(beyond.at("linear_range")) + "\n";
+    say(percent(beyond.at("volume_share")) + " of region '" + beyond.at("region").get<std::string>() +
+        "' is strained beyond its linear range of " + percent(beyond.at("linear_range")));
   if (const auto inverted = step.at("inverted_elements").get<std::size_t>(); inverted > 0)
-    text += "warning: " + counted(inverted, "element") + (inverted == 1 ? " is" : " are") + " inverted\n";
+    say("warning: " + counted(inverted, "element") + (inverted == 1 ? " is" : " are") + " inverted");
+  for (const auto& [name, actuator] : step.at("actuators").items())
+    if (actuator.value("slack", false))
+      say("cable '" + name + "' is slack: its path is " + number(actuator.at("achieved").get<double>(), 5) +
+          " of its length at rest, the cable " + number(actuator.at("requested").get<double>(), 5));
+  const bool physical = model.formulation == Formulation::physical;
+  if (physical && step.at("status").get<std::string>() != "converged") return text;  // of another shape
   const auto& moved = step.at("step_mm");
   const auto& error = step.at("estimated_error_mm");
-  if (moved.is_null() || error.is_null()) return text + "warning: the iteration diverged";
-  return text + "last step of the iteration " + number(moved.get<double>(), 2) +
-         " mm; estimated distance from the equilibrium " + number(error.get<double>(), 2) + " mm";
+  if (moved.is_null() || error.is_null())
+    say("warning: the iteration diverged");
+  else
+    say("last step of the iteration " + number(moved.get<double>(), 2) +
+        " mm; estimated distance from the equilibrium " + number(error.get<double>(), 2) + " mm");
+  return text;
+}
+
+std::string shortfall(const Model& model, const nlohmann::ordered_json& step) {
+  const auto remark = step.at("remark").get<std::string>();
+  if (model.formulation == Formulation::physical)
+    return reached_text(model, step) + ": " + remark + "; the shape is the last good one";
+  return (remark.empty() ? "" : remark + ", and ") + "the shape is that after " +
+         counted(step.at("iterations").get<std::size_t>(), "iteration") + ", not an equilibrium";
 }
 
 std::string list_text(const std::vector<std::size_t>& numbers) {

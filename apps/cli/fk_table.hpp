@@ -28,11 +28,16 @@ class StepTable {
   std::vector<std::size_t> widths_;
 };
 
-/// "1,851 vertices, 5,556 tetrahedra", the actuators and the model's notes, a line each.
-[[nodiscard]] std::string summary(const Model& model);
+/// "1,851 vertices, 5,556 tetrahedra of order 1; physical formulation (neo-hookean), solver newton", the actuators and
+/// the model's notes, a line each.
+[[nodiscard]] std::string summary(const Model& model, const std::string& solver);
 
-/// Strains and what a step may hide, a line each. step: of step_json.
-[[nodiscard]] std::string findings(const nlohmann::ordered_json& step);
+/// Strains, slack cables and what a step may hide, a line each. step: of step_json.
+[[nodiscard]] std::string findings(const Model& model, const nlohmann::ordered_json& step);
+
+/// Why a step did not converge and what its shape is: "air reached 1.62 of 1.8: beyond this point no equilibrium
+/// follows; the shape is the last good one". step: of step_json.
+[[nodiscard]] std::string shortfall(const Model& model, const nlohmann::ordered_json& step);
 
 /// "0 to 3, 7"; numbers ascend.
 [[nodiscard]] std::string list_text(const std::vector<std::size_t>& numbers);

@@ -72,15 +72,33 @@ void expect_keys(const json& object, const std::vector<std::string>& keys) {
 }
 
 void expect_step_form(const json& step, const std::vector<std::string>& more) {
-  std::vector<std::string> keys{
-      "actuation", "status",       "iterations",         "residual",          "step_mm", "seconds",
-      "energy",    "tolerance_mm", "estimated_error_mm", "inverted_elements", "markers", "strain",
-      "actuators", "history"};
+  std::vector<std::string> keys{"actuation",
+                                "status",
+                                "iterations",
+                                "residual",
+                                "step_mm",
+                                "seconds",
+                                "energy",
+                                "tolerance_mm",
+                                "estimated_error_mm",
+                                "inverted_elements",
+                                "markers",
+                                "strain",
+                                "actuators",
+                                "history",
+                                "reached",
+                                "remark",
+                                "shape_actuation",
+                                "factorisations",
+                                "projections",
+                                "shifts",
+                                "continuation_steps"};
   keys.insert(keys.end(), more.begin(), more.end());
   expect_keys(step, keys);
   for (const char* key : {"residual", "step_mm", "tolerance_mm", "estimated_error_mm", "seconds", "energy"})
     EXPECT_TRUE(step[key].is_number_float()) << key;
-  EXPECT_TRUE(step["iterations"].is_number_unsigned());
+  for (const char* key : {"iterations", "factorisations", "projections", "shifts", "continuation_steps"})
+    EXPECT_TRUE(step[key].is_number_unsigned()) << key;
   EXPECT_TRUE(step["inverted_elements"].is_number_integer());
   expect_keys(step["actuation"], {"air"});
   expect_keys(step["actuators"], {"air"});
@@ -96,17 +114,23 @@ void expect_step_form(const json& step, const std::vector<std::string>& more) {
 TEST(FkReport, HasTheFormOfTheDesign) {
   const BlockFolder folder;
   const json report = solve_block(folder, "1.5").report;
-  expect_keys(report, {"softkin", "scene", "robot_fingerprint", "formulation", "solver", "units", "mesh", "notes",
-                       "steps", "seconds"});
+  expect_keys(report, {"softkin", "scene", "robot_fingerprint", "formulation", "materials", "actuators", "solver",
+                       "units", "mesh", "notes", "steps", "seconds"});
   EXPECT_EQ(report["scene"], folder.scene);
-  EXPECT_EQ(report["mesh"], json({{"vertices", 96}, {"tetrahedra", 270}, {"prisms", 0}}));
-  EXPECT_EQ(report["solver"],
-            json({{"name", "local-global"}, {"tolerance_mm", 0.0}, {"max_iterations", 50000}, {"anderson", 6}}));
+  EXPECT_EQ(report["mesh"], json({{"order", 1}, {"vertices", 96}, {"tetrahedra", 270}, {"prisms", 0}}));
+  EXPECT_EQ(report["solver"], json({{"name", "newton"}, {"tolerance_mm", 0.0}, {"max_iterations", 50000}}));
+  EXPECT_EQ(report["formulation"], "target-shape");
+  EXPECT_EQ(report["materials"], json::parse(R"([{"region": "body", "shape_ratio": 1.0, "weight": 1.0}])"));
+  EXPECT_EQ(report["units"]["energy"], "mm^5");
+  EXPECT_EQ(report["units"]["residual"], "mm^4");
   EXPECT_EQ(run_program({"--version"}).output, "softkin " + report["softkin"].get<std::string>() + "\n");
   ASSERT_EQ(report["steps"].size(), 1u);
   const json& step = report["steps"][0];
   expect_step_form(step, {});
   EXPECT_EQ(step["status"], "converged");
+  EXPECT_EQ(step["reached"], 1.0);
+  EXPECT_EQ(step["remark"], "");
+  EXPECT_EQ(step["shape_actuation"], step["actuation"]);
   EXPECT_LT(step["step_mm"], step["tolerance_mm"]);
   EXPECT_NEAR(step["tolerance_mm"], 8e-8 * std::hypot(20, 12, 12), 1e-15);
   EXPECT_EQ(report["seconds"], step["seconds"]);

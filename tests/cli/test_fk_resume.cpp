@@ -161,6 +161,20 @@ TEST(FkResume, KilledAtAnyMoment) {
   EXPECT_EQ(folder.reported(), std::size_t{steps});
 }
 
+TEST(FkResume, RemovesWhatAKilledRunLeaves) {
+  const PathFolder folder;
+  folder.write("path.csv", path_text(2));
+  EXPECT_EQ(folder.run().exit_code, 0);
+  const auto expected = shapes_of(folder);
+  for (const std::string name : {".softkin.17", ".softkin.17.17.part", "shape_0001.vtu.17.part", "shape.pvd.17.part"})
+    folder.write("out/" + name, "");
+  EXPECT_EQ(folder.resume().exit_code, 0);
+  EXPECT_EQ(shapes_of(folder), expected);
+  folder.write("out/.softkin.notes", "not ours");
+  EXPECT_EQ(folder.resume().exit_code, 0);
+  EXPECT_EQ(shapes_of(folder).size(), expected.size() + 1);
+}
+
 TEST(FkResume, NothingLeftIsSaid) {
   const PathFolder folder;
   EXPECT_EQ(folder.run().exit_code, 0);
@@ -298,8 +312,9 @@ TEST(FkInterrupt, OfASingleSolveLeavesNothing) {
   const TemporaryFolder folder;
   folder.write("block.msh", Block(40).mesh.text());
   const std::string scene = folder.write("block.yaml", block_scene());
-  StartedProgram program(folder, {"fk", scene, "--set", "air=1.9", "--tolerance", "1e-300", "--max-iterations",
-                                  "1000000000", "-o", folder / "new/shape.vtu", "--threads", "1"});
+  StartedProgram program(
+      folder, {"fk", scene, "--set", "air=1.9", "--tolerance", "1e-300", "--max-iterations", "1000000000", "-o",
+               folder / "new/shape.vtu", "--threads", "1", "--solver", "local-global"});
   ASSERT_TRUE(program.wait_until([&] { return read_text(folder / "stdout.txt").find("status") != std::string::npos; }));
   program.send(SIGINT);
   const ProgramResult result = program.wait();

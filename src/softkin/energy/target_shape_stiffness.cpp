@@ -1,6 +1,6 @@
 #include <softkin/energy/target_shape_parts.hpp>
 #include <softkin/energy/target_shape_stiffness.hpp>
-#include <softkin/energy/turn_compliance.hpp>
+#include <softkin/energy/turn_response.hpp>
 
 namespace softkin {
 
@@ -140,7 +140,7 @@ void turned_move(const Pack& weight, const Shape<K>& current, const Shape<K>& ta
                  Shape<K>& out) {
   for (int i = 0; i < K; ++i) out[i] = change[i];
   center<K>(out);
-  const Pack3 turn = turn_compliance(turn_stiffness<K>(current, target)) * moment<K>(target, out);
+  const Pack3 turn = turn_response(turn_stiffness<K>(current, target)) * moment<K>(target, out);
   // Cayley's map: agrees with exp to second order, and never turns by more than half a circle
   const Pack3 half = pack(0.5) * turn;
   const Pack scale = 1 / sqrt(1 + dot(half, half));
@@ -185,7 +185,7 @@ void pull_change_of_body(const BodyBlock<K>& block, const Shape<K>& current, con
   turned<K>(rotation, block.rest, target);
   for (int i = 0; i < K; ++i) moved[i] = change[i];
   center<K>(moved);
-  const Pack3 turn = turn_compliance(turn_stiffness<K>(current, target)) * moment<K>(target, moved);
+  const Pack3 turn = turn_response(turn_stiffness<K>(current, target)) * moment<K>(target, moved);
   Pack growth = pack(0);
   if (block.blended) {
     Shape<K> slope;
@@ -207,7 +207,7 @@ void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio,
   for (int i = 0; i < K; ++i) moved[i] = change[i];
   center<K>(moved);
   const Pack3 torque = moment<K>(target, moved) + ratio_change * moment<K>(slope, current);
-  const Pack3 turn = turn_compliance(turn_stiffness<K>(current, target)) * torque;
+  const Pack3 turn = turn_response(turn_stiffness<K>(current, target)) * torque;
   for (int i = 0; i < K; ++i) out[i] = block.weight * (cross(turn, target[i]) + ratio_change * slope[i] - moved[i]);
 }
 
@@ -253,7 +253,7 @@ void stiffness_of_body(const BodyBlock<K>& block, const Shape<K>& current, const
   for (Pack3& point : mode) point = Pack3{};
   if (!block.blended) {
     const Pack33 compliance =
-        projected ? turn_compliance(stiffness, turn_stiffness<K>(target, target), pack(1)) : turn_compliance(stiffness);
+        projected ? turn_response(stiffness, turn_stiffness<K>(target, target), pack(1)) : turn_response(stiffness);
     assemble<K>(block.weight, pack(1), target, compliance, pack(0), mode, out);
     return;
   }
@@ -270,7 +270,7 @@ void stiffness_of_body(const BodyBlock<K>& block, const Shape<K>& current, const
   const PackMask bounded = projected | (block.shape_ratio < 1);
   const Pack least = select(bounded, share.of_rest / max(straight, pack(1e-12)), pack(least_turn));
   const Pack33 compliance =
-      share.of_rest * turn_compliance(stiffness, turn_stiffness<K>(target, target), max(least, pack(least_turn)));
+      share.of_rest * turn_response(stiffness, turn_stiffness<K>(target, target), max(least, pack(least_turn)));
   assemble<K>(block.weight, straight, target, compliance, square, mode, out);
 }
 
@@ -282,13 +282,13 @@ void stiffness_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, b
   actuation_target<K>(block, ratio, rotation, target, mode);
   const Pack33 stiffness = turn_stiffness<K>(current, target), inertia = turn_stiffness<K>(target, target);
   const Pack33 compliance =
-      projected || redistributed ? turn_compliance(stiffness, inertia, pack(1)) : turn_compliance(stiffness);
+      projected || redistributed ? turn_response(stiffness, inertia, pack(1)) : turn_response(stiffness);
   Pack square = pack(0);
   if (redistributed) {
     Shape<K> slope;
     measure_slope(current, slope);
     // without its turn, so that the mode and the turns of the target do not add up
-    const Pack3 turn = turn_compliance(inertia) * moment<K>(target, mode);
+    const Pack3 turn = turn_response(inertia) * moment<K>(target, mode);
     for (int i = 0; i < K; ++i) mode[i] = mode[i] - cross(turn, target[i]);
     const Pack size = inner<K>(mode, mode), answer = inner<K>(mode, slope) / block.measure;
     square = select(size > 0, -max(pack(0), min(pack(1), answer)) / size, pack(0));

@@ -3,6 +3,9 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <softkin/model/cavity.hpp>
+#include <softkin/model/quadratic_tetrahedron.hpp>
 #include <softkin/statics/measure.hpp>
 
 namespace softkin {
@@ -24,7 +27,15 @@ Mat3 frame(const Points& p, const Prism& e) {
   return m;
 }
 
-std::array<double, 3> principal_strains(const Mat3& gradient) {
+/// At a point of a tetrahedron of order 2.
+Mat3 frame(const TetrahedronNodes& nodes, const Barycentric& l) {
+  const Eigen::Matrix<double, 3, 4> along = nodes.transpose() * quadratic_slope(l);
+  return along.rightCols<3>().colwise() - along.col(0);
+}
+
+using Strain = std::array<double, 3>;
+
+Strain principal_strains(const Mat3& gradient) {
   Vec3 stretches = Eigen::JacobiSVD<Mat3>(gradient).singularValues();
   if (gradient.determinant() < 0) stretches[2] = -stretches[2];
   return {stretches[0] - 1, stretches[1] - 1, stretches[2] - 1};
@@ -37,6 +48,39 @@ void append(const Model& model, const std::vector<Element>& elements, const std:
     const Mat3 gradient = frame(positions, elements[e]) * frame(model.rest, elements[e]).inverse();
     out.volume_ratio.push_back(signed_volume(positions, elements[e]) / volumes[e]);
     out.strain.push_back(principal_strains(gradient));
+  }
+}
+
+/// The strain of largest magnitude.
+double extreme(const Strain& strain) {
+  return std::abs(strain[0]) >= std::abs(strain[2]) ? strain[0] : strain[2];
+}
+
+/// The four points with which the energy of a tetrahedron of order 2 is integrated.
+std::array<Barycentric, 4> integration_points() {
+  constexpr double a = 0.13819660112501051518;  // (5 - sqrt 5) / 20
+  std::array<Barycentric, 4> points;
+  for (int i = 0; i < 4; ++i) points[i] = Barycentric::Constant(a) + (1 - 4 * a) * Barycentric::Unit(i);
+  return points;
+}
+
+void append_quadratic(const Model& model, const Points& positions, ElementDeformation& out) {
+  const std::array<Barycentric, 4> points = integration_points();
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    const TetrahedronNodes now = nodes_of(positions, model.tetrahedra[e], model.edge_nodes[e]);
+    const TetrahedronNodes rest = nodes_of(model.rest, model.tetrahedra[e], model.edge_nodes[e]);
+    double least = std::numeric_limits<double>::infinity();
+    Strain most{};
+    for (int i = 0; i < 4; ++i) {
+      const Barycentric corner = Barycentric::Unit(i);
+      const Mat3 gradient = frame(now, points[i]) * frame(rest, points[i]).inverse();
+      least = std::min(
+          {least, gradient.determinant(), frame(now, corner).determinant() / frame(rest, corner).determinant()});
+      const Strain strain = principal_strains(gradient);
+      if (i == 0 || std::abs(extreme(strain)) > std::abs(extreme(most))) most = strain;
+    }
+    out.volume_ratio.push_back(least);
+    out.strain.push_back(most);
   }
 }
 
@@ -60,6 +104,8 @@ double measure_of(const Model& model, const Actuator& actuator, const Points& po
     Points points(static_cast<Index>(actuator.points.size()), 3);
     for (Index i = 0; i < points.rows(); ++i) points.row(i) = actuator.points[i].at(positions).transpose();
     sum = enclosed_volume(points, actuator.surface);
+  } else if (!actuator.cavity.empty()) {
+    sum = enclosed_volume(positions, actuator.cavity);
   } else {
     for (const Index e : actuator.tetrahedra) sum += signed_volume(positions, model.tetrahedra[e]);
   }
@@ -84,9 +130,8 @@ std::vector<Sample> body_samples(const Model& model, const ElementDeformation& d
   std::vector<Sample> samples;
   const auto add = [&](const std::vector<ElementRole>& roles, const std::vector<double>& volumes, std::size_t first) {
     for (std::size_t e = 0; e < roles.size(); ++e) {
-      if (roles[e].material < 0) continue;
-      const auto& s = deformation.strain[first + e];
-      samples.push_back({std::abs(s[0]) >= std::abs(s[2]) ? s[0] : s[2], volumes[e], roles[e].material});
+      if (roles[e].material < 0 || roles[e].actuator >= 0) continue;
+      samples.push_back({extreme(deformation.strain[first + e]), volumes[e], roles[e].material});
     }
   };
   add(model.tetrahedron_roles, model.tetrahedron_volumes, 0);
@@ -104,7 +149,10 @@ double achieved_ratio(const Model& model, const Actuator& actuator, const Points
 
 ElementDeformation deformation_of(const Model& model, const Points& positions) {
   ElementDeformation deformation;
-  append(model, model.tetrahedra, model.tetrahedron_volumes, positions, deformation);
+  if (model.edge_nodes.empty())
+    append(model, model.tetrahedra, model.tetrahedron_volumes, positions, deformation);
+  else
+    append_quadratic(model, positions, deformation);
   append(model, model.prisms, model.prism_volumes, positions, deformation);
   return deformation;
 }
@@ -137,7 +185,8 @@ StrainHistogram strain_histogram(const Model& model, const ElementDeformation& d
         whole += s.volume;
         if (std::abs(s.strain) > *model.materials[m].linear_range) beyond += s.volume;
       }
-    histogram.beyond.push_back({model.materials[m].region, *model.materials[m].linear_range, beyond / whole});
+    if (whole > 0)  // else it is that of a dea alone
+      histogram.beyond.push_back({model.materials[m].region, *model.materials[m].linear_range, beyond / whole});
   }
   std::sort(samples.begin(), samples.end(),
             [](const Sample& a, const Sample& b) { return std::abs(a.strain) < std::abs(b.strain); });

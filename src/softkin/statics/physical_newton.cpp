@@ -6,8 +6,8 @@ namespace softkin {
 namespace {
 
 constexpr double least_damping = 1e-3;
-/// A simplified step that is this much shorter than the step before saves a factorisation.
-constexpr double chord_contraction = 0.02;
+/// As many simplified steps may follow a Newton step: together they cost as much as a factorisation.
+constexpr int most_simplified = 4;
 
 }  // namespace
 
@@ -44,71 +44,93 @@ bool PhysicalNewton::factorise(const Iterate& at, const Demand& demand, const st
   return false;
 }
 
+/// Moves by `damping` times a step and finds the simplified step there. False where the law has no energy.
+bool PhysicalNewton::attempt(const Step& step, double damping, const Iterate& from) {
+  trial_ = from;
+  system_.advance(step.move, damping, work_, trial_.positions, team_);
+  trial_.multipliers += damping * step.change;
+  system_.evaluate(trial_, *demand_, *active_, work_, trial_balance_, team_);
+  return !trial_balance_.forbidden && trial_balance_.force.allFinite();
+}
+
+/// Step that the factor at hand asks for.
+void PhysicalNewton::find(const PhysicalSystem::Balance& balance, const Points& positions, Step& step) {
+  system_.step(balance, work_, step.move, step.change, team_);
+  step.size = system_.size_of(step.move, positions);
+}
+
+bool PhysicalNewton::accept(double moved_mm, Iterate& at) {
+  record(moved_mm);
+  std::swap(at, trial_);
+  std::swap(balance_, trial_balance_);
+  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm});
+}
+
+/// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
+PhysicalNewton::Advance PhysicalNewton::damped_step(Iterate& at, double& damping) {
+  find(balance_, at.positions, step_);
+  if (!std::isfinite(step_.size.mean)) return Advance::none;
+  damping = std::min(1.0, 2 * damping);
+  for (;;) {
+    double factor = 0.5;
+    if (attempt(step_, damping, at)) {
+      find(trial_balance_, trial_.positions, next_);
+      if (next_.size.mean < step_.size.mean || step_.size.largest < settings_.tolerance_mm) break;
+      if (std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
+        const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
+        factor = std::min(0.5, damping / (2 * residue));
+      }
+    }
+    damping *= factor;
+    if (!(damping >= least_damping)) return Advance::none;
+  }
+  return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
+}
+
+/// Will a few simplified steps arrive, the next of which is next_?
+bool PhysicalNewton::nearly_there() const {
+  const double contraction = next_.size.mean / step_.size.mean;
+  return next_.size.largest * std::pow(contraction, most_simplified - 1) < settings_.tolerance_mm;
+}
+
+/// Simplified steps as long as they shrink as fast as they promised.
+PhysicalNewton::Advance PhysicalNewton::simplified_steps(Iterate& at) {
+  for (int count = 0; count < most_simplified; ++count) {
+    std::swap(step_, next_);
+    if (!attempt(step_, 1, at)) break;
+    const bool last = step_.size.largest < settings_.tolerance_mm;
+    if (!last) {
+      find(trial_balance_, trial_.positions, next_);
+      if (!(next_.size.mean < step_.size.mean)) break;
+    }
+    if (!accept(step_.size.largest, at)) return Advance::interrupted;
+    if (last) return Advance::arrived;
+    if (!nearly_there()) break;
+  }
+  return Advance::made;
+}
+
 PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::vector<bool>& active, Iterate& at) {
-  Eigen::VectorXd step, change, simplified, simplified_change;
+  demand_ = &demand;
+  active_ = &active;
   system_.evaluate(at, demand, active, work_, balance_, team_);
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
+  Advance advance = Advance::made;
   double damping = 1;
-  for (int iteration = 0; iteration < settings_.max_iterations; ++iteration) {
+  for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (!factorise(at, demand, active)) return Outcome::stuck;
-    system_.step(balance_, work_, step, change, team_);
-    PhysicalSystem::Size size = system_.size_of(step, at.positions);
-    if (!std::isfinite(size.mean)) return Outcome::stuck;
-
-    damping = std::min(1.0, 2 * damping);
-    double contraction = 0;
-    PhysicalSystem::Size next_size;
-    for (;;) {
-      trial_ = at;
-      system_.advance(step, damping, work_, trial_.positions, team_);
-      trial_.multipliers += damping * change;
-      system_.evaluate(trial_, demand, active, work_, next_balance_, team_);
-      bool good = !next_balance_.forbidden && next_balance_.force.allFinite();
-      if (good) {
-        system_.step(next_balance_, work_, simplified, simplified_change, team_);
-        next_size = system_.size_of(simplified, trial_.positions);
-        contraction = next_size.mean / std::max(size.mean, 1e-300);
-        good = std::isfinite(contraction) && (contraction <= 1 - damping / 4 || size.largest < settings_.tolerance_mm);
-      }
-      if (good) break;
-      // the length at which the quadratic model of the contraction is just acceptable
-      const double residue = std::isfinite(contraction) && contraction > 0
-                                 ? (simplified - (1 - damping) * step).norm() / std::max(step.norm(), 1e-300)
-                                 : 0;
-      damping = std::min(damping / 2, residue > 0 ? damping * damping / (2 * residue) : damping / 2);
-      if (damping < least_damping) return Outcome::stuck;
-    }
-    record(damping * size.largest);
-    at = trial_;
-    balance_ = next_balance_;
-    if (progress_ && !progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm}))
-      return Outcome::interrupted;
-    if (damping < 1) continue;
-
-    // the simplified step is at hand: take it, and more of them as long as they shrink fast
-    while (size.largest >= settings_.tolerance_mm && contraction < chord_contraction) {
-      size = next_size;
-      trial_ = at;
-      system_.advance(simplified, 1, work_, trial_.positions, team_);
-      trial_.multipliers += simplified_change;
-      system_.evaluate(trial_, demand, active, work_, next_balance_, team_);
-      if (next_balance_.forbidden || !next_balance_.force.allFinite()) break;
-      record(size.largest);
-      at = trial_;
-      balance_ = next_balance_;
-      if (size.largest < settings_.tolerance_mm) break;
-      system_.step(balance_, work_, simplified, simplified_change, team_);
-      next_size = system_.size_of(simplified, at.positions);
-      contraction = next_size.mean / std::max(size.mean, 1e-300);
-      if (!std::isfinite(contraction)) break;
-    }
-    if (size.largest < settings_.tolerance_mm) {
-      report_.gradient_norm = balance_.force.norm();
-      report_.energy = balance_.energy;
-      return negative_ == 0 ? Outcome::converged : Outcome::unstable;
-    }
+    advance = damped_step(at, damping);
+    if (advance != Advance::made || damping < 1) continue;
+    if (step_.size.largest < settings_.tolerance_mm)
+      advance = Advance::arrived;
+    else if (nearly_there())
+      advance = simplified_steps(at);
   }
-  return Outcome::stuck;
+  if (advance == Advance::interrupted) return Outcome::interrupted;
+  if (advance != Advance::arrived) return Outcome::stuck;
+  report_.gradient_norm = balance_.force.norm();
+  report_.energy = balance_.energy;
+  return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }
 
 }  // namespace softkin

@@ -27,7 +27,19 @@ class PhysicalNewton {
   Outcome solve(const Demand& demand, const std::vector<bool>& active, Iterate& at);
 
  private:
+  struct Step {
+    Eigen::VectorXd move, change;  // of unknowns and of multipliers
+    PhysicalSystem::Size size;
+  };
+  enum class Advance { none, made, arrived, interrupted };
+
   bool factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active);
+  void find(const PhysicalSystem::Balance& balance, const Points& positions, Step& step);
+  bool attempt(const Step& step, double damping, const Iterate& from);
+  bool accept(double moved_mm, Iterate& at);
+  Advance damped_step(Iterate& at, double& damping);
+  [[nodiscard]] bool nearly_there() const;
+  Advance simplified_steps(Iterate& at);
   void record(double step_mm);
 
   const PhysicalSystem& system_;
@@ -36,7 +48,10 @@ class PhysicalNewton {
   Settings settings_;
   const ProgressCallback& progress_;
   SolveReport& report_;
-  PhysicalSystem::Balance balance_, next_balance_;
+  const Demand* demand_ = nullptr;
+  const std::vector<bool>* active_ = nullptr;
+  PhysicalSystem::Balance balance_, trial_balance_;  // at the iterate, at the one being tried
+  Step step_, next_;
   Iterate trial_;
   int negative_ = 0;  // of the last factorisation
 };

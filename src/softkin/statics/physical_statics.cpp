@@ -4,16 +4,29 @@
 
 namespace softkin {
 
+namespace {
+
+bool same_shape(const Points& a, const Points& b) {
+  return a.rows() == b.rows() && a == b;
+}
+
+}  // namespace
+
 /// A workspace, for the time of a solve.
 class PhysicalStatics::Lease {
  public:
-  explicit Lease(const PhysicalStatics& owner) : owner_(owner) {
+  /// One that was left at the start, if there is; its factor is as good as new.
+  Lease(const PhysicalStatics& owner, const Points& start) : owner_(owner) {
     const std::lock_guard lock(owner_.mutex_);
-    if (owner_.idle_.empty()) {
+    auto& idle = owner_.idle_;
+    auto found =
+        std::find_if(idle.begin(), idle.end(), [&](const auto& work) { return same_shape(work->home, start); });
+    if (found == idle.end() && !idle.empty()) found = idle.end() - 1;
+    if (found == idle.end()) {
       work_ = std::make_unique<PhysicalSystem::Workspace>(owner_.system_);
     } else {
-      work_ = std::move(owner_.idle_.back());
-      owner_.idle_.pop_back();
+      work_ = std::move(*found);
+      idle.erase(found);
     }
   }
   ~Lease() {
@@ -51,7 +64,8 @@ class Continuation {
     for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
     double done = 0, advance = 1;
     Demand here = from;
-    bool factorised = false;
+    bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
+    work_.home.resize(0, 3);
     while (done < 1) {
       const double next = std::min(1.0, done + advance);
       const Demand there = between(from, to, next);
@@ -87,6 +101,13 @@ class Continuation {
   }
 
  private:
+  /// Does the workspace's factor hold the constraints that are active?
+  [[nodiscard]] bool factor_holds_active() const {
+    std::vector<bool> held(active_.size());
+    for (const Index a : work_.active) held[a] = true;
+    return held == active_;
+  }
+
   static Demand between(const Demand& from, const Demand& to, double share) {
     if (share == 1) return to;
     return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share)};
@@ -191,7 +212,7 @@ Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& star
   report.solver = "newton";
   report.tolerance_mm = options.tolerance_mm;
   report.reached = 0;
-  Lease lease(*this);
+  Lease lease(*this, start.positions);
 
   const Demand from = demand_of(system_, model, start), to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators())};
@@ -200,6 +221,7 @@ Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& star
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
   Continuation continuation(system_, lease.work(), team, options, progress, report);
   report.status = continuation.follow(from, to, at);
+  if (report.status == Status::converged) lease.work().home = at.positions;
   report.estimated_error_mm = report.step_mm;
   result.state.positions = std::move(at.positions);
   result.state.actuation = actuation;

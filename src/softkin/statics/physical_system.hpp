@@ -42,6 +42,7 @@ class PhysicalSystem {
     Eigen::MatrixXd constraint_slopes;        // G: sign_a times the gradient of measure_a
     Eigen::FullPivLU<Eigen::MatrixXd> schur;  // G^T K^-1 G
     std::vector<Index> active;                // constraints of the factorisation
+    Points home;                              // equilibrium at which the last solve ended, and near which it factorised
   };
 
   struct Balance {

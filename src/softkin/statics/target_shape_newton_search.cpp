@@ -22,19 +22,28 @@ constexpr int rescue = 50, rescue_window = 6;
 
 }  // namespace
 
+TargetShapeWorkspace::TargetShapeWorkspace(const TargetShapeUnknowns& unknowns)
+    : tangent(unknowns),
+      local(unknowns.system.make_scratch()),
+      start(unknowns.system.make_scratch()),
+      work(unknowns.system.make_scratch()) {}
+
 TargetShapeSearch::TargetShapeSearch(const TargetShapeUnknowns& unknowns, const GlobalStep& global,
-                                     const StaticsOptions& options, const ProgressCallback& progress, Team& team,
-                                     SolveReport& report)
+                                     TargetShapeWorkspace& workspace, const StaticsOptions& options,
+                                     const ProgressCallback& progress, Team& team, SolveReport& report)
     : unknowns_(unknowns),
       global_(global),
       options_(options),
       progress_(progress),
       team_(team),
       report_(report),
-      tangent_(unknowns),
-      local_(unknowns.system.make_scratch()),
-      start_(unknowns.system.make_scratch()),
-      work_(unknowns.system.make_scratch()) {}
+      tangent_(workspace.tangent),
+      local_(workspace.local),
+      start_(workspace.start),
+      work_(workspace.work) {
+  // rotations are searched for from the last ones: those of an earlier search would show in the last digits
+  for (auto& rotations : local_.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
+}
 
 /// Local step at positions, which supports put right before.
 void TargetShapeSearch::evaluate(const Actuation& actuation, Points& positions) {

@@ -6,7 +6,7 @@ namespace softkin {
 
 /// Inverse of a symmetric positive semidefinite 3 x 3 matrix in every lane; zero in lanes where it is singular: there
 /// the best rotation is not unique, and none of its derivatives is more right than none.
-[[nodiscard]] Pack33 turn_compliance(const Pack33& stiffness);
+[[nodiscard]] Pack33 turn_response(const Pack33& stiffness);
 
 /// Inverse of a symmetric 3 x 3 matrix after raising its eigenvalues in a metric to at least `least` > 0.
 ///
@@ -14,6 +14,6 @@ namespace softkin {
 /// returns  L^-T Q max(Lambda, least)^-1 Q^T L^-1 with metric = L L^T, L^-1 stiffness L^-T = Q Lambda Q^T; zero in
 /// lanes
 ///          whose metric is zero
-[[nodiscard]] Pack33 turn_compliance(const Pack33& stiffness, const Pack33& metric, const Pack& least);
+[[nodiscard]] Pack33 turn_response(const Pack33& stiffness, const Pack33& metric, const Pack& least);
 
 }  // namespace softkin

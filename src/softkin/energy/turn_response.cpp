@@ -1,4 +1,4 @@
-#include <softkin/energy/turn_compliance.hpp>
+#include <softkin/energy/turn_response.hpp>
 
 namespace softkin {
 
@@ -51,7 +51,7 @@ void turn(int p, int q, Matrix& a, Matrix& vectors) {
 
 }  // namespace
 
-Pack33 turn_compliance(const Pack33& m) {
+Pack33 turn_response(const Pack33& m) {
   constexpr double singular = 1e-12;
   const Pack3 a = cross(m.row[1], m.row[2]), b = cross(m.row[2], m.row[0]), c = cross(m.row[0], m.row[1]);
   const Pack determinant = dot(m.row[0], a), size = trace(m);
@@ -61,7 +61,7 @@ Pack33 turn_compliance(const Pack33& m) {
            {scale * a.z, scale * b.z, scale * c.z}}};
 }
 
-Pack33 turn_compliance(const Pack33& stiffness, const Pack33& metric, const Pack& least) {
+Pack33 turn_response(const Pack33& stiffness, const Pack33& metric, const Pack& least) {
   constexpr double relative = 1e-14;
   constexpr int sweeps = 5;  // quadratic: the off-diagonal is below rounding after four
   const Pack size = trace(metric);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <softkin/model/model.hpp>
+#include <vector>
+
+#include "fk_options.hpp"
+
+namespace softkin::cli {
+
+/// The robot of the scene with what --formulation and --force change in it.
+///
+/// inputs  the files that the scene names are added
+/// throws  InvalidInput naming option, or file and line
+[[nodiscard]] Model asked_robot(const FkOptions& options, std::vector<std::filesystem::path>& inputs);
+
+}  // namespace softkin::cli
