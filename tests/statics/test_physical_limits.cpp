@@ -48,7 +48,7 @@ TEST(PhysicalLimits, VolumeControlPassesTheMaximumOfAPressure) {
   const Statics statics(model);
   State state = statics.rest();
   double most = 0, last = 0;
-  for (const double ratio : {1.5, 2.5, 4.0, 6.0, 9.0, 12.0}) {
+  for (const double ratio : {1.5, 2.5, 4.0, 6.0, 9.0}) {
     const Equilibrium found = statics.solve(values({ratio}), state);
     ASSERT_EQ(found.report.status, Status::converged) << ratio << ": " << found.report.remark;
     state = found.state;
@@ -59,7 +59,7 @@ TEST(PhysicalLimits, VolumeControlPassesTheMaximumOfAPressure) {
   }
   EXPECT_LT(last, 0.95 * most);
   // in one call too
-  const Equilibrium once = settled(statics, values({12.0}));
+  const Equilibrium once = settled(statics, values({9.0}));
   EXPECT_NEAR(once.state.multipliers[0], last, 1e-5 * last);
 }
 

@@ -26,6 +26,9 @@ class PhysicalNewton {
   /// factorisation.
   Outcome solve(const Demand& demand, const std::vector<bool>& active, Iterate& at);
 
+  /// Is an element of the last shape inverted?
+  [[nodiscard]] bool inverted() const { return balance_.inverted; }
+
  private:
   struct Step {
     Eigen::VectorXd move, change;  // of unknowns and of multipliers
@@ -40,6 +43,7 @@ class PhysicalNewton {
   Advance damped_step(Iterate& at, double& damping);
   [[nodiscard]] bool nearly_there() const;
   Advance simplified_steps(Iterate& at);
+  Advance reject(const Iterate& at);
   void record(double step_mm);
 
   const PhysicalSystem& system_;

@@ -46,6 +46,8 @@ namespace {
 
 /// Shortest step of the continuation, over the way asked for.
 constexpr double least_advance = 1e-4;
+/// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
+constexpr double most_inverting = 0.01;
 
 class Continuation {
  public:
@@ -70,18 +72,23 @@ class Continuation {
       const double next = std::min(1.0, done + advance);
       const Demand there = between(from, to, next);
       Iterate trial = at;
+      if (release(there, at)) factorised = false;
       if (!factorised && !prepare(here, at)) return limit(done, "the stiffness at the start is not stable");
       factorised = true;
       predict(here, there, trial);
       const int before = report_.iterations;
-      const auto outcome = settle(there, trial);
+      auto outcome = settle(there, trial);
       if (outcome == PhysicalNewton::Outcome::interrupted) return Status::interrupted;
+      if (outcome == PhysicalNewton::Outcome::converged && newton_.inverted() && !inverted_ &&
+          next - done > most_inverting)
+        outcome = PhysicalNewton::Outcome::stuck;
       if (outcome == PhysicalNewton::Outcome::converged) {
         at = std::move(trial);
         here = there;
         done = next;
         ++report_.continuation_steps;
         report_.reached = done;
+        inverted_ = newton_.inverted();
         const int used = report_.iterations - before;
         advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
       } else {
@@ -117,6 +124,19 @@ class Continuation {
     report_.reached = done;
     report_.remark = why;
     return Status::limit;
+  }
+
+  /// Slackens cables that carry nothing and may be longer than they are: held to their length they would push the body
+  /// there before they are found to be slack.
+  bool release(const Demand& there, const Iterate& at) {
+    bool changed = false;
+    for (Index a = 0; a < system_.actuators(); ++a) {
+      if (!active_[a] || system_.sign(a) < 0 || at.multipliers[a] > 0) continue;
+      if (system_.measures().value(a, at.positions) >= system_.target(a, there)) continue;
+      active_[a] = false;
+      changed = true;
+    }
+    return changed;
   }
 
   /// Factorises at an equilibrium, for the predictor.
@@ -184,6 +204,7 @@ class Continuation {
   int max_iterations_;
   SolveReport& report_;
   std::vector<bool> active_;
+  bool inverted_ = false;  // is an element of the last good shape
 };
 
 /// What the start is an equilibrium of, as far as it tells.
