@@ -12,7 +12,7 @@ using namespace testing;
 
 /// A ball of rubber, 15 mm in radius, around a hollow of 10 mm: a cube of cells pushed onto spheres. Three
 /// vertices hold it without force.
-RobotSpec balloon(double modulus) {
+RobotSpec balloon(double modulus, bool quadratic) {
   const std::array<int, 3> cells{6, 6, 6};
   Mesh mesh = block_mesh(cells, {30, 30, 30});
   add_volume_region(mesh, "hollow", [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 10; });
@@ -22,7 +22,7 @@ RobotSpec balloon(double modulus) {
   }
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.materials[0].elastic = elastic(Law::mooney_rivlin, modulus, 0.45);
-  spec.quadratic = true;
+  spec.quadratic = quadratic;
   spec.fixed = {{{VertexList{{grid_vertex(cells, 0, 3, 3)}}, {}}, {true, true, true}},
                 {{VertexList{{grid_vertex(cells, 6, 3, 3)}}, {}}, {false, true, true}},
                 {{VertexList{{grid_vertex(cells, 3, 0, 3)}}, {}}, {false, false, true}}};
@@ -44,7 +44,7 @@ double shell_pressure(double a, double inner_over_outer) {
 /// mesh is coarse: 12 % of the thick incompressible sphere.
 TEST(PhysicalLimits, VolumeControlPassesTheMaximumOfAPressure) {
   const double modulus = 0.03;
-  const Model model = compile(balloon(modulus));
+  const Model model = compile(balloon(modulus, true));
   const Statics statics(model);
   State state = statics.rest();
   double most = 0, last = 0;
@@ -66,7 +66,7 @@ TEST(PhysicalLimits, VolumeControlPassesTheMaximumOfAPressure) {
 /// Pressure control ends at the maximum, says so, and leaves the last good shape.
 TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
   const double modulus = 0.03;
-  const Model by_volume = compile(balloon(modulus));
+  const Model by_volume = compile(balloon(modulus, false));
   const Statics volume_statics(by_volume);
   double most = 0;
   State state = volume_statics.rest();
@@ -74,7 +74,7 @@ TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
     state = volume_statics.solve(values({ratio}), state).state;
     most = std::max(most, state.multipliers[0]);
   }
-  RobotSpec spec = balloon(modulus);
+  RobotSpec spec = balloon(modulus, false);
   spec.actuators[0] = by_load(spec.actuators[0]);
   const Model model = compile(spec);
   const Statics statics(model);
