@@ -95,15 +95,21 @@ bool PhysicalNewton::nearly_there() const {
   return next_.size.largest * std::pow(contraction, most_simplified - 1) < settings_.tolerance_mm;
 }
 
+/// The workspace is back at the iterate, as the next factorisation wants it.
+PhysicalNewton::Advance PhysicalNewton::reject(const Iterate& at) {
+  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
+  return Advance::made;
+}
+
 /// Simplified steps as long as they shrink as fast as they promised.
 PhysicalNewton::Advance PhysicalNewton::simplified_steps(Iterate& at) {
   for (int count = 0; count < most_simplified; ++count) {
     std::swap(step_, next_);
-    if (!attempt(step_, 1, at)) break;
+    if (!attempt(step_, 1, at)) return reject(at);
     const bool last = step_.size.largest < settings_.tolerance_mm;
     if (!last) {
       find(trial_balance_, trial_.positions, next_);
-      if (!(next_.size.mean < step_.size.mean)) break;
+      if (!(next_.size.mean < step_.size.mean)) return reject(at);
     }
     if (!accept(step_.size.largest, at)) return Advance::interrupted;
     if (last) return Advance::arrived;

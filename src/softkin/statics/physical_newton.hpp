@@ -33,6 +33,9 @@ class PhysicalNewton {
   /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
   [[nodiscard]] int unstable_modes() const { return negative_; }
 
+  /// Is an element of the last shape inverted?
+  [[nodiscard]] bool inverted() const { return balance_.inverted; }
+
  private:
   struct Step {
     Eigen::VectorXd move, change;  // of unknowns and of multipliers
@@ -47,6 +50,7 @@ class PhysicalNewton {
   Advance damped_step(Iterate& at, double& damping);
   [[nodiscard]] bool nearly_there() const;
   Advance simplified_steps(Iterate& at);
+  Advance reject(const Iterate& at);
   void record(double step_mm);
 
   const PhysicalSystem& system_;

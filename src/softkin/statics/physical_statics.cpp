@@ -50,6 +50,8 @@ constexpr double least_advance = 1e-4;
 constexpr double least_move = 1000;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
+/// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
+constexpr double most_inverting = 0.01;
 
 class Continuation {
  public:
@@ -75,6 +77,7 @@ class Continuation {
       const double next = std::min(1.0, done + advance);
       const Demand there = between(from, to, next);
       Iterate trial = at;
+      if (release(there, at)) factorised = false;
       if (!factorised && !prepare(here, at)) return limit(done, "the stiffness at the start is not stable");
       factorised = true;
       const double move_mm = predict(here, there, trial);
@@ -86,12 +89,15 @@ class Continuation {
         outcome = settle(there, PhysicalNewton::Policy::follow, trial);
       }
       if (outcome == PhysicalNewton::Outcome::interrupted) return Status::interrupted;
+      if (outcome != PhysicalNewton::Outcome::stuck && newton_.inverted() && !inverted_ && next - done > most_inverting)
+        outcome = PhysicalNewton::Outcome::stuck;
       if (outcome != PhysicalNewton::Outcome::stuck) {
         at = std::move(trial);
         here = there;
         done = next;
         ++report_.continuation_steps;
         report_.reached = done;
+        inverted_ = newton_.inverted();
         const int used = report_.iterations - before;
         advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
         if (outcome == PhysicalNewton::Outcome::unstable) advance = std::min(advance, follow_below);
@@ -129,6 +135,19 @@ class Continuation {
     report_.reached = done;
     report_.remark = why;
     return Status::limit;
+  }
+
+  /// Slackens cables that carry nothing and may be longer than they are: held to their length they would push the body
+  /// there before they are found to be slack.
+  bool release(const Demand& there, const Iterate& at) {
+    bool changed = false;
+    for (Index a = 0; a < system_.actuators(); ++a) {
+      if (!active_[a] || system_.sign(a) < 0 || at.multipliers[a] > 0) continue;
+      if (system_.measures().value(a, at.positions) >= system_.target(a, there)) continue;
+      active_[a] = false;
+      changed = true;
+    }
+    return changed;
   }
 
   /// Factorises at an equilibrium, for the predictor.
@@ -198,6 +217,7 @@ class Continuation {
   int max_iterations_;
   SolveReport& report_;
   std::vector<bool> active_;
+  bool inverted_ = false;  // is an element of the last good shape
 };
 
 /// What the start is an equilibrium of, as far as it tells.

@@ -31,6 +31,7 @@ void PhysicalSystem::evaluate(const Iterate& at, const Demand& demand, const std
   const ElasticSystem::Result elastic =
       elastic_.force(demand.actuation, at.positions, work.elastic, work.gradient, team);
   balance.energy = elastic.energy;
+  balance.inverted = elastic.inverted;
   balance.forbidden = elastic.forbidden;
   if (any_dead_load()) {
     balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();

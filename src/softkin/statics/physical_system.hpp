@@ -49,6 +49,7 @@ class PhysicalSystem {
     Eigen::VectorXd force;       // of the unknowns, what is not in balance [N, N mm]
     Eigen::VectorXd constraint;  // m: measure minus demand, 0 where not active [mm, mm^3]
     double energy = 0;           // elastic, less the work of dead loads [mJ]
+    bool inverted = false;       // an element
     bool forbidden = false;      // inverted where the law has no energy
   };
 

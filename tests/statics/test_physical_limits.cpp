@@ -1,0 +1,114 @@
+#include <softkin/statics/measure.hpp>
+
+#include "statics/physical_samples.hpp"
+
+/// Limits of existence: a balloon whose pressure passes a maximum.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// A ball of rubber, 15 mm in radius, around a hollow of 10 mm: a cube of cells pushed onto spheres. Three
+/// vertices hold it without force.
+RobotSpec balloon(double modulus, bool quadratic) {
+  const std::array<int, 3> cells{6, 6, 6};
+  Mesh mesh = block_mesh(cells, {30, 30, 30});
+  add_volume_region(mesh, "hollow", [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 10; });
+  for (Index v = 0; v < mesh.vertices.rows(); ++v) {
+    const Vec3 p = mesh.vertices.row(v).transpose() - Vec3(15, 15, 15);
+    if (p.norm() > 0) mesh.vertices.row(v) = (p * p.cwiseAbs().maxCoeff() / p.norm()).transpose();
+  }
+  RobotSpec spec = physical_robot(std::move(mesh));
+  spec.materials[0].elastic = elastic(Law::mooney_rivlin, modulus, 0.45);
+  spec.quadratic = quadratic;
+  spec.fixed = {{{VertexList{{grid_vertex(cells, 0, 3, 3)}}, {}}, {true, true, true}},
+                {{VertexList{{grid_vertex(cells, 6, 3, 3)}}, {}}, {false, true, true}},
+                {{VertexList{{grid_vertex(cells, 3, 0, 3)}}, {}}, {false, false, true}}};
+  spec.actuators = {air("hollow", 0.5, 12)};
+  return spec;
+}
+
+/// Pressure in a thick incompressible neo-Hookean shell (c10 = mu / 2), over mu: Green and Zerna; a: its inner radius
+/// over that at rest.
+double shell_pressure(double a, double inner_over_outer) {
+  const double b = std::cbrt(1 + (a * a * a - 1) * std::pow(inner_over_outer, 3));
+  const auto f = [](double stretch) { return 4 / stretch + std::pow(stretch, -4); };
+  return (f(b) - f(a)) / 2;
+}
+
+}  // namespace
+
+/// Volume control goes through the maximum, and down on the other side. The shell is not quite incompressible, and its
+/// mesh is coarse: 12 % of the thick incompressible sphere.
+TEST(PhysicalLimits, VolumeControlPassesTheMaximumOfAPressure) {
+  const double modulus = 0.03;
+  const Model model = compile(balloon(modulus, true));
+  const Statics statics(model);
+  State state = statics.rest();
+  double most = 0, last = 0;
+  for (const double ratio : {1.5, 2.5, 4.0, 6.0, 9.0}) {
+    const Equilibrium found = statics.solve(values({ratio}), state);
+    ASSERT_EQ(found.report.status, Status::converged) << ratio << ": " << found.report.remark;
+    state = found.state;
+    last = state.multipliers[0];
+    most = std::max(most, last);
+    const double expected = 1e3 * modulus / 2.9 * shell_pressure(std::cbrt(ratio), 10.0 / 15);
+    EXPECT_NEAR(last, expected, 0.12 * expected) << ratio;
+  }
+  EXPECT_LT(last, 0.95 * most);
+  // in one call too
+  const Equilibrium once = settled(statics, values({9.0}));
+  EXPECT_NEAR(once.state.multipliers[0], last, 1e-5 * last);
+}
+
+/// Pressure control ends at the maximum, says so, and leaves the last good shape.
+TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
+  const double modulus = 0.03;
+  const Model by_volume = compile(balloon(modulus, false));
+  const Statics volume_statics(by_volume);
+  double most = 0;
+  State state = volume_statics.rest();
+  for (const double ratio : {3.0, 3.5, 4.0, 4.5, 5.0, 5.5}) {
+    state = volume_statics.solve(values({ratio}), state).state;
+    most = std::max(most, state.multipliers[0]);
+  }
+  RobotSpec spec = balloon(modulus, false);
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium below = statics.solve(values({0.98 * most}), statics.rest());
+  EXPECT_EQ(below.report.status, Status::converged) << below.report.remark;
+  for (const double factor : {1.05, 1.5}) {
+    const Equilibrium beyond = statics.solve(values({factor * most}), statics.rest());
+    EXPECT_EQ(beyond.report.status, Status::limit);
+    EXPECT_FALSE(beyond.report.remark.empty());
+    EXPECT_TRUE(beyond.state.positions.allFinite());
+    const double reached = beyond.state.actuation[0];
+    EXPECT_NEAR(reached, factor * most * beyond.report.reached, 1e-9 * most);
+    EXPECT_LT(reached, 1.002 * most);
+    EXPECT_GT(reached, 0.98 * most);
+    // the shape is the equilibrium of what was reached
+    const Equilibrium again = statics.solve(values({reached}), beyond.state, tight());
+    EXPECT_EQ(again.report.status, Status::converged);
+    EXPECT_LT(distance(again.state.positions, beyond.state.positions), 1e-3);
+    EXPECT_GT(achieved_ratio(by_volume, by_volume.actuators[0], beyond.state.positions), 2);
+  }
+}
+
+/// Where the law knows no inversion, no accepted shape is inverted, not even at a limit.
+TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
+  RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {30, 10, 10}));
+  spec.materials[0].elastic = elastic(Law::yeoh, 1, 0.45);
+  spec.forces.push_back({"push", {std::string("x_high"), {}}, {-5000, 0, 0}});
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve({}, statics.rest());
+  const ElementDeformation shape = deformation_of(model, found.state.positions);
+  for (const double ratio : shape.volume_ratio) EXPECT_GT(ratio, 0);
+  EXPECT_NE(found.report.status, Status::converged);
+  EXPECT_FALSE(found.report.remark.empty());
+}
+
+}  // namespace softkin
