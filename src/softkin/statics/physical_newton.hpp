@@ -48,8 +48,8 @@ class PhysicalNewton {
   bool attempt(const Step& step, double damping, const Iterate& from);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
-  [[nodiscard]] bool nearly_there() const;
-  Advance simplified_steps(Iterate& at);
+  bool update_next();
+  Advance quasi_newton_steps(Iterate& at);
   Advance reject(const Iterate& at);
   void record(double step_mm);
 
@@ -63,6 +63,7 @@ class PhysicalNewton {
   const std::vector<bool>* active_ = nullptr;
   PhysicalSystem::Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
+  std::vector<Step> made_;  // with the last factor
   Iterate trial_;
   int negative_ = 0;  // of the last factorisation
 };
