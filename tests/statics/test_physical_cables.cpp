@@ -110,6 +110,29 @@ TEST(PhysicalCables, AtRest) {
   EXPECT_LT(distance(settled(finger_statics, values({1.0, 1.0})).state.positions, finger.rest), 1e-9);
 }
 
+/// Two cables along one way: the shorter one carries all; of one length, they share.
+TEST(PhysicalCables, AlongOneWay) {
+  RobotSpec spec = cable_beam();
+  spec.actuators.pop_back();
+  const Model alone = compile(spec);
+  const Statics alone_statics(alone);
+  spec.actuators.push_back(spec.actuators[0]);
+  spec.actuators[1].name = "twin";
+  const Model model = compile(spec);
+  const Statics statics(model);
+  for (const auto& [first, second] :
+       {std::pair{0.9, 0.8}, {0.8, 0.9}, {0.9, 0.9}, {1.0, 0.9}, {0.9, 1.2}, {1.0, 1.0}}) {
+    const Equilibrium both = settled(statics, values({first, second})),
+                      one = settled(alone_statics, values({std::min(first, second)}));
+    EXPECT_LT(distance(both.state.positions, one.state.positions), 1e-7) << first << " " << second;
+    EXPECT_NEAR(both.state.multipliers.sum(), one.state.multipliers[0], 1e-6);
+    EXPECT_GE(both.state.multipliers.minCoeff(), -1e-12);
+    if (first != second) {
+      EXPECT_EQ(both.state.multipliers[first > second ? 0 : 1], 0);
+    }
+  }
+}
+
 /// A cable under tension control may not be asked for less than none.
 TEST(PhysicalCables, TensionControlPullsAsAsked) {
   RobotSpec spec = cable_beam();

@@ -111,4 +111,34 @@ TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
   EXPECT_FALSE(found.report.remark.empty());
 }
 
+/// What cannot be reached is not reported as reached: nothing may move; two chambers that are one may not hold
+/// different volumes.
+TEST(PhysicalLimits, AConstraintThatCannotBeMet) {
+  RobotSpec stiff = bending_finger();
+  stiff.actuators.push_back(cable("tendon", {{0, 6, 14}, {58, 6, 14}}));
+  stiff.fixed = {{{Box{{-1, -1, -1}, {100, 100, 100}}, {}}}};
+  const Model stiff_model = compile(stiff);
+  const Statics stiff_statics(stiff_model);
+  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.0})).report.status, Status::converged);
+  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.2})).report.status, Status::converged);
+  for (const Actuation& asked : {values({1.2, 1.0}), values({1.0, 0.9}), values({0.9, 0.8})}) {
+    const Equilibrium found = stiff_statics.solve(asked, stiff_statics.rest());
+    EXPECT_EQ(found.report.status, Status::limit);
+    EXPECT_FALSE(found.report.remark.empty());
+    EXPECT_LT(distance(found.state.positions, stiff_model.rest), 1e-12);
+  }
+  RobotSpec twins = physical_robot(block_mesh({8, 3, 3}, {48, 18, 18}));
+  for (const char* name : {"bag", "twin"}) {
+    ActuatorSpec bag = air(name);
+    bag.region.reset();
+    bag.surface = box_surface({8, 5, 9.5}, {30, 8, 6});
+    twins.actuators.push_back(bag);
+  }
+  const Model model = compile(twins);
+  const Statics statics(model);
+  EXPECT_EQ(statics.solve(values({1.3, 1.1}), statics.rest()).report.status, Status::limit);
+  const Equilibrium same = settled(statics, values({1.3, 1.3}));
+  EXPECT_NEAR(achieved_ratio(model, model.actuators[0], same.state.positions), 1.3, 1e-7);
+}
+
 }  // namespace softkin
