@@ -97,6 +97,36 @@ TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
   }
 }
 
+/// A shallow arch under a weight at its top snaps through: just short of it the weight is carried, just beyond the last
+/// good shape is told, with how much it carries, and the arch still stands.
+TEST(PhysicalLimits, AnArchSnaps) {
+  RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {100, 10, 2}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
+    spec.mesh.vertices(v, 2) += 6 * std::sin(EIGEN_PI * spec.mesh.vertices(v, 0) / 100);
+  spec.quadratic = true;
+  spec.fixed.push_back({{std::string("x_high"), {}}});
+  spec.markers = {{"top", {Vec3(50, 5, 7), {}}}};
+  double last_top = 7;
+  for (const double weight : {0.005, 0.0095}) {
+    spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -weight}}};
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const double top = marker_at(model, settled(statics, {}))[2];
+    EXPECT_LT(top, last_top);
+    EXPECT_GT(top, 4);
+    last_top = top;
+  }
+  spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -0.01}}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve({}, statics.rest());
+  EXPECT_EQ(found.report.status, Status::limit);
+  EXPECT_FALSE(found.report.remark.empty());
+  EXPECT_GT(0.01 * found.report.reached, 0.0095);
+  EXPECT_GT(marker_at(model, found)[2], 4);
+  EXPECT_LT(marker_at(model, found)[2], last_top);
+}
+
 /// Where the law knows no inversion, no accepted shape is inverted, not even at a limit.
 TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
   RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {30, 10, 10}));
