@@ -97,6 +97,41 @@ TEST(PhysicalCables, Two) {
   EXPECT_NEAR(marker_at(model, both)[2], 5, 0.5);
 }
 
+/// Four cables along the edges, random lengths one after another: whichever pulls is as long as it is told, the others
+/// are shorter than they may be and carry nothing.
+TEST(PhysicalCables, FourWithRandomLengths) {
+  RobotSpec spec = physical_robot(block_mesh({12, 3, 3}, {60, 12, 12}));
+  for (const double y : {1.0, 11.0})
+    for (const double z : {1.0, 11.0})
+      spec.actuators.push_back(
+          cable("cable" + std::to_string(spec.actuators.size()), {{0, y, z}, {20, y, z}, {40, y, z}, {60, y, z}}));
+  const Model model = compile(spec);
+  const Statics statics(model);
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> ratio(0.7, 1.4);
+  State state = statics.rest();
+  int slack = 0, pulling = 0;
+  for (int i = 0; i < 15; ++i) {
+    const Actuation asked = Actuation::NullaryExpr(4, [&] { return ratio(engine); });
+    const Equilibrium found = statics.solve(asked, state);
+    ASSERT_EQ(found.report.status, Status::converged) << asked.transpose() << ": " << found.report.remark;
+    state = found.state;
+    for (Index a = 0; a < 4; ++a) {
+      const double length = achieved_ratio(model, model.actuators[a], state.positions);
+      if (state.multipliers[a] > 0) {
+        EXPECT_NEAR(length, asked[a], 1e-7);
+        ++pulling;
+      } else {
+        EXPECT_EQ(state.multipliers[a], 0);
+        EXPECT_LT(length, asked[a] + 1e-7);
+        ++slack;
+      }
+    }
+  }
+  EXPECT_GT(slack, 10);
+  EXPECT_GT(pulling, 10);
+}
+
 /// At rest nothing pulls, whatever the sign of what rounding leaves.
 TEST(PhysicalCables, AtRest) {
   const Model model = compile(cable_beam());
