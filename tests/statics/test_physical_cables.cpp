@@ -97,6 +97,41 @@ TEST(PhysicalCables, Two) {
   EXPECT_NEAR(marker_at(model, both)[2], 5, 0.5);
 }
 
+/// Four cables along the edges, random lengths one after another: whichever pulls is as long as it is told, the others
+/// are shorter than they may be and carry nothing.
+TEST(PhysicalCables, FourWithRandomLengths) {
+  RobotSpec spec = physical_robot(block_mesh({12, 3, 3}, {60, 12, 12}));
+  for (const double y : {1.0, 11.0})
+    for (const double z : {1.0, 11.0})
+      spec.actuators.push_back(
+          cable("cable" + std::to_string(spec.actuators.size()), {{0, y, z}, {20, y, z}, {40, y, z}, {60, y, z}}));
+  const Model model = compile(spec);
+  const Statics statics(model);
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> ratio(0.7, 1.4);
+  State state = statics.rest();
+  int slack = 0, pulling = 0;
+  for (int i = 0; i < 15; ++i) {
+    const Actuation asked = Actuation::NullaryExpr(4, [&] { return ratio(engine); });
+    const Equilibrium found = statics.solve(asked, state);
+    ASSERT_EQ(found.report.status, Status::converged) << asked.transpose() << ": " << found.report.remark;
+    state = found.state;
+    for (Index a = 0; a < 4; ++a) {
+      const double length = achieved_ratio(model, model.actuators[a], state.positions);
+      if (state.multipliers[a] > 0) {
+        EXPECT_NEAR(length, asked[a], 1e-7);
+        ++pulling;
+      } else {
+        EXPECT_EQ(state.multipliers[a], 0);
+        EXPECT_LT(length, asked[a] + 1e-7);
+        ++slack;
+      }
+    }
+  }
+  EXPECT_GT(slack, 10);
+  EXPECT_GT(pulling, 10);
+}
+
 /// At rest nothing pulls, whatever the sign of what rounding leaves.
 TEST(PhysicalCables, AtRest) {
   const Model model = compile(cable_beam());
@@ -108,6 +143,29 @@ TEST(PhysicalCables, AtRest) {
   const Model finger = compile(finger_with_cable());
   const Statics finger_statics(finger);
   EXPECT_LT(distance(settled(finger_statics, values({1.0, 1.0})).state.positions, finger.rest), 1e-9);
+}
+
+/// Two cables along one way: the shorter one carries all; of one length, they share.
+TEST(PhysicalCables, AlongOneWay) {
+  RobotSpec spec = cable_beam();
+  spec.actuators.pop_back();
+  const Model alone = compile(spec);
+  const Statics alone_statics(alone);
+  spec.actuators.push_back(spec.actuators[0]);
+  spec.actuators[1].name = "twin";
+  const Model model = compile(spec);
+  const Statics statics(model);
+  for (const auto& [first, second] :
+       {std::pair{0.9, 0.8}, {0.8, 0.9}, {0.9, 0.9}, {1.0, 0.9}, {0.9, 1.2}, {1.0, 1.0}}) {
+    const Equilibrium both = settled(statics, values({first, second})),
+                      one = settled(alone_statics, values({std::min(first, second)}));
+    EXPECT_LT(distance(both.state.positions, one.state.positions), 1e-7) << first << " " << second;
+    EXPECT_NEAR(both.state.multipliers.sum(), one.state.multipliers[0], 1e-6);
+    EXPECT_GE(both.state.multipliers.minCoeff(), -1e-12);
+    if (first != second) {
+      EXPECT_EQ(both.state.multipliers[first > second ? 0 : 1], 0);
+    }
+  }
 }
 
 /// A cable under tension control may not be asked for less than none.

@@ -97,6 +97,36 @@ TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
   }
 }
 
+/// A shallow arch under a weight at its top snaps through: just short of it the weight is carried, just beyond the last
+/// good shape is told, with how much it carries, and the arch still stands.
+TEST(PhysicalLimits, AnArchSnaps) {
+  RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {100, 10, 2}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
+    spec.mesh.vertices(v, 2) += 6 * std::sin(EIGEN_PI * spec.mesh.vertices(v, 0) / 100);
+  spec.quadratic = true;
+  spec.fixed.push_back({{std::string("x_high"), {}}});
+  spec.markers = {{"top", {Vec3(50, 5, 7), {}}}};
+  double last_top = 7;
+  for (const double weight : {0.005, 0.0095}) {
+    spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -weight}}};
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const double top = marker_at(model, settled(statics, {}))[2];
+    EXPECT_LT(top, last_top);
+    EXPECT_GT(top, 4);
+    last_top = top;
+  }
+  spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -0.01}}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve({}, statics.rest());
+  EXPECT_EQ(found.report.status, Status::limit);
+  EXPECT_FALSE(found.report.remark.empty());
+  EXPECT_GT(0.01 * found.report.reached, 0.0095);
+  EXPECT_GT(marker_at(model, found)[2], 4);
+  EXPECT_LT(marker_at(model, found)[2], last_top);
+}
+
 /// Where the law knows no inversion, no accepted shape is inverted, not even at a limit.
 TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
   RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {30, 10, 10}));
@@ -109,6 +139,36 @@ TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
   for (const double ratio : shape.volume_ratio) EXPECT_GT(ratio, 0);
   EXPECT_NE(found.report.status, Status::converged);
   EXPECT_FALSE(found.report.remark.empty());
+}
+
+/// What cannot be reached is not reported as reached: nothing may move; two chambers that are one may not hold
+/// different volumes.
+TEST(PhysicalLimits, AConstraintThatCannotBeMet) {
+  RobotSpec stiff = bending_finger();
+  stiff.actuators.push_back(cable("tendon", {{0, 6, 14}, {58, 6, 14}}));
+  stiff.fixed = {{{Box{{-1, -1, -1}, {100, 100, 100}}, {}}}};
+  const Model stiff_model = compile(stiff);
+  const Statics stiff_statics(stiff_model);
+  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.0})).report.status, Status::converged);
+  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.2})).report.status, Status::converged);
+  for (const Actuation& asked : {values({1.2, 1.0}), values({1.0, 0.9}), values({0.9, 0.8})}) {
+    const Equilibrium found = stiff_statics.solve(asked, stiff_statics.rest());
+    EXPECT_EQ(found.report.status, Status::limit);
+    EXPECT_FALSE(found.report.remark.empty());
+    EXPECT_LT(distance(found.state.positions, stiff_model.rest), 1e-12);
+  }
+  RobotSpec twins = physical_robot(block_mesh({8, 3, 3}, {48, 18, 18}));
+  for (const char* name : {"bag", "twin"}) {
+    ActuatorSpec bag = air(name);
+    bag.region.reset();
+    bag.surface = box_surface({8, 5, 9.5}, {30, 8, 6});
+    twins.actuators.push_back(bag);
+  }
+  const Model model = compile(twins);
+  const Statics statics(model);
+  EXPECT_EQ(statics.solve(values({1.3, 1.1}), statics.rest()).report.status, Status::limit);
+  const Equilibrium same = settled(statics, values({1.3, 1.3}));
+  EXPECT_NEAR(achieved_ratio(model, model.actuators[0], same.state.positions), 1.3, 1e-7);
 }
 
 }  // namespace softkin

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <thread>
 
 #include "statics/physical_samples.hpp"
 
@@ -78,6 +79,35 @@ TEST(PhysicalSolve, ThreadsChangeNothing) {
                     b = settled(statics, values({1.5, 1.3, 0.9}), two);
   EXPECT_EQ(a.report.iterations, b.report.iterations);
   EXPECT_LT(distance(a.state.positions, b.state.positions), 1e-12);
+}
+
+/// One object serves several threads at once, and one solve after another, without one being seen in the next.
+TEST(PhysicalSolve, SolvesSideBySideAndAgain) {
+  const Model model = compile(chambers_beam(2));
+  const Statics statics(model);
+  const Actuation asked[] = {values({1.5, 1.1}), values({0.9, 1.7}), values({1.2, 1.2}), values({2.0, 0.8})};
+  std::vector<Points> expected, found(4);
+  for (const Actuation& actuation : asked) {
+    const Statics fresh(model);
+    expected.push_back(settled(fresh, actuation).state.positions);
+  }
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&, i] {
+      StaticsOptions options = tight();
+      options.threads = 1;
+      found[i] = statics.solve(asked[i], statics.rest(), options).state.positions;
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 4; ++i) EXPECT_LT(distance(found[i], expected[i]), 1e-9);
+  // a path that comes back; each solve begins with the factor that the last one left
+  State state = statics.rest();
+  for (const int i : {0, 1, 2, 3, 2, 0}) {
+    const Equilibrium next = statics.solve(asked[i], state, tight());
+    EXPECT_EQ(next.report.status, Status::converged);
+    EXPECT_LT(distance(next.state.positions, expected[i]), 1e-7);
+    state = next.state;
+  }
 }
 
 /// The shape left behind is the last good one, and its actuation is known.

@@ -134,6 +134,16 @@ PhysicalNewton::Advance PhysicalNewton::quasi_newton_steps(Iterate& at) {
   return Advance::made;
 }
 
+/// Does no constraint miss its demand by more than steps that are small enough can close?
+bool PhysicalNewton::meets_constraints() const {
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!(*active_)[a]) continue;
+    const double reach = 2 * settings_.tolerance_mm * work_.slopes[a].rowwise().norm().sum();
+    if (!(std::abs(balance_.constraint[a]) <= reach + 1e-9 * system_.measures().rest(a))) return false;
+  }
+  return true;
+}
+
 PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy,
                                               Iterate& at) {
   demand_ = &demand;
@@ -157,6 +167,7 @@ PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::v
   if (advance != Advance::arrived) return Outcome::stuck;
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;
+  if (!meets_constraints()) return Outcome::unmet;
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }
 

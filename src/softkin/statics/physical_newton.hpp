@@ -17,7 +17,8 @@ class PhysicalNewton {
     int max_iterations = 30;
     bool keep_history = true;
   };
-  enum class Outcome { converged, unstable, stuck, interrupted };
+  /// unmet: arrived where the active constraints contradict each other or cannot be moved; they are missed.
+  enum class Outcome { converged, unstable, stuck, unmet, interrupted };
 
   PhysicalNewton(const PhysicalSystem& system, PhysicalSystem::Workspace& work, Team& team, const Settings& settings,
                  const ProgressCallback& progress, SolveReport& report);
@@ -50,6 +51,7 @@ class PhysicalNewton {
   Advance damped_step(Iterate& at, double& damping);
   bool update_next();
   Advance quasi_newton_steps(Iterate& at);
+  [[nodiscard]] bool meets_constraints() const;
   Advance reject(const Iterate& at);
   void record(double step_mm);
 

@@ -77,7 +77,7 @@ class Continuation {
       const double next = std::min(1.0, done + advance);
       const Demand there = between(from, to, next);
       Iterate trial = at;
-      if (release(there, at)) factorised = false;
+      if (release(there, at, false)) factorised = false;
       if (!factorised && !prepare(here, at)) return limit(done, "the stiffness at the start is not stable");
       factorised = true;
       const double move_mm = predict(here, there, trial);
@@ -137,14 +137,15 @@ class Continuation {
     return Status::limit;
   }
 
-  /// Slackens cables that carry nothing and may be longer than they are: held to their length they would push the body
-  /// there before they are found to be slack.
-  bool release(const Demand& there, const Iterate& at) {
+  /// Slackens cables that may be longer than they are and carry nothing: held to their length they would push the body
+  /// there before they are found to be slack. contradicting: those too that carry something, against another one.
+  bool release(const Demand& there, Iterate& at, bool contradicting) {
     bool changed = false;
     for (Index a = 0; a < system_.actuators(); ++a) {
-      if (!active_[a] || system_.sign(a) < 0 || at.multipliers[a] > 0) continue;
+      if (!active_[a] || system_.sign(a) < 0 || (at.multipliers[a] > 0 && !contradicting)) continue;
       if (system_.measures().value(a, at.positions) >= system_.target(a, there)) continue;
       active_[a] = false;
+      at.multipliers[a] = 0;
       changed = true;
     }
     return changed;
@@ -182,6 +183,10 @@ class Continuation {
     const std::vector<bool> before = active_;
     for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
       const auto outcome = newton_.solve(demand, active_, policy, at);
+      if (outcome == PhysicalNewton::Outcome::unmet) {
+        if (release(demand, at, true)) continue;
+        break;
+      }
       if (outcome == PhysicalNewton::Outcome::stuck || outcome == PhysicalNewton::Outcome::interrupted) {
         active_ = before;
         return outcome;
@@ -237,6 +242,25 @@ Demand demand_of(const PhysicalSystem& system, const Model& model, const State& 
 
 }  // namespace
 
+/// From a start that is no equilibrium no path may lead away; from rest one may.
+void PhysicalStatics::begin_again(const Demand& to, const Options& options, const ProgressCallback& progress,
+                                  Team& team, PhysicalSystem::Workspace& work, Iterate& at, SolveReport& report) const {
+  const std::string remark = report.remark;
+  Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators())};
+  system_.freedoms().hold(0, fresh.positions);
+  Continuation continuation(system_, work, team, options, progress, report);
+  const Status status = continuation.follow({system_.model().rest_actuation(), 0}, to, fresh);
+  if (status == Status::converged) {
+    at = std::move(fresh);
+    report.status = status;
+    if (report.remark == remark) report.remark.clear();
+    return;
+  }
+  if (status == Status::interrupted) report.status = status;
+  report.remark = remark;
+  report.reached = 0;
+}
+
 Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& start, const Options& options,
                                    const ProgressCallback& progress, Team& team) const {
   const Model& model = system_.model();
@@ -253,8 +277,9 @@ Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& star
   system_.freedoms().hold(from.share, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
-  Continuation continuation(system_, lease.work(), team, options, progress, report);
-  report.status = continuation.follow(from, to, at);
+  report.status = Continuation(system_, lease.work(), team, options, progress, report).follow(from, to, at);
+  if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest)
+    begin_again(to, options, progress, team, lease.work(), at, report);
   if (report.status == Status::converged) lease.work().home = at.positions;
   report.estimated_error_mm = report.step_mm;
   result.state.positions = std::move(at.positions);
