@@ -180,20 +180,20 @@ FingerSource coarse_finger() {
 
 TEST(Runs, EverySolverComesWithinTheErrorAskedFor) {
   const FingerSource source = coarse_finger();
-  const auto answers = find_answers(source, FingerKind::target_shape, {8}, 1, 60);
+  const auto answers = find_answers(source, FingerKind::target_shape, {4}, 1, 60);
   ASSERT_TRUE(answers.result.has_value());
   ASSERT_EQ(answers.result->count, 1);
   const Target& target = answers.result->targets[0];
   RunOptions options;
   options.threads = 1;
-  options.tip_error_mm = 0.5;
+  options.tip_error_mm = 1;
   const auto newton = run_newton(source, FingerKind::target_shape, target, options);
   const auto plain = run_local_global(source, target, 0, options);
   const auto accelerated = run_local_global(source, target, 6, options);
   for (const auto* run : {&newton, &plain, &accelerated}) {
     ASSERT_TRUE(run->result.has_value());
     EXPECT_TRUE(run->result->done);
-    EXPECT_LE(run->result->tip_error, 0.5);
+    EXPECT_LE(run->result->tip_error, 1);
   }
   // what was measured is the library's iteration: after as many of its own the tip is as near
   const RobotSpec spec = source.robot(FingerKind::target_shape);
@@ -208,8 +208,8 @@ TEST(Runs, EverySolverComesWithinTheErrorAskedFor) {
     return (model.markers[0].point.at(found.state.positions) - Vec3(target.tip[0], target.tip[1], target.tip[2]))
         .norm();
   };
-  EXPECT_LE(error_after(plain.result->iterations), 0.5);
-  EXPECT_GT(error_after(plain.result->iterations - 1), 0.5);
+  EXPECT_LE(error_after(plain.result->iterations), 1);
+  EXPECT_GT(error_after(plain.result->iterations - 1), 1);
 }
 
 TEST(Runs, TellHowFarALateSolverIs) {
@@ -272,13 +272,13 @@ TEST(CalculixRun, AgreesWithThePhysicalFormulation) {
             .string();
     std::filesystem::create_directories(folder);
     RunOptions options;
-    options.tip_error_mm = 0.03;
+    options.tip_error_mm = 0.1;
     options.limit = 120;
     const CalculixRun found =
         run_calculix(source, kind, *answers.result, answers.result->targets[0], folder, 1, options);
     std::filesystem::remove_all(folder);
     EXPECT_TRUE(found.run.done) << found.complaint;
-    EXPECT_LE(found.run.tip_error, 0.03);
+    EXPECT_LE(found.run.tip_error, 0.1);
     EXPECT_GT(found.run.iterations, 1);
   }
 }
