@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--folder", options.folder, "where CalculiX works and its files stay; none: a temporary one");
   return run_benchmark(app, argc, argv, [&] {
+    print_machine();
     std::printf(
         "Newton and local-global start at rest; done: tip within %g mm of the converged answer; limit %g s a run\n",
         options.run.tip_error_mm, options.run.limit);

@@ -21,6 +21,7 @@ std::array<Index, 3> sorted(std::array<Index, 3> corners) {
   return corners;
 }
 
+/// In mm, mN and kPa: ccx takes a residual below 1e-6 for none, which in N ends it too early.
 class Deck {
  public:
   Deck(const std::string& path, const Model& model) : file_(std::fopen(path.c_str(), "w")), model_(model) {
@@ -32,13 +33,13 @@ class Deck {
     const ElasticLaw& law = model_.materials[0].elastic;
     const double poisson = law.lambda / (2 * (law.lambda + law.mu));
     put("*MATERIAL, NAME=RUBBER\n*ELASTIC\n%.17g, %.17g\n*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n",
-        2 * law.mu * (1 + poisson), poisson);
+        1000 * 2 * law.mu * (1 + poisson), poisson);
     put("*BOUNDARY\nHELD, 1, 3\n*STEP, NLGEOM, INC=100000\n*STATIC\n%g, 1, 1e-8\n", task.first_step);
     // its iteration on follower loads converges linearly: it needs more iterations than the default allows
     put("*CONTROLS, PARAMETERS=TIME INCREMENTATION\n30, 60, 100, 200, 60, 30, , 20\n");
     put("*CONTROLS, PARAMETERS=FIELD\n%g, %g, , , %g, , %g\n", task.residual, task.correction, task.residual,
         task.correction / 10);
-    write_pressure(task.pressure_mpa);
+    write_pressure(task.pressure_kpa);
     put("*NODE PRINT, NSET=TIP, FREQUENCY=100000\nU\n*END STEP\n");
     if (std::ferror(file_.get()) != 0) throw InvalidInput("the deck for CalculiX could not be written");
   }

@@ -9,7 +9,7 @@ namespace softkin::bench {
 
 /// CalculiX as a peer: the same mesh, material and pressure, geometrically nonlinear.
 struct CalculixTask {
-  double pressure_mpa = 0;   // on the walls of chamber 0, in the current shape
+  double pressure_kpa = 0;   // on the walls of chamber 0, in the current shape
   double residual = 5e-3;    // *CONTROLS, FIELD: R_n and R_p, of the average force
   double correction = 1e-2;  // C_n, of the increment
   double first_step = 0.05;  // of the load

@@ -110,10 +110,12 @@ int do_program(const void* argument) {
     ::setenv(pair.substr(0, at).c_str(), pair.substr(at + 1).c_str(), 1);
   }
   if (::chdir(program.folder.c_str()) != 0) return 126;
-  const int file = ::open(program.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  if (file < 0) return 126;
-  ::dup2(file, STDOUT_FILENO);
-  ::dup2(file, STDERR_FILENO);
+  if (!program.output.empty()) {
+    const int file = ::open(program.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (file < 0) return 126;
+    ::dup2(file, STDOUT_FILENO);
+    ::dup2(file, STDERR_FILENO);
+  }
   std::vector<char*> words;
   for (const std::string& word : *program.command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);

@@ -53,7 +53,7 @@ template <class Result>
   return measured;
 }
 
-/// Runs a program, found on the PATH, in a folder; its output goes to a file there.
+/// Runs a program, found on the PATH, in a folder; its output goes to a file there ("": where this one's goes).
 ///
 /// environment  "NAME=value", beside what this process has
 [[nodiscard]] ProcessEnd run_program(const std::vector<std::string>& command, const std::string& folder,

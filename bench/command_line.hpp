@@ -9,7 +9,12 @@
 
 namespace softkin::bench {
 
-/// Parses the arguments, prints the machine, and runs a benchmark. Exit codes: what body returns, 2 on bad usage or
+inline void print_machine() {
+  std::printf("%s\n", machine_text().c_str());
+  std::fflush(stdout);
+}
+
+/// Parses the arguments and runs a benchmark. Exit codes: what body returns, 2 on bad usage or
 /// input.
 inline int run_benchmark(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
   try {
@@ -18,7 +23,6 @@ inline int run_benchmark(CLI::App& app, int argc, char** argv, const std::functi
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    std::printf("%s\n", machine_text().c_str());
     return body();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), error.what());
