@@ -20,7 +20,7 @@ reading_pattern = ^($(subst $(empty) $(empty),|,$(strip $(reading))))$$
 .PHONY: help setup build run test test-release test-sanitize bench format format-check clean
 
 help:
-	@echo 'make run           install what is missing, build, and bend the example finger'
+	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
 	@echo 'make test          install what is missing, build everything, run all tests and checks'
 	@echo 'make build         build build/softkin'
 	@echo 'make bench         build and run the benchmarks (docs/benchmarks.md); BENCH="newton large" runs these alone'
@@ -38,12 +38,19 @@ run: build
 	@mkdir -p out
 	build/softkin fk $(example)/pneumatic_finger.yaml --path $(example)/path.csv -o out/pneumatic_finger.pvd \
 	  --image out/pneumatic_finger.png --report out/pneumatic_finger.json
+	build/softkin fk $(example)/pneumatic_finger.yaml --path $(example)/path.csv --formulation target-shape \
+	  -o out/target_shape.pvd --image out/target_shape.png --report out/target_shape.json
+	build/softkin fk $(example)/pneumatic_finger.yaml --path $(example)/path.csv --formulation target-shape \
+	  --solver local-global --report out/local_global.json
 	@echo
-	@echo 'Open next:'
-	@echo '  out/pneumatic_finger.png    the finger in its last pose'
-	@echo '  out/pneumatic_finger.pvd    every pose, in ParaView'
-	@echo '  out/pneumatic_finger.json   positions of the markers, iterations, times'
-	@echo '  README.md                   the five-minute tour'
+	build/softkin compare out/pneumatic_finger.json out/target_shape.json out/local_global.json \
+	  --turn tip end --poses 90 180 240
+	@echo
+	@echo "Turn is the bend of the finger's tip. Open next:"
+	@echo "  out/pneumatic_finger.png, out/target_shape.png     the finger in its last pose, by both formulations"
+	@echo "  out/pneumatic_finger.pvd, out/target_shape.pvd     every pose, in ParaView"
+	@echo "  out/pneumatic_finger.json, out/target_shape.json   markers, pressures, iterations, times"
+	@echo "  README.md, docs/formulations.md                    the five-minute tour; why the two differ"
 
 test:
 	@$(SETUP) --tests

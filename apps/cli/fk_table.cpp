@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "fk_units.hpp"
 #include "mesh_text.hpp"
@@ -15,13 +14,6 @@ namespace {
 constexpr std::size_t longest_name = 24;
 constexpr std::size_t load_width = 12;
 constexpr int value_decimals = 4;  // of ratios and loads
-
-std::string fixed(double value, int decimals) {
-  char text[400];
-  const bool zero = std::abs(value) < 0.5 * std::pow(10, -decimals);  // never "-0.000"
-  std::snprintf(text, sizeof text, "%.*f", decimals, zero ? 0.0 : value);
-  return text;
-}
 
 std::string right(const std::string& text, std::size_t width) {
   const std::size_t shown = characters(text);
@@ -50,7 +42,7 @@ std::string grouped(std::size_t count) {
 }
 
 std::string percent(const nlohmann::ordered_json& share) {
-  return fixed(100 * share.get<double>(), 1) + " %";
+  return decimal(100 * share.get<double>(), 1) + " %";
 }
 
 /// "pressure [kPa]" or "tension [N]" where the robot answers with one, else "".
@@ -60,7 +52,7 @@ std::string load_header(const Model& model, const Actuator& actuator) {
 }
 
 std::string fixed_or_unknown(const nlohmann::ordered_json& value) {
-  return value.is_null() ? "unknown" : fixed(value.get<double>(), value_decimals);
+  return value.is_null() ? "unknown" : decimal(value.get<double>(), value_decimals);
 }
 
 /// The materials' laws, each once.
@@ -104,11 +96,11 @@ const char* unit_of_measure(const Actuator& actuator) {
 StepTable::StepTable(const Model& model, std::size_t steps) : model_(model) {
   decimals_ = std::clamp(5 - static_cast<int>(std::floor(std::log10(model.diagonal_mm))), 1, 9);
   const double farthest = model.rest.cwiseAbs().maxCoeff() + model.diagonal_mm;
-  length_width_ = std::max(length_width_, fixed(-farthest, decimals_).size());
+  length_width_ = std::max(length_width_, decimal(-farthest, decimals_).size());
   add("step", std::to_string(steps).size());
   for (const Actuator& actuator : model.actuators) {
     const std::size_t width =
-        std::max(fixed(actuator.high, value_decimals).size(), fixed(actuator.low, value_decimals).size());
+        std::max(decimal(actuator.high, value_decimals).size(), decimal(actuator.low, value_decimals).size());
     add(short_name(actuator.name) + " " + bracketed_unit(actuator), width);
     add("achieved [-]", width);
     if (const std::string load = load_header(model, actuator); !load.empty()) add(load, load_width);
@@ -146,11 +138,11 @@ std::string StepTable::row(std::size_t step, const nlohmann::ordered_json& json)
   for (const Marker& marker : model_.markers) {
     std::string point;
     for (const auto& x : json.at("markers").at(marker.name))
-      point += (point.empty() ? "" : " ") + right(fixed(x.get<double>(), decimals_), length_width_);
+      point += (point.empty() ? "" : " ") + right(decimal(x.get<double>(), decimals_), length_width_);
     cells.push_back(point);
   }
   cells.push_back(std::to_string(json.at("iterations").get<int>()));
-  cells.push_back(fixed(json.at("seconds").get<double>(), 2));
+  cells.push_back(decimal(json.at("seconds").get<double>(), 2));
   cells.push_back(json.at("status").get<std::string>());
   return line(cells);
 }

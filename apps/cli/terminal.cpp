@@ -88,4 +88,11 @@ std::string number(double value, int digits) {
   return text;
 }
 
+std::string decimal(double value, int decimals) {
+  char text[400];
+  const bool zero = std::abs(value) < 0.5 * std::pow(10, -decimals);  // never "-0.000"
+  std::snprintf(text, sizeof text, "%.*f", decimals, zero ? 0.0 : value);
+  return text;
+}
+
 }  // namespace softkin::cli

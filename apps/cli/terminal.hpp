@@ -36,4 +36,7 @@ class ProgressLine {
 /// The shortest decimal text of a number at so many significant digits.
 [[nodiscard]] std::string number(double value, int digits = 6);
 
+/// A number with so many digits behind the point.
+[[nodiscard]] std::string decimal(double value, int decimals);
+
 }  // namespace softkin::cli

@@ -24,7 +24,13 @@ std::vector<fs::path> scenes() {
 
 class NewtonExample : public ::testing::TestWithParam<fs::path> {
  protected:
-  NewtonExample() : model_(compile(read_scene(GetParam()))), statics_(model_) {}
+  NewtonExample() : model_(compile(target_shape_scene())), statics_(model_) {}
+
+  static RobotSpec target_shape_scene() {
+    RobotSpec spec = read_scene(GetParam());
+    spec.formulation = Formulation::target_shape;
+    return spec;
+  }
 
   /// One call from rest with the default options. Two inflated chambers side by side crush the third: there Algorithm 1
   /// ends with inverted elements too.
