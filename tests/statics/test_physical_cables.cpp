@@ -67,6 +67,21 @@ TEST(PhysicalCables, TightensAgainAlongAPath) {
   EXPECT_LT(distance(found.state.positions, slack), 1e-7);
 }
 
+/// Along a path a slack cable costs no factorisation more than none at all.
+TEST(PhysicalCables, ASlackOneIsFree) {
+  const Model model = compile(finger_with_cable()), bare_model = compile(bending_finger());
+  const Statics statics(model), bare(bare_model);
+  State state = settled(statics, values({1.5, 1.4})).state, bare_state = settled(bare, values({1.5})).state;
+  for (const double ratio : {1.52, 1.54, 1.56}) {
+    const Equilibrium found = statics.solve(values({ratio, 1.4}), state),
+                      alone = bare.solve(values({ratio}), bare_state);
+    EXPECT_EQ(found.report.factorisations, alone.report.factorisations);
+    EXPECT_EQ(found.state.multipliers[1], 0);
+    state = found.state;
+    bare_state = alone.state;
+  }
+}
+
 /// Of two cables one may slacken the other; both shortened, both pull. No cable is longer than it may be, and one that
 /// is shorter carries nothing.
 TEST(PhysicalCables, Two) {

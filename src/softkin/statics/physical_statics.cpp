@@ -71,6 +71,7 @@ class Continuation {
     for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
     double done = 0, advance = 1;
     Demand here = from;
+    (void)release(to, at, false);
     bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
     work_.home.resize(0, 3);
     while (done < 1) {
