@@ -40,7 +40,7 @@ class Deck {
     put("*CONTROLS, PARAMETERS=FIELD\n%g, %g, , , %g, , %g\n", task.residual, task.correction, task.residual,
         task.correction / 10);
     write_pressure(task.pressure_kpa);
-    put("*NODE PRINT, NSET=TIP, FREQUENCY=100000\nU\n*END STEP\n");
+    put("*NODE PRINT, NSET=TIP, FREQUENCY=1\nU\n*END STEP\n");
     if (std::ferror(file_.get()) != 0) throw InvalidInput("the deck for CalculiX could not be written");
   }
 

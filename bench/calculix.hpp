@@ -17,7 +17,7 @@ struct CalculixTask {
 
 /// Writes NAME.inp: body elements (C3D4 or C3D10), held vertices, St. Venant-Kirchhoff material (*ELASTIC with NLGEOM),
 /// pressure on the faces of actuator 0's cavity (*DLOAD, which follows them), and the displacements of the vertices of
-/// marker 0 at the end.
+/// marker 0 after every increment.
 ///
 /// model   physical, of tetrahedra and one material without prisms; fixed in all axes where it is
 /// throws  InvalidInput where the model is not such a one or the file cannot be written

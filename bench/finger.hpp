@@ -5,8 +5,8 @@
 
 namespace softkin::bench {
 
-/// The finger that every benchmark bends: a bellows of 120 x 25 x 25 mm along x, held at x = 0, with ten folds in its
-/// sides and top, a chamber inside, solid ends and a flat floor of 2 mm towards which it bends.
+/// The finger that every benchmark bends: a bellows of 120 x 25 x 25 mm along x, held at x = 0, with seven folds of
+/// plane walls in its sides and top, a chamber inside, solid ends and a flat floor of 2 mm towards which it bends.
 ///
 /// cell_mm  about the edge of a cell in the wall [mm], 0.3 <= cell_mm <= 10; every cell is five tetrahedra
 /// returns  lengths in mm, elements positive and conforming, mirror image of itself in y = 0. Regions: volumes "body"

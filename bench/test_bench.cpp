@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 
@@ -23,6 +24,11 @@ namespace softkin::bench {
 namespace {
 
 constexpr double coarse = 4.68;  // [mm]
+
+/// In the folder for temporary files; no other run's.
+std::string temporary(const std::string& name) {
+  return (std::filesystem::temp_directory_path() / (name + "_" + std::to_string(::getpid()))).string();
+}
 
 double volume_of(const Mesh& mesh, const std::string& region) {
   double volume = 0;
@@ -227,7 +233,7 @@ TEST(Runs, TellHowFarALateSolverIs) {
 
 TEST(CalculixDeck, LoadsEveryWallOnce) {
   const Model model = compile(coarse_finger().robot(FingerKind::physical));
-  const std::string path = (std::filesystem::temp_directory_path() / "softkin_bench_deck.inp").string();
+  const std::string path = temporary("softkin_bench_deck");
   CalculixTask task;
   task.pressure_kpa = 20;
   write_calculix_deck(path, model, task);
@@ -264,21 +270,19 @@ TEST(CalculixRun, AgreesWithThePhysicalFormulation) {
   if (!on_path("ccx")) GTEST_SKIP() << "CalculiX is not there";
   for (const FingerKind kind : {FingerKind::physical, FingerKind::physical_quadratic}) {
     const FingerSource source = coarse_finger();
-    const auto answers = find_answers(source, kind, {2}, 1, 120);
+    const auto answers = find_answers(source, kind, {1}, 1, 120);
     ASSERT_TRUE(answers.result.has_value());
     ASSERT_EQ(answers.result->count, 1);
-    const std::string folder =
-        (std::filesystem::temp_directory_path() / ("softkin_bench_ccx_" + std::to_string(static_cast<int>(kind))))
-            .string();
+    const std::string folder = temporary("softkin_bench_ccx");
     std::filesystem::create_directories(folder);
     RunOptions options;
-    options.tip_error_mm = 0.1;
+    options.tip_error_mm = 0.05;
     options.limit = 120;
     const CalculixRun found =
         run_calculix(source, kind, *answers.result, answers.result->targets[0], folder, 1, options);
     std::filesystem::remove_all(folder);
     EXPECT_TRUE(found.run.done) << found.complaint;
-    EXPECT_LE(found.run.tip_error, 0.1);
+    EXPECT_LE(found.run.tip_error, 0.05);
     EXPECT_GT(found.run.iterations, 1);
   }
 }
