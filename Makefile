@@ -10,6 +10,8 @@ export CTEST_OUTPUT_ON_FAILURE = 1
 cores := $(shell nproc)
 sources = $(shell find src apps bench tests -name '*.cpp' -o -name '*.hpp')
 example := examples/pneumatic_finger
+# without `large`, which takes long and up to 24 GiB
+BENCH ?= iteration factor tracking newton
 # the rooms that read what users write, and so see hostile input: tested under the sanitizers
 reading := $(foreach room,core model io,$(if $(wildcard tests/$(room)/test_*.cpp),$(room)))
 empty :=
@@ -21,7 +23,7 @@ help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
 	@echo 'make test          install what is missing, build everything, run all tests and checks'
 	@echo 'make build         build build/softkin'
-	@echo 'make bench         build and run the benchmarks'
+	@echo 'make bench         build and run the benchmarks (docs/benchmarks.md); BENCH="newton large" runs these alone'
 	@echo 'make format        format the sources; make format-check only looks'
 	@echo 'make clean         remove the build folders'
 
@@ -68,11 +70,10 @@ test-sanitize:
 
 bench: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON
-	cmake --build --preset release
-	@found=0; for program in build/bench/bench_*; do \
-	  [ -f "$$program" ] && [ -x "$$program" ] || continue; \
-	  found=1; echo "$$program"; "$$program" || exit 1; \
-	done; [ $$found = 1 ] || { echo 'bench: no program build/bench/bench_*' >&2; exit 1; }
+	cmake --build --preset release --target $(BENCH:%=bench_%)
+	@for name in $(BENCH); do \
+	  echo; echo "bench_$$name $(BENCH_OPTIONS)"; build/bench/bench_$$name $(BENCH_OPTIONS) || exit 1; \
+	done
 
 format:
 	@$(CLANG_FORMAT) -i $(sources)

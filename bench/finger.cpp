@@ -12,7 +12,7 @@ namespace {
 
 constexpr double half_width = 12.5, height = 25;  // [mm]
 constexpr double end_wall = 6, floor_wall = 2;    // [mm]
-constexpr double wall = 1.2;                      // of the folds [mm]
+constexpr double wall = 1.4;                      // of the folds [mm]
 constexpr int folds = 7;
 constexpr double length = 120;
 constexpr double half_neck = 4, neck_top = 9;  // where a fold joins the next: outside of the wall [mm]

@@ -186,6 +186,7 @@ Json step_json(const Model& model, const Equilibrium& equilibrium, const Element
   step["actuators"] = Json::object();
   const bool is_known = equilibrium.state.actuation.size() == equilibrium.actuation.size();
   if (is_known) step["shape_actuation"] = Json::object();
+  if (model.formulation == Formulation::physical) step["shape_load_share"] = equilibrium.state.share;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const std::string& name = model.actuators[a].name;
     step["actuation"][name] = equilibrium.actuation[static_cast<Index>(a)];

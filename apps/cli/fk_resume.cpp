@@ -84,6 +84,7 @@ class ReportOnDisk {
   /// What the next step starts from, as if the step had just been solved.
   [[nodiscard]] State state(const Json& step, Points positions) const {
     State result{std::move(positions), {}, Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size()))};
+    if (model_.formulation == Formulation::physical) result.share = step.at("shape_load_share").get<double>();
     const Json& actuation = step.at("shape_actuation");
     if (!actuation.is_null()) result.actuation = Actuation::Zero(result.multipliers.size());
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {

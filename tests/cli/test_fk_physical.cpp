@@ -278,6 +278,28 @@ TEST(FkLimit, IsToldWithTheLastGoodShape) {
   expect_same_markers(step, same, 1e-4);
 }
 
+TEST(FkLimit, OfLoadsAndDisplacementsIsTold) {
+  const BlockFolder folder(physical_scene());
+  const ProgramResult result = run_fk(folder.scene, {"--force", "payload=-1000,0,0"});  // a column gives way
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.errors.rfind("softkin: limit: ", 0), 0u) << result.errors;
+  EXPECT_NE(result.errors.find(" % of the loads and displacements were reached: "), std::string::npos) << result.errors;
+}
+
+TEST(FkLimit, TooFewIterationsAreNoLimit) {
+  const BlockFolder folder(loaded_scene());
+  const ProgramResult result =
+      run_fk(folder.scene, {"--set", "air=3000", "--max-iterations", "3", "--report", folder / "a.json"});
+  EXPECT_EQ(result.exit_code, 1);
+  const json step = json::parse(read_text(folder / "a.json"))["steps"][0];
+  EXPECT_EQ(step["status"], "not converged");
+  EXPECT_LT(step["reached"], 1);
+  EXPECT_EQ(result.errors.rfind("softkin: not converged: air reached ", 0), 0u) << result.errors;
+  EXPECT_NE(result.errors.find(" kPa of 3000 kPa: the limit of iterations was reached; the shape is the last good one"),
+            std::string::npos)
+      << result.errors;
+}
+
 TEST(FkLimit, APathGoesOnFromTheLastGoodShape) {
   const BlockFolder folder(loaded_scene());
   const std::string path = folder.write("path.csv", "air_kPa\n50\n3000\n2000\n50\n");
@@ -292,18 +314,32 @@ TEST(FkLimit, APathGoesOnFromTheLastGoodShape) {
   expect_same_markers(steps[0], steps[3], 1e-5);
 }
 
+/// But for rounding: a solve that begins anew has another factor to predict with than one that goes on.
+void expect_same_step(const json& found, const json& expected) {
+  SCOPED_TRACE(expected["actuation"].dump());
+  EXPECT_EQ(found["status"], expected["status"]);
+  expect_same_markers(found, expected, 1e-6);
+  EXPECT_LE(std::abs(found["iterations"].get<int>() - expected["iterations"].get<int>()), 2);
+  for (const auto& [name, values] : expected["actuators"].items())
+    for (const auto& [key, value] : values.items()) {
+      if (value.is_boolean()) {
+        EXPECT_EQ(found["actuators"][name][key], value) << name;
+        continue;
+      }
+      const double known = value.get<double>();
+      EXPECT_NEAR(found["actuators"][name][key].get<double>(), known, 1e-6 * (1 + std::abs(known))) << name << key;
+    }
+  for (const auto& [name, value] : expected["shape_actuation"].items())
+    EXPECT_NEAR(found["shape_actuation"][name].get<double>(), value.get<double>(), 1e-6 * value.get<double>()) << name;
+}
+
 TEST(FkLimit, ResumeGoesOnFromItsActuationAndMultipliers) {
   const BlockFolder folder(replaced(physical_scene(), "volume, range: [0.5, 3]", "pressure, range: [-100, 3000]"));
   const std::string path = folder.write("path.csv", "air_kPa,tendon\n50,1.1\n3000,0.95\n60,0.9\n70,1.2\n80,0.8\n");
   const std::vector<std::string> options{"--path", path, "--report", folder / "out/a.json", "-o", folder / "out/a.pvd"};
   EXPECT_EQ(run_fk(folder.scene, options).exit_code, 1);
-  const auto state = [&] {
-    const json report = json::parse(read_text(folder / "out/a.json"));
-    std::vector<json> all;
-    for (const json& step : report["steps"]) all.push_back(timeless(step));
-    return all;
-  };
-  const std::vector<json> whole = state();
+  const auto steps = [&] { return json::parse(read_text(folder / "out/a.json"))["steps"]; };
+  const json whole = steps();
   EXPECT_EQ(whole[1]["status"], "limit");
   std::vector<std::string> again = options;
   again.emplace_back("--resume");
@@ -313,7 +349,9 @@ TEST(FkLimit, ResumeGoesOnFromItsActuationAndMultipliers) {
     EXPECT_EQ(result.exit_code, 1) << "nothing is left, but not all is well";
     EXPECT_NE(result.output.find(std::to_string(lost) + " of 5 steps were done before"), std::string::npos)
         << result.output;
-    EXPECT_EQ(state(), whole) << lost;
+    const json resumed = steps();
+    ASSERT_EQ(resumed.size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i) expect_same_step(resumed[i], whole[i]);
   }
 }
 

@@ -137,6 +137,27 @@ TEST(Physical, ADeaHasAMaterialAndAnActuator) {
   EXPECT_NE(refusal(spec).find("8 elements of region 'body' have no material"), std::string::npos);
 }
 
+TEST(Physical, AMembranesMaterialIsNotNeededInTargetShape) {
+  Mesh mesh = block_mesh({4, 2, 1}, {8, 4, 1}, Split::prisms);
+  add_volume_region(mesh, "membrane", [](const Vec3& p) { return p[0] < 4; });
+  RobotSpec spec = physical_robot(mesh);
+  spec.materials[0].region = "body";
+  spec.materials[0].shape_ratio = 1;
+  MaterialSpec silicone = spec.materials[0];
+  silicone.region = "membrane";
+  silicone.shape_ratio.reset();
+  spec.materials.push_back(silicone);
+  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
+  skin.region = "membrane";
+  spec.actuators.push_back(skin);
+  EXPECT_EQ(compile(spec).materials.size(), 2u);
+  spec.formulation = Formulation::target_shape;
+  const Model model = compile(spec);
+  EXPECT_EQ(model.materials.size(), 1u);
+  EXPECT_EQ(model.prism_roles[0].actuator, 0);
+  EXPECT_EQ(model.prism_roles[0].material, -1);
+}
+
 TEST(Physical, LoadControlRestsAtZero) {
   RobotSpec spec = physical_robot(hollow_mesh());
   spec.actuators = {chamber("chamber"), cable({at(0, 5, 5), at(30, 5, 5)})};

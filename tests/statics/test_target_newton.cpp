@@ -239,6 +239,32 @@ TEST(TargetNewton, FreeChamberAlone) {
   }
 }
 
+/// A chamber that asks for a hundred times its volume at once: Newton's method finds it on the way there.
+TEST(TargetNewton, GoesThroughEquilibriaInBetweenWhereOneCallIsTooFar) {
+  RobotSpec spec = finger_robot(false, 0.5);
+  spec.actuators[0].high = 200;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve(values({100}), statics.rest(), newton(1e-8));
+  EXPECT_EQ(found.report.status, Status::converged);
+  EXPECT_GT(found.report.continuation_steps, 1);
+  StaticsOptions once = as_printed();
+  once.max_iterations = 1;
+  EXPECT_LT(statics.solve(values({100}), found.state, once).report.step_mm, 1e-7);  // Algorithm 1 stays there
+  // from an equilibrium nearby it is one step
+  const Equilibrium next = statics.solve(values({105}), found.state, newton(1e-8));
+  EXPECT_EQ(next.report.status, Status::converged);
+  EXPECT_EQ(next.report.continuation_steps, 1);
+}
+
+TEST(TargetNewton, EarlierSolvesLeaveNoTrace) {
+  const Model model = compile(mixed_robot(true, 0.5));
+  const Statics statics(model), fresh(model);
+  (void)statics.solve(values({0.7, 2.0, 0.8}), statics.rest());
+  EXPECT_EQ(statics.solve(values({1.2, 1.5, 0.9}), statics.rest()).state.positions,
+            fresh.solve(values({1.2, 1.5, 0.9}), fresh.rest()).state.positions);
+}
+
 /// A layer without resistance to shear is a mechanism: no shape to converge to, and no blow-up.
 TEST(TargetNewton, MechanismEndsWithFiniteNumbers) {
   RobotSpec spec = finger_robot(true);

@@ -114,8 +114,9 @@ TEST(TargetTangent, SolvesTheExactDerivative) {
         ASSERT_TRUE(tangent.factorise(c.local, c.positions, false, c.alone, report));
         if (tangent.symmetric() && report.projections > 0) continue;  // not the exact one
         const Eigen::VectorXd right = Eigen::VectorXd::Random(unknowns.freedoms.size());
-        Eigen::VectorXd step;
-        ASSERT_TRUE(tangent.solve(c.local, c.positions, right, 1e-10, c.alone, step));
+        Eigen::VectorXd preconditioned = right, step;
+        tangent.precondition(preconditioned, c.alone);
+        ASSERT_TRUE(tangent.solve(c.local, c.positions, preconditioned, 1e-10, c.alone, step));
         const double h = 1e-5 / step.cwiseAbs().maxCoeff();
         const auto reduced = [&](double scale) {
           Points moved = c.positions;

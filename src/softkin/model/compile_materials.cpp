@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <softkin/model/compile_parts.hpp>
@@ -61,12 +62,25 @@ void refuse_bare_elements(const Compilation& c) {
   throw InvalidInput(c.origin, text + (single ? " has" : " have") + " no material: give one, or make the region void");
 }
 
+/// Do all elements of a region belong to actuators? Their materials matter to the physical formulation alone.
+bool only_actuated(const Compilation& c, const Region& region) {
+  const auto actuated = [](const std::vector<Index>& elements, const std::vector<Index>& at,
+                           const std::vector<ElementRole>& roles) {
+    return std::all_of(elements.begin(), elements.end(),
+                       [&](Index i) { return at[i] >= 0 && roles[at[i]].actuator >= 0; });
+  };
+  return !(region.tetrahedra.empty() && region.prisms.empty()) &&
+         actuated(region.tetrahedra, c.tetrahedron_at, c.model.tetrahedron_roles) &&
+         actuated(region.prisms, c.prism_at, c.model.prism_roles);
+}
+
 }  // namespace
 
 void compile_materials(Compilation& c) {
   Model& model = c.model;
   const bool physical = c.spec.formulation == Formulation::physical;
   for (const MaterialSpec& spec : c.spec.materials) {
+    if (!physical && spec.elastic && only_actuated(c, c.regions.find(spec.region, spec.origin))) continue;
     const auto index = static_cast<Index>(model.materials.size());
     model.materials.push_back(checked_material(spec, c.spec.formulation));
     const Region& region = c.regions.find(spec.region, spec.origin);

@@ -13,6 +13,7 @@ struct State {
   Points positions;               // #V by 3 [mm]
   Actuation actuation{};          // of which positions is an equilibrium; empty: not known
   Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa], 0 for a dea; empty: not known
+  double share = 1;               // of dead loads and displacements of supports, where actuation is known [-]
 };
 
 /// limit: there is no equilibrium to be followed as far as was asked; the shape is the last good one.

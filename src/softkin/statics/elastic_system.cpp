@@ -207,20 +207,19 @@ ElasticSystem::Result ElasticSystem::force(const Eigen::VectorXd& actuation, con
         load<K>(positions, set.nodes[b], shape);
         elastic_force<K, Q>(blocks[b], shape, out);
         scratch.energies[first + b] = out.energy;
-        scratch.inverted[first + b] = forbids_inversion(set.law) ? out.inverted : PackMask{};
+        scratch.inverted[first + b] = out.inverted;
         store(set, b, out.gradient, scratch);
       }
     });
+    PackMask inverted{};
+    for (std::size_t b = first; b < first + blocks.size(); ++b) inverted |= scratch.inverted[b];
+    result.inverted |= any(inverted);
+    result.forbidden |= forbids_inversion(set.law) && any(inverted);
     first += blocks.size();
   });
   Pack energy{};
-  PackMask inverted{};
-  for (std::size_t b = 0; b < blocks_; ++b) {
-    energy += scratch.energies[b];
-    inverted |= scratch.inverted[b];
-  }
+  for (const Pack& part : scratch.energies) energy += part;
   result.energy = sum(energy);
-  result.forbidden = any(inverted);
   gather(scratch, gradient, team);
   return result;
 }

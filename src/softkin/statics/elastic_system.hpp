@@ -25,7 +25,8 @@ class ElasticSystem {
 
   struct Result {
     double energy = 0;       // [mJ]
-    bool forbidden = false;  // is an element inverted whose law forbids it; energy and gradient are then meaningless
+    bool inverted = false;   // is an element
+    bool forbidden = false;  // is one whose law forbids it; energy and gradient are then meaningless
   };
 
   /// Energy and gradient (#V by 3 [N]). actuation: of which the ratios of dea actuators are taken.

@@ -6,8 +6,10 @@ namespace softkin {
 namespace {
 
 constexpr double least_damping = 1e-3;
-/// As many simplified steps may follow a Newton step: together they cost as much as a factorisation.
-constexpr int most_simplified = 4;
+/// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
+/// factorisation.
+constexpr double worthwhile_contraction = 0.6;
+constexpr int most_updates = 8;
 
 }  // namespace
 
@@ -27,19 +29,21 @@ void PhysicalNewton::record(double step_mm) {
   if (settings_.keep_history) report_.history.push_back(entry);
 }
 
-/// The exact stiffness where it is stable under the constraints; else made so element by element, then by a shift.
-bool PhysicalNewton::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active) {
+/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, then by
+/// a shift.
+bool PhysicalNewton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = PhysicalSystem::Stiffness;
-  ++report_.factorisations;
-  negative_ = system_.factorise(at, demand, active, Stiffness::exact, 0, work_, team_);
-  if (negative_ == 0) return true;
+  const auto negative = [&](Stiffness kind, double shift) {
+    ++report_.factorisations;
+    return system_.factorise(at, *demand_, *active_, kind, shift, work_, team_);
+  };
+  negative_ = negative(Stiffness::exact, 0);
+  if (negative_ == 0 || policy == Policy::follow) return true;
   ++report_.projections;
-  ++report_.factorisations;
-  if (system_.factorise(at, demand, active, Stiffness::projected, 0, work_, team_) == 0) return true;
+  if (negative(Stiffness::projected, 0) == 0) return true;
   for (double shift = 1e-4; shift < 100; shift *= 10) {
     ++report_.shifts;
-    ++report_.factorisations;
-    if (system_.factorise(at, demand, active, Stiffness::projected, shift, work_, team_) == 0) return true;
+    if (negative(Stiffness::projected, shift) == 0) return true;
   }
   return false;
 }
@@ -63,7 +67,7 @@ bool PhysicalNewton::accept(double moved_mm, Iterate& at) {
   record(moved_mm);
   std::swap(at, trial_);
   std::swap(balance_, trial_balance_);
-  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm});
+  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
 }
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
@@ -76,6 +80,8 @@ PhysicalNewton::Advance PhysicalNewton::damped_step(Iterate& at, double& damping
     if (attempt(step_, damping, at)) {
       find(trial_balance_, trial_.positions, next_);
       if (next_.size.mean < step_.size.mean || step_.size.largest < settings_.tolerance_mm) break;
+      // near a singular stiffness the next step may be long although little is left
+      if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
       if (std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
         const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
         factor = std::min(0.5, damping / (2 * residue));
@@ -87,30 +93,59 @@ PhysicalNewton::Advance PhysicalNewton::damped_step(Iterate& at, double& damping
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
 
-/// Will a few simplified steps arrive, the next of which is next_?
-bool PhysicalNewton::nearly_there() const {
-  const double contraction = next_.size.mean / step_.size.mean;
-  return next_.size.largest * std::pow(contraction, most_simplified - 1) < settings_.tolerance_mm;
+/// The workspace is back at the iterate, as the next factorisation wants it.
+PhysicalNewton::Advance PhysicalNewton::reject(const Iterate& at) {
+  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
+  return Advance::made;
 }
 
-/// Simplified steps as long as they shrink as fast as they promised.
-PhysicalNewton::Advance PhysicalNewton::simplified_steps(Iterate& at) {
-  for (int count = 0; count < most_simplified; ++count) {
-    std::swap(step_, next_);
-    if (!attempt(step_, 1, at)) break;
-    const bool last = step_.size.largest < settings_.tolerance_mm;
+/// Turns the simplified step next_ into Broyden's, given the steps made with this factor. False where it does not fit.
+bool PhysicalNewton::update_next() {
+  const auto share = [&](const Step& step) { return step.move.dot(next_.move) / step.move.squaredNorm(); };
+  for (std::size_t k = 0; k + 1 < made_.size(); ++k) {
+    const double part = share(made_[k]);
+    next_.move += part * made_[k + 1].move;
+    next_.change += part * made_[k + 1].change;
+  }
+  const double part = share(made_.back());
+  if (!(part < 0.5)) return false;
+  next_.move /= 1 - part;
+  next_.change /= 1 - part;
+  next_.size = system_.size_of(next_.move, trial_.positions);
+  return next_.size.mean < worthwhile_contraction * made_.back().size.mean;
+}
+
+/// Broyden's steps from made_, the last of which has just been made, with next_ the simplified step that follows.
+///
+/// source  Deuflhard 2011, QNERR: the "good" rank-1 updates, by recursion
+PhysicalNewton::Advance PhysicalNewton::quasi_newton_steps(Iterate& at) {
+  while (static_cast<int>(made_.size()) <= most_updates && update_next()) {
+    made_.push_back(next_);
+    const Step& step = made_.back();
+    if (!attempt(step, 1, at)) return reject(at);
+    const bool last = step.size.largest < settings_.tolerance_mm;
     if (!last) {
       find(trial_balance_, trial_.positions, next_);
-      if (!(next_.size.mean < step_.size.mean)) break;
+      if (!(next_.size.mean < step.size.mean)) return reject(at);
     }
-    if (!accept(step_.size.largest, at)) return Advance::interrupted;
+    if (!accept(step.size.largest, at)) return Advance::interrupted;
     if (last) return Advance::arrived;
-    if (!nearly_there()) break;
   }
   return Advance::made;
 }
 
-PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::vector<bool>& active, Iterate& at) {
+/// Does no constraint miss its demand by more than steps that are small enough can close?
+bool PhysicalNewton::meets_constraints() const {
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!(*active_)[a]) continue;
+    const double reach = 2 * settings_.tolerance_mm * work_.slopes[a].rowwise().norm().sum();
+    if (!(std::abs(balance_.constraint[a]) <= reach + 1e-9 * system_.measures().rest(a))) return false;
+  }
+  return true;
+}
+
+PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy,
+                                              Iterate& at) {
   demand_ = &demand;
   active_ = &active;
   system_.evaluate(at, demand, active, work_, balance_, team_);
@@ -118,18 +153,21 @@ PhysicalNewton::Outcome PhysicalNewton::solve(const Demand& demand, const std::v
   Advance advance = Advance::made;
   double damping = 1;
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
-    if (!factorise(at, demand, active)) return Outcome::stuck;
+    if (!factorise(at, policy)) return Outcome::stuck;
     advance = damped_step(at, damping);
     if (advance != Advance::made || damping < 1) continue;
-    if (step_.size.largest < settings_.tolerance_mm)
+    if (step_.size.largest < settings_.tolerance_mm) {
       advance = Advance::arrived;
-    else if (nearly_there())
-      advance = simplified_steps(at);
+    } else {
+      made_.assign(1, step_);
+      advance = quasi_newton_steps(at);
+    }
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
   if (advance != Advance::arrived) return Outcome::stuck;
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;
+  if (!meets_constraints()) return Outcome::unmet;
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }
 

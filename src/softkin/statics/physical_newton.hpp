@@ -17,14 +17,25 @@ class PhysicalNewton {
     int max_iterations = 30;
     bool keep_history = true;
   };
-  enum class Outcome { converged, unstable, stuck, interrupted };
+  /// unmet: arrived where the active constraints contradict each other or cannot be moved; they are missed.
+  enum class Outcome { converged, unstable, stuck, unmet, interrupted };
 
   PhysicalNewton(const PhysicalSystem& system, PhysicalSystem::Workspace& work, Team& team, const Settings& settings,
                  const ProgressCallback& progress, SolveReport& report);
 
+  /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact one,
+  /// towards the nearest equilibrium, stable or not.
+  enum class Policy { descend, follow };
+
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation.
-  Outcome solve(const Demand& demand, const std::vector<bool>& active, Iterate& at);
+  Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at);
+
+  /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
+  [[nodiscard]] int unstable_modes() const { return negative_; }
+
+  /// Is an element of the last shape inverted?
+  [[nodiscard]] bool inverted() const { return balance_.inverted; }
 
  private:
   struct Step {
@@ -33,13 +44,15 @@ class PhysicalNewton {
   };
   enum class Advance { none, made, arrived, interrupted };
 
-  bool factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active);
+  bool factorise(const Iterate& at, Policy policy);
   void find(const PhysicalSystem::Balance& balance, const Points& positions, Step& step);
   bool attempt(const Step& step, double damping, const Iterate& from);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
-  [[nodiscard]] bool nearly_there() const;
-  Advance simplified_steps(Iterate& at);
+  bool update_next();
+  Advance quasi_newton_steps(Iterate& at);
+  [[nodiscard]] bool meets_constraints() const;
+  Advance reject(const Iterate& at);
   void record(double step_mm);
 
   const PhysicalSystem& system_;
@@ -52,6 +65,7 @@ class PhysicalNewton {
   const std::vector<bool>* active_ = nullptr;
   PhysicalSystem::Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
+  std::vector<Step> made_;  // with the last factor
   Iterate trial_;
   int negative_ = 0;  // of the last factorisation
 };

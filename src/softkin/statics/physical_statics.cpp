@@ -46,6 +46,12 @@ namespace {
 
 /// Shortest step of the continuation, over the way asked for.
 constexpr double least_advance = 1e-4;
+/// A step that moves no vertex farther than so many tolerances and yet fails leads nowhere.
+constexpr double least_move = 1000;
+/// In steps shorter than this an equilibrium is followed where it is unstable.
+constexpr double follow_below = 0.05;
+/// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
+constexpr double most_inverting = 0.01;
 
 class Continuation {
  public:
@@ -55,6 +61,7 @@ class Continuation {
         work_(work),
         team_(team),
         newton_(system, work, team, {options.tolerance_mm, 30, options.keep_history}, progress, report),
+        tolerance_mm_(options.tolerance_mm),
         max_iterations_(options.max_iterations),
         report_(report) {}
 
@@ -70,33 +77,44 @@ class Continuation {
       const double next = std::min(1.0, done + advance);
       const Demand there = between(from, to, next);
       Iterate trial = at;
+      if (release(there, at, false)) factorised = false;
       if (!factorised && !prepare(here, at)) return limit(done, "the stiffness at the start is not stable");
       factorised = true;
-      predict(here, there, trial);
+      const double move_mm = predict(here, there, trial);
       const int before = report_.iterations;
-      const auto outcome = settle(there, trial);
+      auto outcome = settle(there, PhysicalNewton::Policy::descend, trial);
+      if (outcome == PhysicalNewton::Outcome::stuck && next - done < follow_below && prepare(here, at)) {
+        trial = at;
+        (void)predict(here, there, trial);
+        outcome = settle(there, PhysicalNewton::Policy::follow, trial);
+      }
       if (outcome == PhysicalNewton::Outcome::interrupted) return Status::interrupted;
-      if (outcome == PhysicalNewton::Outcome::converged) {
+      if (outcome != PhysicalNewton::Outcome::stuck && newton_.inverted() && !inverted_ && next - done > most_inverting)
+        outcome = PhysicalNewton::Outcome::stuck;
+      if (outcome != PhysicalNewton::Outcome::stuck) {
         at = std::move(trial);
         here = there;
         done = next;
         ++report_.continuation_steps;
         report_.reached = done;
+        inverted_ = newton_.inverted();
         const int used = report_.iterations - before;
         advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
+        if (outcome == PhysicalNewton::Outcome::unstable) advance = std::min(advance, follow_below);
       } else {
         factorised = false;
         advance = 0.4 * (next - done);
-        if (advance < least_advance)
-          return limit(done, outcome == PhysicalNewton::Outcome::unstable
-                                 ? "beyond this point the shape is unstable and snaps away"
-                                 : "beyond this point no equilibrium follows");
+        if (advance < least_advance || move_mm < least_move * tolerance_mm_)
+          return limit(done, "beyond this point no equilibrium follows");
       }
       if (done < 1 && report_.iterations >= max_iterations_) {
         report_.remark = "the limit of iterations was reached";
         return Status::not_converged;
       }
     }
+    if (const int modes = newton_.unstable_modes(); modes > 0)
+      report_.remark = "this equilibrium is unstable in " + std::to_string(modes) + (modes == 1 ? " way" : " ways") +
+                       ": the robot would buckle or snap away from it";
     return Status::converged;
   }
 
@@ -119,6 +137,20 @@ class Continuation {
     return Status::limit;
   }
 
+  /// Slackens cables that may be longer than they are and carry nothing: held to their length they would push the body
+  /// there before they are found to be slack. contradicting: those too that carry something, against another one.
+  bool release(const Demand& there, Iterate& at, bool contradicting) {
+    bool changed = false;
+    for (Index a = 0; a < system_.actuators(); ++a) {
+      if (!active_[a] || system_.sign(a) < 0 || (at.multipliers[a] > 0 && !contradicting)) continue;
+      if (system_.measures().value(a, at.positions) >= system_.target(a, there)) continue;
+      active_[a] = false;
+      at.multipliers[a] = 0;
+      changed = true;
+    }
+    return changed;
+  }
+
   /// Factorises at an equilibrium, for the predictor.
   bool prepare(const Demand& here, const Iterate& at) {
     PhysicalSystem::Balance balance;
@@ -128,8 +160,8 @@ class Continuation {
     return balance.force.allFinite();
   }
 
-  /// First-order change of shape and multipliers, with the factor at hand.
-  void predict(const Demand& here, const Demand& there, Iterate& at) {
+  /// First-order change of shape and multipliers, with the factor at hand. Returns the largest move of a vertex [mm].
+  double predict(const Demand& here, const Demand& there, Iterate& at) {
     PhysicalSystem::Balance balance;
     Eigen::VectorXd step, change;
     system_.upset(at, here, there, active_, work_, balance, team_);
@@ -143,14 +175,19 @@ class Continuation {
     for (Index a = 0; a < system_.actuators(); ++a)
       if (!system_.constrains(a) && system_.measures().measures(a))
         at.multipliers[a] = system_.unit(a) * there.actuation[a];
+    return (at.positions - before).rowwise().norm().maxCoeff();
   }
 
   /// Newton, with cables released where they would push and taken up where they are too long.
-  PhysicalNewton::Outcome settle(const Demand& demand, Iterate& at) {
+  PhysicalNewton::Outcome settle(const Demand& demand, PhysicalNewton::Policy policy, Iterate& at) {
     const std::vector<bool> before = active_;
     for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
-      const auto outcome = newton_.solve(demand, active_, at);
-      if (outcome != PhysicalNewton::Outcome::converged) {
+      const auto outcome = newton_.solve(demand, active_, policy, at);
+      if (outcome == PhysicalNewton::Outcome::unmet) {
+        if (release(demand, at, true)) continue;
+        break;
+      }
+      if (outcome == PhysicalNewton::Outcome::stuck || outcome == PhysicalNewton::Outcome::interrupted) {
         active_ = before;
         return outcome;
       }
@@ -181,14 +218,16 @@ class Continuation {
   PhysicalSystem::Workspace& work_;
   Team& team_;
   PhysicalNewton newton_;
+  double tolerance_mm_;
   int max_iterations_;
   SolveReport& report_;
   std::vector<bool> active_;
+  bool inverted_ = false;  // is an element of the last good shape
 };
 
 /// What the start is an equilibrium of, as far as it tells.
 Demand demand_of(const PhysicalSystem& system, const Model& model, const State& start) {
-  if (start.actuation.size() > 0) return {start.actuation, 1};
+  if (start.actuation.size() > 0) return {start.actuation, start.share};
   Demand demand{model.rest_actuation(), start.positions == model.rest ? 0.0 : 1.0};
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.constrains(a))
@@ -202,6 +241,25 @@ Demand demand_of(const PhysicalSystem& system, const Model& model, const State& 
 }
 
 }  // namespace
+
+/// From a start that is no equilibrium no path may lead away; from rest one may.
+void PhysicalStatics::begin_again(const Demand& to, const Options& options, const ProgressCallback& progress,
+                                  Team& team, PhysicalSystem::Workspace& work, Iterate& at, SolveReport& report) const {
+  const std::string remark = report.remark;
+  Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators())};
+  system_.freedoms().hold(0, fresh.positions);
+  Continuation continuation(system_, work, team, options, progress, report);
+  const Status status = continuation.follow({system_.model().rest_actuation(), 0}, to, fresh);
+  if (status == Status::converged) {
+    at = std::move(fresh);
+    report.status = status;
+    if (report.remark == remark) report.remark.clear();
+    return;
+  }
+  if (status == Status::interrupted) report.status = status;
+  report.remark = remark;
+  report.reached = 0;
+}
 
 Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& start, const Options& options,
                                    const ProgressCallback& progress, Team& team) const {
@@ -219,14 +277,17 @@ Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& star
   system_.freedoms().hold(from.share, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
-  Continuation continuation(system_, lease.work(), team, options, progress, report);
-  report.status = continuation.follow(from, to, at);
+  report.status = Continuation(system_, lease.work(), team, options, progress, report).follow(from, to, at);
+  if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest)
+    begin_again(to, options, progress, team, lease.work(), at, report);
   if (report.status == Status::converged) lease.work().home = at.positions;
   report.estimated_error_mm = report.step_mm;
   result.state.positions = std::move(at.positions);
   result.state.actuation = actuation;
-  if (report.status != Status::converged)
+  if (report.status != Status::converged) {
     result.state.actuation = from.actuation + report.reached * (actuation - from.actuation);
+    result.state.share = from.share + report.reached * (to.share - from.share);
+  }
   result.state.multipliers = at.multipliers;
   for (Index a = 0; a < system_.actuators(); ++a) result.state.multipliers[a] /= system_.unit(a);
   return result;

@@ -26,6 +26,9 @@ class PhysicalStatics {
 
  private:
   class Lease;
+  void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
+                   PhysicalSystem::Workspace& work, Iterate& at, SolveReport& report) const;
+
   PhysicalSystem system_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<PhysicalSystem::Workspace>> idle_;  // from earlier solves

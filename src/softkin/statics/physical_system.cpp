@@ -5,6 +5,13 @@
 
 namespace softkin {
 
+namespace {
+
+/// Share of a constraint's own compliance below which what it adds to others is rounding [-].
+constexpr double dependent = 1e-9;
+
+}  // namespace
+
 PhysicalSystem::PhysicalSystem(const Model& model) : model_(model), elastic_(model), measures_(model) {
   Cliques cliques;
   elastic_.add_cliques(cliques);
@@ -31,6 +38,7 @@ void PhysicalSystem::evaluate(const Iterate& at, const Demand& demand, const std
   const ElasticSystem::Result elastic =
       elastic_.force(demand.actuation, at.positions, work.elastic, work.gradient, team);
   balance.energy = elastic.energy;
+  balance.inverted = elastic.inverted;
   balance.forbidden = elastic.forbidden;
   if (any_dead_load()) {
     balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();
@@ -80,12 +88,15 @@ int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std
   if (count == 0) return negative;
   work.responses = work.constraint_slopes;
   work.factor.solve(work.responses, team);
-  const Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;
+  Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;
+  work.scale.resize(count);
+  for (Index i = 0; i < count; ++i) work.scale[i] = schur(i, i) != 0 ? 1 / std::sqrt(std::abs(schur(i, i))) : 1;
+  schur = work.scale.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * work.scale.asDiagonal();
+  work.schur.setThreshold(dependent);
   work.schur.compute(schur);
   const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (schur + schur.transpose()), Eigen::EigenvaluesOnly)
-          .eigenvalues();
-  for (Index i = 0; i < count; ++i) negative -= eigenvalues[i] < 0;
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(schur, Eigen::EigenvaluesOnly).eigenvalues();
+  for (Index i = 0; i < count; ++i) negative -= eigenvalues[i] < -dependent;
   return negative;
 }
 
@@ -99,7 +110,7 @@ void PhysicalSystem::step(const Balance& balance, Workspace& work, Eigen::Vector
   Eigen::VectorXd asked(count);
   for (Index i = 0; i < count; ++i) asked[i] = sign(work.active[i]) * balance.constraint[work.active[i]];
   asked += work.constraint_slopes.transpose() * step;
-  const Eigen::VectorXd multipliers = work.schur.solve(asked);
+  const Eigen::VectorXd multipliers = work.scale.cwiseProduct(work.schur.solve(work.scale.cwiseProduct(asked)));
   step -= work.responses * multipliers;
   for (Index i = 0; i < count; ++i) change[work.active[i]] = multipliers[i];
 }

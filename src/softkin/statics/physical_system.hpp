@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/QR>
 #include <softkin/statics/elastic_system.hpp>
 #include <softkin/statics/freedoms.hpp>
 #include <softkin/statics/global_step.hpp>
@@ -38,17 +38,20 @@ class PhysicalSystem {
     Points moves, lacking;       // of advance()
     std::vector<Points> slopes;  // of each active measure
     SparseLdlt factor;
-    Eigen::MatrixXd responses;                // K^-1 G, a column per active constraint, in the order of `active`
-    Eigen::MatrixXd constraint_slopes;        // G: sign_a times the gradient of measure_a
-    Eigen::FullPivLU<Eigen::MatrixXd> schur;  // G^T K^-1 G
-    std::vector<Index> active;                // constraints of the factorisation
-    Points home;                              // equilibrium at which the last solve ended, and near which it factorised
+    Eigen::MatrixXd responses;          // K^-1 G, a column per active constraint, in the order of `active`
+    Eigen::MatrixXd constraint_slopes;  // G: sign_a times the gradient of measure_a
+    Eigen::VectorXd scale;              // S: makes the diagonal of the next 1
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> schur;  // S G^T K^-1 G S; singular where constraints depend
+                                                                    // on each other
+    std::vector<Index> active;                                      // constraints of the factorisation
+    Points home;  // equilibrium at which the last solve ended, and near which it factorised
   };
 
   struct Balance {
     Eigen::VectorXd force;       // of the unknowns, what is not in balance [N, N mm]
     Eigen::VectorXd constraint;  // m: measure minus demand, 0 where not active [mm, mm^3]
     double energy = 0;           // elastic, less the work of dead loads [mJ]
+    bool inverted = false;       // an element
     bool forbidden = false;      // inverted where the law has no energy
   };
 
@@ -63,7 +66,8 @@ class PhysicalSystem {
   int factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind, double shift,
                 Workspace& work, Team& team) const;
 
-  /// Newton step of the last factorisation: K step + G change = -force, G^T step = -sign constraint.
+  /// Newton step of the last factorisation: K step + G change = -force, G^T step = -sign constraint; where constraints
+  /// contradict each other, what misses them least.
   void step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change, Team& team) const;
 
   /// Balance that a change of demand upsets, to first order: for the tangent predictor.

@@ -27,6 +27,14 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
     throw InvalidInput("the start has " + std::to_string(start.positions.rows()) + " vertices, the robot " +
                        std::to_string(model.rest.rows()));
   if (!start.positions.allFinite()) throw InvalidInput("the start holds a coordinate that is not finite");
+  for (const Eigen::VectorXd* values : {&start.actuation, &start.multipliers}) {
+    const char* name = values == &start.actuation ? "actuation" : "multipliers";
+    if (values->size() > 0 && values->size() != static_cast<Index>(model.actuators.size()))
+      throw InvalidInput(std::string("the start's ") + name + " has " + std::to_string(values->size()) +
+                         " values, the robot " + std::to_string(model.actuators.size()) + " actuators");
+    if (!values->allFinite())
+      throw InvalidInput(std::string("the start's ") + name + " holds a value that is not finite");
+  }
   if (!(options.step_tolerance_mm >= 0) || options.max_iterations < 1 || options.anderson < 0 ||
       options.anderson > 20 || options.threads < 0)
     throw InvalidInput(

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <softkin/statics/target_shape_newton.hpp>
-#include <softkin/statics/target_shape_newton_search.hpp>
 
 namespace softkin {
 
@@ -42,6 +41,23 @@ End follow(const Actuation& from, const Actuation& to, TargetShapeSearch& search
 TargetShapeNewton::TargetShapeNewton(const Model& model, const TargetShapeSystem& system, const GlobalStep& global)
     : global_(global), unknowns_(model, system) {}
 
+std::unique_ptr<TargetShapeWorkspace> TargetShapeNewton::take_workspace() const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!workspaces_.empty()) {
+      std::unique_ptr<TargetShapeWorkspace> workspace = std::move(workspaces_.back());
+      workspaces_.pop_back();
+      return workspace;
+    }
+  }
+  return std::make_unique<TargetShapeWorkspace>(unknowns_);
+}
+
+void TargetShapeNewton::put_back(std::unique_ptr<TargetShapeWorkspace> workspace) const {
+  const std::lock_guard lock(mutex_);
+  workspaces_.push_back(std::move(workspace));
+}
+
 void TargetShapeNewton::solve(const Actuation& start, const StaticsOptions& options, const ProgressCallback& progress,
                               Team& team, Equilibrium& result) const {
   SolveReport& report = result.report;
@@ -49,19 +65,22 @@ void TargetShapeNewton::solve(const Actuation& start, const StaticsOptions& opti
   report.continuation_steps = 1;
   Points& positions = result.state.positions;
   const Points begin = positions;
-  TargetShapeSearch search(unknowns_, global_, options, progress, team, report);
+  std::unique_ptr<TargetShapeWorkspace> workspace = take_workspace();
+  TargetShapeSearch search(unknowns_, global_, *workspace, options, progress, team, report);
   End end = search.run(result.actuation, patience, positions);
   if (end == End::stuck) {
     positions = begin;
     const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
     end = follow(from, result.actuation, search, positions, report);
-    if (end == End::stuck) {
-      positions = begin;
-      solve_local_global(unknowns_.system, global_, options, progress, team, result);
-      report.solver = "newton";
-      report.remark = report.status == Status::converged ? "" : "neither Newton's method nor Algorithm 1 converged";
-      return;
-    }
+  }
+  put_back(std::move(workspace));
+  if (end == End::stuck) {
+    positions = begin;
+    report.continuation_steps = 1;
+    solve_local_global(unknowns_.system, global_, options, progress, team, result);
+    report.solver = "newton";
+    if (report.status != Status::converged) report.remark = "neither Newton's method nor Algorithm 1 converged";
+    return;
   }
   report.status = end == End::converged     ? Status::converged
                   : end == End::interrupted ? Status::interrupted

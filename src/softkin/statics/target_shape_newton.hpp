@@ -1,7 +1,7 @@
 #pragma once
 
-#include <softkin/statics/local_global.hpp>
-#include <softkin/statics/target_shape_newton_tangent.hpp>
+#include <mutex>
+#include <softkin/statics/target_shape_newton_search.hpp>
 
 namespace softkin {
 
@@ -26,8 +26,13 @@ class TargetShapeNewton {
              Equilibrium& result) const;
 
  private:
+  [[nodiscard]] std::unique_ptr<TargetShapeWorkspace> take_workspace() const;
+  void put_back(std::unique_ptr<TargetShapeWorkspace> workspace) const;
+
   const GlobalStep& global_;
   TargetShapeUnknowns unknowns_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<TargetShapeWorkspace>> workspaces_;  // not in use: as many as solves ran at once
 };
 
 }  // namespace softkin

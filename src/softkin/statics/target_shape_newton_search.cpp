@@ -22,19 +22,28 @@ constexpr int rescue = 50, rescue_window = 6;
 
 }  // namespace
 
+TargetShapeWorkspace::TargetShapeWorkspace(const TargetShapeUnknowns& unknowns)
+    : tangent(unknowns),
+      local(unknowns.system.make_scratch()),
+      start(unknowns.system.make_scratch()),
+      work(unknowns.system.make_scratch()) {}
+
 TargetShapeSearch::TargetShapeSearch(const TargetShapeUnknowns& unknowns, const GlobalStep& global,
-                                     const StaticsOptions& options, const ProgressCallback& progress, Team& team,
-                                     SolveReport& report)
+                                     TargetShapeWorkspace& workspace, const StaticsOptions& options,
+                                     const ProgressCallback& progress, Team& team, SolveReport& report)
     : unknowns_(unknowns),
       global_(global),
       options_(options),
       progress_(progress),
       team_(team),
       report_(report),
-      tangent_(unknowns),
-      local_(unknowns.system.make_scratch()),
-      start_(unknowns.system.make_scratch()),
-      work_(unknowns.system.make_scratch()) {}
+      tangent_(workspace.tangent),
+      local_(workspace.local),
+      start_(workspace.start),
+      work_(workspace.work) {
+  // rotations are searched for from the last ones: those of an earlier search would show in the last digits
+  for (auto& rotations : local_.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
+}
 
 /// Local step at positions, which supports put right before.
 void TargetShapeSearch::evaluate(const Actuation& actuation, Points& positions) {
@@ -44,17 +53,18 @@ void TargetShapeSearch::evaluate(const Actuation& actuation, Points& positions) 
 
 /// The exact step; false where none comes of it.
 bool TargetShapeSearch::exact_direction(const Points& positions) {
-  if (!keep_factor_ && !tangent_.factorise(local_, positions, false, team_, report_)) return false;
-  keep_factor_ = false;
-  if (!tangent_.symmetric()) {
-    // Eisenstat and Walker 1996, choice 2: as accurate as the last steps were successful, and as is needed at last
-    const double norm = natural_norm(positions), ratio = natural_start_ > 0 ? norm / natural_start_ : 1;
-    const double enough = 0.1 * report_.tolerance_mm / std::max(norm, report_.tolerance_mm);
-    tolerance_ = std::clamp(0.9 * ratio * ratio, std::clamp(enough, tightest, loosest), loosest);
-    natural_start_ = norm;
+  if (!keep_factor_) {
+    if (!tangent_.factorise(local_, positions, false, team_, report_)) return false;
+    (void)natural_norm(positions);
   }
+  keep_factor_ = false;
+  // Eisenstat and Walker 1996, choice 2: as accurate as the last steps were successful, and as is needed at last
+  const double norm = moves_.norm(), ratio = natural_start_ > 0 ? norm / natural_start_ : 1;
+  const double enough = 0.1 * report_.tolerance_mm / std::max(norm, report_.tolerance_mm);
+  tolerance_ = std::clamp(0.9 * ratio * ratio, std::clamp(enough, tightest, loosest), loosest);
+  natural_start_ = norm;
   exact_ = !tangent_.symmetric() || !tangent_.shifted();
-  return tangent_.solve(local_, positions, residual_, tolerance_, team_, step_) && step_.allFinite();
+  return tangent_.solve(local_, positions, natural_, tolerance_, team_, step_) && step_.allFinite();
 }
 
 /// The step with the positive semidefinite matrices near the exact ones: it goes down in the energy at fixed targets.
@@ -67,7 +77,8 @@ bool TargetShapeSearch::projected_direction(const Points& positions) {
   return step_.allFinite() && step_.dot(residual_) > 0;
 }
 
-/// Euclidean norm over the vertices of the residual seen through the preconditioner [mm].
+/// The residual seen through the preconditioner: natural_ over the unknowns, moves_ over the vertices, whose Euclidean
+/// norm it returns [mm].
 double TargetShapeSearch::natural_norm(const Points& positions) {
   tangent_.reduce(local_.residual, positions, natural_);
   tangent_.precondition(natural_, team_);
@@ -84,7 +95,7 @@ bool TargetShapeSearch::negligible(int halvings, const Points& positions) const 
 bool TargetShapeSearch::close(const Actuation& actuation, Points& positions, double& step_mm) {
   constexpr double safely = 0.1;
   if (tangent_.shifted()) return false;
-  (void)natural_norm(positions);
+  if (tangent_.symmetric()) (void)natural_norm(positions);  // else search_residual did it
   step_mm = moves_.rowwise().norm().maxCoeff();
   if (!(step_mm < safely * report_.tolerance_mm)) return false;
   tangent_.freedoms().move(natural_, 1, positions);

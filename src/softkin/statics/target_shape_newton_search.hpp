@@ -5,14 +5,25 @@
 
 namespace softkin {
 
-/// One run of Newton's method after another, with the work space that they share.
+/// What a search works in; it holds nothing that outlives a search.
+struct TargetShapeWorkspace {
+  explicit TargetShapeWorkspace(const TargetShapeUnknowns& unknowns);
+
+  TargetShapeTangent tangent;
+  TargetShapeSystem::Scratch local;  // of the last shape evaluated
+  TargetShapeSystem::Scratch start;  // of the shape that a step starts from
+  TargetShapeSystem::Scratch work;
+};
+
+/// Runs of Newton's method, one after another.
 class TargetShapeSearch {
  public:
   /// exhausted: no more iterations are allowed. astray: a number is not finite.
   enum class End { converged, stuck, interrupted, exhausted, astray };
 
-  TargetShapeSearch(const TargetShapeUnknowns& unknowns, const GlobalStep& global, const StaticsOptions& options,
-                    const ProgressCallback& progress, Team& team, SolveReport& report);
+  /// All must outlive the object. The result does not depend on what the workspace was used for before.
+  TargetShapeSearch(const TargetShapeUnknowns& unknowns, const GlobalStep& global, TargetShapeWorkspace& workspace,
+                    const StaticsOptions& options, const ProgressCallback& progress, Team& team, SolveReport& report);
 
   /// From positions to the equilibrium at an actuation; positions are the last shape.
   ///
@@ -43,9 +54,8 @@ class TargetShapeSearch {
   const ProgressCallback& progress_;
   Team& team_;
   SolveReport& report_;
-  TargetShapeTangent tangent_;
-  TargetShapeSystem::Scratch local_;         // of the last shape evaluated
-  TargetShapeSystem::Scratch start_, work_;  // of the shape that a step starts from
+  TargetShapeTangent& tangent_;
+  TargetShapeSystem::Scratch &local_, &start_, &work_;
   std::vector<Pose> poses_, poses_before_;
   Points before_, moves_;
   Eigen::VectorXd residual_, step_, scaled_, natural_;

@@ -124,16 +124,13 @@ bool TargetShapeTangent::solve(const TargetShapeSystem::Scratch& local, const Po
                                const Eigen::VectorXd& right, double tolerance, Team& team, Eigen::VectorXd& step) {
   if (unknowns_.symmetric) {
     step = right;
-    precondition(step, team);
     return true;
   }
   const auto product = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
     multiply(local, positions, in, out, team);
     precondition(out, team);
   };
-  Eigen::VectorXd start = right;
-  precondition(start, team);
-  return gmres(product, start, tolerance, krylov_rounds, basis_, step);
+  return gmres(product, right, tolerance, krylov_rounds, basis_, step);
 }
 
 }  // namespace softkin

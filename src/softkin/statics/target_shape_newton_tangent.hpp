@@ -14,7 +14,7 @@ struct TargetShapeUnknowns {
   const TargetShapeSystem& system;
   TargetShapeMatrix matrix;
   Freedoms freedoms;
-  SparseLdlt symbolic;  // copied, and factorised, by every solve
+  SparseLdlt symbolic;  // copied by every tangent
   bool symmetric;       // is the residual's derivative symmetric
 };
 
@@ -42,13 +42,12 @@ class TargetShapeTangent {
   /// Applies the preconditioner: K^-1 where K is symmetric and was neither projected nor shifted.
   void precondition(Eigen::VectorXd& vector, Team& team);
 
-  /// Solves K step = right for the exact K.
+  /// Solves K step = right for the exact K at a shape, which need not be that of the factor.
   ///
-  /// local, positions  those of factorise
-  /// tolerance         of the preconditioned residual, relative to the first
-  /// returns           whether GMRES reached it; step is the best it found. Always true where K is symmetric: there
-  /// step
-  ///                   is the factor's solution.
+  /// right      already preconditioned
+  /// tolerance  of the preconditioned residual, relative to |right|
+  /// returns    did GMRES reach it; step is the best it found. Where K is symmetric step is `right`, which is K^-1 of
+  ///            it if neither projected nor shifted
   bool solve(const TargetShapeSystem::Scratch& local, const Points& positions, const Eigen::VectorXd& right,
              double tolerance, Team& team, Eigen::VectorXd& step);
 

@@ -1,0 +1,149 @@
+// softkin's sparse LDL^T against CHOLMOD's supernodal and Eigen's simplicial factorisation of the same Hessians.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <softkin/statics/statics.hpp>
+
+#include "child_process.hpp"
+#include "command_line.hpp"
+#include "factor_peers.hpp"
+#include "finger.hpp"
+#include "physical_parts.hpp"
+
+namespace {
+
+using namespace softkin;
+using namespace softkin::bench;
+
+struct Options {
+  std::vector<double> sizes{5000, 15000, 45000, 200000};
+  std::vector<int> threads{1, 2};
+  int repeat = 7, only = 0;
+  double eigen_up_to = 50000;
+};
+
+FactorTimes time_softkin(PhysicalParts& parts, const Eigen::SparseMatrix<double>& matrix, int repeat) {
+  FactorTimes times;
+  const Eigen::VectorXd b = Eigen::VectorXd::Ones(matrix.rows());
+  Eigen::MatrixXd x;
+  double begin = now();
+  SparseLdlt factor(parts.pattern());
+  times.analyse = now() - begin;
+  std::vector<double> factors, solves;
+  for (int i = 0; i < repeat; ++i) {
+    begin = now();
+    (void)factor.factorise(parts.values(), 0, parts.team());
+    factors.push_back(now() - begin);
+    x = b;
+    begin = now();
+    factor.solve(x, parts.team());
+    solves.push_back(now() - begin);
+  }
+  times.factor = median(factors);
+  times.solve = median(solves);
+  times.nonzeros = static_cast<double>(factor.nonzeros());
+  times.residual = relative_residual(matrix, x.col(0), b);
+  return times;
+}
+
+void print_times(const char* name, const FactorTimes& times, double flops) {
+  std::printf("           %-18s %11.3f %11.2f %10.2f %9.2f %13.3g %10.1e\n", name, 1e3 * times.analyse,
+              1e3 * times.factor, 1e-9 * flops / times.factor, 1e3 * times.solve, times.nonzeros, times.residual);
+  std::fflush(stdout);
+}
+
+struct Ratios {
+  std::vector<double> factor, solve;
+
+  void add(const FactorTimes& peer, const FactorTimes& own) {
+    factor.push_back(peer.factor / own.factor);
+    solve.push_back(peer.solve / own.solve);
+  }
+  void print(const char* name) const {
+    if (factor.empty()) return;
+    std::printf("softkin against %s, median ratio of times (> 1: softkin is faster): factor %.2f, solve %.2f\n", name,
+                median(factor), median(solve));
+  }
+};
+
+/// All sizes in this process, whose BLAS has as many threads.
+int run_with(int threads, const Options& options) {
+  std::printf("\n%d thread(s): a Hessian of the physical formulation at a volume ratio of 1.15, one right-hand side\n",
+              threads);
+  std::printf("%9s  %-18s %11s %11s %10s %9s %13s %10s\n", "body tets", "", "analyse[ms]", "factor [ms]", "GFlop/s",
+              "solve[ms]", "nonzeros of L", "residual");
+  Ratios cholmod_ratios, eigen_ratios;
+  for (const double size : options.sizes) {
+    const double cell = cell_for(size);
+    const Model model = compile(finger_robot(bellows_finger(cell), FingerKind::physical, "finger"));
+    const Actuation actuation = Actuation::Constant(1, 1.15);
+    StaticsOptions statics_options;
+    statics_options.keep_history = false;
+    State state;
+    {
+      const Statics statics(model);
+      const Equilibrium found = statics.solve(actuation, statics.rest(), statics_options);
+      if (found.report.status != Status::converged) throw InvalidInput("the finger did not bend");
+      state = found.state;
+    }
+    PhysicalParts parts(model, actuation, state, threads);
+    const Eigen::SparseMatrix<double> matrix = parts.matrix();
+    std::printf("%9lld  %lld unknowns, %lld nonzeros in the lower triangle, %.3g flop by softkin's count%s\n",
+                static_cast<long long>(body_tetrahedra(cell)), static_cast<long long>(matrix.rows()),
+                static_cast<long long>(matrix.nonZeros()), parts.flops(),
+                parts.projected() ? "; made positive definite element by element" : "");
+    const FactorTimes own = time_softkin(parts, matrix, options.repeat);
+    print_times("softkin", own, parts.flops());
+    if (const std::optional<FactorTimes> cholmod = time_cholmod_supernodal(matrix, options.repeat)) {
+      print_times("CHOLMOD supernodal", *cholmod, parts.flops());
+      cholmod_ratios.add(*cholmod, own);
+    }
+    if (size > options.eigen_up_to) continue;
+    const FactorTimes eigen = time_eigen_simplicial(matrix, std::min(options.repeat, 3));
+    print_times("Eigen simplicial", eigen, parts.flops());
+    eigen_ratios.add(eigen, own);
+  }
+  cholmod_ratios.print("CHOLMOD supernodal");
+  eigen_ratios.print("Eigen simplicial");
+  return 0;
+}
+
+/// A process for each number of threads: a BLAS reads its own when it is loaded.
+int run_each(const Options& options, int argc, char** argv) {
+  print_machine();
+  int worst = 0;
+  for (const int threads : options.threads) {
+    const std::string count = std::to_string(threads);
+    std::vector<std::string> command{"/proc/self/exe"};
+    command.insert(command.end(), argv + 1, argv + argc);
+    command.insert(command.end(), {"--only", count});
+    const ProcessEnd end =
+        run_program(command, ".", "", {"OPENBLAS_NUM_THREADS=" + count, "OMP_NUM_THREADS=" + count}, 1e6);
+    if (!end.good()) std::printf("%d thread(s): %s\n", threads, end.complaint().c_str());
+    worst = std::max(worst, end.exit_code);
+  }
+  return worst;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Factorisation and solution of the physical formulation's Hessians, beside CHOLMOD and Eigen.",
+               "bench_factor"};
+  Options options;
+  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers")->delimiter(',')->capture_default_str();
+  app.add_option("--threads", options.threads, "one run with each number")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app.add_option("--repeat", options.repeat, "of which the median is given")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--eigen-up-to", options.eigen_up_to, "body tetrahedra of the largest finger for Eigen")
+      ->capture_default_str();
+  app.add_option("--only", options.only, "with this many threads, in this process")->group("");
+  return run_benchmark(app, argc, argv, [&] {
+    return options.only > 0 ? run_with(options.only, options) : run_each(options, argc, argv);
+  });
+}

@@ -1,0 +1,210 @@
+#include "newton_runs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <softkin/io/mesh_io.hpp>
+#include <softkin/statics/local_global.hpp>
+#include <softkin/statics/statics.hpp>
+
+#include "bend.hpp"
+#include "calculix.hpp"
+#include "machine.hpp"
+
+namespace softkin::bench {
+
+namespace {
+
+/// Beyond its own limit a process has this long to come to an end.
+constexpr double grace = 120;  // [s]
+
+Vec3 vector_of(const double (&values)[3]) {
+  return {values[0], values[1], values[2]};
+}
+
+void store(const Vec3& vector, double (&values)[3]) {
+  std::copy(vector.begin(), vector.end(), values);
+}
+
+Answers answer(const FingerSource& source, FingerKind kind, const std::vector<double>& angles, int threads) {
+  const double begin = now();
+  const RobotSpec spec = source.robot(kind);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions options;
+  options.threads = threads;
+  options.keep_history = false;
+  Answers answers;
+  const Index chamber = kind == FingerKind::target_shape ? static_cast<Index>(model.actuators[0].tetrahedra.size()) : 0;
+  answers.body_tetrahedra = static_cast<int>(model.tetrahedra.size()) - chamber;
+  for (Index v = 0; v < model.rest.rows(); ++v) {
+    if (!model.used[v]) continue;
+    ++answers.vertices;
+    for (const bool fixed : model.fixed[v]) answers.unknowns += fixed ? 0 : 1;
+  }
+  for (const BentShape& shape : find_bends(model, statics, tip_face(spec.mesh, source.name()), angles, options)) {
+    Target& target = answers.targets[answers.count++];
+    target.degrees = shape.degrees;
+    target.ratio = shape.ratio;
+    target.pressure_kpa = shape.pressure;
+    store(shape.tip, target.tip);
+    answers.farthest_degrees = shape.degrees;
+  }
+  const EmbeddedPoint& marker = model.markers[0].point;
+  answers.marker_vertices = std::min<int>(most_marker_vertices, static_cast<int>(marker.vertices.size()));
+  for (int i = 0; i < answers.marker_vertices; ++i) {
+    answers.marker_vertex[i] = marker.vertices[i];
+    answers.marker_weight[i] = marker.weights[i];
+  }
+  store(marker.at(model.rest), answers.marker_rest);
+  answers.seconds = now() - begin;
+  return answers;
+}
+
+Run newton(const FingerSource& source, FingerKind kind, const Target& target, const RunOptions& options) {
+  const RobotSpec spec = source.robot(kind);
+  Run run;
+  double begin = now();
+  const double end = begin + options.limit;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  run.setup = now() - begin;
+  StaticsOptions statics_options;
+  statics_options.threads = options.threads;
+  statics_options.keep_history = false;
+  const ProgressCallback in_time = [&](const Progress&) { return now() < end; };
+  for (double tolerance = options.tip_error_mm; !run.done && tolerance > 1e-9; tolerance /= 10) {
+    statics_options.step_tolerance_mm = tolerance;
+    begin = now();
+    const Equilibrium found =
+        statics.solve(Actuation::Constant(1, target.ratio), statics.rest(), statics_options, in_time);
+    run.solve = now() - begin;
+    run.iterations = found.report.iterations;
+    run.factorisations = found.report.factorisations;
+    run.tip_error = (model.markers[0].point.at(found.state.positions) - vector_of(target.tip)).norm();
+    run.out_of_time = found.report.status == Status::interrupted;
+    if (found.report.status != Status::converged) break;
+    run.done = run.tip_error <= options.tip_error_mm;
+  }
+  return run;
+}
+
+Run local_global(const FingerSource& source, const Target& target, int anderson, const RunOptions& options) {
+  const RobotSpec spec = source.robot(FingerKind::target_shape);
+  const double begin = now();
+  const Model model = compile(spec);
+  const TargetShapeSystem system(model);
+  const GlobalStep global(model, system.global_matrix());
+  Team team(options.threads);
+  Run run;
+  run.setup = now() - begin;
+  const double start = now(), settled = 8e-8 * model.diagonal_mm;
+  const Actuation actuation = Actuation::Constant(1, target.ratio);
+  const Vec3 tip = vector_of(target.tip);
+  Points positions = model.rest;
+  LocalGlobal iteration(system, global, anderson, positions);
+  TargetShapeSystem::Scratch scratch = system.make_scratch();
+  for (int count = 1;; ++count) {
+    IterationRecord record;
+    if (!iteration.iterate(actuation, scratch, team, record)) break;
+    const double time = now() - start;
+    run.tip_error = (model.markers[0].point.at(iteration.positions()) - tip).norm();
+    const bool inside = run.tip_error <= options.tip_error_mm;
+    if (!inside || !run.done) {
+      run.solve = time;
+      run.iterations = count;
+    }
+    run.done = inside;
+    if (run.tip_error <= options.tip_error_mm / 10 || record.step_mm < settled) break;
+    run.out_of_time = run.setup + time > options.limit;
+    if (run.out_of_time) break;
+    iteration.extrapolate();
+  }
+  return run;
+}
+
+/// How often CalculiX may try with tighter *CONTROLS.
+constexpr int most_attempts = 8;
+
+}  // namespace
+
+Mesh FingerSource::mesh() const {
+  return file.empty() ? bellows_finger(cell_mm) : read_mesh(file);
+}
+
+std::string FingerSource::name() const {
+  return file.empty() ? "bellows finger" : std::filesystem::path(file).filename().string();
+}
+
+RobotSpec FingerSource::robot(FingerKind kind) const {
+  RobotSpec spec = finger_robot(mesh(), kind, name());
+  spec.actuators[0].weight = chamber_weight;
+  return spec;
+}
+
+Measured<Answers> find_answers(const FingerSource& source, FingerKind kind, const std::vector<double>& angles,
+                               int threads, double limit) {
+  if (angles.size() > most_bends) throw InvalidInput("at most 8 angles of bend");
+  return measure<Answers>([&] { return answer(source, kind, angles, threads); }, limit);
+}
+
+Measured<Run> run_newton(const FingerSource& source, FingerKind kind, const Target& target, const RunOptions& options) {
+  return measure<Run>([&] { return newton(source, kind, target, options); }, options.limit + grace);
+}
+
+Measured<Run> run_local_global(const FingerSource& source, const Target& target, int anderson,
+                               const RunOptions& options) {
+  return measure<Run>([&] { return local_global(source, target, anderson, options); }, options.limit + grace);
+}
+
+CalculixRun run_calculix(const FingerSource& source, FingerKind kind, const Answers& answers, const Target& target,
+                         const std::string& folder, int threads, const RunOptions& options) {
+  const std::string stem = (std::filesystem::path(folder) / "finger").string();
+  const std::vector<Index> vertices(answers.marker_vertex, answers.marker_vertex + answers.marker_vertices);
+  const std::vector<double> weights(answers.marker_weight, answers.marker_weight + answers.marker_vertices);
+  const std::string count = std::to_string(threads);
+  CalculixRun result;
+  CalculixTask task;
+  task.pressure_kpa = target.pressure_kpa;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    result.residual = task.residual;
+    result.correction = task.correction;
+    for (const char* ending : {".dat", ".cvg"}) std::filesystem::remove(stem + ending);
+    // the deck is written by a process of its own: this one is to stay small
+    const auto written = measure<int>(
+        [&] {
+          write_calculix_deck(stem + ".inp", compile(source.robot(kind)), task);
+          return 1;
+        },
+        grace + options.limit);
+    if (!written.result) {
+      result.complaint = "its deck could not be written: " + written.end.complaint();
+      return result;
+    }
+    const ProcessEnd end = run_program({"ccx", "-i", "finger"}, folder, "ccx.log",
+                                       {"OMP_NUM_THREADS=" + count, "CCX_NPROC_EQUATION_SOLVER=" + count,
+                                        "CCX_NPROC_RESULTS=" + count, "NUMBER_OF_PROCESSORS=" + count},
+                                       options.limit);
+    const CalculixResult found = read_calculix_result(stem, vertices, weights);
+    result.peak_mib = end.peak_mib;
+    result.run.solve = end.seconds;
+    result.run.iterations = result.run.factorisations = found.iterations;
+    result.run.out_of_time = end.timed_out;
+    result.run.tip_error = (vector_of(answers.marker_rest) + found.tip - vector_of(target.tip)).norm();
+    result.run.done = end.good() && found.finished && result.run.tip_error <= options.tip_error_mm;
+    if (result.run.done) return result;
+    if (!end.good() || !found.finished) {
+      result.complaint = end.good() ? "it gave up before the whole pressure" : end.complaint();
+      return result;
+    }
+    // no tighter than it takes: its iteration converges linearly, and the error with the tolerance
+    const double tighter = std::clamp(0.7 * options.tip_error_mm / result.run.tip_error, 0.01, 0.5);
+    task.residual *= tighter;
+    task.correction *= tighter;
+  }
+  result.complaint =
+      "its tip is too far away after " + std::to_string(most_attempts) + " runs with ever tighter controls";
+  return result;
+}
+
+}  // namespace softkin::bench

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "child_process.hpp"
+#include "finger.hpp"
+
+namespace softkin::bench {
+
+/// Which finger: one of bellows_finger's sizes, or the mesh of a file.
+struct FingerSource {
+  double cell_mm = 0;
+  std::string file;              // "": bellows_finger(cell_mm)
+  double chamber_weight = 0.05;  // target-shape: w of the chamber's elements
+
+  [[nodiscard]] Mesh mesh() const;
+  [[nodiscard]] std::string name() const;
+  [[nodiscard]] RobotSpec robot(FingerKind kind) const;
+};
+
+constexpr int most_bends = 8;
+constexpr int most_marker_vertices = 10;
+
+/// A bent shape as the solvers are asked for it.
+struct Target {
+  double degrees = 0, ratio = 0, pressure_kpa = 0;
+  double tip[3] = {};  // [mm]
+};
+
+/// What Newton's method, run to its end, says about a finger. Plain, to be sent between processes.
+struct Answers {
+  int body_tetrahedra = 0, vertices = 0, unknowns = 0;
+  int count = 0;  // of targets: fewer than asked for where the finger does not bend so far
+  Target targets[most_bends];
+  double farthest_degrees = 0;  // bend of the last
+  int marker_vertices = 0;
+  Index marker_vertex[most_marker_vertices] = {};
+  double marker_weight[most_marker_vertices] = {};
+  double marker_rest[3] = {};  // [mm]
+  double seconds = 0;
+};
+
+/// angles  ascending [degrees], at most most_bends
+[[nodiscard]] Measured<Answers> find_answers(const FingerSource& source, FingerKind kind,
+                                             const std::vector<double>& angles, int threads, double limit);
+
+struct RunOptions {
+  double tip_error_mm = 0.1;
+  double limit = 600;  // [s]
+  int threads = 0;     // 0: all
+};
+
+/// One run from rest to a target. Plain.
+struct Run {
+  bool done = false;  // the tip is within the error asked for
+  double setup = 0;   // from the mesh to a solver that is ready [s]
+  double solve = 0;   // [s]
+  int iterations = 0, factorisations = 0;
+  double tip_error = 0;  // of the last shape [mm]
+  bool out_of_time = false;
+
+  [[nodiscard]] double seconds() const { return setup + solve; }
+};
+
+/// Newton's method with a step tolerance as coarse as the error asked for allows.
+[[nodiscard]] Measured<Run> run_newton(const FingerSource& source, FingerKind kind, const Target& target,
+                                       const RunOptions& options);
+
+/// Algorithm 1 with Anderson acceleration over `anderson` steps (0: as printed). Its time is that at which the tip came
+/// within the error for good: it goes on until the error is a tenth of that.
+[[nodiscard]] Measured<Run> run_local_global(const FingerSource& source, const Target& target, int anderson,
+                                             const RunOptions& options);
+
+/// CalculiX, from an empty folder, with ever tighter *CONTROLS until its tip is within the error; the time is that of
+/// the last run alone.
+struct CalculixRun {
+  Run run;
+  double peak_mib = 0;
+  double residual = 0, correction = 0;  // *CONTROLS of the last run
+  std::string complaint;                // why it is not done
+};
+[[nodiscard]] CalculixRun run_calculix(const FingerSource& source, FingerKind kind, const Answers& answers,
+                                       const Target& target, const std::string& folder, int threads,
+                                       const RunOptions& options);
+
+}  // namespace softkin::bench

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <softkin/statics/statics.hpp>
+
+#include "model/physical_robots.hpp"
+#include "statics/robots.hpp"
+
+namespace softkin::testing {
+
+inline ElasticSpec elastic(Law law, double e, double nu) {
+  ElasticSpec spec;
+  spec.law = law;
+  if (forbids_inversion(law)) {
+    spec.c10 = e / (4 * (1 + nu));
+    if (law == Law::mooney_rivlin) spec.c01 = 0;
+  } else {
+    spec.youngs_modulus = e;
+  }
+  spec.poisson_ratio = nu;
+  return spec;
+}
+
+inline ActuatorSpec cable(const std::string& name, std::vector<Vec3> points, double low = 0.3, double high = 1.5) {
+  ActuatorSpec spec = actuator(name, ActuatorKind::cable, low, high, true);
+  for (const Vec3& point : points) spec.points.push_back({point, {}});
+  return spec;
+}
+
+inline ActuatorSpec air(const std::string& region, double low = 0.3, double high = 10) {
+  ActuatorSpec spec = actuator(region, ActuatorKind::pneumatic, low, high, true);
+  spec.region = region;
+  return spec;
+}
+
+/// The same actuator, commanded by its tension or pressure.
+inline ActuatorSpec by_load(ActuatorSpec spec, double low = -1e4, double high = 1e4) {
+  spec.control = Control::load;
+  spec.low = spec.kind == ActuatorKind::cable ? 0 : low;
+  spec.high = high;
+  spec.rest = 0;
+  return spec;
+}
+
+/// A beam of 60 x 12 x 16 mm with a chamber in its upper half, fixed at x = 0; inflated it bends down.
+inline RobotSpec bending_finger() {
+  Mesh mesh = block_mesh({12, 3, 4}, {60, 12, 16});
+  add_volume_region(mesh, "chamber", [](const Vec3& p) {
+    return p.x() > 5 && p.x() < 55 && p.y() > 4 && p.y() < 8 && p.z() > 8 && p.z() < 12;
+  });
+  RobotSpec spec = physical_robot(std::move(mesh));
+  spec.actuators = {air("chamber")};
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  return spec;
+}
+
+/// A beam of 60 x 10 x 10 mm with cables along its top and its bottom.
+inline RobotSpec cable_beam() {
+  RobotSpec spec = physical_robot(block_mesh({12, 2, 2}, {60, 10, 10}));
+  const auto along = [](double z) { return std::vector<Vec3>{{0, 5, z}, {20, 5, z}, {40, 5, z}, {60, 5, z}}; };
+  spec.actuators = {cable("top", along(9)), cable("bottom", along(1))};
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  return spec;
+}
+
+/// Fingers of two and three chambers side by side around the axis.
+inline RobotSpec chambers_beam(int count) {
+  Mesh mesh = block_mesh({8, 5, 5}, {48, 20, 20});
+  const double places[3][2] = {{4, 4}, {12, 4}, {8, 12}};
+  for (int i = 0; i < count; ++i)
+    add_volume_region(mesh, "chamber" + std::to_string(i + 1), [&](const Vec3& p) {
+      return p.x() > 6 && p.x() < 42 && p.y() > places[i][0] && p.y() < places[i][0] + 4 && p.z() > places[i][1] &&
+             p.z() < places[i][1] + 4;
+    });
+  RobotSpec spec = physical_robot(std::move(mesh));
+  for (int i = 0; i < count; ++i) spec.actuators.push_back(air("chamber" + std::to_string(i + 1)));
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  return spec;
+}
+
+inline Actuation values(std::initializer_list<double> list) {
+  Actuation actuation(static_cast<Index>(list.size()));
+  std::copy(list.begin(), list.end(), actuation.data());
+  return actuation;
+}
+
+inline StaticsOptions tight(double tolerance_mm = 1e-9) {
+  StaticsOptions options;
+  options.step_tolerance_mm = tolerance_mm;
+  return options;
+}
+
+/// From rest, converged.
+inline Equilibrium settled(const Statics& statics, const Actuation& actuation,
+                           const StaticsOptions& options = tight()) {
+  Equilibrium found = statics.solve(actuation, statics.rest(), options);
+  EXPECT_EQ(found.report.status, Status::converged) << found.report.remark << " at " << found.report.reached;
+  EXPECT_TRUE(found.state.positions.allFinite());
+  return found;
+}
+
+inline double distance(const Points& a, const Points& b) {
+  return (a - b).rowwise().norm().maxCoeff();
+}
+
+inline Vec3 marker_at(const Model& model, const Equilibrium& found, std::size_t index = 0) {
+  return model.markers[index].point.at(found.state.positions);
+}
+
+}  // namespace softkin::testing

@@ -1,0 +1,132 @@
+#include "model/quadratic_mesh.hpp"
+#include "statics/physical_samples.hpp"
+
+/// Beams under dead loads, against rods. nu = 0: a clamped section stiffens nothing.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+constexpr double length = 100, width = 4, modulus = 2;
+constexpr double area = width * width, inertia = width * width * width * width / 12;
+
+RobotSpec beam(Law law = Law::st_venant_kirchhoff) {
+  RobotSpec spec = physical_robot(block_mesh({25, 1, 1}, {length, width, width}));
+  spec.quadratic = true;
+  spec.materials[0].elastic = elastic(law, modulus, 0);
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  return spec;
+}
+
+/// Tip of the inextensible rod under a dead load across, P L^2 / (E I) = load: Runge-Kutta and shooting in the slope's
+/// derivative at the clamp. theta'' = -load cos(theta), theta(0) = 0, theta'(1) = 0; deflection down is positive.
+struct Rod {
+  double x = 0, z = 0, angle = 0, curvature = 0;
+};
+
+Rod integrate(double load, double curvature) {
+  Rod rod;
+  rod.curvature = curvature;
+  constexpr int steps = 2000;
+  const auto rate = [&](const Rod& r) {
+    return Rod{std::cos(r.angle), std::sin(r.angle), r.curvature, -load * std::cos(r.angle)};
+  };
+  const auto ahead = [](const Rod& r, const Rod& k, double h) {
+    return Rod{r.x + h * k.x, r.z + h * k.z, r.angle + h * k.angle, r.curvature + h * k.curvature};
+  };
+  constexpr double h = 1.0 / steps;
+  for (int i = 0; i < steps; ++i) {
+    const Rod a = rate(rod), b = rate(ahead(rod, a, h / 2)), c = rate(ahead(rod, b, h / 2)), d = rate(ahead(rod, c, h));
+    rod = ahead(ahead(ahead(ahead(rod, a, h / 6), b, h / 3), c, h / 3), d, h / 6);
+  }
+  return rod;
+}
+
+Rod elastica(double load) {
+  double low = 0, high = load;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (integrate(load, middle).curvature > 0 ? high : low) = middle;
+  }
+  return integrate(load, high);
+}
+
+}  // namespace
+
+/// The known tip of the elastica under P L^2 / (E I) = 1 and 10 (Bisshopp and Drucker 1945): deflection 0.3017 and
+/// 0.8106, and the same over L here. A beam 25 times as long as high is sheared by 1 / 25^2 of that.
+TEST(PhysicalBeams, PayloadBendsACantileverAsTheElasticaSays) {
+  EXPECT_NEAR(elastica(1).z, 0.3017, 1e-4);
+  EXPECT_NEAR(elastica(10).z, 0.8106, 1e-4);
+  for (const Law law : {Law::st_venant_kirchhoff, Law::neo_hookean})
+    for (const double load : {0.5, 2.0, 6.0}) {
+      RobotSpec spec = beam(law);
+      spec.forces.push_back(
+          {"payload", {std::string("x_high"), {}}, {0, 0, -load * modulus * inertia / (length * length)}});
+      const Model model = compile(spec);
+      const Statics statics(model);
+      const Vec3 tip = marker_at(model, settled(statics, {}));
+      const Rod rod = elastica(load);
+      EXPECT_NEAR(tip[0], length * rod.x, 0.004 * length) << load;
+      EXPECT_NEAR(tip[1], width / 2, 0.02) << load;  // the mesh is not symmetric
+      EXPECT_NEAR(width / 2 - tip[2], length * rod.z, 0.004 * length) << load;
+    }
+}
+
+/// Its own weight lengthens a hanging rod by rho g L^2 / (2 E).
+TEST(PhysicalBeams, WeightStretchesAHangingRod) {
+  RobotSpec spec = beam();
+  spec.materials[0].density = 1100;
+  spec.gravity = {9.81e-2, 0, 0};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const double stretch = 1100e-9 * 9.81e-2 * length * length / (2 * modulus);
+  EXPECT_NEAR(marker_at(model, settled(statics, {}, tight(1e-12)))[0] - length, stretch, 1e-3 * stretch);
+}
+
+/// q L^4 / (8 E I) and, by shear, q L^2 / (2 (5/6) G A).
+TEST(PhysicalBeams, WeightBendsALyingRod) {
+  RobotSpec spec = beam();
+  spec.materials[0].density = 1100;
+  spec.gravity = {0, 0, -9.81e-2};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const double weight = 1100e-9 * 9.81e-2 * area;
+  const double bent = weight * std::pow(length, 4) / (8 * modulus * inertia),
+               sheared = weight * length * length / (2 * 5.0 / 6 * modulus / 2 * area);
+  const Vec3 tip = marker_at(model, settled(statics, {}, tight(1e-12)));
+  EXPECT_NEAR(width / 2 - tip[2], bent + sheared, 0.01 * bent);
+}
+
+/// Gravity and forces add up: the sum of supports' reactions is their sum, seen through the energy of a shifted clamp.
+TEST(PhysicalBeams, AClampThatRisesLiftsTheWeight) {
+  RobotSpec spec = beam();
+  spec.materials[0].density = 1100;
+  spec.gravity = {0, 0, -1};
+  spec.forces.push_back({"payload", {Vec3(length, width / 2, width / 2), {}}, {0, 0, -1e-3}});
+  const Model low = compile(spec);
+  spec.fixed[0].displacement = {0, 0, 3};
+  const Model high = compile(spec);
+  const Statics low_statics(low), high_statics(high);
+  const Equilibrium a = settled(low_statics, {}), b = settled(high_statics, {});
+  const double weight = 1100e-9 * area * length + 1e-3;
+  EXPECT_NEAR(b.report.energy - a.report.energy, 3 * weight, 1e-6 * weight);
+  EXPECT_LT(distance(a.state.positions.rowwise() + Eigen::RowVector3d(0, 0, 3), b.state.positions), 1e-6);
+}
+
+/// Order 2 read from a file is order 2 made from order 1.
+TEST(PhysicalBeams, ElevatedIsTheSameAsRead) {
+  RobotSpec made = bending_finger();
+  made.quadratic = true;
+  RobotSpec read = bending_finger();
+  read.mesh = elevated(read.mesh);
+  const Model made_model = compile(made), read_model = compile(read);
+  const Statics made_statics(made_model), read_statics(read_model);
+  const Equilibrium a = settled(made_statics, values({1.4})), b = settled(read_statics, values({1.4}));
+  EXPECT_LT(distance(a.state.positions, b.state.positions), 1e-8);
+  EXPECT_NEAR(a.state.multipliers[0], b.state.multipliers[0], 1e-8 * a.state.multipliers[0]);
+}
+
+}  // namespace softkin

@@ -1,0 +1,174 @@
+#include <softkin/statics/measure.hpp>
+
+#include "statics/physical_samples.hpp"
+
+/// Limits of existence: a balloon whose pressure passes a maximum.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// A ball of rubber, 15 mm in radius, around a hollow of 10 mm: a cube of cells pushed onto spheres. Three
+/// vertices hold it without force.
+RobotSpec balloon(double modulus, bool quadratic) {
+  const std::array<int, 3> cells{6, 6, 6};
+  Mesh mesh = block_mesh(cells, {30, 30, 30});
+  add_volume_region(mesh, "hollow", [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 10; });
+  for (Index v = 0; v < mesh.vertices.rows(); ++v) {
+    const Vec3 p = mesh.vertices.row(v).transpose() - Vec3(15, 15, 15);
+    if (p.norm() > 0) mesh.vertices.row(v) = (p * p.cwiseAbs().maxCoeff() / p.norm()).transpose();
+  }
+  RobotSpec spec = physical_robot(std::move(mesh));
+  spec.materials[0].elastic = elastic(Law::mooney_rivlin, modulus, 0.45);
+  spec.quadratic = quadratic;
+  spec.fixed = {{{VertexList{{grid_vertex(cells, 0, 3, 3)}}, {}}, {true, true, true}},
+                {{VertexList{{grid_vertex(cells, 6, 3, 3)}}, {}}, {false, true, true}},
+                {{VertexList{{grid_vertex(cells, 3, 0, 3)}}, {}}, {false, false, true}}};
+  spec.actuators = {air("hollow", 0.5, 12)};
+  return spec;
+}
+
+/// Pressure in a thick incompressible neo-Hookean shell (c10 = mu / 2), over mu: Green and Zerna; a: its inner radius
+/// over that at rest.
+double shell_pressure(double a, double inner_over_outer) {
+  const double b = std::cbrt(1 + (a * a * a - 1) * std::pow(inner_over_outer, 3));
+  const auto f = [](double stretch) { return 4 / stretch + std::pow(stretch, -4); };
+  return (f(b) - f(a)) / 2;
+}
+
+}  // namespace
+
+/// Volume control goes through the maximum, and down on the other side. The shell is not quite incompressible, and its
+/// mesh is coarse: 12 % of the thick incompressible sphere.
+TEST(PhysicalLimits, VolumeControlPassesTheMaximumOfAPressure) {
+  const double modulus = 0.03;
+  const Model model = compile(balloon(modulus, true));
+  const Statics statics(model);
+  State state = statics.rest();
+  double most = 0, last = 0;
+  for (const double ratio : {1.5, 2.5, 4.0, 6.0, 9.0}) {
+    const Equilibrium found = statics.solve(values({ratio}), state);
+    ASSERT_EQ(found.report.status, Status::converged) << ratio << ": " << found.report.remark;
+    state = found.state;
+    last = state.multipliers[0];
+    most = std::max(most, last);
+    const double expected = 1e3 * modulus / 2.9 * shell_pressure(std::cbrt(ratio), 10.0 / 15);
+    EXPECT_NEAR(last, expected, 0.12 * expected) << ratio;
+  }
+  EXPECT_LT(last, 0.95 * most);
+  // in one call too
+  const Equilibrium once = settled(statics, values({9.0}));
+  EXPECT_NEAR(once.state.multipliers[0], last, 1e-5 * last);
+}
+
+/// Pressure control ends at the maximum, says so, and leaves the last good shape.
+TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
+  const double modulus = 0.03;
+  const Model by_volume = compile(balloon(modulus, false));
+  const Statics volume_statics(by_volume);
+  double most = 0;
+  State state = volume_statics.rest();
+  for (const double ratio : {3.0, 3.5, 4.0, 4.5, 5.0, 5.5}) {
+    state = volume_statics.solve(values({ratio}), state).state;
+    most = std::max(most, state.multipliers[0]);
+  }
+  RobotSpec spec = balloon(modulus, false);
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium below = statics.solve(values({0.98 * most}), statics.rest());
+  EXPECT_EQ(below.report.status, Status::converged) << below.report.remark;
+  for (const double factor : {1.05, 1.5}) {
+    const Equilibrium beyond = statics.solve(values({factor * most}), statics.rest());
+    EXPECT_EQ(beyond.report.status, Status::limit);
+    EXPECT_FALSE(beyond.report.remark.empty());
+    EXPECT_TRUE(beyond.state.positions.allFinite());
+    const double reached = beyond.state.actuation[0];
+    EXPECT_NEAR(reached, factor * most * beyond.report.reached, 1e-9 * most);
+    EXPECT_LT(reached, 1.002 * most);
+    EXPECT_GT(reached, 0.98 * most);
+    // the shape is the equilibrium of what was reached
+    const Equilibrium again = statics.solve(values({reached}), beyond.state, tight());
+    EXPECT_EQ(again.report.status, Status::converged);
+    EXPECT_LT(distance(again.state.positions, beyond.state.positions), 1e-3);
+    EXPECT_GT(achieved_ratio(by_volume, by_volume.actuators[0], beyond.state.positions), 2);
+  }
+}
+
+/// A shallow arch under a weight at its top snaps through: just short of it the weight is carried, just beyond the last
+/// good shape is told, with how much it carries, and the arch still stands.
+TEST(PhysicalLimits, AnArchSnaps) {
+  RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {100, 10, 2}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
+    spec.mesh.vertices(v, 2) += 6 * std::sin(EIGEN_PI * spec.mesh.vertices(v, 0) / 100);
+  spec.quadratic = true;
+  spec.fixed.push_back({{std::string("x_high"), {}}});
+  spec.markers = {{"top", {Vec3(50, 5, 7), {}}}};
+  double last_top = 7;
+  for (const double weight : {0.005, 0.0095}) {
+    spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -weight}}};
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const double top = marker_at(model, settled(statics, {}))[2];
+    EXPECT_LT(top, last_top);
+    EXPECT_GT(top, 4);
+    last_top = top;
+  }
+  spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -0.01}}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve({}, statics.rest());
+  EXPECT_EQ(found.report.status, Status::limit);
+  EXPECT_FALSE(found.report.remark.empty());
+  EXPECT_GT(0.01 * found.report.reached, 0.0095);
+  EXPECT_GT(marker_at(model, found)[2], 4);
+  EXPECT_LT(marker_at(model, found)[2], last_top);
+}
+
+/// Where the law knows no inversion, no accepted shape is inverted, not even at a limit.
+TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
+  RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {30, 10, 10}));
+  spec.materials[0].elastic = elastic(Law::yeoh, 1, 0.45);
+  spec.forces.push_back({"push", {std::string("x_high"), {}}, {-5000, 0, 0}});
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve({}, statics.rest());
+  const ElementDeformation shape = deformation_of(model, found.state.positions);
+  for (const double ratio : shape.volume_ratio) EXPECT_GT(ratio, 0);
+  EXPECT_NE(found.report.status, Status::converged);
+  EXPECT_FALSE(found.report.remark.empty());
+}
+
+/// What cannot be reached is not reported as reached: nothing may move; two chambers that are one may not hold
+/// different volumes.
+TEST(PhysicalLimits, AConstraintThatCannotBeMet) {
+  RobotSpec stiff = bending_finger();
+  stiff.actuators.push_back(cable("tendon", {{0, 6, 14}, {58, 6, 14}}));
+  stiff.fixed = {{{Box{{-1, -1, -1}, {100, 100, 100}}, {}}}};
+  const Model stiff_model = compile(stiff);
+  const Statics stiff_statics(stiff_model);
+  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.0})).report.status, Status::converged);
+  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.2})).report.status, Status::converged);
+  for (const Actuation& asked : {values({1.2, 1.0}), values({1.0, 0.9}), values({0.9, 0.8})}) {
+    const Equilibrium found = stiff_statics.solve(asked, stiff_statics.rest());
+    EXPECT_EQ(found.report.status, Status::limit);
+    EXPECT_FALSE(found.report.remark.empty());
+    EXPECT_LT(distance(found.state.positions, stiff_model.rest), 1e-12);
+  }
+  RobotSpec twins = physical_robot(block_mesh({8, 3, 3}, {48, 18, 18}));
+  for (const char* name : {"bag", "twin"}) {
+    ActuatorSpec bag = air(name);
+    bag.region.reset();
+    bag.surface = box_surface({8, 5, 9.5}, {30, 8, 6});
+    twins.actuators.push_back(bag);
+  }
+  const Model model = compile(twins);
+  const Statics statics(model);
+  EXPECT_EQ(statics.solve(values({1.3, 1.1}), statics.rest()).report.status, Status::limit);
+  const Equilibrium same = settled(statics, values({1.3, 1.3}));
+  EXPECT_NEAR(achieved_ratio(model, model.actuators[0], same.state.positions), 1.3, 1e-7);
+}
+
+}  // namespace softkin

@@ -1,0 +1,123 @@
+#include "statics/physical_samples.hpp"
+
+/// Pressures and tensions are the slopes of the energy in what the actuators hold: dE/dV and -dE/dL.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// Slope of the energy of equilibria in one actuation, by central differences, over the measure at rest.
+double energy_slope(const Model& model, const Statics& statics, const Equilibrium& at, Index actuator) {
+  const double reach = 1e-3;
+  double energies[2];
+  for (int side = 0; side < 2; ++side) {
+    Actuation actuation = at.actuation;
+    actuation[actuator] += side == 0 ? reach : -reach;
+    const Equilibrium found = statics.solve(actuation, at.state, tight());
+    EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+    energies[side] = found.report.energy;
+  }
+  return (energies[0] - energies[1]) / (2 * reach * model.actuators[actuator].rest_measure);
+}
+
+void expect_slopes(const RobotSpec& spec, const Actuation& actuation) {
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, actuation);
+  for (Index a = 0; a < actuation.size(); ++a) {
+    const bool cable = model.actuators[a].kind == ActuatorKind::cable;
+    const double force = cable ? -found.state.multipliers[a] : 1e-3 * found.state.multipliers[a];  // kPa to MPa
+    EXPECT_GT(std::abs(force), 1e-4);
+    EXPECT_NEAR(force, energy_slope(model, statics, found, a), 1e-5 * std::abs(force)) << "actuator " << a;
+  }
+}
+
+}  // namespace
+
+TEST(PhysicalMultipliers, PressureOfAChamber) {
+  for (const Law law : {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh}) {
+    SCOPED_TRACE(static_cast<int>(law));
+    RobotSpec spec = bending_finger();
+    spec.materials[0].elastic = elastic(law, 1, 0.4);
+    expect_slopes(spec, values({1.5}));
+  }
+  expect_slopes(bending_finger(), values({0.7}));
+}
+
+TEST(PhysicalMultipliers, TensionOfACable) {
+  RobotSpec spec = cable_beam();
+  spec.actuators.pop_back();
+  expect_slopes(spec, values({0.85}));
+}
+
+TEST(PhysicalMultipliers, OfOrder2) {
+  RobotSpec spec = bending_finger();
+  spec.quadratic = true;
+  expect_slopes(spec, values({1.3}));
+}
+
+/// All at once, with weight and a payload, a rigid end, and a support that is displaced.
+TEST(PhysicalMultipliers, OfManyTogether) {
+  RobotSpec spec = chambers_beam(3);
+  spec.actuators.push_back(cable("tendon", {{0, 10, 19}, {24, 10, 19}, {48, 10, 19}}));
+  spec.materials[0].density = 1200;
+  spec.gravity = {0, 0, -9810e-3};
+  spec.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0.01, -0.02}});
+  spec.rigid.push_back({{Box{{42, 0, 0}, {48, 20, 20}}, {}}, "end"});
+  spec.fixed[0].displacement = {0, 0, 2};
+  expect_slopes(spec, values({1.4, 1.2, 1.05, 0.93}));
+}
+
+TEST(PhysicalMultipliers, OfAnEmbeddedSurface) {
+  RobotSpec spec = physical_robot(block_mesh({8, 3, 3}, {48, 18, 18}));
+  ActuatorSpec bag = air("bag");
+  bag.region.reset();
+  bag.surface = box_surface({8, 5, 9.5}, {30, 8, 6});
+  spec.actuators = {bag};
+  expect_slopes(spec, values({1.3}));
+}
+
+/// Commanded by the multiplier that was found, the robot takes the same shape.
+TEST(PhysicalMultipliers, LoadControlGivesTheSameShape) {
+  for (const bool cables : {false, true}) {
+    const RobotSpec spec = cables ? cable_beam() : chambers_beam(2);
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const Equilibrium found = settled(statics, cables ? values({0.9, 0.97}) : values({1.6, 1.2}));
+    RobotSpec loaded = spec;
+    for (ActuatorSpec& a : loaded.actuators) a = by_load(a);
+    const Model loaded_model = compile(loaded);
+    const Statics loaded_statics(loaded_model);
+    const Actuation loads = found.state.multipliers;
+    EXPECT_GT(loads.cwiseAbs().minCoeff(), 1e-4);
+    const Equilibrium same = settled(loaded_statics, loads);
+    EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-7);
+    EXPECT_LT((same.state.multipliers - loads).norm(), 1e-12 * loads.norm());
+    // one of each
+    loaded.actuators[0] = spec.actuators[0];
+    const Model mixed_model = compile(loaded);
+    const Statics mixed_statics(mixed_model);
+    const Equilibrium mixed = settled(mixed_statics, values({found.actuation[0], loads[1]}));
+    EXPECT_LT(distance(mixed.state.positions, found.state.positions), 1e-7);
+    EXPECT_NEAR(mixed.state.multipliers[0], loads[0], 1e-7 * std::abs(loads[0]));
+  }
+}
+
+/// E scales forces and no shape.
+TEST(PhysicalMultipliers, ScaleWithTheModulus) {
+  for (const Law law : {Law::neo_hookean, Law::yeoh}) {
+    RobotSpec soft = bending_finger(), hard = bending_finger();
+    soft.materials[0].elastic = elastic(law, 0.02, 0.4);
+    hard.materials[0].elastic = elastic(law, 2e3, 0.4);
+    const Model soft_model = compile(soft), hard_model = compile(hard);
+    const Statics soft_statics(soft_model), hard_statics(hard_model);
+    const Equilibrium a = settled(soft_statics, values({1.8})), b = settled(hard_statics, values({1.8}));
+    EXPECT_LT(distance(a.state.positions, b.state.positions), 1e-7);
+    EXPECT_NEAR(b.state.multipliers[0] / a.state.multipliers[0], 1e5, 1e-3);
+    EXPECT_EQ(a.report.iterations, b.report.iterations);
+  }
+}
+
+}  // namespace softkin

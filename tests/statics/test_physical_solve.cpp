@@ -1,0 +1,187 @@
+#include <Eigen/Geometry>
+#include <thread>
+
+#include "statics/physical_samples.hpp"
+
+/// Statics::solve in the physical formulation: starts, invariance, threads, interruption, what it refuses.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+}  // namespace
+
+/// Wherever the search begins, with or without knowing of what the start is an equilibrium, it ends in one shape.
+TEST(PhysicalSolve, TheStartDoesNotMatter) {
+  const Model model = compile(chambers_beam(2));
+  const Statics statics(model);
+  const Actuation asked = values({1.8, 1.1});
+  const Equilibrium expected = settled(statics, asked);
+  const Equilibrium other = settled(statics, values({1.2, 2.0}));
+  State unknown{other.state.positions};
+  State with_pressure{other.state.positions, {}, other.state.multipliers};
+  State wrong{other.state.positions, values({1, 1})};  // says that it is at rest
+  State shaken{model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 1)};
+  for (const State& start : {other.state, unknown, with_pressure, wrong, shaken}) {
+    const Equilibrium found = statics.solve(asked, start, tight());
+    EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+    EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-7);
+    EXPECT_LT((found.state.multipliers - expected.state.multipliers).norm(), 1e-6);
+  }
+  // where it is already there is nothing to do
+  const Equilibrium again = statics.solve(asked, expected.state, tight());
+  EXPECT_LT(distance(again.state.positions, expected.state.positions), 1e-8);
+  EXPECT_LE(again.report.iterations, 2);
+}
+
+TEST(PhysicalSolve, UnknownActuationUnderLoadControl) {
+  RobotSpec spec = cable_beam();
+  for (ActuatorSpec& a : spec.actuators) a = by_load(a);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium expected = settled(statics, values({0.8, 0.1})), other = settled(statics, values({0.1, 1.0}));
+  for (const State& start : {State{other.state.positions}, State{other.state.positions, {}, other.state.multipliers}}) {
+    const Equilibrium found = statics.solve(values({0.8, 0.1}), start, tight());
+    EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+    EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-7);
+  }
+}
+
+/// A mesh that stands elsewhere, turned: the same shape there, the same forces.
+TEST(PhysicalSolve, InvariantUnderRigidMotion) {
+  RobotSpec spec = bending_finger();
+  spec.actuators.push_back(cable("tendon", {{0, 6, 14}, {30, 6, 14}, {58, 6, 14}}));
+  spec.materials[0].density = 1100;
+  spec.gravity = {0, 0, -5};
+  RobotSpec turned = spec;
+  const Mat3 r = Eigen::AngleAxisd(2.2, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  const Vec3 shift(100, -50, 20);
+  turned.mesh.vertices = (spec.mesh.vertices * r.transpose()).rowwise() + shift.transpose();
+  turned.gravity = r * spec.gravity;
+  for (PointRef& point : turned.actuators[1].points) point.point = Vec3(r * std::get<Vec3>(point.point) + shift);
+  const Model model = compile(spec), turned_model = compile(turned);
+  const Statics statics(model), turned_statics(turned_model);
+  const Equilibrium a = settled(statics, values({1.6, 0.97})), b = settled(turned_statics, values({1.6, 0.97}));
+  EXPECT_LT(distance((a.state.positions * r.transpose()).rowwise() + shift.transpose(), b.state.positions), 1e-7);
+  EXPECT_LT((a.state.multipliers - b.state.multipliers).norm(), 1e-7 * a.state.multipliers.norm());
+  EXPECT_GT(a.state.multipliers.cwiseAbs().minCoeff(), 1e-3);
+}
+
+TEST(PhysicalSolve, ThreadsChangeNothing) {
+  const Model model = compile(chambers_beam(3));
+  const Statics statics(model);
+  StaticsOptions one = tight(1e-6), two = tight(1e-6);
+  one.threads = 1;
+  two.threads = 2;
+  const Equilibrium a = settled(statics, values({1.5, 1.3, 0.9}), one),
+                    b = settled(statics, values({1.5, 1.3, 0.9}), two);
+  EXPECT_EQ(a.report.iterations, b.report.iterations);
+  EXPECT_LT(distance(a.state.positions, b.state.positions), 1e-12);
+}
+
+/// One object serves several threads at once, and one solve after another, without one being seen in the next.
+TEST(PhysicalSolve, SolvesSideBySideAndAgain) {
+  const Model model = compile(chambers_beam(2));
+  const Statics statics(model);
+  const Actuation asked[] = {values({1.5, 1.1}), values({0.9, 1.7}), values({1.2, 1.2}), values({2.0, 0.8})};
+  std::vector<Points> expected, found(4);
+  for (const Actuation& actuation : asked) {
+    const Statics fresh(model);
+    expected.push_back(settled(fresh, actuation).state.positions);
+  }
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&, i] {
+      StaticsOptions options = tight();
+      options.threads = 1;
+      found[i] = statics.solve(asked[i], statics.rest(), options).state.positions;
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (int i = 0; i < 4; ++i) EXPECT_LT(distance(found[i], expected[i]), 1e-9);
+  // a path that comes back; each solve begins with the factor that the last one left
+  State state = statics.rest();
+  for (const int i : {0, 1, 2, 3, 2, 0}) {
+    const Equilibrium next = statics.solve(asked[i], state, tight());
+    EXPECT_EQ(next.report.status, Status::converged);
+    EXPECT_LT(distance(next.state.positions, expected[i]), 1e-7);
+    state = next.state;
+  }
+}
+
+/// The shape left behind is the last good one, and its actuation is known.
+TEST(PhysicalSolve, StopsWhenTheCallbackSaysSo) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  int calls = 0;
+  const Equilibrium found =
+      statics.solve(values({3.0}), statics.rest(), tight(), [&](const Progress&) { return ++calls < 2; });
+  EXPECT_EQ(found.report.status, Status::interrupted);
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(found.report.iterations, 2);
+  EXPECT_TRUE(found.state.positions.allFinite());
+  EXPECT_NEAR(found.state.actuation[0], 1 + 2 * found.report.reached, 1e-12);
+  EXPECT_EQ(statics.solve(values({3.0}), found.state, tight()).report.status, Status::converged);
+}
+
+/// Newton converges quadratically: near the end every step is far shorter than the one before.
+TEST(PhysicalSolve, ConvergesFastAtTheEnd) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  const State start = settled(statics, values({1.5})).state;
+  const Equilibrium found = statics.solve(values({1.6}), start, tight(1e-7));
+  EXPECT_LE(found.report.iterations, 8);
+  EXPECT_LE(found.report.continuation_steps, 1);
+  EXPECT_LE(found.report.gradient_norm, 1e-7);
+  EXPECT_LT(found.report.step_mm, 1e-7);
+}
+
+/// From rest to both ends of a wide range in one call, every law, both orders.
+TEST(PhysicalSolve, FromRestToTheEndsOfARange) {
+  for (const Law law : {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh})
+    for (const bool quadratic : {false, true}) {
+      RobotSpec spec = bending_finger();
+      spec.materials[0].elastic = elastic(law, 1, 0.4);
+      spec.quadratic = quadratic;
+      const Model model = compile(spec);
+      const Statics statics(model);
+      for (const double ratio : {0.7, 2.5}) {
+        const Equilibrium found = statics.solve(values({ratio}), statics.rest());
+        EXPECT_EQ(found.report.status, Status::converged)
+            << static_cast<int>(law) << " " << ratio << ": " << found.report.remark << " at " << found.report.reached;
+      }
+    }
+}
+
+/// A cable whose range lets it hang is slack at once, however long.
+TEST(PhysicalSolve, ALongCableHangsFromTheStart) {
+  const Model model = compile(cable_beam());
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, values({1.5, 1.5}));
+  EXPECT_LT(distance(found.state.positions, model.rest), 1e-9);
+  EXPECT_EQ(found.state.multipliers, Eigen::VectorXd::Zero(2));
+  EXPECT_LE(found.report.iterations, 4);
+}
+
+TEST(PhysicalSolve, RefusesWhatIsNotARobotsStart) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  const auto refused = [&](const State& start, const StaticsOptions& options = {}) {
+    EXPECT_THROW((void)statics.solve(values({1.2}), start, options), InvalidInput);
+  };
+  refused({model.rest.topRows(3)});
+  refused({model.rest, values({1, 1})});
+  refused({model.rest, {}, values({1, 1})});
+  refused({model.rest, values({std::numeric_limits<double>::quiet_NaN()})});
+  refused({model.rest, {}, values({std::numeric_limits<double>::infinity()})});
+  StaticsOptions local_global;
+  local_global.solver = Solver::local_global;
+  refused(statics.rest(), local_global);
+  Points crushed = model.rest;
+  crushed.col(0).setZero();  // every element is flat: no shape to begin from, but none to fail on either
+  const Equilibrium found = statics.solve(values({1.2}), {crushed});
+  EXPECT_TRUE(found.state.positions.allFinite());
+}
+
+}  // namespace softkin
