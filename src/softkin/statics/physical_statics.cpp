@@ -6,6 +6,10 @@ namespace softkin {
 
 namespace {
 
+double largest_move(const Points& a, const Points& b) {
+  return (b - a).rowwise().norm().maxCoeff();
+}
+
 bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
 }
@@ -50,6 +54,9 @@ constexpr double least_advance = 1e-4;
 constexpr double least_move = 1000;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
+/// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one
+/// lies beyond a snap.
+constexpr double most_correction = 0.5, least_snap = 0.01;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
 
@@ -71,6 +78,7 @@ class Continuation {
     for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
     double done = 0, advance = 1;
     Demand here = from;
+    const bool loads_change = change_loads(from, to);
     (void)release(to, at, false);
     bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
     work_.home.resize(0, 3);
@@ -82,6 +90,7 @@ class Continuation {
       if (!factorised && !prepare(here, at)) return limit(done, "the stiffness at the start is not stable");
       factorised = true;
       const double move_mm = predict(here, there, trial);
+      const Points predicted = trial.positions;
       const int before = report_.iterations;
       auto outcome = settle(there, PhysicalNewton::Policy::descend, trial);
       if (outcome == PhysicalNewton::Outcome::stuck && next - done < follow_below && prepare(here, at)) {
@@ -90,6 +99,7 @@ class Continuation {
         outcome = settle(there, PhysicalNewton::Policy::follow, trial);
       }
       if (outcome == PhysicalNewton::Outcome::interrupted) return Status::interrupted;
+      if (loads_change && snapped(move_mm, predicted, trial.positions)) outcome = PhysicalNewton::Outcome::stuck;
       if (outcome != PhysicalNewton::Outcome::stuck && newton_.inverted() && !inverted_ && next - done > most_inverting)
         outcome = PhysicalNewton::Outcome::stuck;
       if (outcome != PhysicalNewton::Outcome::stuck) {
@@ -125,6 +135,18 @@ class Continuation {
     std::vector<bool> held(active_.size());
     for (const Index a : work_.active) held[a] = true;
     return held == active_;
+  }
+
+  [[nodiscard]] bool snapped(double predicted_mm, const Points& predicted, const Points& found) const {
+    const double correction = largest_move(predicted, found);
+    return correction > most_correction * predicted_mm && correction > least_snap * system_.model().diagonal_mm;
+  }
+
+  [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const {
+    if (system_.any_dead_load() && from.share != to.share) return true;
+    for (Index a = 0; a < system_.actuators(); ++a)
+      if (system_.measures().measures(a) && !system_.constrains(a) && from.actuation[a] != to.actuation[a]) return true;
+    return false;
   }
 
   static Demand between(const Demand& from, const Demand& to, double share) {
@@ -176,7 +198,7 @@ class Continuation {
     for (Index a = 0; a < system_.actuators(); ++a)
       if (!system_.constrains(a) && system_.measures().measures(a))
         at.multipliers[a] = system_.unit(a) * there.actuation[a];
-    return (at.positions - before).rowwise().norm().maxCoeff();
+    return largest_move(before, at.positions);
   }
 
   /// Newton, with cables released where they would push and taken up where they are too long.

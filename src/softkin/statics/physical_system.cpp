@@ -12,7 +12,11 @@ constexpr double dependent = 1e-9;
 
 }  // namespace
 
-PhysicalSystem::PhysicalSystem(const Model& model) : model_(model), elastic_(model), measures_(model) {
+PhysicalSystem::PhysicalSystem(const Model& model)
+    : model_(model),
+      elastic_(model),
+      measures_(model),
+      any_dead_load_(model.dead_load.rows() > 0 && !model.dead_load.isZero(0)) {
   Cliques cliques;
   elastic_.add_cliques(cliques);
   measures_.add_cliques(cliques);

@@ -101,13 +101,14 @@ class PhysicalSystem {
   [[nodiscard]] double target(Index actuator, const Demand& demand) const {
     return demand.actuation[actuator] * measures_.rest(actuator);
   }
-  [[nodiscard]] bool any_dead_load() const { return model_.dead_load.rows() > 0; }
+  [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
 
  private:
   const Model& model_;
   ElasticSystem elastic_;
   Measures measures_;
   std::int64_t slots_ = 0;
+  bool any_dead_load_;
   std::unique_ptr<BlockPattern> pattern_;
   std::unique_ptr<Freedoms> freedoms_;
   std::unique_ptr<GlobalStep> turning_;
