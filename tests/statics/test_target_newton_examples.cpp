@@ -39,7 +39,7 @@ class NewtonExample : public ::testing::TestWithParam<fs::path> {
     const Equilibrium found = statics_.solve(actuation, statics_.rest());
     EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
     EXPECT_EQ(found.report.continuation_steps, 1);
-    EXPECT_LE(found.report.iterations, 150);
+    EXPECT_LE(found.report.iterations, 200);
     const ElementDeformation deformation = deformation_of(model_, found.state.positions);
     if (((actuation - model_.rest_actuation()).array() != 0).count() <= 1) {
       EXPECT_GT(*std::min_element(deformation.volume_ratio.begin(), deformation.volume_ratio.end()), 0);
@@ -80,6 +80,7 @@ TEST_P(NewtonExample, FromRestToValuesInside) {
     if (round > 0) continue;
     StaticsOptions options;
     options.solver = Solver::local_global;
+    options.step_tolerance_mm = 1e-8;  // its estimate of the error is only good near the end
     const Equilibrium slow = statics_.solve(actuation, statics_.rest(), options);
     EXPECT_EQ(slow.report.status, Status::converged);
     const double distance = (slow.state.positions - found.state.positions).rowwise().norm().maxCoeff();
