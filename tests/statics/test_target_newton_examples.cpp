@@ -80,6 +80,7 @@ TEST_P(NewtonExample, FromRestToValuesInside) {
     if (round > 0) continue;
     StaticsOptions options;
     options.solver = Solver::local_global;
+    options.step_tolerance_mm = 1e-8;  // its estimate of the error is only good near the end
     const Equilibrium slow = statics_.solve(actuation, statics_.rest(), options);
     EXPECT_EQ(slow.report.status, Status::converged);
     const double distance = (slow.state.positions - found.state.positions).rowwise().norm().maxCoeff();
