@@ -33,9 +33,18 @@ Pack3 spin(const Polar& polar, const Pack33& rate) {
 }
 
 PackRotation exponential(const Pack3& turn) {
-  const Pack angle = norm(turn);
+  const Pack square = dot(turn, turn);
   PackRotation q;
   Pack scale;
+  if (!any(square > 0.04)) {  // series, to rounding
+    q.w = 1 - square * (1.0 / 8 - square * (1.0 / 384 - square * (1.0 / 46080 - square * (1.0 / 10321920))));
+    scale = 0.5 - square * (1.0 / 48 - square * (1.0 / 3840 - square * (1.0 / 645120 - square * (1.0 / 185794560))));
+    q.x = scale * turn.x;
+    q.y = scale * turn.y;
+    q.z = scale * turn.z;
+    return q;
+  }
+  const Pack angle = sqrt(square);
   for (int l = 0; l < lanes; ++l) {
     q.w[l] = std::cos(0.5 * angle[l]);
     scale[l] = angle[l] > 1e-8 ? std::sin(0.5 * angle[l]) / angle[l] : 0.5;

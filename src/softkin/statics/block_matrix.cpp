@@ -58,18 +58,10 @@ BlockPattern::BlockPattern(Index vertices, const Cliques& cliques) {
 void BlockPattern::gather(const std::vector<double>& slots, std::vector<double>& blocks, Team& team) const {
   blocks.resize(9 * columns_.size());
   team.pieces(vertices(), [&](Index begin, Index end) {
+    double block[9];
     for (std::int64_t e = starts_[begin]; e < starts_[end]; ++e) {
-      double sum[9] = {};
-      for (std::int64_t s = source_starts_[e]; s < source_starts_[e + 1]; ++s) {
-        const double* block = slots.data() + 9 * (sources_[s] / 2);
-        if (sources_[s] % 2 == 0) {
-          for (int k = 0; k < 9; ++k) sum[k] += block[k];
-        } else {
-          for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) sum[3 * r + c] += block[3 * c + r];
-        }
-      }
-      std::copy(sum, sum + 9, blocks.data() + 9 * e);
+      sum(slots, e, block);
+      std::copy(block, block + 9, blocks.data() + 9 * e);
     }
   });
 }

@@ -27,6 +27,20 @@ class BlockPattern {
   /// Sums the blocks of all cliques, 9 values a slot by rows, into those of the matrix, 9 an entry by rows.
   void gather(const std::vector<double>& slots, std::vector<double>& blocks, Team& team) const;
 
+  /// Block of one entry: the sum of its slots, by rows.
+  void sum(const std::vector<double>& slots, std::int64_t entry, double (&block)[9]) const {
+    for (double& value : block) value = 0;
+    for (std::int64_t s = source_starts_[entry]; s < source_starts_[entry + 1]; ++s) {
+      const double* slot = slots.data() + 9 * (sources_[s] / 2);
+      if (sources_[s] % 2 == 0) {
+        for (int k = 0; k < 9; ++k) block[k] += slot[k];
+      } else {
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) block[3 * r + c] += slot[3 * c + r];
+      }
+    }
+  }
+
   /// result = A x, both 3 values per vertex.
   void multiply(const std::vector<double>& blocks, const Points& x, Points& result, Team& team) const;
 

@@ -228,10 +228,13 @@ void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double sc
   }
 }
 
-void Freedoms::reduce_matrix(const std::vector<double>& blocks, const Points& gradient, const Points& positions,
-                             std::vector<double>& values, Team& team) const {
+/// block_of(entry, block): a block of the matrix over vertices, by rows.
+template <class BlockOf>
+void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Points& positions,
+                      std::vector<double>& values, Team& team) const {
   values.resize(static_cast<std::size_t>(columns_.offsets.back()));
   team.pieces(columns_.nodes(), [&](Index begin, Index end) {
+    double block[9];
     for (Index j = begin; j < end; ++j)
       for (Index e = columns_.starts[j]; e < columns_.starts[j + 1]; ++e) {
         double* value = values.data() + columns_.offsets[e];
@@ -240,7 +243,7 @@ void Freedoms::reduce_matrix(const std::vector<double>& blocks, const Points& gr
           std::fill(value, values.data() + columns_.offsets[e + 1], 0.0);
           continue;
         }
-        const double* block = blocks.data() + 9 * source.block;
+        block_of(source.block, block);
         const int row_step = source.transposed ? 1 : 3, column_step = 4 - row_step;
         const auto &row_fixed = fixed_[vertex_of_[columns_.rows[e]]], &column_fixed = fixed_[vertex_of_[j]];
         for (int c = 0; c < 3; ++c)
@@ -251,7 +254,9 @@ void Freedoms::reduce_matrix(const std::vector<double>& blocks, const Points& gr
   if (regions_.empty()) return;
   const std::vector<Vec3> middles = centers(positions);
   for (const RegionBlock& part : region_blocks_) {
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks.data() + 9 * part.block);
+    double sum[9];
+    block_of(part.block, sum);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(sum);
     const Eigen::MatrixXd product =
         tangent(part.row, middles, positions).transpose() * block * tangent(part.column, middles, positions);
     const bool same_node = region_of_[part.row] >= 0 && region_of_[part.row] == region_of_[part.column];
@@ -278,6 +283,20 @@ void Freedoms::reduce_matrix(const std::vector<double>& blocks, const Points& gr
     for (Index i = slides; i < width; ++i)
       for (Index k = slides; k < width; ++k) target(i, k) += bend(region.turns[i - slides], region.turns[k - slides]);
   }
+}
+
+void Freedoms::reduce_matrix(const std::vector<double>& blocks, const Points& gradient, const Points& positions,
+                             std::vector<double>& values, Team& team) const {
+  const auto block_of = [&](std::int64_t entry, double(&block)[9]) {
+    std::copy(blocks.data() + 9 * entry, blocks.data() + 9 * (entry + 1), block);
+  };
+  reduce(block_of, gradient, positions, values, team);
+}
+
+void Freedoms::reduce_matrix(const BlockPattern& pattern, const std::vector<double>& slots, const Points& gradient,
+                             const Points& positions, std::vector<double>& values, Team& team) const {
+  const auto block_of = [&](std::int64_t entry, double(&block)[9]) { pattern.sum(slots, entry, block); };
+  reduce(block_of, gradient, positions, values, team);
 }
 
 void Freedoms::hold(double share, Points& positions) const {

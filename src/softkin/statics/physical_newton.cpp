@@ -35,7 +35,7 @@ bool PhysicalNewton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = PhysicalSystem::Stiffness;
   const auto negative = [&](Stiffness kind, double shift) {
     ++report_.factorisations;
-    return system_.factorise(at, *demand_, *active_, kind, shift, work_, team_);
+    return system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
   };
   negative_ = negative(Stiffness::exact, 0);
   if (negative_ == 0 || policy == Policy::follow) return true;
@@ -72,7 +72,8 @@ bool PhysicalNewton::accept(double moved_mm, Iterate& at) {
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
 PhysicalNewton::Advance PhysicalNewton::damped_step(Iterate& at, double& damping) {
-  find(balance_, at.positions, step_);
+  system_.first_step(balance_, work_, step_.move, step_.change);
+  step_.size = system_.size_of(step_.move, at.positions);
   if (!std::isfinite(step_.size.mean)) return Advance::none;
   damping = std::min(1.0, 2 * damping);
   for (;;) {

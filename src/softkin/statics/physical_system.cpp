@@ -12,6 +12,13 @@ constexpr double dependent = 1e-9;
 
 }  // namespace
 
+namespace {
+
+/// Moves shorter than this share of the robot's diagonal turn nothing that matters.
+constexpr double least_turning = 1e-7;
+
+}  // namespace
+
 PhysicalSystem::PhysicalSystem(const Model& model)
     : model_(model),
       elastic_(model),
@@ -60,13 +67,12 @@ void PhysicalSystem::evaluate(const Iterate& at, const Demand& demand, const std
 }
 
 int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
-                              double shift, Workspace& work, Team& team) const {
+                              double shift, Workspace& work, Team& team, const Balance* balance) const {
   elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
   Eigen::VectorXd scale(actuators());
   for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
   measures_.second_derivatives(at.positions, scale, work.slots);
-  pattern_->gather(work.slots, work.blocks, team);
-  freedoms_->reduce_matrix(work.blocks, work.gradient, at.positions, work.values, team);
+  freedoms_->reduce_matrix(*pattern_, work.slots, work.gradient, at.positions, work.values, team);
 
   const BlockColumns& columns = freedoms_->columns();
   double trace = 0;
@@ -89,9 +95,12 @@ int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std
     freedoms_->reduce(work.slopes[work.active[i]], at.positions, work.constraint_slopes.col(i));
     work.constraint_slopes.col(i) *= sign(work.active[i]);
   }
+  work.solutions.resize(columns.size(), count + (balance ? 1 : 0));
+  work.solutions.leftCols(count) = work.constraint_slopes;
+  if (balance) work.solutions.col(count) = -balance->force;
+  work.factor.solve(work.solutions, team);
   if (count == 0) return negative;
-  work.responses = work.constraint_slopes;
-  work.factor.solve(work.responses, team);
+  work.responses = work.solutions.leftCols(count);
   Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;
   work.scale.resize(count);
   for (Index i = 0; i < count; ++i) work.scale[i] = schur(i, i) != 0 ? 1 / std::sqrt(std::abs(schur(i, i))) : 1;
@@ -107,7 +116,19 @@ int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std
 void PhysicalSystem::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,
                           Team& team) const {
   step = -balance.force;
-  work.factor.solve(step, team);
+  if (!step.isZero(0)) work.factor.solve(step, team);  // where constraints alone change there is nothing to solve for
+  meet_constraints(balance, work, step, change);
+}
+
+void PhysicalSystem::first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step,
+                                Eigen::VectorXd& change) const {
+  step = work.solutions.col(static_cast<Index>(work.active.size()));
+  meet_constraints(balance, work, step, change);
+}
+
+/// Adds to a step without constraints what closes them.
+void PhysicalSystem::meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step,
+                                      Eigen::VectorXd& change) const {
   change.setZero(actuators());
   const Index count = static_cast<Index>(work.active.size());
   if (count == 0) return;
@@ -125,7 +146,12 @@ void PhysicalSystem::upset(const Iterate& at, const Demand& from, const Demand& 
   Points moves = at.positions, force;
   freedoms_->hold(to.share, moves);
   moves -= at.positions;
-  pattern_->multiply(work.blocks, moves, force, team);
+  if (moves.isZero(0)) {
+    force.setZero(moves.rows(), 3);
+  } else {
+    pattern_->gather(work.slots, work.blocks, team);
+    pattern_->multiply(work.blocks, moves, force, team);
+  }
   bool layers = false;
   for (Index a = 0; a < actuators(); ++a) {
     const double change = to.actuation[a] - from.actuation[a];
@@ -157,6 +183,8 @@ void PhysicalSystem::upset(const Iterate& at, const Demand& from, const Demand& 
 void PhysicalSystem::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions,
                              Team& team) const {
   freedoms_->expand(scale * step, positions, work.moves);
+  if (work.moves.cwiseAbs().maxCoeff() < least_turning * model_.diagonal_mm)
+    return freedoms_->move(step, scale, positions);
   elastic_.turning(positions, work.moves, work.elastic, work.lacking, team);
   freedoms_->move(step, scale, positions);
   std::vector<Pose> poses = turning_->poses(positions);

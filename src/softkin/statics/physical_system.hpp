@@ -38,6 +38,7 @@ class PhysicalSystem {
     Points moves, lacking;       // of advance()
     std::vector<Points> slopes;  // of each active measure
     SparseLdlt factor;
+    Eigen::MatrixXd solutions;          // of the last factorisation: responses, then the step without constraints
     Eigen::MatrixXd responses;          // K^-1 G, a column per active constraint, in the order of `active`
     Eigen::MatrixXd constraint_slopes;  // G: sign_a times the gradient of measure_a
     Eigen::VectorXd scale;              // S: makes the diagonal of the next 1
@@ -61,10 +62,14 @@ class PhysicalSystem {
 
   enum class Stiffness { exact, projected };
   /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added.
+  /// balance  of that iterate, if first_step() is to follow: its step is solved for together with the responses
   /// returns  how many negative eigenvalues it has on the changes that keep the active measures: 0 at a stable
   ///          equilibrium
   int factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind, double shift,
-                Workspace& work, Team& team) const;
+                Workspace& work, Team& team, const Balance* balance = nullptr) const;
+
+  /// Newton step of the balance with which the last factorisation was made.
+  void first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
   /// Newton step of the last factorisation: K step + G change = -force, G^T step = -sign constraint; where constraints
   /// contradict each other, what misses them least.
@@ -104,6 +109,8 @@ class PhysicalSystem {
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
 
  private:
+  void meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
+
   const Model& model_;
   ElasticSystem elastic_;
   Measures measures_;

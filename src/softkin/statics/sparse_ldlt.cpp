@@ -112,49 +112,54 @@ SparseLdlt::Pivots SparseLdlt::factorise(const std::vector<double>& values, doub
   return pivots;
 }
 
-/// x: the unknowns; above: what is to be subtracted from unknowns from `top` on; work: as many rows as a front has
-/// below.
-void SparseLdlt::forward(const Front& front, Vector& x, Vector& above, Vector& work, Index top) const {
+/// One column after the other while the front is in the cache. x: the unknowns; above: what is to be subtracted from
+/// unknowns from `top` on; work: as many rows as a front has below.
+void SparseLdlt::forward(const Front& front, Columns& x, Columns& above, Vector& work, Index top) const {
   const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
                     Eigen::OuterStride<>(front.size()));
-  auto own = x.segment(front.begin, front.pivots());
-  panel.topRows(front.pivots()).triangularView<Eigen::UnitLower>().solveInPlace(own);
-  if (front.below == 0) return;
-  auto moved = work.head(front.below);
-  moved.noalias() = panel.bottomRows(front.below) * own;
   const Index* rows = tree_.rows.data() + front.first_row;
-  for (Index r = 0; r < front.below; ++r) {
-    if (rows[r] < top)
-      x[rows[r]] -= moved[r];
-    else
-      above[rows[r] - top] += moved[r];
+  for (Index c = 0; c < x.cols(); ++c) {
+    auto own = x.col(c).segment(front.begin, front.pivots());
+    panel.topRows(front.pivots()).triangularView<Eigen::UnitLower>().solveInPlace(own);
+    if (front.below == 0) continue;
+    auto moved = work.head(front.below);
+    moved.noalias() = panel.bottomRows(front.below) * own;
+    for (Index r = 0; r < front.below; ++r) {
+      if (rows[r] < top)
+        x(rows[r], c) -= moved[r];
+      else
+        above(rows[r] - top, c) += moved[r];
+    }
   }
 }
 
-void SparseLdlt::backward(const Front& front, Vector& x, Vector& work) const {
+void SparseLdlt::backward(const Front& front, Columns& x, Vector& work) const {
   const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
                     Eigen::OuterStride<>(front.size()));
-  auto own = x.segment(front.begin, front.pivots());
-  for (Index r = 0; r < front.pivots(); ++r) own[r] /= diagonal_[front.begin + r];
-  if (front.below > 0) {
-    auto known = work.head(front.below);
-    const Index* rows = tree_.rows.data() + front.first_row;
-    for (Index r = 0; r < front.below; ++r) known[r] = x[rows[r]];
-    own.noalias() -= panel.bottomRows(front.below).transpose() * known;
+  const Index* rows = tree_.rows.data() + front.first_row;
+  for (Index c = 0; c < x.cols(); ++c) {
+    auto own = x.col(c).segment(front.begin, front.pivots());
+    for (Index r = 0; r < front.pivots(); ++r) own[r] /= diagonal_[front.begin + r];
+    if (front.below > 0) {
+      auto known = work.head(front.below);
+      for (Index r = 0; r < front.below; ++r) known[r] = x(rows[r], c);
+      own.noalias() -= panel.bottomRows(front.below).transpose() * known;
+    }
+    panel.topRows(front.pivots()).transpose().triangularView<Eigen::UnitUpper>().solveInPlace(own);
   }
-  panel.topRows(front.pivots()).transpose().triangularView<Eigen::UnitUpper>().solveInPlace(own);
 }
 
-void SparseLdlt::solve_column(Team& team) {
+void SparseLdlt::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   const Index count = static_cast<Index>(pieces_.size()) - 1, first_top = top_front();
   const Index end = static_cast<Index>(tree_.fronts.size());
   const Index top = first_top < end ? tree_.fronts[first_top].begin : size();
+  solution_ = right_sides;
   team.each(count, [&](Index p) {
-    pieces_[p].above.setZero(size() - top);
+    pieces_[p].above.setZero(size() - top, solution_.cols());
     for (Index f = tree_.pieces[p]; f < tree_.pieces[p + 1]; ++f)
       forward(tree_.fronts[f], solution_, pieces_[p].above, pieces_[p].rows, top);
   });
-  for (Index p = 0; p < count; ++p) solution_.tail(size() - top) -= pieces_[p].above;
+  for (Index p = 0; p < count; ++p) solution_.bottomRows(size() - top) -= pieces_[p].above;
   Piece& last = pieces_.back();
   for (Index f = first_top; f < end; ++f) forward(tree_.fronts[f], solution_, last.above, last.rows, size());
   for (Index f = end - 1; f >= first_top; --f) backward(tree_.fronts[f], solution_, last.rows);
@@ -162,14 +167,7 @@ void SparseLdlt::solve_column(Team& team) {
     for (Index f = tree_.pieces[p + 1] - 1; f >= tree_.pieces[p]; --f)
       backward(tree_.fronts[f], solution_, pieces_[p].rows);
   });
-}
-
-void SparseLdlt::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
-  for (Index c = 0; c < right_sides.cols(); ++c) {
-    solution_ = right_sides.col(c);
-    solve_column(team);
-    right_sides.col(c) = solution_;
-  }
+  right_sides = solution_;
 }
 
 }  // namespace softkin

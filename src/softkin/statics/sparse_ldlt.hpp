@@ -32,8 +32,9 @@ class SparseLdlt {
  private:
   struct Piece {
     FrontWork work;
-    std::vector<double> arena;    // fronts that wait for their parents
-    Eigen::VectorXd above, rows;  // of a solve: what goes to the top, what a front has below
+    std::vector<double> arena;  // fronts that wait for their parents
+    Eigen::MatrixXd above;
+    Eigen::VectorXd rows;  // of a solve: what goes to the top, what a front has below
     Index negative = 0;
   };
 
@@ -41,15 +42,15 @@ class SparseLdlt {
   void assemble(Index index, const std::vector<double>& values, double* front, const Piece& piece, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_.pieces[tree_.pieces.size() - 2]; }
   using Vector = Eigen::VectorXd;
-  void forward(const Front& front, Vector& x, Vector& above, Vector& work, Index top) const;
-  void backward(const Front& front, Vector& x, Vector& work) const;
-  void solve_column(Team& team);
+  using Columns = Eigen::MatrixXd;
+  void forward(const Front& front, Columns& x, Columns& above, Vector& work, Index top) const;
+  void backward(const Front& front, Columns& x, Vector& work) const;
 
   BlockColumns pattern_;
   FrontTree tree_;
   std::vector<double> lower_, diagonal_;
   std::vector<Piece> pieces_;  // the top's is the last
-  Vector solution_;
+  Columns solution_;
 };
 
 }  // namespace softkin
