@@ -179,9 +179,6 @@ std::string findings(const Model& model, const nlohmann::ordered_json& step) {
       say("cable '" + name + "' is slack: its path is " + number(actuator.at("achieved").get<double>(), 5) +
           " of its length at rest, the cable " + number(actuator.at("requested").get<double>(), 5));
   const bool physical = model.formulation == Formulation::physical;
-  if (const auto remark = step.at("remark").get<std::string>();
-      !remark.empty() && step.at("status").get<std::string>() == "converged")
-    say("warning: " + remark);
   if (physical && step.at("status").get<std::string>() != "converged") return text;  // of another shape
   const auto& moved = step.at("step_mm");
   const auto& error = step.at("estimated_error_mm");
