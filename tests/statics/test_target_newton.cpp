@@ -61,6 +61,17 @@ const std::vector<Actuation> mixed_actuations{values({1.4, 1, 1}), values({0.7, 
 
 }  // namespace
 
+TEST(TargetNewton, RestIsFoundAtOnce) {
+  for (const bool least_norm : {false, true}) {
+    const Model model = compile(mixed_robot(least_norm, 0.5));
+    const Statics statics(model);
+    const Equilibrium found = statics.solve(model.rest_actuation(), statics.rest());
+    EXPECT_EQ(found.report.status, Status::converged);
+    EXPECT_EQ(found.report.iterations, 1);
+    EXPECT_LT(largest_distance(found.state.positions, model.rest), 1e-12);
+  }
+}
+
 TEST(TargetNewton, EveryActuatorWithUniformRatios) {
   for (const Actuation& actuation : mixed_actuations) {
     SCOPED_TRACE(actuation.transpose());

@@ -123,9 +123,7 @@ class Continuation {
         return Status::not_converged;
       }
     }
-    if (const int modes = newton_.unstable_modes(); modes > 0)
-      report_.remark = "this equilibrium is unstable in " + std::to_string(modes) + (modes == 1 ? " way" : " ways") +
-                       ": the robot would buckle or snap away from it";
+    if (newton_.unstable_modes() > 0) tell_stability(to, at);
     return Status::converged;
   }
 
@@ -172,6 +170,17 @@ class Continuation {
       changed = true;
     }
     return changed;
+  }
+
+  /// Counts the ways in which the last shape itself is unstable.
+  void tell_stability(const Demand& demand, const Iterate& at) {
+    PhysicalSystem::Balance balance;
+    system_.evaluate(at, demand, active_, work_, balance, team_);
+    ++report_.factorisations;
+    const int modes = system_.factorise(at, demand, active_, PhysicalSystem::Stiffness::exact, 0, work_, team_);
+    if (modes > 0)
+      report_.remark = "this equilibrium is unstable in " + std::to_string(modes) + (modes == 1 ? " way" : " ways") +
+                       ": the robot would buckle or snap away from it";
   }
 
   /// Factorises at an equilibrium, for the predictor.

@@ -20,6 +20,15 @@ constexpr int most_steps = 200, most_idle_steps = 4;
 /// Accelerated local-global iterations at a time, and how many earlier ones each combines.
 constexpr int rescue = 50, rescue_window = 6;
 
+/// Energy of Eq. (9) that the rounding of coordinates alone can make [mm^5].
+double rounding_energy(const Model& model) {
+  double volume = 0;
+  for (const double v : model.tetrahedron_volumes) volume += v;
+  for (const double v : model.prism_volumes) volume += v;
+  const double rounding = 1e-14 * model.diagonal_mm;
+  return volume * rounding * rounding;
+}
+
 }  // namespace
 
 TargetShapeWorkspace::TargetShapeWorkspace(const TargetShapeUnknowns& unknowns)
@@ -206,6 +215,10 @@ TargetShapeSearch::End TargetShapeSearch::run(const Actuation& actuation, int pa
   keep_factor_ = false;
   projected_next_ = !tangent_.symmetric();
   least_energy_ = energy_;
+  if (energy_ <= rounding_energy(unknowns_.model)) {  // every element has its target shape
+    (void)enter(here());
+    return End::converged;
+  }
   int idle = 0;
   for (int i = 0; i < most_steps && idle < most_idle_steps && report_.iterations < options_.max_iterations; ++i) {
     IterationRecord record = here();

@@ -1,0 +1,64 @@
+#include <cstdio>
+#include <softkin/statics/statics.hpp>
+
+#include "statics/reference_cases.hpp"
+
+namespace softkin {
+
+namespace {
+
+using testing::actuator;
+using testing::reference_material;
+using testing::reference_robot;
+using testing::ReferenceLaw;
+
+/// The finger of 14,822 tetrahedra, of which CalculiX needs 139 iterations to 240 degrees of bend.
+RobotSpec reference_finger() {
+  RobotSpec spec = reference_robot("finger_15k", false);
+  spec.materials = {reference_material("body", ReferenceLaw::lin, 12, 0.4)};
+  spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
+  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 1, 3, true);
+  air.region = "chamber";
+  spec.actuators = {air};
+  return spec;
+}
+
+/// The reference's rows about 240 degrees: 1.68.
+constexpr double ratio_at_240_degrees = 1.68;
+
+}  // namespace
+
+TEST(PhysicalSteps, FromRestTo240DegreesInOneCall) {
+  if (testing::reference_folder().empty()) GTEST_SKIP() << "reference data absent";
+  const Model model = compile(reference_finger());
+  const Statics statics(model);
+  const Equilibrium found = statics.solve(Actuation::Constant(1, ratio_at_240_degrees), statics.rest());
+  EXPECT_EQ(found.report.status, Status::converged);
+  std::printf("  %d factorisations, %d iterations\n", found.report.factorisations, found.report.iterations);
+  EXPECT_LE(found.report.factorisations, 50);
+}
+
+/// At most 8 factorisations a step of 0.1, and at its end the residual falls ever faster: each of the last falls by
+/// more than the one before, until rounding.
+TEST(PhysicalSteps, StepsOfATenth) {
+  if (testing::reference_folder().empty()) GTEST_SKIP() << "reference data absent";
+  const Model model = compile(reference_finger());
+  const Statics statics(model);
+  State state = statics.rest();
+  int total = 0;
+  for (double ratio = 1.1; ratio < 1.75; ratio += 0.1) {
+    const Equilibrium found = statics.solve(Actuation::Constant(1, ratio), state);
+    ASSERT_EQ(found.report.status, Status::converged);
+    EXPECT_LE(found.report.factorisations, 8) << ratio;
+    total += found.report.factorisations;
+    const auto& history = found.report.history;
+    ASSERT_GE(history.size(), 3u);
+    EXPECT_LT(history.back().step_mm, 0.1 * history[history.size() - 2].step_mm) << ratio;
+    EXPECT_LT(found.report.gradient_norm, 1e-5 * history.front().gradient_norm) << ratio;
+    state = found.state;
+  }
+  std::printf("  %d factorisations in 7 steps\n", total);
+  EXPECT_LE(total, 50);
+}
+
+}  // namespace softkin
