@@ -93,7 +93,8 @@ TEST(Measures, GradientAndSecondDerivativeAgreeWithDifferences) {
       EXPECT_GT(gradient.norm(), 0.1);
       EXPECT_LT((gradient - slope).norm(), 1e-8 * gradient.norm()) << "actuator " << a;
 
-      measures.second_derivatives(positions, -1.7 * Eigen::VectorXd::Unit(5, a), slots);
+      Team pair(2);
+      measures.second_derivatives(positions, -1.7 * Eigen::VectorXd::Unit(5, a), slots, pair);
       pattern.gather(slots, blocks, alone);
       for (unsigned seed = 1; seed <= 3; ++seed) {
         const Points direction = noise(n, 1, seed);
@@ -127,7 +128,8 @@ TEST(Measures, ASegmentWithoutLengthPullsNowhere) {
   EXPECT_NEAR(measures.value(0, flat, &gradient), 0, 1e-12);
   EXPECT_TRUE(gradient.allFinite());
   std::vector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()));
-  measures.second_derivatives(flat, Eigen::VectorXd::Ones(1), slots);
+  Team pair(2);
+  measures.second_derivatives(flat, Eigen::VectorXd::Ones(1), slots, pair);
   for (const double value : slots) EXPECT_TRUE(std::isfinite(value));
 }
 

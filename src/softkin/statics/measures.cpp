@@ -207,28 +207,34 @@ void Measures::add_cliques(Cliques& cliques) {
     }
 }
 
-void Measures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
-                                  std::vector<double>& slots) const {
+void Measures::second_derivative(const Term& term, const Points& positions, double scale,
+                                 std::vector<double>& slots) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  const Clique& clique = cliques_[term.clique];
+  const auto count = static_cast<std::int64_t>(clique.vertices.size());
+  double* out = slots.data() + 9 * clique.slot;
+  std::fill(out, out + 9 * (count * (count + 1) / 2), 0.0);
+  if (scale == 0) return;
   Mat3 blocks[6][6];
+  Vec3 nodes[6];
+  for (int i = 0; i < term.count; ++i) nodes[i] = at(term.nodes[i], positions);
+  term_second_derivative(term.count, nodes, blocks);
+  for (int i = 0; i < term.count; ++i)
+    for (int j = 0; j < term.count; ++j)
+      for (const auto& [row, row_weight] : clique.parts[i])
+        for (const auto& [column, column_weight] : clique.parts[j])
+          if (row >= column)
+            Block(out + 9 * (static_cast<std::int64_t>(row) * (row + 1) / 2 + column)) +=
+                scale * row_weight * column_weight * blocks[i][j];
+}
+
+void Measures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale, std::vector<double>& slots,
+                                  Team& team) const {
   for (std::size_t a = 0; a < terms_.size(); ++a)
-    for (const Term& term : terms_[a]) {
-      const Clique& clique = cliques_[term.clique];
-      const auto count = static_cast<std::int64_t>(clique.vertices.size());
-      double* out = slots.data() + 9 * clique.slot;
-      std::fill(out, out + 9 * (count * (count + 1) / 2), 0.0);
-      if (scale[static_cast<Index>(a)] == 0) continue;
-      Vec3 nodes[6];
-      for (int i = 0; i < term.count; ++i) nodes[i] = at(term.nodes[i], positions);
-      term_second_derivative(term.count, nodes, blocks);
-      for (int i = 0; i < term.count; ++i)
-        for (int j = 0; j < term.count; ++j)
-          for (const auto& [row, row_weight] : clique.parts[i])
-            for (const auto& [column, column_weight] : clique.parts[j])
-              if (row >= column)
-                Block(out + 9 * (static_cast<std::int64_t>(row) * (row + 1) / 2 + column)) +=
-                    scale[static_cast<Index>(a)] * row_weight * column_weight * blocks[i][j];
-    }
+    team.pieces(static_cast<Index>(terms_[a].size()), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+        second_derivative(terms_[a][t], positions, scale[static_cast<Index>(a)], slots);
+    });
 }
 
 }  // namespace softkin

@@ -71,7 +71,7 @@ int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std
   elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
   Eigen::VectorXd scale(actuators());
   for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
-  measures_.second_derivatives(at.positions, scale, work.slots);
+  measures_.second_derivatives(at.positions, scale, work.slots, team);
   freedoms_->reduce_matrix(*pattern_, work.slots, work.gradient, at.positions, work.values, team);
 
   const BlockColumns& columns = freedoms_->columns();
@@ -194,11 +194,13 @@ void PhysicalSystem::advance(const Eigen::VectorXd& step, double scale, Workspac
 PhysicalSystem::Size PhysicalSystem::size_of(const Eigen::VectorXd& unknowns, const Points& positions) const {
   Points moves;
   freedoms_->expand(unknowns, positions, moves);
-  Size size;
-  const Eigen::VectorXd squares = moves.rowwise().squaredNorm();
-  size.largest = std::sqrt(squares.maxCoeff());
-  size.mean = std::sqrt(squares.mean());
-  return size;
+  double largest = 0, sum = 0;
+  for (Index v = 0; v < moves.rows(); ++v) {
+    const double square = moves.row(v).squaredNorm();
+    if (!(square <= largest)) largest = square;  // also where it is not a number
+    sum += square;
+  }
+  return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(moves.rows()))};
 }
 
 }  // namespace softkin
