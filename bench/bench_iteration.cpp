@@ -2,22 +2,20 @@
 // mm.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <softkin/statics/global_step.hpp>
 #include <softkin/statics/statics.hpp>
 #include <softkin/statics/target_shape_system.hpp>
 
+#include "machine.hpp"
 #include "model/block_mesh.hpp"
 
 namespace {
 
 using namespace softkin;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+using bench::growth;
+using bench::now;
 
 RobotSpec finger(int across) {
   const int along = static_cast<int>(std::lround(across * 120.0 / 25));
@@ -56,20 +54,6 @@ std::pair<double, double> parts(const Model& model) {
     solve = std::min(solve, 1e3 * (now() - middle));
   }
   return {local, solve};
-}
-
-/// Exponent of the growth of times with sizes: slope of the logarithms, least squares.
-double growth(const std::vector<double>& sizes, const std::vector<double>& times) {
-  const auto n = static_cast<double>(sizes.size());
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const double x = std::log(sizes[i]), y = std::log(times[i]);
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    sxy += x * y;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 /// Milliseconds per iteration: the least of several runs, each of as many iterations as take about a third of a second.

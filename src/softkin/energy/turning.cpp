@@ -1,3 +1,4 @@
+#include <softkin/energy/elastic_law_point.hpp>
 #include <softkin/energy/elastic_polar.hpp>
 #include <softkin/energy/rotation.hpp>
 #include <softkin/energy/turning.hpp>
@@ -5,23 +6,6 @@
 namespace softkin {
 
 namespace {
-
-template <int K>
-Pack33 gradient_of(const Shape<K>& nodes, const Pack3 (&slope)[K]) {
-  Pack33 f{};
-  for (int a = 0; a < K; ++a) {
-    f.row[0] = f.row[0] + nodes[a].x * slope[a];
-    f.row[1] = f.row[1] + nodes[a].y * slope[a];
-    f.row[2] = f.row[2] + nodes[a].z * slope[a];
-  }
-  return f;
-}
-
-Pack33 times(const Pack33& a, const Pack33& b) {
-  Pack33 c;
-  for (int i = 0; i < 3; ++i) c.row[i] = a.row[i].x * b.row[0] + a.row[i].y * b.row[1] + a.row[i].z * b.row[2];
-  return c;
-}
 
 /// Rate w at which the rotation R of F = R S turns, in space: R^T w = (tr(S) I - S)^-1 axial(R^T F' - F'^T R).
 Pack3 spin(const Polar& polar, const Pack33& rate) {
@@ -61,7 +45,8 @@ template <int K, int Q>
 void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull) {
   for (int a = 0; a < K; ++a) pull[a] = Pack3{pack(0), pack(0), pack(0)};
   for (int q = 0; q < Q; ++q) {
-    const Pack33 gradient = gradient_of<K>(current, block.slope[q]), rate = gradient_of<K>(step, block.slope[q]);
+    const Pack33 gradient = deformation_gradient<K>(block.slope[q], current);
+    const Pack33 rate = deformation_gradient<K>(block.slope[q], step);
     const Pack3 w = spin(polar(gradient), rate);
     Pack33 ahead, still;
     for (int i = 0; i < 3; ++i) ahead.row[i] = gradient.row[i] + rate.row[i];

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <softkin/model/quadratic_triangle.hpp>
 #include <softkin/statics/measures.hpp>
 
 namespace softkin {
@@ -24,24 +25,18 @@ FacePoint<3> flat_point() {
   return {0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3}, {-1, 1, 0}, {-1, 0, 1}};
 }
 
-FacePoint<6> curved_point(double weight, double a, double b, double c) {
-  return {weight,
-          {a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a},
-          {1 - 4 * a, 4 * b - 1, 0, 4 * (a - b), 4 * c, -4 * c},
-          {1 - 4 * a, 0, 4 * c - 1, -4 * b, 4 * b, 4 * (a - c)}};
-}
-
-/// Exact for x . (dx/ds x dx/dt), which is of degree 4 (Dunavant 1985).
+/// Exact for x . (dx/ds x dx/dt), which is of degree 4.
 const std::array<FacePoint<6>, 6>& curved_points() {
   static const std::array<FacePoint<6>, 6> points = [] {
     std::array<FacePoint<6>, 6> all{};
-    const double weights[2] = {0.223381589678011 / 2, 0.109951743655322 / 2};
-    const double places[2] = {0.445948490915965, 0.091576213509771};
-    for (int k = 0; k < 2; ++k) {
-      const double p = places[k], q = 1 - 2 * p;
-      all[3 * k] = curved_point(weights[k], q, p, p);
-      all[3 * k + 1] = curved_point(weights[k], p, q, p);
-      all[3 * k + 2] = curved_point(weights[k], p, p, q);
+    for (std::size_t q = 0; q < all.size(); ++q) {
+      const TrianglePoint& point = triangle_rule()[q];
+      all[q].weight = point.weight;
+      for (int i = 0; i < 6; ++i) {
+        all[q].shape[i] = point.shape[i];
+        all[q].along[i] = point.along_u[i];
+        all[q].across[i] = point.along_v[i];
+      }
     }
     return all;
   }();
