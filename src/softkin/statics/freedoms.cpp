@@ -1,20 +1,10 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <softkin/energy/rotation.hpp>
 #include <softkin/statics/freedoms.hpp>
 #include <softkin/statics/ordering.hpp>
 
 namespace softkin {
-
-namespace {
-
-Mat3 rotation_about(const Vec3& turn) {
-  const double angle = turn.norm();
-  return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
-}
-
-}  // namespace
 
 Freedoms::Freedoms(const Model& model, const BlockPattern& pattern)
     : rest_(model.rest), held_(model.held), fixed_(model.fixed), region_of_(model.rest.rows(), -1) {
@@ -22,36 +12,14 @@ Freedoms::Freedoms(const Model& model, const BlockPattern& pattern)
   number(pattern);
 }
 
-/// A region held along an axis (compile() allows that at three non-collinear vertices or none) neither slides along it
-/// nor turns out of the plane; one that is held along all axes is as good as fixed.
 void Freedoms::find_regions(const Model& model) {
-  for (const RigidRegion& rigid : model.rigid) {
-    Region region;
-    region.vertices = rigid.vertices;
-    std::array<bool, 3> slides{true, true, true}, turns{true, true, true};
-    for (const Index v : rigid.vertices)
-      for (int axis = 0; axis < 3; ++axis)
-        if (model.fixed[v][axis]) {
-          slides[axis] = false;
-          region.displacement[axis] = model.held(v, axis) - model.rest(v, axis);
-          for (int other = 0; other < 3; ++other) turns[other] = turns[other] && other == axis;
-        }
-    if (!slides[0] && !slides[1] && !slides[2]) {
-      for (const Index v : rigid.vertices) {
-        fixed_[v] = {true, true, true};
-        held_.row(v) = rest_.row(v) + region.displacement.transpose();
-      }
-      continue;
-    }
+  for (RigidBody& body : movable_bodies(model, fixed_, held_)) {
+    Region region{std::move(body), {}, {}, -1};
     for (int axis = 0; axis < 3; ++axis) {
-      if (slides[axis]) region.slides.push_back(axis);
-      if (turns[axis]) region.turns.push_back(axis);
+      if (region.slides[axis]) region.slide_axes.push_back(axis);
+      if (region.turns[axis]) region.turn_axes.push_back(axis);
     }
-    region.offsets.resize(static_cast<Index>(rigid.vertices.size()), 3);
-    for (Index i = 0; i < region.offsets.rows(); ++i) region.offsets.row(i) = rest_.row(rigid.vertices[i]);
-    region.rest_center = region.offsets.colwise().mean().transpose();
-    region.offsets.rowwise() -= region.rest_center.transpose().eval();
-    for (const Index v : rigid.vertices) {
+    for (const Index v : region.vertices) {
       region_of_[v] = static_cast<Index>(regions_.size());
       fixed_[v] = {true, true, true};  // no unknowns of its own
     }
@@ -100,7 +68,7 @@ void Freedoms::number(const BlockPattern& pattern) {
       Region& region = regions_[node - vertex_nodes];
       vertex_of_.push_back(-1);
       region.node = k;
-      width = static_cast<Index>(region.slides.size() + region.turns.size());
+      width = static_cast<Index>(region.slide_axes.size() + region.turn_axes.size());
     }
     columns_.unknowns.push_back(first + width);
   }
@@ -138,15 +106,9 @@ void Freedoms::find_sources(const BlockPattern& pattern, const std::vector<Index
   });
 }
 
-Vec3 Freedoms::center(const Region& region, const Points& positions) const {
-  Vec3 sum = Vec3::Zero();
-  for (const Index v : region.vertices) sum += positions.row(v).transpose();
-  return sum / static_cast<double>(region.vertices.size());
-}
-
 std::vector<Vec3> Freedoms::centers(const Points& positions) const {
   std::vector<Vec3> all;
-  for (const Region& region : regions_) all.push_back(center(region, positions));
+  for (const Region& region : regions_) all.push_back(center_of(region, positions));
   return all;
 }
 
@@ -157,9 +119,9 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> Freedoms::tangent(Index vertex, const s
     const Region& region = regions_[r];
     Eigen::Matrix<double, 3, Eigen::Dynamic> t(3, columns_.width(region.node));
     Index column = 0;
-    for (const int axis : region.slides) t.col(column++) = Vec3::Unit(axis);
+    for (const int axis : region.slide_axes) t.col(column++) = Vec3::Unit(axis);
     const Vec3 arm = positions.row(vertex).transpose() - centers[r];
-    for (const int axis : region.turns) t.col(column++) = Vec3::Unit(axis).cross(arm);
+    for (const int axis : region.turn_axes) t.col(column++) = Vec3::Unit(axis).cross(arm);
     return t;
   }
   Index free = 0;
@@ -179,7 +141,7 @@ void Freedoms::reduce(const Points& vectors, const Points& positions, Eigen::Ref
       if (!fixed_[v][axis]) out[u++] = vectors(v, axis);
   }
   for (const Region& region : regions_) {
-    const Vec3 middle = center(region, positions);
+    const Vec3 middle = center_of(region, positions);
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const Index v : region.vertices) {
       const Vec3 vector = vectors.row(v).transpose();
@@ -187,8 +149,8 @@ void Freedoms::reduce(const Points& vectors, const Points& positions, Eigen::Ref
       torque += (positions.row(v).transpose() - middle).cross(vector);
     }
     Index u = columns_.unknowns[region.node];
-    for (const int axis : region.slides) out[u++] = force[axis];
-    for (const int axis : region.turns) out[u++] = torque[axis];
+    for (const int axis : region.slide_axes) out[u++] = force[axis];
+    for (const int axis : region.turn_axes) out[u++] = torque[axis];
   }
 }
 
@@ -199,11 +161,11 @@ void Freedoms::expand(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const P
     for (int axis = 0; axis < 3; ++axis) out(v, axis) = u >= 0 && !fixed_[v][axis] ? unknowns[u++] : 0;
   }
   for (const Region& region : regions_) {
-    const Vec3 middle = center(region, positions);
+    const Vec3 middle = center_of(region, positions);
     Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
     Index u = columns_.unknowns[region.node];
-    for (const int axis : region.slides) slide[axis] = unknowns[u++];
-    for (const int axis : region.turns) turn[axis] = unknowns[u++];
+    for (const int axis : region.slide_axes) slide[axis] = unknowns[u++];
+    for (const int axis : region.turn_axes) turn[axis] = unknowns[u++];
     for (const Index v : region.vertices)
       out.row(v) = (slide + turn.cross(positions.row(v).transpose() - middle)).transpose();
   }
@@ -217,11 +179,11 @@ void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double sc
       if (!fixed_[v][axis]) positions(v, axis) += scale * unknowns[u++];
   }
   for (const Region& region : regions_) {
-    const Vec3 middle = center(region, positions);
+    const Vec3 middle = center_of(region, positions);
     Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
     Index u = columns_.unknowns[region.node];
-    for (const int axis : region.slides) slide[axis] = scale * unknowns[u++];
-    for (const int axis : region.turns) turn[axis] = scale * unknowns[u++];
+    for (const int axis : region.slide_axes) slide[axis] = scale * unknowns[u++];
+    for (const int axis : region.turn_axes) turn[axis] = scale * unknowns[u++];
     const Mat3 rotation = rotation_about(turn);
     for (const Index v : region.vertices)
       positions.row(v) = (middle + slide + rotation * (positions.row(v).transpose() - middle)).transpose();
@@ -278,10 +240,11 @@ void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Poi
       const Vec3 arm = positions.row(v).transpose() - middles[r], force = gradient.row(v).transpose();
       bend += 0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
     }
-    const Index width = columns_.width(region.node), slides = static_cast<Index>(region.slides.size());
+    const Index width = columns_.width(region.node), slides = static_cast<Index>(region.slide_axes.size());
     Eigen::Map<Eigen::MatrixXd> target(values.data() + columns_.offsets[columns_.starts[region.node]], width, width);
     for (Index i = slides; i < width; ++i)
-      for (Index k = slides; k < width; ++k) target(i, k) += bend(region.turns[i - slides], region.turns[k - slides]);
+      for (Index k = slides; k < width; ++k)
+        target(i, k) += bend(region.turn_axes[i - slides], region.turn_axes[k - slides]);
   }
 }
 
@@ -305,23 +268,10 @@ void Freedoms::hold(double share, Points& positions) const {
       for (int axis = 0; axis < 3; ++axis)
         if (fixed_[v][axis]) positions(v, axis) = rest_(v, axis) + share * (held_(v, axis) - rest_(v, axis));
   for (const Region& region : regions_) {
-    Vec3 middle = center(region, positions);
-    Mat3 correlation = Mat3::Zero();
-    for (Index i = 0; i < region.offsets.rows(); ++i)
-      correlation += (positions.row(region.vertices[i]).transpose() - middle) * region.offsets.row(i);
-    Mat3 rotation = Mat3::Identity();
-    if (region.turns.size() == 3) {
-      rotation = best_rotation(correlation);
-    } else {
-      for (const int about : region.turns) {
-        const int i = (about + 1) % 3, j = (about + 2) % 3;
-        const double angle = std::atan2(correlation(j, i) - correlation(i, j), correlation(i, i) + correlation(j, j));
-        rotation = rotation_about(angle * Vec3::Unit(about));
-      }
-    }
+    Vec3 middle = center_of(region, positions);
+    const Mat3 rotation = rotation_of(region, positions, middle);
     for (int axis = 0; axis < 3; ++axis)
-      if (std::find(region.slides.begin(), region.slides.end(), axis) == region.slides.end())
-        middle[axis] = region.rest_center[axis] + share * region.displacement[axis];
+      if (!region.slides[axis]) middle[axis] = region.rest_center[axis] + share * region.displacement[axis];
     for (Index i = 0; i < region.offsets.rows(); ++i)
       positions.row(region.vertices[i]) = (middle + rotation * region.offsets.row(i).transpose()).transpose();
   }

@@ -4,6 +4,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/statics/block_columns.hpp>
 #include <softkin/statics/block_matrix.hpp>
+#include <softkin/statics/rigid_body.hpp>
 
 namespace softkin {
 
@@ -38,11 +39,8 @@ class Freedoms {
   void hold(double share, Points& positions) const;
 
  private:
-  struct Region {
-    std::vector<Index> vertices;
-    Points offsets;  // rest minus rest center
-    Vec3 rest_center, displacement{0, 0, 0};
-    std::vector<int> slides, turns;  // axes
+  struct Region : RigidBody {
+    std::vector<int> slide_axes, turn_axes;
     Index node = -1;
   };
   struct Source {
@@ -61,7 +59,6 @@ class Freedoms {
   void find_regions(const Model& model);
   void number(const BlockPattern& pattern);
   void find_sources(const BlockPattern& pattern, const std::vector<Index>& node_of);
-  [[nodiscard]] Vec3 center(const Region& region, const Points& positions) const;
   [[nodiscard]] Eigen::Matrix<double, 3, Eigen::Dynamic> tangent(Index vertex, const std::vector<Vec3>& centers,
                                                                  const Points& positions) const;
   [[nodiscard]] std::vector<Vec3> centers(const Points& positions) const;

@@ -6,15 +6,6 @@
 
 namespace softkin {
 
-namespace {
-
-Mat3 rotation_about(const Vec3& turn) {
-  const double angle = turn.norm();
-  return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Mat3(Mat3::Identity());
-}
-
-}  // namespace
-
 GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix)
     : region_of_(model.rest.rows(), -1), fixed_(model.fixed), rest_(model.rest), held_(model.held) {
   add_regions(model);
@@ -34,37 +25,13 @@ GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& ma
   for (Group& group : groups_) make_group(matrix, group);
 }
 
-/// A region held along an axis (compile() allows that at three non-collinear vertices or none) neither slides along it
-/// nor turns out of the plane; one that is held along all axes is as good as fixed.
 void GlobalStep::add_regions(const Model& model) {
-  for (const RigidRegion& rigid : model.rigid) {
-    Region region;
-    region.vertices = rigid.vertices;
-    for (const Index v : rigid.vertices)
-      for (int axis = 0; axis < 3; ++axis)
-        if (model.fixed[v][axis]) {
-          region.slides[axis] = false;
-          region.displacement[axis] = model.held(v, axis) - model.rest(v, axis);
-          for (int other = 0; other < 3; ++other) region.turns[other] = region.turns[other] && other == axis;
-        }
-    if (!region.slides[0] && !region.slides[1] && !region.slides[2]) {
-      for (const Index v : rigid.vertices) {
-        fixed_[v] = {true, true, true};
-        held_.row(v) = rest_.row(v) + region.displacement.transpose();
-      }
-      continue;
-    }
-    const Index count = static_cast<Index>(rigid.vertices.size());
-    region.offsets.resize(count, 3);
-    for (Index i = 0; i < count; ++i) region.offsets.row(i) = rest_.row(rigid.vertices[i]);
-    region.rest_center = region.offsets.colwise().mean().transpose();
-    region.offsets.rowwise() -= region.rest_center.transpose().eval();
-    for (const Index v : rigid.vertices) {
-      region_of_[v] = static_cast<Index>(regions_.size());
+  regions_ = movable_bodies(model, fixed_, held_);
+  for (std::size_t r = 0; r < regions_.size(); ++r)
+    for (const Index v : regions_[r].vertices) {
+      region_of_[v] = static_cast<Index>(r);
       fixed_[v] = {false, false, false};
     }
-    regions_.push_back(std::move(region));
-  }
 }
 
 void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, Group& group) {
@@ -73,7 +40,7 @@ void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, Group& gr
   std::vector<Index> place(rest_.rows(), -1);
   for (Index i = 0; i < count; ++i) place[group.free[i]] = i;
   Points basis = Points::Zero(rest_.rows(), 3);
-  for (const Region& region : regions_)
+  for (const RigidBody& region : regions_)
     for (std::size_t i = 0; i < region.vertices.size(); ++i)
       basis.row(region.vertices[i]) = region.offsets.row(static_cast<Index>(i));
   const auto handle_row = [&](Index v) { return Eigen::Vector4d(1, basis(v, 0), basis(v, 1), basis(v, 2)); };
@@ -113,7 +80,7 @@ void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, Group& gr
   group.schur -= group.coupling.transpose() * group.follow;
 }
 
-void GlobalStep::place(const Region& region, const Pose& pose, Points& positions) const {
+void GlobalStep::place(const RigidBody& region, const Pose& pose, Points& positions) const {
   for (std::size_t i = 0; i < region.vertices.size(); ++i)
     positions.row(region.vertices[i]) =
         (pose.center + pose.rotation * region.offsets.row(static_cast<Index>(i)).transpose()).transpose();
@@ -221,30 +188,12 @@ void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pos
       for (const int axis : groups_[g].axes) positions(groups_[g].free[i], axis) += moves[g](i, axis);
 }
 
-Pose GlobalStep::pose_of(const Region& region, const Points& positions) const {
-  Vec3 center = Vec3::Zero();
-  for (const Index v : region.vertices) center += positions.row(v).transpose();
-  center /= static_cast<double>(region.vertices.size());
-  Mat3 correlation = Mat3::Zero();
-  for (std::size_t i = 0; i < region.vertices.size(); ++i)
-    correlation += (positions.row(region.vertices[i]).transpose() - center) * region.offsets.row(static_cast<Index>(i));
-  Pose pose{center, Mat3::Identity()};
-  if (region.turns[0] && region.turns[1] && region.turns[2]) {
-    pose.rotation = best_rotation(correlation);
-  } else {
-    for (int about = 0; about < 3; ++about)
-      if (region.turns[about]) {
-        const int i = (about + 1) % 3, j = (about + 2) % 3;
-        const double angle = std::atan2(correlation(j, i) - correlation(i, j), correlation(i, i) + correlation(j, j));
-        pose.rotation = rotation_about(angle * Vec3::Unit(about));
-      }
-  }
-  return pose;
-}
-
 std::vector<Pose> GlobalStep::poses(const Points& positions) const {
   std::vector<Pose> poses;
-  for (const Region& region : regions_) poses.push_back(pose_of(region, positions));
+  for (const RigidBody& region : regions_) {
+    const Vec3 center = center_of(region, positions);
+    poses.push_back({center, rotation_of(region, positions, center)});
+  }
   return poses;
 }
 
@@ -268,7 +217,7 @@ double GlobalStep::free_norm(const Points& residual, const std::vector<Pose>& po
     for (const Index v : group.free)
       for (const int axis : group.axes) squares += residual(v, axis) * residual(v, axis);
   for (std::size_t r = 0; r < regions_.size(); ++r) {
-    const Region& region = regions_[r];
+    const RigidBody& region = regions_[r];
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (std::size_t i = 0; i < region.vertices.size(); ++i) {
       const Vec3 pull = residual.row(region.vertices[i]).transpose();

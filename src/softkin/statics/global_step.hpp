@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/model/model.hpp>
+#include <softkin/statics/rigid_body.hpp>
 #include <softkin/statics/sparse_factor.hpp>
 
 namespace softkin {
@@ -45,24 +46,16 @@ class GlobalStep {
     Eigen::MatrixXd follow;            // A_ff^-1 A_fh: how free vertices follow the handles
     Eigen::MatrixXd schur;             // A_hh - A_hf A_ff^-1 A_fh
   };
-  struct Region {
-    std::vector<Index> vertices;
-    Points offsets;  // q: rest minus rest center
-    Vec3 rest_center, displacement{0, 0, 0};
-    std::array<bool, 3> slides{true, true, true};  // may its center move along the axis
-    std::array<bool, 3> turns{true, true, true};   // may it turn about the axis
-  };
 
   void add_regions(const Model& model);
   void make_group(const Eigen::SparseMatrix<double>& matrix, Group& group);
-  [[nodiscard]] Pose pose_of(const Region& region, const Points& positions) const;
-  void place(const Region& region, const Pose& pose, Points& positions) const;
+  void place(const RigidBody& region, const Pose& pose, Points& positions) const;
   [[nodiscard]] Handles handles_of(const Points& residual) const;
   [[nodiscard]] Handles handles_of(const std::vector<Pose>& poses) const;
   void move_poses(const Handles& asked, std::vector<Pose>& poses) const;
 
   std::vector<Group> groups_;
-  std::vector<Region> regions_;
+  std::vector<RigidBody> regions_;
   std::vector<Index> region_of_;            // per vertex, -1
   std::vector<std::array<bool, 3>> fixed_;  // per vertex and axis, rigid regions aside
   Points rest_, held_;
