@@ -106,6 +106,13 @@ void Freedoms::find_sources(const BlockPattern& pattern, const std::vector<Index
   });
 }
 
+std::vector<Index> Freedoms::vertex_order() const {
+  std::vector<Index> order;
+  for (const Index v : vertex_of_)
+    if (v >= 0) order.push_back(v);
+  return order;
+}
+
 std::vector<Vec3> Freedoms::centers(const Points& positions) const {
   std::vector<Vec3> all;
   for (const Region& region : regions_) all.push_back(center_of(region, positions));
@@ -190,10 +197,8 @@ void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double sc
   }
 }
 
-/// block_of(entry, block): a block of the matrix over vertices, by rows.
-template <class BlockOf>
-void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Points& positions,
-                      LargeVector<double>& values, Team& team) const {
+void Freedoms::reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
+                             const Points& positions, LargeVector<double>& values, Team& team) const {
   values.resize(static_cast<std::size_t>(columns_.offsets.back()));
   team.pieces(columns_.nodes(), [&](Index begin, Index end) {
     double block[9];
@@ -205,7 +210,7 @@ void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Poi
           std::fill(value, values.data() + columns_.offsets[e + 1], 0.0);
           continue;
         }
-        block_of(source.block, block);
+        pattern.sum(slots, source.block, block);
         const int row_step = source.transposed ? 1 : 3, column_step = 4 - row_step;
         const auto &row_fixed = fixed_[vertex_of_[columns_.rows[e]]], &column_fixed = fixed_[vertex_of_[j]];
         for (int c = 0; c < 3; ++c)
@@ -217,7 +222,7 @@ void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Poi
   const std::vector<Vec3> middles = centers(positions);
   for (const RegionBlock& part : region_blocks_) {
     double sum[9];
-    block_of(part.block, sum);
+    pattern.sum(slots, part.block, sum);
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(sum);
     const Eigen::MatrixXd product =
         tangent(part.row, middles, positions).transpose() * block * tangent(part.column, middles, positions);
@@ -246,20 +251,6 @@ void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Poi
       for (Index k = slides; k < width; ++k)
         target(i, k) += bend(region.turn_axes[i - slides], region.turn_axes[k - slides]);
   }
-}
-
-void Freedoms::reduce_matrix(const LargeVector<double>& blocks, const Points& gradient, const Points& positions,
-                             LargeVector<double>& values, Team& team) const {
-  const auto block_of = [&](std::int64_t entry, double(&block)[9]) {
-    std::copy(blocks.data() + 9 * entry, blocks.data() + 9 * (entry + 1), block);
-  };
-  reduce(block_of, gradient, positions, values, team);
-}
-
-void Freedoms::reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
-                             const Points& positions, LargeVector<double>& values, Team& team) const {
-  const auto block_of = [&](std::int64_t entry, double(&block)[9]) { pattern.sum(slots, entry, block); };
-  reduce(block_of, gradient, positions, values, team);
 }
 
 void Freedoms::hold(double share, Points& positions) const {

@@ -18,6 +18,9 @@ class Freedoms {
   /// Pattern of the matrix over the unknowns, in the order of elimination, which is theirs.
   [[nodiscard]] const BlockColumns& columns() const { return columns_; }
 
+  /// Vertices that are not of a rigid region, in the order of elimination.
+  [[nodiscard]] std::vector<Index> vertex_order() const;
+
   /// T^T vectors. positions: where the rigid regions are
   void reduce(const Points& vectors, const Points& positions, Eigen::Ref<Eigen::VectorXd> out) const;
 
@@ -28,10 +31,7 @@ class Freedoms {
   void move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double scale, Points& positions) const;
 
   /// The second derivative in the unknowns of an energy with the given gradient and Hessian in x: T^T H T and, for
-  /// turns, what the gradient adds. values: of columns(). The Hessian is given by its blocks, or by the pattern's
-  /// slots.
-  void reduce_matrix(const LargeVector<double>& blocks, const Points& gradient, const Points& positions,
-                     LargeVector<double>& values, Team& team) const;
+  /// turns, what the gradient adds. values: of columns(). The Hessian is given by the slots of the pattern.
   void reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
                      const Points& positions, LargeVector<double>& values, Team& team) const;
 
@@ -53,9 +53,6 @@ class Freedoms {
     bool transposed;    // the entry's row node is the column's
   };
 
-  template <class BlockOf>
-  void reduce(const BlockOf& block_of, const Points& gradient, const Points& positions, LargeVector<double>& values,
-              Team& team) const;
   void find_regions(const Model& model);
   void number(const BlockPattern& pattern);
   void find_sources(const BlockPattern& pattern, const std::vector<Index>& node_of);
