@@ -43,10 +43,6 @@ class Freedoms {
     std::vector<int> slide_axes, turn_axes;
     Index node = -1;
   };
-  struct Source {
-    std::int64_t block;
-    bool transposed;
-  };
   struct RegionBlock {  // a block of the matrix over vertices of which one or both are of a rigid region
     std::int64_t block, entry;
     Index row, column;  // vertices
@@ -67,7 +63,9 @@ class Freedoms {
   std::vector<Index> vertex_of_;      // per node in elimination order; -1: a region
   std::vector<Index> first_unknown_;  // per vertex, -1: none of its own
   BlockColumns columns_;
-  std::vector<Source> sources_;  // per entry of columns_; block -1: of a region
+  // per entry of columns_, in the order in which the matrix is written: its slots, 2 each, plus 1 where it is the
+  // transpose
+  std::vector<std::int64_t> source_starts_, sources_;  // none: of a region
   std::vector<RegionBlock> region_blocks_;
 };
 
