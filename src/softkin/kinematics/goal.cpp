@@ -27,43 +27,43 @@ Vec3 unit(const Vec3& vector) {
 
 /// Errors of one goal, unweighted: one value per coordinate that counts [mm].
 Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& positions) {
-  return std::visit(
-      Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
-                   const Vec3 miss = marker_at(model, g.marker, positions) - g.target;
-                   Eigen::VectorXd terms(std::count(g.axes.begin(), g.axes.end(), true));
-                   for (Index axis = 0, row = 0; axis < 3; ++axis)
-                     if (g.axes[static_cast<std::size_t>(axis)]) terms[row++] = miss[axis];
-                   return terms;
-                 },
-                 [&](const PlaneGoal& g) -> Eigen::VectorXd {
-                   const Vec3 miss = marker_at(model, g.marker, positions) - g.point;
-                   return Eigen::VectorXd::Constant(1, unit(g.normal).dot(miss));
-                 },
-                 [&](const DirectionGoal& g) -> Eigen::VectorXd {
-                   const Vec3 line = marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
-                   return g.lever_mm * (unit(line) - unit(g.direction));
-                 }},
-      goal.what);
+  return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 miss = marker_at(model, g.marker, positions) - g.target;
+                                 Eigen::VectorXd terms(std::count(g.axes.begin(), g.axes.end(), true));
+                                 for (Index axis = 0, row = 0; axis < 3; ++axis)
+                                   if (g.axes[static_cast<std::size_t>(axis)]) terms[row++] = miss[axis];
+                                 return terms;
+                               },
+                               [&](const PlaneGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 miss = marker_at(model, g.marker, positions) - g.point;
+                                 return Eigen::VectorXd::Constant(1, unit(g.normal).dot(miss));
+                               },
+                               [&](const DirectionGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 line =
+                                     marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
+                                 return g.lever_mm * (unit(line) - unit(g.direction));
+                               }},
+                    goal.what);
 }
 
 /// Derivative of terms_of along a change of the positions.
 Eigen::VectorXd change_of(const Model& model, const Goal& goal, const Points& positions, const Points& moves) {
-  return std::visit(
-      Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
-                   return terms_of(model, {PositionGoal{g.marker, Vec3::Zero(), g.axes}}, moves);
-                 },
-                 [&](const PlaneGoal& g) -> Eigen::VectorXd {
-                   return terms_of(model, {PlaneGoal{g.marker, Vec3::Zero(), g.normal}}, moves);
-                 },
-                 [&](const DirectionGoal& g) -> Eigen::VectorXd {
-                   const Vec3 line = marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
-                   const Vec3 move = marker_at(model, g.to, moves) - marker_at(model, g.from, moves);
-                   const double length = line.stableNorm();
-                   if (!(length > 0)) return Vec3::Zero();
-                   const Vec3 along = line / length;
-                   return g.lever_mm / length * (move - along.dot(move) * along);
-                 }},
-      goal.what);
+  return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
+                                 return terms_of(model, {PositionGoal{g.marker, Vec3::Zero(), g.axes}}, moves);
+                               },
+                               [&](const PlaneGoal& g) -> Eigen::VectorXd {
+                                 return terms_of(model, {PlaneGoal{g.marker, Vec3::Zero(), g.normal}}, moves);
+                               },
+                               [&](const DirectionGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 line =
+                                     marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
+                                 const Vec3 move = marker_at(model, g.to, moves) - marker_at(model, g.from, moves);
+                                 const double length = line.stableNorm();
+                                 if (!(length > 0)) return Vec3::Zero();
+                                 const Vec3 along = line / length;
+                                 return g.lever_mm / length * (move - along.dot(move) * along);
+                               }},
+                    goal.what);
 }
 
 template <class Each>
@@ -143,11 +143,10 @@ Eigen::VectorXd goal_terms(const Model& model, const std::vector<Goal>& goals, c
 
 Eigen::MatrixXd goal_slopes(const Model& model, const std::vector<Goal>& goals, const Points& positions,
                             const Sensitivity& sensitivity) {
-  Eigen::MatrixXd slopes(goal_terms(model, goals, positions).size(),
-                         static_cast<Index>(sensitivity.positions.size()));
+  Eigen::MatrixXd slopes(goal_terms(model, goals, positions).size(), static_cast<Index>(sensitivity.positions.size()));
   for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
-    slopes.col(static_cast<Index>(a)) = joined(
-        goals, [&](const Goal& goal) { return change_of(model, goal, positions, sensitivity.positions[a]); });
+    slopes.col(static_cast<Index>(a)) =
+        joined(goals, [&](const Goal& goal) { return change_of(model, goal, positions, sensitivity.positions[a]); });
   return slopes;
 }
 
