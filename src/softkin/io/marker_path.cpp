@@ -93,7 +93,8 @@ class PathColumns {
     if (parts.axis < 0) refuse("expected t_s, x_mm, y_mm, z_mm, or MARKER_x_mm and so on");
     const std::string right = (parts.marker.empty() ? "" : parts.marker + "_") + axis_names[parts.axis] + "_mm";
     if (parts.unit.empty()) refuse("its unit is missing: write mm, as '" + right + "'");
-    if (parts.unit != "mm") refuse("lengths are in mm, not in " + excerpt(parts.unit) + ": convert it to '" + right + "'");
+    if (parts.unit != "mm")
+      refuse("lengths are in mm, not in " + excerpt(parts.unit) + ": convert it to '" + right + "'");
     return {marker_of(name, parts.marker), parts.axis};
   }
 
@@ -181,11 +182,13 @@ std::vector<std::string> doubts_about(const Model& model, const MarkerPath& path
   const Distances given = distances_from_rest(model, path, 1), metres = distances_from_rest(model, path, metre);
   const std::string robot = "the robot is " + number_text(model.diagonal_mm) + " mm across";
   if (given.greatest > large * model.diagonal_mm)
-    doubts.push_back("the path leads " + number_text(given.greatest) + " mm away from the markers at rest, but " + robot +
-                     ": are its coordinates in another unit than mm?");
+    doubts.push_back("the path leads " + number_text(given.greatest) + " mm away from the markers at rest, but " +
+                     robot + ": are its coordinates in another unit than mm?");
   else if (metres.greatest < given.least)
-    doubts.push_back("the path stays " + number_text(given.least) + " mm away from the markers at rest, but would be near "
-                     "them if its coordinates were in metres: are they? They are taken as mm, and " + robot);
+    doubts.push_back("the path stays " + number_text(given.least) +
+                     " mm away from the markers at rest, but would be near "
+                     "them if its coordinates were in metres: are they? They are taken as mm, and " +
+                     robot);
   return doubts;
 }
 

@@ -15,8 +15,8 @@ namespace softkin {
 [[nodiscard]] MarkerPath read_marker_path(const std::filesystem::path& path, const Model& model,
                                           const std::string& marker = "");
 
-/// What looks wrong about a path beside this robot, a sentence each: coordinates 100 times its size, or such as would fit
-/// in metres.
+/// What looks wrong about a path beside this robot, a sentence each: coordinates 100 times its size, or such as would
+/// fit in metres.
 [[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const MarkerPath& path);
 
 }  // namespace softkin

@@ -14,8 +14,8 @@ struct Waypoint {
 
 /// Places that markers are to visit one after another.
 struct MarkerPath {
-  std::vector<Index> markers;              // of the model
-  std::vector<std::array<bool, 3>> axes;   // of each marker: coordinates that count
+  std::vector<Index> markers;             // of the model
+  std::vector<std::array<bool, 3>> axes;  // of each marker: coordinates that count
   std::vector<Waypoint> waypoints;
 };
 
