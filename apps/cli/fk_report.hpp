@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fk_options.hpp"
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
@@ -16,7 +16,7 @@ class Report {
  public:
   using Json = nlohmann::ordered_json;
 
-  Report(const Model& model, const FkOptions& options);
+  Report(const Model& model, const SolveOptions& options);
 
   /// What it is about: version, scene, robot, formulation, materials, actuators, solver, units, mesh, notes.
   [[nodiscard]] const Json& head() const { return head_; }
