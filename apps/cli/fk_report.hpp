@@ -20,6 +20,8 @@ class Report {
 
   /// What it is about: version, scene, robot, formulation, materials, actuators, solver, units, mesh, notes.
   [[nodiscard]] const Json& head() const { return head_; }
+  /// One more entry of what it is about.
+  void note(const std::string& key, Json value) { head_[key] = std::move(value); }
   /// Throws Json::exception on a step that step_json did not make.
   void add(Json step);
   [[nodiscard]] std::size_t size() const { return lines_.size(); }

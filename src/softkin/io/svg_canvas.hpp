@@ -41,6 +41,8 @@ class SvgCanvas {
   void line(SvgPoint from, SvgPoint to, const SvgStroke& stroke);
   void rectangle(SvgPoint low, SvgPoint high, const SvgStroke& stroke, const std::string& name);
   void polyline(const std::vector<SvgPoint>& points, const SvgStroke& stroke);
+  /// From every first of two points to the second.
+  void segments(const std::vector<SvgPoint>& points, const SvgStroke& stroke);
   /// shape: from 0 to svg_mark_shapes - 1.
   void marks(const std::vector<SvgPoint>& points, int shape, double radius, const SvgStroke& stroke);
   /// What follows under clip-path="url(#name)" shows inside the rectangle alone.

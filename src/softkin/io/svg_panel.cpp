@@ -269,7 +269,10 @@ void SvgPanel::draw_series(SvgCanvas& canvas, SvgPoint low, SvgPoint high, int n
     for (std::size_t k = 0; k < series.x.size(); ++k) points.push_back({x.at(series.x[k]), y.at(series.y[k])});
     canvas.open("series", "clip-path=\"url(#" + clip + ")\"");
     SvgStroke stroke = stroke_of(i);
-    if (series.line && points.size() > 1) canvas.polyline(thinned_line(points), stroke);
+    if (series.line && series.pairs)
+      canvas.segments(points, stroke);
+    else if (series.line && points.size() > 1)
+      canvas.polyline(thinned_line(points), stroke);
     stroke = {stroke.color, 1.2, "", paper};
     const bool alone = !series.line || points.size() == 1;
     if (!points.empty() && (series.marks || alone))
