@@ -11,7 +11,7 @@ namespace {
 constexpr double first_radius = 0.5, least_radius = 1e-7;
 constexpr double enough = 1e-4, good = 0.75, poor = 0.25;  // actual reduction over that predicted
 /// Slopes are updated instead of computed where the norm of the terms has become so much smaller.
-constexpr double quick = 0.2;
+constexpr double quick = 0.1;
 constexpr double least_sideways = 0.1;   // of the preferred tolerance
 constexpr double relative_slope = 1e-5;  // of the norm of the slopes, at which nothing helps
 
@@ -91,6 +91,7 @@ class Search {
     if (!(move.norm() > 0)) return shorten();
     if (pose().miss <= 1) return take(std::move(trial), move);
     const double predicted = predicted_reduction(pose(), result_.slopes, curvature(), move);
+    if (getenv("TR")) { fprintf(stderr,"  |r| %.3e -> %.3e pred %.3e radius %.3g move %.3g side %.2g sec %d fresh %d u",pose().terms.norm(),trial.terms.norm(),step_.predicted_norm,limits_.radius,move.cwiseAbs().maxCoeff(),step_.sideways,(int)use_secant_,(int)fresh_); for(int i=0;i<trial.shares.size();++i) fprintf(stderr," %.4f",trial.shares[i]); fprintf(stderr,"\n");}
     const double actual = 0.5 * (pose().terms.squaredNorm() - trial.terms.squaredNorm());
     choose_model(move, actual);
     if (!(actual > 0) || !(actual >= enough * predicted)) return fresh_ ? shorten() : look_again();
