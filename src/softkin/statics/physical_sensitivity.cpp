@@ -1,5 +1,4 @@
 #include <cmath>
-#include <softkin/statics/complementarity.hpp>
 #include <softkin/statics/conjugate_residuals.hpp>
 #include <softkin/statics/physical_lease.hpp>
 #include <softkin/statics/physical_sensitivity.hpp>
@@ -14,7 +13,7 @@ constexpr double accuracy = 1e-10;
 constexpr int most_rounds = 8, exact_rounds = 3;
 /// What rounding may leave after a round with the factor of the stiffness itself: more, and that is singular.
 constexpr double singular = 1e-6;
-/// Change of its ratio by which a cable that is on the verge of going slack goes slack, or taut [-].
+/// A cable without tension that is as long as it may be but for this share is held.
 constexpr double verge = 1e-9;
 
 }  // namespace
@@ -105,32 +104,6 @@ bool PhysicalSensitivity::solve(const Iterate& at, bool exact_factor) {
   return true;
 }
 
-/// The sensitivity is one-sided where a cable is on the verge: by its own length towards shorter, by other commands
-/// upwards. There a column may slacken such a cable instead of pushing it: then it lets its length go, and the column
-/// gains as much of the one that shortens the cable.
-void PhysicalSensitivity::slacken(const Iterate& at) {
-  std::vector<Index> cables;  // on the verge, among those held
-  for (Index i = 0; i < slopes_.cols(); ++i)
-    if (system_.sign(held_[i]) > 0 && at.multipliers[held_[i]] <= verge * std::abs(found_.multipliers(i, held_[i])))
-      cables.push_back(i);
-  if (cables.empty()) return;
-  const Columns all = found_;
-  std::vector<Index> commands;
-  for (const Index i : cables) commands.push_back(held_[i]);
-  const Eigen::MatrixXd stiffness = -all.multipliers(cables, commands);  // tensions by shortenings
-  for (Index a = 0; a < system_.actuators(); ++a) {
-    const bool shortens = active_[a] && system_.sign(a) > 0;
-    const double direction = shortens ? -1 : 1;
-    const Eigen::VectorXd slack = complementary(stiffness, direction * all.multipliers(cables, a));
-    for (std::size_t k = 0; k < cables.size(); ++k) {
-      const double shortening = -direction * slack[static_cast<Index>(k)];
-      found_.moves.col(a) += shortening * all.moves.col(commands[k]);
-      found_.multipliers.col(a) += shortening * all.multipliers.col(commands[k]);
-      if (slack[static_cast<Index>(k)] > 0) found_.multipliers(cables[k], a) = 0;
-    }
-  }
-}
-
 Sensitivity PhysicalSensitivity::result(const Iterate& at) const {
   const Index actuators = system_.actuators();
   Sensitivity result;
@@ -164,7 +137,6 @@ Sensitivity PhysicalSensitivity::of(const Iterate& at, const Demand& demand) {
   }
   if (!solved) return no_sensitivity(static_cast<Index>(at.positions.rows()), system_.actuators());
   if (work_.home.rows() == 0) work_.home = at.positions;
-  slacken(at);
   return result(at);
 }
 

@@ -26,7 +26,6 @@ class PhysicalSensitivity {
   void precondition(Columns& columns);
   void multiply(const Iterate& at, const Columns& columns, Columns& product);
   bool solve(const Iterate& at, bool exact_factor);
-  void slacken(const Iterate& at);
   [[nodiscard]] Sensitivity result(const Iterate& at) const;
 
   const PhysicalSystem& system_;
