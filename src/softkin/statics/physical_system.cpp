@@ -30,6 +30,7 @@ PhysicalSystem::PhysicalSystem(const Model& model)
   slots_ = cliques.slots.back();
   pattern_ = std::make_unique<BlockPattern>(static_cast<Index>(model.rest.rows()), cliques);
   freedoms_ = std::make_unique<Freedoms>(model, *pattern_);
+  symbolic_ = std::make_shared<const FrontTree>(make_front_tree(freedoms_->columns()));
   turning_ = std::make_unique<GlobalStep>(model, elastic_.laplacian());
 }
 
@@ -37,7 +38,7 @@ PhysicalSystem::Workspace::Workspace(const PhysicalSystem& system)
     : elastic(system.elastic_.make_scratch()),
       slots(9 * static_cast<std::size_t>(system.slots_)),
       slopes(system.model_.actuators.size()),
-      factor(system.freedoms_->columns()) {}
+      factor(system.symbolic_) {}
 
 bool PhysicalSystem::constrains(Index actuator) const {
   const Actuator& a = model_.actuators[actuator];

@@ -33,7 +33,7 @@ class PhysicalSystem {
     explicit Workspace(const PhysicalSystem& system);
 
     ElasticSystem::Scratch elastic;
-    std::vector<double> slots, blocks, values;
+    LargeVector<double> slots, blocks, values;
     Points gradient;             // of the Lagrangian in x
     Points moves, lacking;       // of advance()
     std::vector<Points> slopes;  // of each active measure
@@ -136,6 +136,7 @@ class PhysicalSystem {
   bool any_dead_load_;
   std::unique_ptr<BlockPattern> pattern_;
   std::unique_ptr<Freedoms> freedoms_;
+  std::shared_ptr<const FrontTree> symbolic_;
   std::unique_ptr<GlobalStep> turning_;
 };
 

@@ -14,8 +14,8 @@ struct TargetShapeUnknowns {
   const TargetShapeSystem& system;
   TargetShapeMatrix matrix;
   Freedoms freedoms;
-  SparseLdlt symbolic;  // copied by every tangent
-  bool symmetric;       // is the residual's derivative symmetric
+  std::shared_ptr<const FrontTree> symbolic;
+  bool symmetric;  // is the residual's derivative symmetric
 };
 
 /// The derivative K of minus the residual over the unknowns at one shape, and its solutions: by its factor where it is
@@ -69,7 +69,7 @@ class TargetShapeTangent {
 
   const TargetShapeUnknowns& unknowns_;
   SparseLdlt factor_;
-  std::vector<double> slots_, blocks_, values_, shifted_;
+  LargeVector<double> slots_, blocks_, values_, shifted_;
   std::vector<TargetShapeSystem::Redistribution> redistributions_;
   Eigen::MatrixXd sources_, targets_;  // of the redistributions over the unknowns: factor^-1 source, target
   Eigen::MatrixXd capacitance_;        // inverse of I + targets^T sources
