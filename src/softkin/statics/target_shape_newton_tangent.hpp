@@ -51,10 +51,14 @@ class TargetShapeTangent {
   bool solve(const TargetShapeSystem::Scratch& local, const Points& positions, const Eigen::VectorXd& right,
              double tolerance, Team& team, Eigen::VectorXd& step);
 
-  /// Solves K step = right for the exact K at a shape near that of the factor, symmetric or not, to rounding. False
-  /// where GMRES does not get there.
+  /// Solves K steps = rights, a column each, for the exact K at a shape near that of the factor, symmetric or not, by
+  /// conjugate residuals.
+  ///
+  /// most_left  share of a preconditioned right-hand side that the first round may leave
+  /// returns    false where so many rounds do not do
   [[nodiscard]] bool solve_exactly(const TargetShapeSystem::Scratch& local, const Points& positions,
-                                   const Eigen::VectorXd& right, Team& team, Eigen::VectorXd& step);
+                                   const Eigen::MatrixXd& rights, int rounds, double most_left, Team& team,
+                                   Eigen::MatrixXd& steps);
 
   [[nodiscard]] const Freedoms& freedoms() const { return unknowns_.freedoms; }
   [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
