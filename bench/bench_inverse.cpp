@@ -209,10 +209,11 @@ class Bench {
     if (t.count == 0) return;
     std::printf(
         "%s: %d targets, %d reached (%.1f %%, worst error %.2e mm), %d flagged unreachable, %d not converged; largest "
-        "slope %.1e mm per range; mean %.2f equilibria (most %d), %.2f iterations, %.1f ms (%.1f ms of processor time); ranges %s\n",
+        "slope %.1e mm per range; mean %.2f equilibria (most %d), %.2f iterations, %.1f ms (%.1f ms of processor "
+        "time); ranges %s\n",
         what, t.count, t.reached, 100.0 * t.reached / t.count, t.worst_mm, t.flagged, t.lost, t.slope,
-        t.equilibria / t.count, t.most_equilibria, t.iterations / t.count, 1e3 * t.seconds / t.count, 1e3 * t.processor / t.count,
-        t.inside ? "held by every equilibrium" : "VIOLATED");
+        t.equilibria / t.count, t.most_equilibria, t.iterations / t.count, 1e3 * t.seconds / t.count,
+        1e3 * t.processor / t.count, t.inside ? "held by every equilibrium" : "VIOLATED");
     std::fflush(stdout);
   }
 
@@ -248,7 +249,9 @@ int main(int argc, char** argv) {
   app.add_option("--move", options.millimetres_per_update, "drag: of the target per update [mm]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--size", options.size, "of the beam, tetrahedra")->check(CLI::Range(1000.0, 1e6))->capture_default_str();
+  app.add_option("--size", options.size, "of the beam, tetrahedra")
+      ->check(CLI::Range(1000.0, 1e6))
+      ->capture_default_str();
   app.add_option("--seed", options.seed)->capture_default_str();
   app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256))->capture_default_str();
   return run_benchmark(app, argc, argv, [&] { return run(options); });

@@ -44,7 +44,9 @@ double by_enumeration(const Program& p) {
 /// Rows through the start where slack is 0.
 Program random_program(std::mt19937& engine, Eigen::Index size, Eigen::Index rows, double slack) {
   std::normal_distribution<double> normal;
-  const auto any = [&](Eigen::Index r, Eigen::Index c) { return Matrix::NullaryExpr(r, c, [&] { return normal(engine); }); };
+  const auto any = [&](Eigen::Index r, Eigen::Index c) {
+    return Matrix::NullaryExpr(r, c, [&] { return normal(engine); });
+  };
   Program p;
   const Matrix root = any(size, size);
   p.h = root * root.transpose() + 0.01 * Matrix::Identity(size, size);
@@ -69,7 +71,7 @@ TEST(SmallProgram, LeavesACornerWhereManyRowsMeet) {
   int moved = 0;
   for (int i = 0; i < 500; ++i) {
     Program p = random_program(engine, 2 + i % 3, 9, 0);
-    p.rows.row(3) = p.rows.row(1);             // twice the same
+    p.rows.row(3) = p.rows.row(1);                  // twice the same
     p.rows.row(5) = p.rows.row(0) + p.rows.row(2);  // implied by others
     if (i % 2 == 0) p.rows.topRows(p.h.rows()) = -Matrix::Identity(p.h.rows(), p.h.rows());
     if (i % 3 == 0) p.rows = (p.rows.array() * 2).round() / 2;  // ties
@@ -83,8 +85,7 @@ TEST(SmallProgram, LeavesACornerWhereManyRowsMeet) {
 
 TEST(SmallProgram, LeavesOutRowsOfZeros) {
   const Matrix one = Matrix::Identity(1, 1);
-  EXPECT_NEAR(solve_small_program(one, -Vector::Ones(1), Matrix::Zero(1, 1), Vector::Zero(1))[0], 1,
-              1e-12);
+  EXPECT_NEAR(solve_small_program(one, -Vector::Ones(1), Matrix::Zero(1, 1), Vector::Zero(1))[0], 1, 1e-12);
 }
 
 TEST(SmallProgram, FreeMinimumAndNoRows) {

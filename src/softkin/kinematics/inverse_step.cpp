@@ -113,8 +113,7 @@ double projected_slope(const Pose& pose, const Slopes& slopes) {
     region.bounds[i] = region.bounds[i] > -at_the_end ? 0 : -HUGE_VAL;
   const Eigen::Index free = pose.shares.size();
   const Eigen::VectorXd gradient = slopes.terms.transpose() * pose.terms / norm;
-  return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds)
-      .norm();
+  return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds).norm();
 }
 
 }  // namespace softkin
