@@ -15,4 +15,9 @@ Eigen::MatrixXd jacobian(const Model& model, const Sensitivity& sensitivity, con
   return result;
 }
 
+Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equilibrium& equilibrium,
+                         const std::vector<Index>& markers) {
+  return jacobian(model, statics.sensitivity(equilibrium.state), markers);
+}
+
 }  // namespace softkin

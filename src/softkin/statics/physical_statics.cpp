@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <softkin/statics/physical_statics.hpp>
+#include <softkin/statics/physical_lease.hpp>
 
 namespace softkin {
 
@@ -13,40 +13,6 @@ double largest_move(const Points& a, const Points& b) {
 bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
 }
-
-}  // namespace
-
-/// A workspace, for the time of a solve.
-class PhysicalStatics::Lease {
- public:
-  /// One that was left at the start, if there is; its factor is as good as new.
-  Lease(const PhysicalStatics& owner, const Points& start) : owner_(owner) {
-    const std::lock_guard lock(owner_.mutex_);
-    auto& idle = owner_.idle_;
-    auto found =
-        std::find_if(idle.begin(), idle.end(), [&](const auto& work) { return same_shape(work->home, start); });
-    if (found == idle.end() && !idle.empty()) found = idle.end() - 1;
-    if (found == idle.end()) {
-      work_ = std::make_unique<PhysicalSystem::Workspace>(owner_.system_);
-    } else {
-      work_ = std::move(*found);
-      idle.erase(found);
-    }
-  }
-  ~Lease() {
-    const std::lock_guard lock(owner_.mutex_);
-    owner_.idle_.push_back(std::move(work_));
-  }
-  Lease(const Lease&) = delete;
-  Lease& operator=(const Lease&) = delete;
-  [[nodiscard]] PhysicalSystem::Workspace& work() { return *work_; }
-
- private:
-  const PhysicalStatics& owner_;
-  std::unique_ptr<PhysicalSystem::Workspace> work_;
-};
-
-namespace {
 
 /// Shortest step of the continuation, over the way asked for.
 constexpr double least_advance = 1e-4;
@@ -302,7 +268,7 @@ Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& star
   report.solver = "newton";
   report.tolerance_mm = options.tolerance_mm;
   report.reached = 0;
-  Lease lease(*this, start.positions);
+  Lease lease(*this, start.positions, options.reuse_factor);
 
   const Demand from = demand_of(system_, model, start), to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators())};

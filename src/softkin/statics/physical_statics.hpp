@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <softkin/statics/physical_newton.hpp>
+#include <softkin/statics/sensitivity.hpp>
 
 namespace softkin {
 
@@ -16,11 +17,15 @@ class PhysicalStatics {
     double tolerance_mm = 0;
     int max_iterations = 0;  // of all Newton steps together
     bool keep_history = true;
+    bool reuse_factor = true;
   };
 
   /// Arguments are checked already. report.seconds is left to the caller.
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const Options& options,
                                   const ProgressCallback& progress, Team& team) const;
+
+  /// Of an equilibrium; see Statics::sensitivity.
+  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
 
   [[nodiscard]] const PhysicalSystem& system() const { return system_; }
 

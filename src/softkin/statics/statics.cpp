@@ -119,7 +119,8 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   if (parts_->physical) {
     if (options.solver == Solver::local_global)
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
-    result = parts_->physical->solve(actuation, start, {tolerance, options.max_iterations, options.keep_history},
+    result = parts_->physical->solve(actuation, start,
+                                     {tolerance, options.max_iterations, options.keep_history, options.reuse_factor},
                                      progress, team);
   } else {
     result.actuation = actuation;
@@ -136,6 +137,16 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   SolveReport& report = result.report;
   report.seconds = seconds_since(begin);
   return result;
+}
+
+Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options) const {
+  const Model& model = parts_->model;
+  check_start(model, at, options);
+  if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
+    throw InvalidInput("the sensitivity of a shape needs the actuation of which it is the equilibrium");
+  Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));
+  if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, team);
+  return parts_->target_shape->newton.sensitivity(at, team);
 }
 
 }  // namespace softkin

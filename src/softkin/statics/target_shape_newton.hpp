@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mutex>
+#include <softkin/statics/sensitivity.hpp>
 #include <softkin/statics/target_shape_newton_search.hpp>
 
 namespace softkin {
@@ -24,6 +25,9 @@ class TargetShapeNewton {
   /// start  the actuation that the start is an equilibrium of, or empty: then that of rest
   void solve(const Actuation& start, const StaticsOptions& options, const ProgressCallback& progress, Team& team,
              Equilibrium& result) const;
+
+  /// Of an equilibrium; see Statics::sensitivity.
+  [[nodiscard]] Sensitivity sensitivity(const State& at, Team& team) const;
 
  private:
   [[nodiscard]] std::unique_ptr<TargetShapeWorkspace> take_workspace() const;

@@ -51,6 +51,11 @@ class TargetShapeTangent {
   bool solve(const TargetShapeSystem::Scratch& local, const Points& positions, const Eigen::VectorXd& right,
              double tolerance, Team& team, Eigen::VectorXd& step);
 
+  /// Solves K step = right for the exact K at a shape near that of the factor, symmetric or not, to rounding. False
+  /// where GMRES does not get there.
+  [[nodiscard]] bool solve_exactly(const TargetShapeSystem::Scratch& local, const Points& positions,
+                                   const Eigen::VectorXd& right, Team& team, Eigen::VectorXd& step);
+
   [[nodiscard]] const Freedoms& freedoms() const { return unknowns_.freedoms; }
   [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
   /// Was the last factor's matrix shifted?
