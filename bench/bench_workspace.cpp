@@ -14,7 +14,7 @@ using namespace softkin::bench;
 struct Options {
   std::string scene = "examples/three_tendon_finger/three_tendon_finger.yaml";
   std::string sampling = "grid";
-  Index samples = 3375, chains = 4;
+  Index samples = 3375, groups = 4;
 };
 
 struct Cost {
@@ -67,32 +67,36 @@ int measure(const Options& options) {
   alone.reuse_factor = false;
   alone.keep_history = false;
   (void)statics.solve(plan.actuations.row(0), statics.rest(), alone);  // makes the work space
-  Cost first, next, chained, cold;
+  Cost first, next, grouped, cold;
   double apart = 0;
-  const auto all = static_cast<Index>(plan.chains.size()), count = std::min(options.chains, all);
-  for (Index c = 0; c < count; ++c) {
-    ChainState state = begin_chain(statics, static_cast<Index>(static_cast<std::int64_t>(c) * all / count));
-    for (const Index number : plan.chains[static_cast<std::size_t>(state.chain)]) {
-      const bool begins = state.next == 0;
-      const double start = now();
-      const auto sample = solve_next(model, statics, plan, {}, state);
-      const double middle = now();
-      const Equilibrium from_rest = statics.solve(plan.actuations.row(number), statics.rest(), alone);
-      cold.add(from_rest.report.status, from_rest.report.iterations, now() - middle);
-      (begins ? first : next).add(sample->status, sample->iterations, middle - start);
-      chained.add(sample->status, sample->iterations, middle - start);
-      apart = std::max(apart, distance(model, *sample, from_rest));
+  const auto all = static_cast<Index>(plan.groups.size()), count = std::min(options.groups, all);
+  for (Index g = 0; g < count; ++g) {
+    GroupTask task{static_cast<Index>(static_cast<std::int64_t>(g) * all / count), {}};
+    task.known.resize(plan.groups[static_cast<std::size_t>(task.group)].size());
+    std::vector<WorkspaceSample> samples;
+    double start = now();
+    (void)solve_group(model, statics, plan, {}, task, [&](const WorkspaceSample& sample) {
+      const double time = now() - start;
+      (samples.empty() ? first : next).add(sample.status, sample.iterations, time);
+      grouped.add(sample.status, sample.iterations, time);
+      samples.push_back(sample);
+      start = now();
+    });
+    for (const WorkspaceSample& sample : samples) {
+      const Equilibrium from_rest = statics.solve(sample.actuation, statics.rest(), alone);
+      cold.add(from_rest.report.status, from_rest.report.iterations, from_rest.report.seconds);
+      apart = std::max(apart, distance(model, sample, from_rest));
     }
   }
-  std::printf("%s: %d samples (%s), %d chains of %d; one thread\n", options.scene.c_str(), plan.samples(),
-              options.sampling.c_str(), all, chain_length);
+  std::printf("%s: %d samples (%s), %d groups of %d; one thread\n", options.scene.c_str(), plan.samples(),
+              options.sampling.c_str(), all, group_size(plan.samples()));
   std::printf("%-22s %8s %10s %12s %12s %12s\n", "", "samples", "converged", "iterations", "mean [ms]", "slowest [ms]");
   print_cost("from rest", cold);
-  print_cost("in chains", chained);
-  print_cost("  first of a chain", first);
-  if (next.samples > 0) print_cost("  from its neighbour", next);
+  print_cost("in groups", grouped);
+  print_cost("  first of a group", first);
+  if (next.samples > 0) print_cost("  predicted from it", next);
   std::printf("markers differ by at most %.1e mm\n", apart);
-  std::printf("cost in chains over cost from rest: %.3f\n", chained.seconds / cold.seconds);
+  std::printf("cost in groups over cost from rest: %.3f\n", grouped.seconds / cold.seconds);
   return 0;
 }
 
@@ -104,6 +108,6 @@ int main(int argc, char** argv) {
   app.add_option("--scene", options.scene);
   app.add_option("--samples", options.samples);
   app.add_option("--sampling", options.sampling)->check(CLI::IsMember({"grid", "sobol", "random"}));
-  app.add_option("--chains", options.chains)->check(CLI::PositiveNumber);
+  app.add_option("--groups", options.groups)->check(CLI::PositiveNumber);
   return run_benchmark(app, argc, argv, [&] { return measure(options); });
 }

@@ -103,16 +103,6 @@ Shares grid_shares(const Model& model, Index samples, std::size_t dimensions) {
   return shares;
 }
 
-/// The i-th sample of a way through the grid that goes along every line back and forth.
-Index snake(Index i, Index values, std::size_t dimensions) {
-  Index sample = 0, place = 1;
-  for (std::size_t d = 0; d < dimensions; ++d, place *= values) {
-    const Index digit = i / place % values, sweep = i / place / values;
-    sample += place * (sweep % 2 == 0 ? digit : values - 1 - digit);
-  }
-  return sample;
-}
-
 /// Place along a Hilbert curve of a point with so many bits per coordinate, most significant coordinate first.
 std::uint64_t hilbert_place(std::vector<std::uint32_t>& x, int bits) {
   const std::size_t n = x.size();
@@ -195,16 +185,9 @@ Actuations sample_actuations(const Model& model, const SamplingOptions& options)
   return actuations;
 }
 
-std::vector<Index> order_of_neighbours(const Model& model, const SamplingOptions& options,
-                                       const Actuations& actuations) {
+std::vector<Index> order_of_neighbours(const Model& model, const Actuations& actuations) {
   std::vector<Index> order(static_cast<std::size_t>(actuations.rows()));
   std::iota(order.begin(), order.end(), 0);
-  if (options.kind == Sampling::grid) {
-    const std::size_t dimensions = varied_or_refuse(model);
-    const Index values = nearest_grid(model, options.samples);
-    for (Index& each : order) each = snake(each, values, dimensions);
-    return order;
-  }
   const std::vector<std::uint64_t> places = hilbert_places(model, actuations);
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
     return places[static_cast<std::size_t>(a)] < places[static_cast<std::size_t>(b)];

@@ -34,11 +34,9 @@ using Actuations = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 /// throws   InvalidInput on samples < 1, a grid that is not full, no actuator that varies, more than 8 for sobol
 [[nodiscard]] Actuations sample_actuations(const Model& model, const SamplingOptions& options);
 
-/// Sample numbers in an order in which neighbours follow each other: grid: line by line, back and forth; else along a
-/// Hilbert curve through the ranges.
+/// Sample numbers in an order in which neighbours follow each other: along a Hilbert curve through the ranges.
 ///
 /// source  Skilling 2004, Programming the Hilbert curve
-[[nodiscard]] std::vector<Index> order_of_neighbours(const Model& model, const SamplingOptions& options,
-                                                     const Actuations& actuations);
+[[nodiscard]] std::vector<Index> order_of_neighbours(const Model& model, const Actuations& actuations);
 
 }  // namespace softkin

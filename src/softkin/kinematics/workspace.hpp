@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <softkin/kinematics/sampling.hpp>
 #include <softkin/model/workspace_sample.hpp>
@@ -7,54 +8,50 @@
 
 namespace softkin {
 
-/// Which samples are solved, and which from which: a chain begins at rest, and each further sample of it from the last
-/// one that converged. Chains know nothing of each other, so that any number of threads and processes can share them.
+/// Samples in groups of neighbours. A group begins with its middle, which is solved from rest; all others are predicted
+/// from there, with one factorisation for all. Groups know nothing of each other, so that any number of threads and
+/// processes can share them.
 struct WorkspacePlan {
   Actuations actuations;
-  std::vector<std::vector<Index>> chains;  // sample numbers, each sample in one chain
+  std::vector<std::vector<Index>> groups;  // sample numbers in the order in which they are solved, each in one group
 
   [[nodiscard]] Index samples() const { return static_cast<Index>(actuations.rows()); }
 };
 
-/// Samples of a chain: long enough that its first solve, from rest, costs little in the mean, and short enough that
-/// there are chains for everyone.
-constexpr Index chain_length = 32;
+/// Samples of a group, of so many samples in all: 8 to 64, a fiftieth. The first solve, from rest, is to cost little in
+/// the mean, but the others are to be near, and there are to be groups for everyone.
+[[nodiscard]] Index group_size(Index samples);
 
 /// throws  InvalidInput as sample_actuations does
 [[nodiscard]] WorkspacePlan plan_workspace(const Model& model, const SamplingOptions& options);
 
-/// Where a chain stands: all that its next sample depends on.
-struct ChainState {
-  Index chain = 0;
-  Index next = 0;  // place in the chain of the sample to be solved next
-  State last;      // equilibrium to start from
+/// A group to be solved, or to be gone on with.
+struct GroupTask {
+  Index group = 0;
+  std::vector<std::optional<Status>> known;  // per sample of the group: how it ended, where that has been done before
 };
 
-/// The beginning of a chain.
-[[nodiscard]] ChainState begin_chain(const Statics& statics, Index chain);
-
-/// Solves the next sample of a chain and moves the chain on. A sample that is not reached from its neighbour is tried
-/// once more from rest.
+/// Solves the samples of a group that are not known, in order, and gives each away. A sample that is not reached from
+/// the group's middle is tried once more from rest. Each is a function of the other arguments alone, whatever is known.
 ///
-/// options  threads and reuse_factor are set here: the result is a function of the other arguments alone
-/// returns  nothing where progress stopped it; the chain stands where it stood
-[[nodiscard]] std::optional<WorkspaceSample> solve_next(const Model& model, const Statics& statics,
-                                                        const WorkspacePlan& plan, const StaticsOptions& options,
-                                                        ChainState& state, const ProgressCallback& progress = {});
+/// options  threads and reuse_factor are set here
+/// returns  false where progress stopped it
+bool solve_group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+                 const GroupTask& task, const std::function<void(const WorkspaceSample&)>& give,
+                 const ProgressCallback& progress = {});
 
-/// Hands out chains and keeps what is made of them. Asked by several threads at once.
-class ChainDesk {
+/// Hands out groups and keeps what is made of them. Asked by several threads at once.
+class GroupDesk {
  public:
-  virtual ~ChainDesk() = default;
-  /// A chain that nobody has, where it stands; nothing where none is left.
-  [[nodiscard]] virtual std::optional<ChainState> take() = 0;
-  /// state: of the chain after the sample.
-  virtual void keep(const ChainState& state, const WorkspaceSample& sample) = 0;
+  virtual ~GroupDesk() = default;
+  /// A group that nobody has; nothing where none is left.
+  [[nodiscard]] virtual std::optional<GroupTask> take() = 0;
+  virtual void keep(const WorkspaceSample& sample) = 0;
 };
 
-/// Solves chains of the desk on so many threads until none is left or progress, which is called on any of them,
+/// Solves groups of the desk on so many threads until none is left or progress, which is called on any of them,
 /// returns false. Rethrows the first exception of a thread.
-void solve_chains(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
-                  int threads, ChainDesk& desk, const ProgressCallback& progress = {});
+void solve_groups(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+                  int threads, GroupDesk& desk, const ProgressCallback& progress = {});
 
 }  // namespace softkin
