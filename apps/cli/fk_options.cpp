@@ -46,6 +46,10 @@ void add_files(CLI::App& command, FkOptions& options) {
   command.add_option("--report", options.report, "All numbers of all steps, with their strain histograms")
       ->type_name("F.json");
   command.add_option("--image", options.image, "Picture of the last shape")->type_name("F.png");
+  command
+      .add_option("--plot", options.plot,
+                  "With --path: commands, markers, pressures and tensions over\nthe steps, and the markers' ways")
+      ->type_name("F.svg");
 }
 
 CLI::Validator one_of(const std::vector<std::string>& names) {
@@ -94,6 +98,19 @@ void add_solver(CLI::App& command, FkOptions& options) {
 
 bool FkOptions::series() const {
   return lower_extension(output) == ".pvd";
+}
+
+std::vector<Output> FkOptions::outputs(std::size_t steps) const {
+  std::vector<Output> outputs;
+  const auto add = [&](const char* option, const std::string& file) {
+    if (!file.empty()) outputs.push_back({option, file});
+  };
+  add("--output", output);
+  if (series()) outputs.back().shapes = steps;
+  add("--report", report);
+  add("--image", image);
+  add("--plot", plot);
+  return outputs;
 }
 
 Solver FkOptions::solver() const {
@@ -145,6 +162,10 @@ void check_usage(const FkOptions& options) {
     throw InvalidInput("--output " + options.output + ": must end in .vtu (the last shape) or .pvd (every step)");
   if (!options.image.empty() && lower_extension(options.image) != ".png")
     throw InvalidInput("--image " + options.image + ": must end in .png");
+  if (!options.plot.empty() && lower_extension(options.plot) != ".svg")
+    throw InvalidInput("--plot " + options.plot + ": must end in .svg");
+  if (!options.plot.empty() && options.path.empty())
+    throw InvalidInput("--plot draws the steps of a path: it needs --path F.csv");
   if (!options.view.empty() && options.image.empty())
     throw InvalidInput("--view is the view of the picture: it needs --image F.png");
   if (!options.view.empty() && std::hypot(options.view[0], options.view[1], options.view[2]) == 0)

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "output_files.hpp"
+
 namespace softkin::cli {
 
 /// What the user asks of `softkin fk`. An empty file name: not given.
 struct FkOptions {
   std::string scene, path;
-  std::string output, report, image;
+  std::string output, report, image, plot;
   std::string solver_name = "newton";
   std::string formulation;            // empty: the scene's
   std::vector<std::string> settings;  // ACTUATOR=VALUE
@@ -23,6 +25,8 @@ struct FkOptions {
   int threads = StaticsOptions().threads;
   bool json = false, resume = false;
 
+  /// The files to write; a path has so many steps.
+  [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const;
   [[nodiscard]] bool series() const;  // every step's shape, .pvd
   [[nodiscard]] Solver solver() const;
   [[nodiscard]] StaticsOptions statics() const;

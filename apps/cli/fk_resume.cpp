@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "fk_fingerprint.hpp"
-#include "fk_outputs.hpp"
 #include "fk_units.hpp"
+#include "output_files.hpp"
 
 namespace softkin::cli {
 

@@ -22,7 +22,7 @@ struct PlaneGoal {
 
 /// The line from one marker to another is to point somewhere. Its error is that of the unit vectors times lever_mm.
 struct DirectionGoal {
-  Index from = 0, to = 0;          // markers
+  Index from = 0, to = 0;          // different markers
   Vec3 direction = Vec3::UnitX();  // of any length > 0
   double lever_mm = 1;             // > 0; the distance at which a wrong direction counts [mm]
 };
@@ -34,7 +34,7 @@ struct Goal {
 };
 
 /// throws InvalidInput on a marker that the model does not have, a number that is not finite, an empty list, a weight
-/// or lever that is not > 0, no axis, a normal or direction of length 0
+/// or lever that is not > 0, no axis, a normal or direction of length 0, a direction from a marker to itself
 void check_goals(const Model& model, const std::vector<Goal>& goals);
 
 /// Distance of each goal from being met [mm], unweighted.
