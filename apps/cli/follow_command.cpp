@@ -13,6 +13,7 @@
 #include "follow_run.hpp"
 #include "mesh_text.hpp"
 #include "terminal.hpp"
+#include "workspace_start.hpp"
 
 namespace softkin::cli {
 
@@ -23,6 +24,7 @@ namespace {
 int run_follow(const FollowOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.scene, options.path};
+  if (!options.workspace.empty()) inputs.emplace_back(options.workspace);
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
@@ -31,7 +33,9 @@ int run_follow(const FollowOptions& options) {
   if (options.max_step_mm > 0) path = densified(path, options.max_step_mm);
   const std::vector<Output> outputs = options.outputs(path.waypoints.size());
   check_outputs(outputs, inputs);
-  const TrajectoryOptions trajectory = options.trajectory();
+  TrajectoryOptions trajectory = options.trajectory();
+  if (!options.workspace.empty())
+    trajectory.start = nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
   line.show(-1, "assembling");
   const Statics statics(model);
   line.clear();

@@ -1,14 +1,20 @@
 #include "follow_files.hpp"
 
+#include <charconv>
+
 #include "fk_units.hpp"
-#include "terminal.hpp"
 
 namespace softkin::cli {
 
 namespace {
 
-constexpr int exact = 17;  // digits from which a number reads back as it was
 constexpr const char* axis_names[] = {"x", "y", "z"};
+
+/// The shortest text that reads back as the number.
+std::string exact(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
 
 bool has_times(const MarkerPath& path) {
   return path.waypoints.front().time.has_value();
@@ -24,8 +30,8 @@ std::string commands_csv(const Model& model, const MarkerPath& path, const std::
   }
   text += "\n";
   for (std::size_t i = 0; i < done.size(); ++i) {
-    std::string row = has_times(path) ? number(*path.waypoints[i].time, exact) : "";
-    for (const double value : done[i].actuation) row += (row.empty() ? "" : ",") + number(value, exact);
+    std::string row = has_times(path) ? exact(*path.waypoints[i].time) : "";
+    for (const double value : done[i].actuation) row += (row.empty() ? "" : ",") + exact(value);
     text += row + "\n";
   }
   return text;
@@ -43,14 +49,14 @@ std::string errors_csv(const Model& model, const MarkerPath& path, const std::ve
   for (std::size_t i = 0; i < done.size(); ++i) {
     const Waypoint& asked = path.waypoints[i];
     text += std::to_string(i);
-    if (asked.time) text += "," + number(*asked.time, exact);
+    if (asked.time) text += "," + exact(*asked.time);
     for (std::size_t m = 0; m < path.markers.size(); ++m) {
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (path.axes[m][axis]) text += "," + number(asked.targets[m][static_cast<Index>(axis)], exact);
-      for (const double x : done[i].markers[m]) text += "," + number(x, exact);
+        if (path.axes[m][axis]) text += "," + exact(asked.targets[m][static_cast<Index>(axis)]);
+      for (const double x : done[i].markers[m]) text += "," + exact(x);
     }
-    text += "," + number(done[i].error_mm, exact) + "," + (done[i].reached ? "1" : "0") + "," +
-            (asked.inserted ? "1" : "0") + "," + std::to_string(done[i].equilibria) + "\n";
+    text += "," + exact(done[i].error_mm) + "," + (done[i].reached ? "1" : "0") + "," + (asked.inserted ? "1" : "0") +
+            "," + std::to_string(done[i].equilibria) + "\n";
   }
   return text;
 }

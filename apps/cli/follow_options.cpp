@@ -76,6 +76,10 @@ TrajectoryOptions FollowOptions::trajectory() const {
 void add_options(CLI::App& command, FollowOptions& options) {
   add_path(command, options);
   add_search(command, options);
+  command
+      .add_option("--workspace", options.workspace,
+                  "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)")
+      ->type_name("F.csv");
   command.add_option("--plot", options.plot_file, "The plot, instead of path.svg in the folder")->type_name("F.svg");
   add_force(command, options);
   add_solver(command, options, "--solver-tolerance");

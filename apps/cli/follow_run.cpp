@@ -112,7 +112,9 @@ class FollowRun {
   void finish() const {
     if (!done_.empty()) {
       write_tables();
-      const std::string title = options_.path + " by " + options_.scene + ": " + formulation_name(model_.formulation);
+      const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
+      const std::string title =
+          name(options_.path) + " by " + name(options_.scene) + ": " + formulation_name(model_.formulation);
       write_svg(options_.plot(), plot_of_path(model_, path_, done_, options_.reach_mm, title));
     }
     if (options_.json) print(report_.text());

@@ -40,8 +40,10 @@ class PathPlot {
           path_.markers.size() == 1 ? "" : model_.markers[static_cast<std::size_t>(path_.markers[m])].name + ": ";
       SpaceCurve targets{of + "target", {}, true, false}, reached{of + "reached", {}, true, true};
       SpaceCurve missed{of + "not reached", {}, false, true}, gaps{"", {}, true, false};
-      targets.width = 3.5;
+      targets.pale = true;
+      targets.width = 4;
       gaps.pairs = true;
+      gaps.width = 1;
       for (std::size_t i = 0; i < done_.size(); ++i) {
         targets.points.push_back(target(i, m));
         reached.points.push_back(done_[i].markers[m]);
@@ -86,11 +88,10 @@ class PathPlot {
   }
 
  private:
-  /// Each marker has its own colour for what was reached; targets are wide, what was missed is crossed.
+  /// Each marker has its own colour for what was reached; what was missed is crossed.
   static void style(std::vector<SpaceCurve>& curves) {
     int color = 0;
     for (SpaceCurve& curve : curves) {
-      if (curve.width > 3) curve.style = 5;
       if (curve.line && curve.marks) curve.style = color++ % 4;
       if (!curve.line || curve.pairs) curve.style = 4;
     }

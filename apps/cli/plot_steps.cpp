@@ -32,6 +32,7 @@ PlotSeries series_of(const SpaceCurve& curve, int x, int y) {
   series.line = curve.line;
   series.marks = curve.marks;
   series.pairs = curve.pairs;
+  series.pale = curve.pale;
   series.style = curve.style;
   series.width = curve.width;
   for (const Vec3& point : curve.points) {

@@ -33,8 +33,8 @@ struct StepAxis {
 /// A way through space.
 struct SpaceCurve {
   std::string name;
-  std::vector<Vec3> points;                       // [mm]
-  bool line = true, marks = true, pairs = false;  // as those of PlotSeries
+  std::vector<Vec3> points;                                     // [mm]
+  bool line = true, marks = true, pairs = false, pale = false;  // as those of PlotSeries
   int style = -1;
   double width = PlotSeries().width;
 };

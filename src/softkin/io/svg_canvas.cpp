@@ -161,7 +161,7 @@ double svg_text_width(const std::string& text, double size) {
     const bool narrow = c == ' ' || c == '.' || c == ',' || c == ':' || c == 'i' || c == 'l' || c == '\'' || c == '|';
     const bool wide =
         (c >= 'A' && c <= 'Z') || c == 'm' || c == 'w' || c == '%' || (static_cast<unsigned char>(c) > 0x7F);
-    ems += narrow ? 0.32 : wide ? 0.85 : 0.58;
+    ems += narrow ? 0.34 : wide ? 0.85 : 0.62;
   }
   return ems * size;
 }

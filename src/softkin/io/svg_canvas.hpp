@@ -63,6 +63,9 @@ class SvgCanvas {
 /// About the width of text in a sans-serif font, rather too much [pixel].
 [[nodiscard]] double svg_text_width(const std::string& text, double size);
 
+/// By how much bold text is wider.
+inline constexpr double svg_bold = 1.15;
+
 /// text, or as much of its beginning with "..." as fits into a width.
 [[nodiscard]] std::string svg_fitted(const std::string& text, double size, double width);
 
