@@ -38,8 +38,7 @@ void check_options(const Model& model, const State& start, const InverseOptions&
                        " entries, the robot " + std::to_string(m) + " actuators");
   if (options.preferred.size() > 0) check_actuation(model, options.preferred);
   if (start.actuation.size() > 0) check_actuation(model, start.actuation);
-  if (options.start_sensitivity != nullptr && static_cast<Index>(options.start_sensitivity->positions.size()) != m)
-    throw InvalidInput("the sensitivity at the start is of another robot");
+  if (options.start_sensitivity != nullptr) check_size(model, *options.start_sensitivity);
 }
 
 std::vector<Index> free_actuators(const Model& model, const InverseOptions& options) {
