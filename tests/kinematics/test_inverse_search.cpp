@@ -173,8 +173,7 @@ TEST(InverseSearch, OfManyAnswersTheNearest) {
       response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
       const Pose start = response.at(preferred);
       const SearchResult found = search_inverse(response, start, settings_for(preferred));
-      ASSERT_EQ(found.end, SearchEnd::reached)
-          << target.transpose() << ", preferred " << preferred.transpose();
+      ASSERT_EQ(found.end, SearchEnd::reached) << target.transpose() << ", preferred " << preferred.transpose();
       EXPECT_LE(found.pose.miss, 1);
       EXPECT_NEAR((found.pose.shares - preferred).norm(), least_distance(target, preferred), 2e-4)
           << target.transpose() << ", preferred " << preferred.transpose();
