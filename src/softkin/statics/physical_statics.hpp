@@ -10,6 +10,8 @@ namespace softkin {
 /// for, in steps as long as Newton allows, each begun with a tangent predictor.
 class PhysicalStatics {
  public:
+  class Lease;
+
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held
   explicit PhysicalStatics(const Model& model) : system_(model) {}
 
@@ -30,7 +32,6 @@ class PhysicalStatics {
   [[nodiscard]] const PhysicalSystem& system() const { return system_; }
 
  private:
-  class Lease;
   void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
                    PhysicalSystem::Workspace& work, Iterate& at, SolveReport& report) const;
 

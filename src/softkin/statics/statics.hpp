@@ -65,6 +65,7 @@ class Statics {
   [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {}) const;
 
  private:
+  friend class Neighbourhood;
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
