@@ -20,7 +20,7 @@ struct Options {
   std::string scene = "examples/three_tendon_finger/three_tendon_finger.yaml";
   std::vector<std::string> paths{"examples/three_tendon_finger/letter_l.csv", "examples/three_tendon_finger/flame.csv"};
   std::vector<std::string> formulations{"physical", "target-shape"};
-  double size = 10000, local_size = 600, limit = 600;
+  double size = 10000, local_size = 600, limit = 120;
   int order = 1, threads = 0, waypoints = 1000000;
 };
 

@@ -52,8 +52,8 @@ class FollowReport {
   void check_step(const Json& step, std::size_t i) const {
     if (i >= path_.waypoints.size())
       refuse("it has waypoint " + std::to_string(i) + ", but the path ends before; the path has changed");
-    const Json& before = step.at("waypoint");
-    for (const auto& [key, value] : asked_json(model_, path_, i).items())
+    const Json &before = step.at("waypoint"), asked = asked_json(model_, path_, i);
+    for (const auto& [key, value] : asked.items())
       if (!before.contains(key) || before.at(key) != value)
         refuse("waypoint " + std::to_string(i) + " is another one than in " + options_.path + "; the path has changed");
   }

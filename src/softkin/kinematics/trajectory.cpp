@@ -35,7 +35,8 @@ Eigen::VectorXd move_to(const Eigen::VectorXd& terms, const Eigen::MatrixXd& slo
   rows << Eigen::MatrixXd::Identity(m, m), -Eigen::MatrixXd::Identity(m, m);
   Eigen::VectorXd bounds(2 * m);
   bounds << -shares, shares.array() - 1;
-  return solve_small_program(h, slopes.transpose() * terms, rows, bounds, Eigen::VectorXd::Zero(m));
+  bounds = bounds.cwiseMin(0);  // rounding
+  return solve_small_program(h, slopes.transpose() * terms, rows, bounds);
 }
 
 void check_path(const MarkerPath& path) {
