@@ -2,6 +2,7 @@
 // reached, and how many updates per second follow a moving target.
 
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <random>
 #include <softkin/io/scene.hpp>
@@ -20,13 +21,13 @@ struct Options {
   std::string method = "newton";
   int targets = 100, unreachable = 20, threads = 0, order = 0, updates = 300, other_starts = 3;
   unsigned seed = 1;
-  double tolerance_mm = 1e-3, cell_mm = 4, millimetres_per_update = 0.5;
+  double tolerance_mm = 1e-3, size = 2000, millimetres_per_update = 0.5;
 };
 
-/// A beam of 64 x 20 x 20 mm with three chambers around its axis, for meshes of any size.
-RobotSpec beam(double cell_mm) {
-  const int across = 5 * std::max(1, static_cast<int>(std::lround(4 / cell_mm)));
-  const int along = static_cast<int>(std::lround(64 / (20.0 / across)));
+/// A beam of 64 x 20 x 20 mm with three chambers around its axis, of about so many tetrahedra.
+RobotSpec beam(double size) {
+  const int across = 5 * std::max(1, static_cast<int>(std::lround(std::cbrt(size / 2000))));
+  const int along = std::max(8, static_cast<int>(std::lround(size / (0.91 * 6 * across * across))));
   Mesh mesh = testing::block_mesh({along, across, across}, {64, 20, 20});
   const double places[3][2] = {{4, 4}, {12, 4}, {8, 12}};
   for (int i = 0; i < 3; ++i)
@@ -53,17 +54,24 @@ RobotSpec beam(double cell_mm) {
 }
 
 RobotSpec robot_of(const Options& options) {
-  if (options.robot == "beam") return beam(options.cell_mm);
+  if (options.robot == "beam") return beam(options.size);
   RobotSpec spec = read_scene(options.robot);
   return spec;
 }
 
+struct Answer {
+  InverseResult result;
+  double processor = 0;  // time of all threads [s]
+};
+
 struct Tally {
   int count = 0, reached = 0, flagged = 0, lost = 0, most_equilibria = 0;
-  double worst_mm = 0, equilibria = 0, iterations = 0, seconds = 0, slope = 0;
+  double worst_mm = 0, equilibria = 0, iterations = 0, seconds = 0, processor = 0, slope = 0;
   bool inside = true;
 
-  void add(const Model& model, const InverseResult& result) {
+  void add(const Model& model, const Answer& answer) {
+    const InverseResult& result = answer.result;
+    processor += answer.processor;
     ++count;
     const double error = result.errors_mm.maxCoeff();
     reached += result.status == InverseStatus::reached ? 1 : 0;
@@ -109,18 +117,18 @@ class Bench {
       const Equilibrium made = statics_.solve(random_actuation(), rest_, inverse_.statics);
       if (made.report.status != Status::converged) continue;
       reach_mm = std::max(reach_mm, (tip_of(model_, made.state) - tip_of(model_, rest_)).norm());
-      const InverseResult result = solve(tip_of(model_, made.state), rest_);
-      near.add(model_, result);
-      tell("reachable", i, result);
+      const Answer answer = solve(tip_of(model_, made.state), rest_);
+      near.add(model_, answer);
+      tell("reachable", i, answer.result);
     }
     print("reachable", near);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int i = 0; i < options_.unreachable; ++i) {
       Vec3 direction(any(engine_), any(engine_), any(engine_));
       // twice as far from the tip at rest as any point that was reached
-      const InverseResult result = solve(tip_of(model_, rest_) + 2 * reach_mm * direction.normalized(), rest_);
-      far.add(model_, result);
-      tell("unreachable", i, result);
+      const Answer answer = solve(tip_of(model_, rest_) + 2 * reach_mm * direction.normalized(), rest_);
+      far.add(model_, answer);
+      tell("unreachable", i, answer.result);
     }
     print("out of reach", far);
     return 0;
@@ -158,11 +166,11 @@ class Bench {
         next = (next + 1) % curve.size();
       }
       at += left * (curve[next] - at).normalized();
-      const InverseResult result = solve(at, state, last.regular ? &last : nullptr);
-      tally.add(model_, result);
-      times.push_back(result.seconds);
-      state = result.equilibrium.state;
-      last = result.sensitivity;
+      Answer answer = solve(at, state, last.regular ? &last : nullptr);
+      tally.add(model_, answer);
+      times.push_back(answer.result.seconds);
+      state = std::move(answer.result.equilibrium.state);
+      last = std::move(answer.result.sensitivity);
     }
     std::printf("target moves %.3g mm per update: %.1f updates/s (median %.1f), %.2f equilibria per update\n",
                 options_.millimetres_per_update, tally.count / tally.seconds, 1 / median(times),
@@ -181,9 +189,12 @@ class Bench {
     return actuation;
   }
 
-  InverseResult solve(const Vec3& target, const State& start, const Sensitivity* sensitivity = nullptr) {
+  Answer solve(const Vec3& target, const State& start, const Sensitivity* sensitivity = nullptr) {
     inverse_.start_sensitivity = sensitivity;
-    return solve_inverse(model_, statics_, {{PositionGoal{0, target}}}, start, inverse_);
+    const std::clock_t begin = std::clock();
+    Answer answer{solve_inverse(model_, statics_, {{PositionGoal{0, target}}}, start, inverse_), 0};
+    answer.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    return answer;
   }
 
   static void tell(const char* what, int number, const InverseResult& result) {
@@ -198,10 +209,11 @@ class Bench {
     if (t.count == 0) return;
     std::printf(
         "%s: %d targets, %d reached (%.1f %%, worst error %.2e mm), %d flagged unreachable, %d not converged; largest "
-        "slope %.1e mm per range; mean %.2f equilibria (most %d), %.2f iterations, %.1f ms; ranges %s\n",
+        "slope %.1e mm per range; mean %.2f equilibria (most %d), %.2f iterations, %.1f ms (%.1f ms of processor "
+        "time); ranges %s\n",
         what, t.count, t.reached, 100.0 * t.reached / t.count, t.worst_mm, t.flagged, t.lost, t.slope,
         t.equilibria / t.count, t.most_equilibria, t.iterations / t.count, 1e3 * t.seconds / t.count,
-        t.inside ? "held by every equilibrium" : "VIOLATED");
+        1e3 * t.processor / t.count, t.inside ? "held by every equilibrium" : "VIOLATED");
     std::fflush(stdout);
   }
 
@@ -237,7 +249,9 @@ int main(int argc, char** argv) {
   app.add_option("--move", options.millimetres_per_update, "drag: of the target per update [mm]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--cell", options.cell_mm, "of the beam [mm]")->check(CLI::Range(0.5, 4.0))->capture_default_str();
+  app.add_option("--size", options.size, "of the beam, tetrahedra")
+      ->check(CLI::Range(1000.0, 1e6))
+      ->capture_default_str();
   app.add_option("--seed", options.seed)->capture_default_str();
   app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256))->capture_default_str();
   return run_benchmark(app, argc, argv, [&] { return run(options); });

@@ -69,7 +69,7 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   Cliques cliques;
   elastic.add_cliques(cliques);
   ElasticSystem::Scratch scratch = elastic.make_scratch();
-  std::vector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()));
+  LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()));
   Points gradient;
   (void)elastic.force(demand_.actuation, at_.positions, scratch, gradient, team_);
   times.stiffness =

@@ -29,7 +29,7 @@ class PhysicalParts {
 
   /// The last stiffness, lower triangle in elimination order, as softkin's factorisation takes it.
   [[nodiscard]] const BlockColumns& pattern() const { return system_.freedoms().columns(); }
-  [[nodiscard]] const std::vector<double>& values() const { return work_.values; }
+  [[nodiscard]] const LargeVector<double>& values() const { return work_.values; }
   [[nodiscard]] Eigen::SparseMatrix<double> matrix() const;
   /// Was it made positive definite element by element?
   [[nodiscard]] bool projected() const { return projected_; }

@@ -125,8 +125,8 @@ class FkRun {
 
   void write_plot() const {
     const Report::Json report = Report::Json::parse(report_.text());  // with the steps of an interrupted run
-    const std::string title =
-        options_.scene + ": " + formulation_name(model_.formulation) + ", " + options_.solver_name;
+    const std::string scene = std::filesystem::path(options_.scene).filename().string();
+    const std::string title = scene + ": " + formulation_name(model_.formulation) + ", " + options_.solver_name;
     write_svg(options_.plot, plot_of_steps(model_, report.at("steps"), title));
   }
 

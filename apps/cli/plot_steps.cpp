@@ -1,6 +1,7 @@
 #include "plot_steps.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace softkin::cli {
 
@@ -30,11 +31,31 @@ PlotSeries series_of(const SpaceCurve& curve, int x, int y) {
   PlotSeries series;
   series.line = curve.line;
   series.marks = curve.marks;
+  series.pairs = curve.pairs;
+  series.pale = curve.pale;
+  series.style = curve.style;
+  series.width = curve.width;
   for (const Vec3& point : curve.points) {
     series.x.push_back(point[x]);
     series.y.push_back(point[y]);
   }
   return series;
+}
+
+constexpr const char* axis_names[] = {"x", "y", "z"};
+constexpr int across[] = {1, 2, 0};  // of each projection, along what it is seen
+constexpr int axes[][2] = {{0, 2}, {0, 1}, {1, 2}};
+
+PlotPanel projection(const std::vector<SpaceCurve>& curves, int p, bool legend) {
+  PlotPanel panel;
+  panel.equal = true;
+  panel.x.label = std::string(axis_names[axes[p][0]]) + " [mm]";
+  panel.y.label = std::string(axis_names[axes[p][1]]) + " [mm]";
+  for (const SpaceCurve& curve : curves) {
+    panel.series.push_back(series_of(curve, axes[p][0], axes[p][1]));
+    if (legend) panel.series.back().label = curve.name;
+  }
+  return panel;
 }
 
 }  // namespace
@@ -78,23 +99,25 @@ std::vector<PlotPanel> curve_panels(const StepAxis& along, const std::vector<Ste
 }
 
 std::vector<PlotPanel> projections(const std::vector<SpaceCurve>& curves) {
-  constexpr const char* names[] = {"x [mm]", "y [mm]", "z [mm]"};
-  constexpr const char* titles[] = {"seen along y", "seen along z", "seen along x"};
-  constexpr int axes[][2] = {{0, 2}, {0, 1}, {1, 2}};
   std::vector<PlotPanel> panels;
   for (int p = 0; p < 3; ++p) {
-    PlotPanel panel;
-    panel.title = titles[p];
-    panel.equal = true;
-    panel.x.label = names[axes[p][0]];
-    panel.y.label = names[axes[p][1]];
-    for (const SpaceCurve& curve : curves) {
-      panel.series.push_back(series_of(curve, axes[p][0], axes[p][1]));
-      if (p == 0) panel.series.back().label = curve.name;
-    }
-    panels.push_back(std::move(panel));
+    panels.push_back(projection(curves, p, p == 0));
+    panels.back().title = std::string("seen along ") + axis_names[across[p]];
   }
   return panels;
+}
+
+std::vector<PlotPanel> planar_or_projections(const std::vector<SpaceCurve>& curves) {
+  constexpr double flat = 0.01;
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const SpaceCurve& curve : curves)
+    for (const Vec3& point : curve.points) {
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+  for (int p = 0; p < 3; ++p)
+    if (high[across[p]] - low[across[p]] <= flat * (high - low).maxCoeff()) return {projection(curves, p, true)};
+  return projections(curves);
 }
 
 }  // namespace softkin::cli

@@ -33,9 +33,15 @@ struct StepAxis {
 /// A way through space.
 struct SpaceCurve {
   std::string name;
-  std::vector<Vec3> points;  // [mm]
-  bool line = true, marks = true;
+  std::vector<Vec3> points;                                     // [mm]
+  bool line = true, marks = true, pairs = false, pale = false;  // as those of PlotSeries
+  int style = -1;
+  double width = PlotSeries().width;
 };
+
+/// The one projection that shows all, where the curves lie in a plane across an axis to 1 % of their extent; else as
+/// projections.
+[[nodiscard]] std::vector<PlotPanel> planar_or_projections(const std::vector<SpaceCurve>& curves);
 
 /// Side by side: seen along y, z and x, a millimetre as long in every direction of a panel.
 [[nodiscard]] std::vector<PlotPanel> projections(const std::vector<SpaceCurve>& curves);

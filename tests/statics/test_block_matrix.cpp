@@ -10,7 +10,7 @@ namespace {
 
 struct Sample {
   Cliques cliques;
-  std::vector<double> slots;
+  LargeVector<double> slots;
   Eigen::MatrixXd dense;
 };
 
@@ -42,7 +42,7 @@ Sample random_cliques(Index vertices, int count, unsigned seed) {
   return sample;
 }
 
-Eigen::MatrixXd dense_of(const BlockPattern& pattern, const std::vector<double>& blocks) {
+Eigen::MatrixXd dense_of(const BlockPattern& pattern, const LargeVector<double>& blocks) {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * pattern.vertices(), 3 * pattern.vertices());
   pattern.each([&](std::int64_t entry, Index row, Index column) {
     EXPECT_LE(column, row);
@@ -62,7 +62,7 @@ TEST(BlockMatrix, GathersAndMultipliesAsADenseMatrixDoes) {
   for (const auto& [vertices, count] : {std::pair<Index, int>{1, 1}, {1, 3}, {6, 4}, {40, 60}, {200, 30}}) {
     const Sample sample = random_cliques(vertices, count, static_cast<unsigned>(vertices + count));
     const BlockPattern pattern(vertices, sample.cliques);
-    std::vector<double> blocks, shared;
+    LargeVector<double> blocks, shared;
     pattern.gather(sample.slots, blocks, alone);
     pattern.gather(sample.slots, shared, pair);
     EXPECT_EQ(blocks, shared);
@@ -88,8 +88,8 @@ TEST(BlockMatrix, VerticesOfNoCliqueHaveNoEntries) {
   const BlockPattern pattern(5, cliques);
   EXPECT_EQ(pattern.entries(), 3);
   Team alone(1);
-  std::vector<double> blocks;
-  pattern.gather(std::vector<double>(27, 1), blocks, alone);
+  LargeVector<double> blocks;
+  pattern.gather(LargeVector<double>(27, 1), blocks, alone);
   Points product;
   pattern.multiply(blocks, Points::Ones(5, 3), product, alone);
   EXPECT_TRUE(product.row(0).isZero(0));
@@ -101,7 +101,7 @@ TEST(BlockMatrix, VerticesOfNoCliqueHaveNoEntries) {
 TEST(BlockMatrix, NoVertexAtAll) {
   Team alone(1);
   const BlockPattern pattern(0, {});
-  std::vector<double> blocks;
+  LargeVector<double> blocks;
   pattern.gather({}, blocks, alone);
   Points product;
   pattern.multiply(blocks, Points(0, 3), product, alone);

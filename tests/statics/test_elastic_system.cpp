@@ -72,7 +72,7 @@ void expect_consistent(const Model& model, const Eigen::VectorXd& actuation) {
   EXPECT_GT(gradient.norm(), 1);
   EXPECT_LT((gradient - difference(energy_at, positions, 1e-4)).norm(), 1e-7 * gradient.norm());
 
-  std::vector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 5.0), blocks;
+  LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 5.0), blocks;
   system.stiffness(actuation, positions, false, scratch, slots, alone);
   pattern.gather(slots, blocks, alone);
   for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -143,7 +143,7 @@ TEST(ElasticSystem, ProjectedStiffnessIsPositive) {
   const BlockPattern pattern(n, cliques);
   ElasticSystem::Scratch scratch = system.make_scratch();
   const Points positions = model.rest * Eigen::Vector3d(0.5, 0.9, 0.9).asDiagonal() + noise(n, 0.3, 5);
-  std::vector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back())), blocks;
+  LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 0.0), blocks;
   const auto lowest = [&](bool projected) {
     system.stiffness(Actuation::Ones(3), positions, projected, scratch, slots, alone);
     pattern.gather(slots, blocks, alone);

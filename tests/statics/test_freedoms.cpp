@@ -73,7 +73,7 @@ Eigen::MatrixXd tangent_of(const Sample& sample) {
   return t;
 }
 
-Eigen::MatrixXd dense_of(const BlockColumns& columns, const std::vector<double>& values) {
+Eigen::MatrixXd dense_of(const BlockColumns& columns, const LargeVector<double>& values) {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(columns.size(), columns.size());
   for (Index j = 0; j < columns.nodes(); ++j)
     for (Index e = columns.starts[j]; e < columns.starts[j + 1]; ++e) {
@@ -87,10 +87,10 @@ Eigen::MatrixXd dense_of(const BlockColumns& columns, const std::vector<double>&
 }
 
 /// Random blocks in the pattern, those on the diagonal symmetric.
-std::vector<double> random_blocks(const BlockPattern& pattern, Eigen::MatrixXd& dense) {
+LargeVector<double> random_blocks(const BlockPattern& pattern, Eigen::MatrixXd& dense) {
   std::mt19937 engine(4);
   std::normal_distribution<double> normal;
-  std::vector<double> blocks(9 * static_cast<std::size_t>(pattern.entries()));
+  LargeVector<double> blocks(9 * static_cast<std::size_t>(pattern.entries()));
   dense = Eigen::MatrixXd::Zero(3 * pattern.vertices(), 3 * pattern.vertices());
   pattern.each([&](std::int64_t entry, Index row, Index column) {
     Mat3 block = Mat3::NullaryExpr([&] { return normal(engine); });
@@ -152,10 +152,10 @@ TEST(Freedoms, MovedFarRegionsKeepTheirShapeAndSupportsTheirPlace) {
 TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
   const Sample sample(held_robot());
   Eigen::MatrixXd dense;
-  const std::vector<double> blocks = random_blocks(*sample.pattern, dense);
+  const LargeVector<double> blocks = random_blocks(*sample.pattern, dense);
   const Eigen::MatrixXd t = tangent_of(sample), expected = t.transpose() * dense * t;
   Team alone(1), pair(2);
-  std::vector<double> values, shared;
+  LargeVector<double> values, shared;
   const Points none = Points::Zero(sample.model.rest.rows(), 3);
   sample.freedoms->reduce_matrix(blocks, none, sample.positions, values, alone);
   sample.freedoms->reduce_matrix(blocks, none, sample.positions, shared, pair);
@@ -168,14 +168,14 @@ TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
 TEST(Freedoms, ReducedMatrixIsTheSlopeOfTheReducedGradient) {
   const Sample sample(held_robot());
   Eigen::MatrixXd dense;
-  const std::vector<double> blocks = random_blocks(*sample.pattern, dense);
+  const LargeVector<double> blocks = random_blocks(*sample.pattern, dense);
   Team alone(1);
   const auto gradient_at = [&](const Points& positions) {
     Points gradient;
     sample.pattern->multiply(blocks, positions, gradient, alone);
     return gradient;
   };
-  std::vector<double> values;
+  LargeVector<double> values;
   sample.freedoms->reduce_matrix(blocks, gradient_at(sample.positions), sample.positions, values, alone);
   const Eigen::MatrixXd matrix = dense_of(sample.freedoms->columns(), values);
   constexpr double reach = 1e-5;

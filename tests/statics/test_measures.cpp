@@ -84,7 +84,7 @@ TEST(Measures, GradientAndSecondDerivativeAgreeWithDifferences) {
     const Index n = static_cast<Index>(model.rest.rows());
     const BlockPattern pattern(n, cliques);
     const Points positions = model.rest + noise(n, 0.8, 1);
-    std::vector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 7.0), blocks;
+    LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 7.0), blocks;
     for (Index a = 0; a < 5; ++a) {
       Points gradient;
       const double value = measures.value(a, positions, &gradient);
@@ -127,7 +127,7 @@ TEST(Measures, ASegmentWithoutLengthPullsNowhere) {
   Points gradient;
   EXPECT_NEAR(measures.value(0, flat, &gradient), 0, 1e-12);
   EXPECT_TRUE(gradient.allFinite());
-  std::vector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()));
+  LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 0.0);
   Team pair(2);
   measures.second_derivatives(flat, Eigen::VectorXd::Ones(1), slots, pair);
   for (const double value : slots) EXPECT_TRUE(std::isfinite(value));

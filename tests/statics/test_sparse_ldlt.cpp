@@ -30,7 +30,7 @@ Links grid_links(int nx, int ny, int nz) {
 /// A random symmetric block matrix in its elimination order, and the same one dense.
 struct Sample {
   BlockColumns pattern;
-  std::vector<double> values;
+  LargeVector<double> values;
   Eigen::MatrixXd dense;
 };
 

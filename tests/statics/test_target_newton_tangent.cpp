@@ -65,7 +65,7 @@ TEST(TargetTangent, MatrixIsTheDerivativeWhereThatIsSymmetric) {
   c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
   TargetShapeSystem::Scratch out = c.system.make_scratch();
   c.system.residual_change(c.local, along, out, c.alone);
-  std::vector<double> slots, blocks;
+  LargeVector<double> slots, blocks;
   matrix.assemble(c.local, false, slots, blocks, c.alone);
   Points product;
   matrix.pattern().multiply(blocks, along, product, c.alone);

@@ -111,6 +111,16 @@ void SvgCanvas::polyline(const std::vector<SvgPoint>& points, const SvgStroke& s
   text_ += "/>\n";
 }
 
+void SvgCanvas::segments(const std::vector<SvgPoint>& points, const SvgStroke& stroke) {
+  text_ += "<path class=\"segments\" d=\"";
+  for (std::size_t i = 0; i + 1 < points.size(); i += 2)
+    text_ += (i == 0 ? "M" : "\nM") + pixels(points[i].x) + "," + pixels(points[i].y) + "L" + pixels(points[i + 1].x) +
+             "," + pixels(points[i + 1].y);
+  text_ += "\"";
+  add_stroke(stroke);
+  text_ += "/>\n";
+}
+
 void SvgCanvas::marks(const std::vector<SvgPoint>& points, int shape, double radius, const SvgStroke& stroke) {
   text_ += "<path class=\"marks\" d=\"";
   for (std::size_t i = 0; i < points.size(); ++i) text_ += (i == 0 ? "" : "\n") + mark_path(points[i], shape, radius);
@@ -151,7 +161,7 @@ double svg_text_width(const std::string& text, double size) {
     const bool narrow = c == ' ' || c == '.' || c == ',' || c == ':' || c == 'i' || c == 'l' || c == '\'' || c == '|';
     const bool wide =
         (c >= 'A' && c <= 'Z') || c == 'm' || c == 'w' || c == '%' || (static_cast<unsigned char>(c) > 0x7F);
-    ems += narrow ? 0.32 : wide ? 0.85 : 0.58;
+    ems += narrow ? 0.34 : wide ? 0.85 : 0.62;
   }
   return ems * size;
 }

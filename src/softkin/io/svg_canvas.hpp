@@ -41,6 +41,8 @@ class SvgCanvas {
   void line(SvgPoint from, SvgPoint to, const SvgStroke& stroke);
   void rectangle(SvgPoint low, SvgPoint high, const SvgStroke& stroke, const std::string& name);
   void polyline(const std::vector<SvgPoint>& points, const SvgStroke& stroke);
+  /// From every first of two points to the second.
+  void segments(const std::vector<SvgPoint>& points, const SvgStroke& stroke);
   /// shape: from 0 to svg_mark_shapes - 1.
   void marks(const std::vector<SvgPoint>& points, int shape, double radius, const SvgStroke& stroke);
   /// What follows under clip-path="url(#name)" shows inside the rectangle alone.
@@ -60,6 +62,9 @@ class SvgCanvas {
 
 /// About the width of text in a sans-serif font, rather too much [pixel].
 [[nodiscard]] double svg_text_width(const std::string& text, double size);
+
+/// By how much bold text is wider.
+inline constexpr double svg_bold = 1.15;
 
 /// text, or as much of its beginning with "..." as fits into a width.
 [[nodiscard]] std::string svg_fitted(const std::string& text, double size, double width);

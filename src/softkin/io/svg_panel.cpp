@@ -18,7 +18,7 @@ constexpr double least_equal_height = 110;
 // colours of one lightness would be one grey: these differ in lightness, the dashes and marks in form
 constexpr std::array<const char*, 6> colors{"#0b5394", "#c2410c", "#15803d", "#7e22ce", "#000000", "#0891b2"};
 constexpr std::array<const char*, 6> dashes{"", "7 3", "2 2.5", "9 3 2 3", "13 4", "5 2 1.5 2 1.5 2"};
-constexpr const char *ink = "#000000", *grid = "#e2e2e2", *paper = "#ffffff";
+constexpr const char *ink = "#000000", *grid = "#e2e2e2", *paper = "#ffffff", *pale = "#b4b4b4";
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -149,6 +149,7 @@ int SvgPanel::style_of(std::size_t series) const {
 }
 
 SvgStroke SvgPanel::stroke_of(std::size_t series) const {
+  if (panel_.series[series].pale) return {pale, panel_.series[series].width, "", "none"};
   const auto style = static_cast<std::size_t>(style_of(series));
   return {colors[style % colors.size()], panel_.series[series].width, dashes[style % dashes.size()], "none"};
 }
@@ -186,7 +187,7 @@ void SvgPanel::draw(SvgCanvas& canvas, SvgPoint corner, int number) const {
 void SvgPanel::draw_title(SvgCanvas& canvas, SvgPoint corner) const {
   if (panel_.title.empty()) return;
   canvas.text({{corner.x + left_ + frame_width() / 2, corner.y + title_size},
-               svg_fitted(panel_.title, title_size, frame_width()),
+               svg_fitted(panel_.title, title_size * svg_bold, frame_width()),
                title_size,
                SvgAnchor::middle,
                true,
@@ -269,7 +270,10 @@ void SvgPanel::draw_series(SvgCanvas& canvas, SvgPoint low, SvgPoint high, int n
     for (std::size_t k = 0; k < series.x.size(); ++k) points.push_back({x.at(series.x[k]), y.at(series.y[k])});
     canvas.open("series", "clip-path=\"url(#" + clip + ")\"");
     SvgStroke stroke = stroke_of(i);
-    if (series.line && points.size() > 1) canvas.polyline(thinned_line(points), stroke);
+    if (series.line && series.pairs)
+      canvas.segments(points, stroke);
+    else if (series.line && points.size() > 1)
+      canvas.polyline(thinned_line(points), stroke);
     stroke = {stroke.color, 1.2, "", paper};
     const bool alone = !series.line || points.size() == 1;
     if (!points.empty() && (series.marks || alone))

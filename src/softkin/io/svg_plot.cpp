@@ -101,7 +101,7 @@ std::string svg_text(const Plot& plot) {
   double y = margin;
   if (!plot.title.empty()) {
     canvas.text({{plot.width / 2, y + title_size},
-                 svg_fitted(plot.title, title_size, plot.width - 2 * margin),
+                 svg_fitted(plot.title, title_size * svg_bold, plot.width - 2 * margin),
                  title_size,
                  SvgAnchor::middle,
                  true,

@@ -16,6 +16,15 @@ constexpr double resolution_of_tolerance = 0.1;
 /// Another minimum must be so much better than the first to be worth a jump.
 constexpr double worthwhile = 0.99;
 
+void check_size(const Model& model, const Sensitivity& given) {
+  const std::size_t m = model.actuators.size();
+  const auto fits = [&](const Points& p) { return p.rows() == model.rest.rows() && p.allFinite(); };
+  if (given.positions.size() != m || given.multipliers.rows() != static_cast<Index>(m) ||
+      given.multipliers.cols() != static_cast<Index>(m) ||
+      !std::all_of(given.positions.begin(), given.positions.end(), fits))
+    throw InvalidInput("the sensitivity at the start is of another robot, or not finite");
+}
+
 void check_options(const Model& model, const State& start, const InverseOptions& options) {
   const auto m = static_cast<Index>(model.actuators.size());
   if (m == 0) throw InvalidInput("inverse kinematics needs a robot with an actuator");
@@ -29,8 +38,7 @@ void check_options(const Model& model, const State& start, const InverseOptions&
                        " entries, the robot " + std::to_string(m) + " actuators");
   if (options.preferred.size() > 0) check_actuation(model, options.preferred);
   if (start.actuation.size() > 0) check_actuation(model, start.actuation);
-  if (options.start_sensitivity != nullptr && static_cast<Index>(options.start_sensitivity->positions.size()) != m)
-    throw InvalidInput("the sensitivity at the start is of another robot");
+  if (options.start_sensitivity != nullptr) check_size(model, *options.start_sensitivity);
 }
 
 std::vector<Index> free_actuators(const Model& model, const InverseOptions& options) {
@@ -216,7 +224,6 @@ class Inverse {
       if (!(pose.idle[i] > 0)) continue;
       const Index a = response_.free()[static_cast<std::size_t>(i)];
       state.actuation[a] = std::max(state.actuation[a], preferred[a]);
-      state.multipliers[a] = 0;
     }
   }
 

@@ -18,7 +18,8 @@ struct InverseOptions {
                                // the start's
   double preferred_tolerance = 1e-3;  // > 0; distance from the nearest such actuation, share of each range [-]; newton
   std::vector<bool> free{};           // m: actuators that may change; empty: all
-  const Sensitivity* start_sensitivity = nullptr;  // of the start, such as the last result's; null: is computed
+  const Sensitivity* start_sensitivity = nullptr;  // of the start, an equilibrium, such as the last
+                                                   // result's; null: is computed
   StaticsOptions statics{};
 };
 

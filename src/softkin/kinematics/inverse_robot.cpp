@@ -11,8 +11,6 @@ namespace softkin {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
-/// A tension so small that it changes nothing, yet marks a cable as taut for Statics::sensitivity.
-constexpr double faintest_tension = 1e-200;
 /// Share of the way below which an equilibrium on it is not worth having.
 constexpr double least_way = 0.02;
 
@@ -74,7 +72,8 @@ Pose RobotResponse::pose_of(Equilibrium equilibrium, bool taut) const {
   return pose;
 }
 
-/// A cable whose path is shorter than its range allows stays slack.
+/// Statics::sensitivity counts a cable as taut that is as long as its path. One whose path is shorter than its range
+/// allows stays slack.
 void RobotResponse::tauten(Pose& pose) const {
   State& state = pose.equilibrium.state;
   for (std::size_t i = 0; i < cables_.size(); ++i) {
@@ -85,7 +84,6 @@ void RobotResponse::tauten(Pose& pose) const {
     const double path = achieved_ratio(model_, cable, state.positions);
     if (path < cable.low) continue;
     state.actuation[a] = std::min(state.actuation[a], path);
-    state.multipliers[a] = faintest_tension;
     pose.idle[cables_[i]] = 1;
   }
 }
@@ -122,7 +120,8 @@ Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& f
 
 bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   const State& state = at.equilibrium.state;
-  slopes.sensitivity = statics_.sensitivity(state, options_.statics);
+  const bool given = options_.start_sensitivity != nullptr && history_.empty() && at.idle.isZero(0);
+  slopes.sensitivity = given ? *options_.start_sensitivity : statics_.sensitivity(state, options_.statics);
   if (!slopes.sensitivity.regular) return false;
   const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity);
   const auto free = static_cast<Index>(free_.size());

@@ -11,8 +11,10 @@ namespace {
 constexpr double first_radius = 0.5, least_radius = 1e-7;
 constexpr double enough = 1e-4, good = 0.75, poor = 0.25;  // actual reduction over that predicted
 /// Slopes are updated instead of computed where the norm of the terms has become so much smaller.
-constexpr double quick = 0.2;
-constexpr double least_sideways = 0.1;   // of the preferred tolerance
+constexpr double quick = 0.1;
+constexpr double least_sideways = 0.1;  // of the preferred tolerance
+/// A step that is to leave less than this share of the errors meets the goals; what follows it shrinks by the other.
+constexpr double meets = 0.01, shrinks = 0.5;
 constexpr double relative_slope = 1e-5;  // of the norm of the slopes, at which nothing helps
 
 class Search {
@@ -93,7 +95,10 @@ class Search {
     const double predicted = predicted_reduction(pose(), result_.slopes, curvature(), move);
     const double actual = 0.5 * (pose().terms.squaredNorm() - trial.terms.squaredNorm());
     choose_model(move, actual);
-    if (!(actual > 0) || !(actual >= enough * predicted)) return fresh_ ? shorten() : look_again();
+    if (!(actual > 0) || !(actual >= enough * predicted)) {
+      if (leads_on(trial)) return take(std::move(trial), move);
+      return fresh_ ? shorten() : look_again();
+    }
     const double length = move.cwiseAbs().maxCoeff();
     if (outcome == Response::Outcome::halfway || actual < poor * predicted) {
       limits_.radius = std::max(0.5 * length, 10 * least_radius);
@@ -101,6 +106,18 @@ class Search {
       limits_.radius = std::min(1.0, 2 * limits_.radius);
     }
     take(std::move(trial), move);
+  }
+
+  /// Where actuators move the goals unequally far, the way to them is a narrow bend: a step that was to meet them and
+  /// increases the errors is good if the one that follows it is much shorter (Deuflhard 2011: natural monotonicity).
+  bool leads_on(const Pose& trial) {
+    const double length = step_.move.norm();
+    if (!fresh_ || !(step_.predicted_norm < meets * pose().terms.norm()) || !(length < most_bend_ * shrinks))
+      return false;
+    const InverseStep next = find_step(trial, result_.slopes, none_, trial.shares, limits_);
+    if (!(next.move.norm() < shrinks * length)) return false;
+    most_bend_ = length;
+    return true;
   }
 
   void end_at_once(SearchEnd end) {
@@ -186,6 +203,7 @@ class Search {
   Pose best_;  // reaches the goals, nearest to the preferred actuation so far
   Slopes best_slopes_;
   double best_distance_ = 0;
+  double most_bend_ = 10;  // longest step that may increase the errors, all shares together
   bool fresh_ = false, best_fresh_ = false, use_secant_ = false, finished_ = false;
 };
 

@@ -67,8 +67,7 @@ Eigen::VectorXd sideways_move(const Pose& pose, const Eigen::MatrixXd& blind, co
   const Eigen::VectorXd weights = weights_of(pose, preferred);
   const Eigen::MatrixXd h = blind.transpose() * weights.asDiagonal() * blind;
   const Eigen::VectorXd g = blind.transpose() * weights.cwiseProduct(pose.shares + move - preferred);
-  const Eigen::VectorXd along = solve_small_program(h, g, region.rows * blind, region.bounds - region.rows * move,
-                                                    Eigen::VectorXd::Zero(blind.cols()));
+  const Eigen::VectorXd along = solve_small_program(h, g, region.rows * blind, region.bounds - region.rows * move);
   return blind * along;
 }
 
@@ -91,8 +90,7 @@ InverseStep find_step(const Pose& pose, const Slopes& slopes, const Eigen::Matri
   const Eigen::MatrixXd normal = slopes.terms.transpose() * slopes.terms;
   InverseStep step;
   step.move = solve_small_program(made_definite(normal + curvature, limits.resolution_mm),
-                                  slopes.terms.transpose() * pose.terms, region.rows, region.bounds,
-                                  Eigen::VectorXd::Zero(pose.shares.size()));
+                                  slopes.terms.transpose() * pose.terms, region.rows, region.bounds);
   step.predicted = predicted_reduction(pose, slopes, curvature, step.move);
   step.predicted_norm = (pose.terms + slopes.terms * step.move).norm();
   const Split split(normal, limits.resolution_mm);
@@ -115,9 +113,7 @@ double projected_slope(const Pose& pose, const Slopes& slopes) {
     region.bounds[i] = region.bounds[i] > -at_the_end ? 0 : -HUGE_VAL;
   const Eigen::Index free = pose.shares.size();
   const Eigen::VectorXd gradient = slopes.terms.transpose() * pose.terms / norm;
-  return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds,
-                             Eigen::VectorXd::Zero(free))
-      .norm();
+  return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds).norm();
 }
 
 }  // namespace softkin

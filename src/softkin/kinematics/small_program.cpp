@@ -1,6 +1,5 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
 #include <softkin/kinematics/small_program.hpp>
 #include <vector>
@@ -9,60 +8,102 @@ namespace softkin {
 
 namespace {
 
-constexpr double rounding = 1e-13;
+constexpr double rounding = 1e-12;
 
-/// Of the program on the face where the rows of `held` are equalities.
-struct FaceStep {
-  Eigen::VectorXd step, multipliers;  // multipliers in the order of held; >= 0 where a row holds the minimiser back
+class SmallProgram {
+ public:
+  SmallProgram(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, const Eigen::MatrixXd& rows,
+               const Eigen::VectorXd& bounds)
+      : factor_(h), rows_(rows), bounds_(bounds), at_(-factor_.solve(g)) {}
+
+  /// False where rounding lets it find none.
+  bool solve() {
+    for (Eigen::Index round = 0; round < 10 * (rows_.rows() + 1); ++round) {
+      const Eigen::Index row = most_violated();
+      if (row < 0) return true;
+      if (!meet(row)) return false;
+    }
+    return false;
+  }
+  [[nodiscard]] const Eigen::VectorXd& at() const { return at_; }
+
+ private:
+  [[nodiscard]] Eigen::Index most_violated() const {
+    Eigen::Index found = -1;
+    double most = 0;
+    for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
+      const double length = rows_.row(i).norm();
+      if (!(length > 0)) continue;
+      const double lack = (bounds_[i] - rows_.row(i).dot(at_)) / length;
+      if (lack > most && lack > rounding * (1 + at_.norm())) {
+        most = lack;
+        found = i;
+      }
+    }
+    return found;
+  }
+
+  /// Directions of s and of the multipliers of the rows held, per multiplier of a new row.
+  void directions(const Eigen::VectorXd& row, Eigen::VectorXd& step, Eigen::VectorXd& relief) const {
+    step = factor_.solve(row);
+    const auto count = static_cast<Eigen::Index>(held_.size());
+    if (count == 0) return relief.resize(0);
+    Eigen::MatrixXd face(count, row.size());
+    for (Eigen::Index i = 0; i < count; ++i) face.row(i) = rows_.row(held_[static_cast<std::size_t>(i)]);
+    const Eigen::MatrixXd response = factor_.solve(face.transpose());
+    relief = (face * response).ldlt().solve(face * step);
+    step -= response * relief;
+  }
+
+  /// Pushes s until it meets a row, letting go of rows that would have to pull.
+  bool meet(Eigen::Index row) {
+    const Eigen::VectorXd normal = rows_.row(row);
+    const double stiff = normal.dot(factor_.solve(normal));
+    double multiplier = 0;
+    for (;;) {
+      Eigen::VectorXd step, relief;
+      directions(normal, step, relief);
+      double dual = HUGE_VAL;
+      std::size_t leaving = 0;
+      for (std::size_t i = 0; i < held_.size(); ++i) {
+        const double rate = relief[static_cast<Eigen::Index>(i)];
+        if (rate > rounding && multipliers_[i] / rate < dual) {
+          dual = multipliers_[i] / rate;
+          leaving = i;
+        }
+      }
+      const double yielding = normal.dot(step);
+      const bool moves = yielding > rounding * stiff;
+      const double primal = moves ? (bounds_[row] - normal.dot(at_)) / yielding : HUGE_VAL;
+      const double length = std::min(dual, primal);
+      if (!std::isfinite(length)) return false;
+      if (moves) at_ += length * step;
+      for (std::size_t i = 0; i < held_.size(); ++i) multipliers_[i] -= length * relief[static_cast<Eigen::Index>(i)];
+      multiplier += length;
+      if (primal <= dual) break;
+      held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(leaving));
+      multipliers_.erase(multipliers_.begin() + static_cast<std::ptrdiff_t>(leaving));
+    }
+    held_.push_back(row);
+    multipliers_.push_back(multiplier);
+    return true;
+  }
+
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+  const Eigen::MatrixXd& rows_;
+  const Eigen::VectorXd& bounds_;
+  Eigen::VectorXd at_;
+  std::vector<Eigen::Index> held_;
+  std::vector<double> multipliers_;
 };
-
-/// By the range of the rows held: H^-1 and the Schur complement of the rows.
-FaceStep step_on_face(const Eigen::LLT<Eigen::MatrixXd>& factor, const Eigen::VectorXd& slope,
-                      const Eigen::MatrixXd& rows, const std::vector<Eigen::Index>& held) {
-  FaceStep result;
-  result.step = -factor.solve(slope);
-  const auto count = static_cast<Eigen::Index>(held.size());
-  if (count == 0) return result;
-  Eigen::MatrixXd face(count, slope.size());
-  for (Eigen::Index i = 0; i < count; ++i) face.row(i) = rows.row(held[static_cast<std::size_t>(i)]);
-  const Eigen::MatrixXd response = factor.solve(face.transpose());
-  result.multipliers = (face * response).completeOrthogonalDecomposition().solve(-face * result.step);
-  result.step += response * result.multipliers;
-  return result;
-}
 
 }  // namespace
 
 Eigen::VectorXd solve_small_program(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, const Eigen::MatrixXd& rows,
-                                    const Eigen::VectorXd& bounds, const Eigen::VectorXd& start) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(h);
-  Eigen::VectorXd at = start;
-  std::vector<Eigen::Index> held;
-  const Eigen::Index most = 20 * (rows.rows() + 1);
-  for (Eigen::Index round = 0; round < most; ++round) {
-    const FaceStep face = step_on_face(factor, g + h * at, rows, held);
-    double length = 1;
-    Eigen::Index blocking = -1;
-    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-      if (std::find(held.begin(), held.end(), i) != held.end()) continue;
-      const double approach = rows.row(i).dot(face.step);
-      if (!(approach < -rounding * rows.row(i).norm() * face.step.norm())) continue;
-      const double reach = std::max(0.0, (rows.row(i).dot(at) - bounds[i]) / -approach);
-      if (reach < length) {
-        length = reach;
-        blocking = i;
-      }
-    }
-    at += length * face.step;
-    if (blocking >= 0) {
-      held.push_back(blocking);
-      continue;
-    }
-    Eigen::Index worst = 0;
-    if (held.empty() || face.multipliers.minCoeff(&worst) >= 0) break;
-    held.erase(held.begin() + worst);
-  }
-  return at;
+                                    const Eigen::VectorXd& bounds) {
+  SmallProgram program(h, g, rows, bounds);
+  if (!program.solve()) return Eigen::VectorXd::Zero(g.size());
+  return program.at();
 }
 
 }  // namespace softkin

@@ -35,7 +35,8 @@ Eigen::VectorXd move_to(const Eigen::VectorXd& terms, const Eigen::MatrixXd& slo
   rows << Eigen::MatrixXd::Identity(m, m), -Eigen::MatrixXd::Identity(m, m);
   Eigen::VectorXd bounds(2 * m);
   bounds << -shares, shares.array() - 1;
-  return solve_small_program(h, slopes.transpose() * terms, rows, bounds, Eigen::VectorXd::Zero(m));
+  bounds = bounds.cwiseMin(0);  // rounding
+  return solve_small_program(h, slopes.transpose() * terms, rows, bounds);
 }
 
 void check_path(const MarkerPath& path) {
@@ -127,9 +128,18 @@ void PathFollower::resume(std::size_t waypoint, State at) {
   slopes_before_.resize(0, 0);
 }
 
+/// As solve_inverse tells, before it has begun.
+ProgressCallback PathFollower::told(const ProgressCallback& progress) const {
+  if (!progress) return {};
+  const double error = goal_errors(model_, goals_of(path_, path_.waypoints.at(next_)), state_.positions).maxCoeff();
+  return [&progress, error, tolerance = options_.inverse.tolerance_mm](const Progress&) {
+    return progress({0, error, tolerance, -1});
+  };
+}
+
 /// Brings the robot to where the first waypoint is sought from; false where it was interrupted.
 bool PathFollower::first(InverseResult& spent, const ProgressCallback& progress) {
-  Equilibrium found = statics_.solve(options_.start, state_, options_.inverse.statics, progress);
+  Equilibrium found = statics_.solve(options_.start, state_, options_.inverse.statics, told(progress));
   ++spent.equilibria;
   if (found.report.status == Status::interrupted) return false;
   if (found.report.status == Status::converged) state_ = std::move(found.state);
@@ -145,7 +155,7 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
   State from = state_;
   bool moved = false;
   if (const std::optional<Actuation> guess = predicted(goals)) {
-    Equilibrium there = statics_.solve(*guess, state_, options_.inverse.statics, progress);
+    Equilibrium there = statics_.solve(*guess, state_, options_.inverse.statics, told(progress));
     ++spent.equilibria;
     spent.seconds += there.report.seconds;
     if (there.report.status == Status::interrupted) return spent;

@@ -17,9 +17,9 @@ namespace softkin {
 struct TrajectoryOptions {
   InverseOptions inverse{};  // start_sensitivity is set here; other_starts is for the first waypoint alone, as a jump
                              // to another shape would tear the path
-  bool predict = true;  // newton: the next actuation from the Jacobian and its change
-  Actuation start{};    // m: from where the first waypoint is sought, such as that of the nearest sample of a
-                        // workspace; empty: rest
+  bool predict = true;       // newton: the next actuation from the Jacobian and its change
+  Actuation start{};         // m: from where the first waypoint is sought, such as that of the nearest sample of a
+                             // workspace; empty: rest
 };
 
 /// Follows a path: inverse kinematics waypoint by waypoint, each from the solution before.
@@ -44,6 +44,7 @@ class PathFollower {
  private:
   [[nodiscard]] Eigen::VectorXd shares_of(const Actuation& actuation) const;
   [[nodiscard]] Actuation actuation_of(const Eigen::VectorXd& shares) const;
+  [[nodiscard]] ProgressCallback told(const ProgressCallback& progress) const;
   [[nodiscard]] bool first(InverseResult& spent, const ProgressCallback& progress);
   [[nodiscard]] std::optional<Actuation> predicted(const std::vector<Goal>& goals) const;
   void learn(const std::vector<Goal>& goals, const InverseResult& found);

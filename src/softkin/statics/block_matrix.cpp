@@ -55,7 +55,7 @@ BlockPattern::BlockPattern(Index vertices, const Cliques& cliques) {
   });
 }
 
-void BlockPattern::gather(const std::vector<double>& slots, std::vector<double>& blocks, Team& team) const {
+void BlockPattern::gather(const LargeVector<double>& slots, LargeVector<double>& blocks, Team& team) const {
   blocks.resize(9 * columns_.size());
   team.pieces(vertices(), [&](Index begin, Index end) {
     double block[9];
@@ -66,7 +66,7 @@ void BlockPattern::gather(const std::vector<double>& slots, std::vector<double>&
   });
 }
 
-void BlockPattern::multiply(const std::vector<double>& blocks, const Points& x, Points& result, Team& team) const {
+void BlockPattern::multiply(const LargeVector<double>& blocks, const Points& x, Points& result, Team& team) const {
   result.resize(x.rows(), 3);
   team.pieces(vertices(), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
 #include <span>
 #include <vector>
@@ -25,10 +26,10 @@ class BlockPattern {
   BlockPattern(Index vertices, const Cliques& cliques);
 
   /// Sums the blocks of all cliques, 9 values a slot by rows, into those of the matrix, 9 an entry by rows.
-  void gather(const std::vector<double>& slots, std::vector<double>& blocks, Team& team) const;
+  void gather(const LargeVector<double>& slots, LargeVector<double>& blocks, Team& team) const;
 
   /// Block of one entry: the sum of its slots, by rows.
-  void sum(const std::vector<double>& slots, std::int64_t entry, double (&block)[9]) const {
+  void sum(const LargeVector<double>& slots, std::int64_t entry, double (&block)[9]) const {
     for (double& value : block) value = 0;
     for (std::int64_t s = source_starts_[entry]; s < source_starts_[entry + 1]; ++s) {
       const double* slot = slots.data() + 9 * (sources_[s] / 2);
@@ -42,7 +43,7 @@ class BlockPattern {
   }
 
   /// result = A x, both 3 values per vertex.
-  void multiply(const std::vector<double>& blocks, const Points& x, Points& result, Team& team) const;
+  void multiply(const LargeVector<double>& blocks, const Points& x, Points& result, Team& team) const;
 
   [[nodiscard]] Index vertices() const { return static_cast<Index>(starts_.size()) - 1; }
   [[nodiscard]] std::int64_t entries() const { return static_cast<std::int64_t>(columns_.size()); }

@@ -236,7 +236,7 @@ void ElasticSystem::add_cliques(Cliques& cliques) {
 }
 
 void ElasticSystem::stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected,
-                              Scratch& scratch, std::vector<double>& slots, Team& team) const {
+                              Scratch& scratch, LargeVector<double>& slots, Team& team) const {
   stretch_layers(actuation, scratch);
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     constexpr int matrices = K * (K + 1) / 2;

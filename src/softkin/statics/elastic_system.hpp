@@ -38,7 +38,7 @@ class ElasticSystem {
 
   /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
   void stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected, Scratch& scratch,
-                 std::vector<double>& slots, Team& team) const;
+                 LargeVector<double>& slots, Team& team) const;
 
   /// What the linear step lacks to turn the elements instead of shearing them (energy/turning.hpp), a pull for each
   /// vertex: residual of a system with the matrix below.

@@ -193,7 +193,7 @@ void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double sc
 /// block_of(entry, block): a block of the matrix over vertices, by rows.
 template <class BlockOf>
 void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Points& positions,
-                      std::vector<double>& values, Team& team) const {
+                      LargeVector<double>& values, Team& team) const {
   values.resize(static_cast<std::size_t>(columns_.offsets.back()));
   team.pieces(columns_.nodes(), [&](Index begin, Index end) {
     double block[9];
@@ -248,16 +248,16 @@ void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Poi
   }
 }
 
-void Freedoms::reduce_matrix(const std::vector<double>& blocks, const Points& gradient, const Points& positions,
-                             std::vector<double>& values, Team& team) const {
+void Freedoms::reduce_matrix(const LargeVector<double>& blocks, const Points& gradient, const Points& positions,
+                             LargeVector<double>& values, Team& team) const {
   const auto block_of = [&](std::int64_t entry, double(&block)[9]) {
     std::copy(blocks.data() + 9 * entry, blocks.data() + 9 * (entry + 1), block);
   };
   reduce(block_of, gradient, positions, values, team);
 }
 
-void Freedoms::reduce_matrix(const BlockPattern& pattern, const std::vector<double>& slots, const Points& gradient,
-                             const Points& positions, std::vector<double>& values, Team& team) const {
+void Freedoms::reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
+                             const Points& positions, LargeVector<double>& values, Team& team) const {
   const auto block_of = [&](std::int64_t entry, double(&block)[9]) { pattern.sum(slots, entry, block); };
   reduce(block_of, gradient, positions, values, team);
 }

@@ -30,10 +30,10 @@ class Freedoms {
   /// The second derivative in the unknowns of an energy with the given gradient and Hessian in x: T^T H T and, for
   /// turns, what the gradient adds. values: of columns(). The Hessian is given by its blocks, or by the pattern's
   /// slots.
-  void reduce_matrix(const std::vector<double>& blocks, const Points& gradient, const Points& positions,
-                     std::vector<double>& values, Team& team) const;
-  void reduce_matrix(const BlockPattern& pattern, const std::vector<double>& slots, const Points& gradient,
-                     const Points& positions, std::vector<double>& values, Team& team) const;
+  void reduce_matrix(const LargeVector<double>& blocks, const Points& gradient, const Points& positions,
+                     LargeVector<double>& values, Team& team) const;
+  void reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
+                     const Points& positions, LargeVector<double>& values, Team& team) const;
 
   /// Puts what is fixed at rest + share (held - rest), and rigid regions into the pose that fits them best.
   void hold(double share, Points& positions) const;
@@ -54,7 +54,7 @@ class Freedoms {
   };
 
   template <class BlockOf>
-  void reduce(const BlockOf& block_of, const Points& gradient, const Points& positions, std::vector<double>& values,
+  void reduce(const BlockOf& block_of, const Points& gradient, const Points& positions, LargeVector<double>& values,
               Team& team) const;
   void find_regions(const Model& model);
   void number(const BlockPattern& pattern);

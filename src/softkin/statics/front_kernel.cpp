@@ -136,7 +136,7 @@ Index factor_front(double* front, Index size, Index pivots, double least, double
     for (Index c = 0; c < width; ++c)
       for (Index k = 0; k < c; ++k) work.corner[c * block + k] = *at(begin + c, begin + k);
     const Index panels = (rest + panel_rows - 1) / panel_rows;
-    const auto panel = [&](std::vector<double>& all, Index p) {
+    const auto panel = [&](LargeVector<double>& all, Index p) {
       return all.data() + static_cast<std::ptrdiff_t>(p) * width * panel_rows;
     };
     const double depth = width, rows = rest;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
 #include <softkin/core/types.hpp>
 #include <vector>
@@ -8,7 +9,7 @@ namespace softkin {
 
 /// Work space of factor_front, kept from front to front.
 struct FrontWork {
-  std::vector<double> scaled, plain;  // rows below the pivot block: L, and L D, eight rows to a panel
+  LargeVector<double> scaled, plain;  // rows below the pivot block: L, and L D, eight rows to a panel
   std::vector<double> corner;         // L of the pivot block, by rows
 };
 

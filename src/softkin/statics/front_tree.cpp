@@ -219,8 +219,10 @@ void place_rows(const BlockColumns& pattern, FrontTree& tree) {
 
 }  // namespace
 
-FrontTree make_front_tree(const BlockColumns& pattern) {
+FrontTree make_front_tree(BlockColumns columns) {
   FrontTree tree;
+  tree.pattern = std::move(columns);
+  const BlockColumns& pattern = tree.pattern;
   const std::vector<Group> groups = Symbolic(pattern).groups();
   std::vector<Index> front_of(static_cast<std::size_t>(pattern.nodes()));
   for (std::size_t g = 0; g < groups.size(); ++g)

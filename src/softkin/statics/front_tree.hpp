@@ -25,6 +25,7 @@ struct RowRun {
 
 /// Symbolic factorisation: fronts in postorder, cut into independent pieces.
 struct FrontTree {
+  BlockColumns pattern;
   std::vector<Front> fronts;
   std::vector<Index> first_child, next_sibling;  // of each front; -1: none
   std::vector<Index> rows;                       // unknowns below each front
@@ -40,6 +41,6 @@ struct FrontTree {
 /// source  supernodes with relaxed amalgamation as in Ashcraft and Grimes 1989; a front joins its parent where the
 /// zeros
 ///         that this stores are few
-[[nodiscard]] FrontTree make_front_tree(const BlockColumns& pattern);
+[[nodiscard]] FrontTree make_front_tree(BlockColumns pattern);
 
 }  // namespace softkin

@@ -203,7 +203,7 @@ void Measures::add_cliques(Cliques& cliques) {
 }
 
 void Measures::second_derivative(const Term& term, const Points& positions, double scale,
-                                 std::vector<double>& slots) const {
+                                 LargeVector<double>& slots) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   const Clique& clique = cliques_[term.clique];
   const auto count = static_cast<std::int64_t>(clique.vertices.size());
@@ -223,7 +223,7 @@ void Measures::second_derivative(const Term& term, const Points& positions, doub
                 scale * row_weight * column_weight * blocks[i][j];
 }
 
-void Measures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale, std::vector<double>& slots,
+void Measures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale, LargeVector<double>& slots,
                                   Team& team) const {
   for (std::size_t a = 0; a < terms_.size(); ++a)
     team.pieces(static_cast<Index>(terms_[a].size()), [&](Index begin, Index end) {

@@ -24,7 +24,7 @@ class Measures {
   void add_cliques(Cliques& cliques);
 
   /// Writes scale[a] times the second derivative of each actuator's measure into its slots, 9 values each.
-  void second_derivatives(const Points& positions, const Eigen::VectorXd& scale, std::vector<double>& slots,
+  void second_derivatives(const Points& positions, const Eigen::VectorXd& scale, LargeVector<double>& slots,
                           Team& team) const;
 
  private:
@@ -44,7 +44,7 @@ class Measures {
   [[nodiscard]] Vec3 at(Index node, const Points& positions) const;
   void spread(Index node, const Vec3& vector, Points& gradient) const;
   [[nodiscard]] Clique clique_of(const Term& term) const;
-  void second_derivative(const Term& term, const Points& positions, double scale, std::vector<double>& slots) const;
+  void second_derivative(const Term& term, const Points& positions, double scale, LargeVector<double>& slots) const;
 
   Index vertices_;
   std::vector<const EmbeddedPoint*> points_;

@@ -13,4 +13,10 @@ struct Sensitivity {
   bool regular = false;           // false: at a limit of existence or a branch; then all values are zero
 };
 
+/// Zeros, not regular.
+[[nodiscard]] inline Sensitivity no_sensitivity(Index vertices, Index actuators) {
+  return {std::vector<Points>(static_cast<std::size_t>(actuators), Points::Zero(vertices, 3)),
+          Eigen::MatrixXd::Zero(actuators, actuators), false};
+}
+
 }  // namespace softkin

@@ -147,9 +147,11 @@ Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options)
   check_start(model, at, options);
   if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
     throw InvalidInput("the sensitivity of a shape needs the actuation of which it is the equilibrium");
+  if (parts_->physical && at.multipliers.size() != at.actuation.size())
+    throw InvalidInput("the sensitivity of a shape needs the tensions and pressures of its equilibrium");
   Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));
   if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, team);
-  return parts_->target_shape->newton.sensitivity(at, team);
+  return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, team);
 }
 
 struct Neighbourhood::Parts {

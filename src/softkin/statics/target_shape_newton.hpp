@@ -27,10 +27,11 @@ class TargetShapeNewton {
              Equilibrium& result) const;
 
   /// Of an equilibrium; see Statics::sensitivity.
-  [[nodiscard]] Sensitivity sensitivity(const State& at, Team& team) const;
+  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
 
  private:
-  [[nodiscard]] std::unique_ptr<TargetShapeWorkspace> take_workspace() const;
+  /// One that was left at the shape, if there is and a shape is given.
+  [[nodiscard]] std::unique_ptr<TargetShapeWorkspace> take_workspace(const Points* shape = nullptr) const;
   void put_back(std::unique_ptr<TargetShapeWorkspace> workspace) const;
 
   const GlobalStep& global_;

@@ -78,8 +78,8 @@ void TargetShapeMatrix::add_triangle(const Triangle& triangle, const TargetStiff
     }
 }
 
-void TargetShapeMatrix::assemble(const TargetShapeSystem::Scratch& local, bool projected, std::vector<double>& slots,
-                                 std::vector<double>& blocks, Team& team) const {
+void TargetShapeMatrix::assemble(const TargetShapeSystem::Scratch& local, bool projected, LargeVector<double>& slots,
+                                 LargeVector<double>& blocks, Team& team) const {
   slots.resize(9 * static_cast<std::size_t>(slots_.back()));
   std::size_t index = 0, element = 0, triangle = 0;
   system_.sets().each([&]<int K, class Block>(const ElementSet<K, Block>& set) {

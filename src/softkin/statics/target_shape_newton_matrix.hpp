@@ -21,8 +21,8 @@ class TargetShapeMatrix {
   /// local      the scratch of that local_step
   /// projected  with every element's matrix positive semidefinite
   /// slots      work space
-  void assemble(const TargetShapeSystem::Scratch& local, bool projected, std::vector<double>& slots,
-                std::vector<double>& blocks, Team& team) const;
+  void assemble(const TargetShapeSystem::Scratch& local, bool projected, LargeVector<double>& slots,
+                LargeVector<double>& blocks, Team& team) const;
 
  private:
   /// A cable's triangle moves with the vertices that its three points are sums of.

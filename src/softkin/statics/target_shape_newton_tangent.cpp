@@ -18,7 +18,7 @@ TargetShapeUnknowns::TargetShapeUnknowns(const Model& robot, const TargetShapeSy
       system(target_shapes),
       matrix(robot, target_shapes),
       freedoms(robot, matrix.pattern()),
-      symbolic(freedoms.columns()),
+      symbolic(std::make_shared<const FrontTree>(make_front_tree(freedoms.columns()))),
       symmetric(target_shapes.is_gradient()) {}
 
 TargetShapeTangent::TargetShapeTangent(const TargetShapeUnknowns& unknowns)

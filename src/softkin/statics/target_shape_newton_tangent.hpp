@@ -14,8 +14,8 @@ struct TargetShapeUnknowns {
   const TargetShapeSystem& system;
   TargetShapeMatrix matrix;
   Freedoms freedoms;
-  SparseLdlt symbolic;  // copied by every tangent
-  bool symmetric;       // is the residual's derivative symmetric
+  std::shared_ptr<const FrontTree> symbolic;
+  bool symmetric;  // is the residual's derivative symmetric
 };
 
 /// The derivative K of minus the residual over the unknowns at one shape, and its solutions: by its factor where it is
@@ -51,10 +51,14 @@ class TargetShapeTangent {
   bool solve(const TargetShapeSystem::Scratch& local, const Points& positions, const Eigen::VectorXd& right,
              double tolerance, Team& team, Eigen::VectorXd& step);
 
-  /// Solves K step = right for the exact K at a shape near that of the factor, symmetric or not, to rounding. False
-  /// where GMRES does not get there.
+  /// Solves K steps = rights, a column each, for the exact K at a shape near that of the factor, symmetric or not, by
+  /// conjugate residuals.
+  ///
+  /// most_left  share of a preconditioned right-hand side that the first round may leave
+  /// returns    false where so many rounds do not do
   [[nodiscard]] bool solve_exactly(const TargetShapeSystem::Scratch& local, const Points& positions,
-                                   const Eigen::VectorXd& right, Team& team, Eigen::VectorXd& step);
+                                   const Eigen::MatrixXd& rights, int rounds, double most_left, Team& team,
+                                   Eigen::MatrixXd& steps);
 
   [[nodiscard]] const Freedoms& freedoms() const { return unknowns_.freedoms; }
   [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
@@ -69,7 +73,7 @@ class TargetShapeTangent {
 
   const TargetShapeUnknowns& unknowns_;
   SparseLdlt factor_;
-  std::vector<double> slots_, blocks_, values_, shifted_;
+  LargeVector<double> slots_, blocks_, values_, shifted_;
   std::vector<TargetShapeSystem::Redistribution> redistributions_;
   Eigen::MatrixXd sources_, targets_;  // of the redistributions over the unknowns: factor^-1 source, target
   Eigen::MatrixXd capacitance_;        // inverse of I + targets^T sources

@@ -1,50 +1,73 @@
 #include <algorithm>
-#include <softkin/statics/gmres.hpp>
+#include <softkin/statics/conjugate_residuals.hpp>
 #include <softkin/statics/target_shape_newton.hpp>
 
 namespace softkin {
 
 namespace {
 
+/// Of the residual, seen through the preconditioner.
 constexpr double accuracy = 1e-10;
-constexpr int columns = 60, rounds = 5;
+/// What rounding may leave after a round with the factor of K itself: more, and K is singular.
+constexpr double singular = 1e-6;
+/// Rounds with a factor from nearby that cost about as much as a new factor, and with one that is never exact.
+constexpr int symmetric_rounds = 8, most_rounds = 60;
 
 }  // namespace
 
 bool TargetShapeTangent::solve_exactly(const TargetShapeSystem::Scratch& local, const Points& positions,
-                                       const Eigen::VectorXd& right, Team& team, Eigen::VectorXd& step) {
-  std::vector<Eigen::VectorXd> basis(columns + 1, Eigen::VectorXd(right.size()));
-  Eigen::VectorXd natural = right;
-  precondition(natural, team);
-  const auto product = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-    multiply(local, positions, in, out, team);
-    precondition(out, team);
+                                       const Eigen::MatrixXd& rights, int rounds, double most_left, Team& team,
+                                       Eigen::MatrixXd& steps) {
+  const auto precondition_all = [&](Eigen::MatrixXd& columns) {
+    factor_.solve(columns, team);
+    if (sources_.cols() > 0) columns -= sources_ * (capacitance_ * (targets_.transpose() * columns));
   };
-  return gmres(product, natural, accuracy, rounds, basis, step);
+  Eigen::VectorXd product(rights.rows());
+  const auto multiply_all = [&](const Eigen::MatrixXd& in, Eigen::MatrixXd& out) {
+    for (Eigen::Index i = 0; i < in.cols(); ++i) {
+      multiply(local, positions, in.col(i), product, team);
+      out.col(i) = product;
+    }
+    precondition_all(out);
+  };
+  Eigen::MatrixXd left = rights;
+  precondition_all(left);
+  if (!left.allFinite()) return false;
+  const Remainder remainder = conjugate_residuals(multiply_all, accuracy, rounds, left, steps);
+  return remainder.first <= most_left && remainder.last <= accuracy && steps.allFinite();
 }
 
-Sensitivity TargetShapeNewton::sensitivity(const State& at, Team& team) const {
-  const Index actuators = at.actuation.size();
-  Sensitivity result;
-  result.positions.assign(static_cast<std::size_t>(actuators), Points::Zero(at.positions.rows(), 3));
-  result.multipliers.setZero(actuators, actuators);
-  std::unique_ptr<TargetShapeWorkspace> workspace = take_workspace();
+Sensitivity TargetShapeNewton::sensitivity(const State& at, bool reuse_factor, Team& team) const {
+  const Index actuators = static_cast<Index>(at.actuation.size());
+  Sensitivity result = no_sensitivity(static_cast<Index>(at.positions.rows()), actuators);
+  std::unique_ptr<TargetShapeWorkspace> workspace = take_workspace(&at.positions);
   TargetShapeTangent& tangent = workspace->tangent;
   TargetShapeSystem::Scratch& local = workspace->local;
   for (auto& rotations : local.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
   (void)unknowns_.system.local_step(at.actuation, at.positions, local, team);
-  SolveReport report;
-  Sensitivity found = result;
-  found.regular = tangent.factorise(local, at.positions, false, team, report);
-  Eigen::VectorXd right, step;
-  for (Index a = 0; found.regular && a < actuators; ++a) {
+  Eigen::MatrixXd rights(unknowns_.freedoms.size(), actuators), steps;
+  for (Index a = 0; a < actuators; ++a) {
     unknowns_.system.command_change(local, a, workspace->work, team);
-    tangent.reduce(workspace->work.residual, at.positions, right);
-    found.regular = tangent.solve_exactly(local, at.positions, right, team, step);
-    unknowns_.freedoms.expand(step, at.positions, found.positions[a]);
+    unknowns_.freedoms.reduce(workspace->work.residual, at.positions, rights.col(a));
   }
+  const bool near = reuse_factor && workspace->home.rows() == at.positions.rows() && workspace->home == at.positions;
+  const auto solve = [&](int rounds, double most_left) {
+    return tangent.solve_exactly(local, at.positions, rights, rounds, most_left, team, steps);
+  };
+  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, 1);
+  if (!result.regular) {
+    SolveReport report;
+    workspace->home.resize(0, 3);
+    if (tangent.factorise(local, at.positions, false, team, report)) {
+      const bool exact = tangent.symmetric() && report.projections == 0;
+      result.regular = solve(most_rounds, exact ? singular : 1);
+    }
+    if (result.regular) workspace->home = at.positions;
+  }
+  for (Index a = 0; result.regular && a < actuators; ++a)
+    unknowns_.freedoms.expand(steps.col(a), at.positions, result.positions[a]);
   put_back(std::move(workspace));
-  return found.regular ? found : result;
+  return result;
 }
 
 }  // namespace softkin
