@@ -17,11 +17,11 @@ now() { date +%s.%N; }
 since() { awk -v a="$1" -v b="$(now)" 'BEGIN { printf "%.1f", b - a }'; }
 rows() { if [ -e "$1" ]; then grep -cv '^[#s]' "$1" || true; else echo 0; fi; }
 same() { cmp "$folder/undisturbed.csv" "$1" && echo "  the same file, byte for byte"; }
-sample() { "$softkin" workspace "$folder/finger.yaml" --samples "$samples" "$@"; }
+command=("$softkin" workspace "$folder/finger.yaml" --samples "$samples")
 
 echo "three-tendon finger, mesh of order $order, $samples samples"
 start=$(now)
-sample -o "$folder/undisturbed.csv" > "$folder/log"
+"${command[@]}" -o "$folder/undisturbed.csv" > "$folder/log"
 whole=$(since "$start")
 echo "undisturbed, all cores: $whole s; $(grep converged "$folder/log")"
 
@@ -29,7 +29,7 @@ RANDOM=1
 start=$(now)
 done_kills=0
 while [ "$done_kills" -lt "$kills" ]; do
-  sample -o "$folder/killed.csv" --resume > "$folder/log" 2>&1 &
+  "${command[@]}" -o "$folder/killed.csv" --resume > "$folder/log" 2>&1 &
   process=$!
   # anywhere in a piece of the way that leaves room for all kills
   sleep "$(awk -v w="$whole" -v k="$kills" -v r="$RANDOM" 'BEGIN { print 0.2 + 1.6 * r / 32768 * w / (k + 2) }')"
@@ -42,7 +42,7 @@ while [ "$done_kills" -lt "$kills" ]; do
   printf '%s ' "$(rows "$folder/killed.csv")"
 done
 echo "rows after each of $done_kills kills"
-sample -o "$folder/killed.csv" --resume > "$folder/log"
+"${command[@]}" -o "$folder/killed.csv" --resume > "$folder/log"
 echo "killed $done_kills times and resumed: $(since "$start") s"
 same "$folder/killed.csv"
 [ "$(cut -d, -f1 "$folder/killed.csv" | grep -v '^[#s]' | sort | uniq -d | wc -l)" -eq 0 ]
@@ -54,7 +54,7 @@ fi
 [ "$(id -u)" -ne 0 ] || export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 for ranks in 1 2; do
   start=$(now)
-  mpirun --oversubscribe -np "$ranks" "$softkin" workspace "$folder/finger.yaml" --samples "$samples" --threads 1 \
+  mpirun --oversubscribe -np "$ranks" "${command[@]}" --threads 1 \
     -o "$folder/ranks.csv" > "$folder/log"
   seconds=$(since "$start")
   echo "ranks of one thread: $ranks: $seconds s"
