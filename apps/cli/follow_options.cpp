@@ -10,15 +10,6 @@ namespace softkin::cli {
 
 namespace {
 
-CLI::Validator positive_length() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (parse_real(text, value) && value > 0) return "";
-    return "must be a length > 0 in mm, not " + text;
-  };
-  return CLI::Validator(check, "");
-}
-
 void add_path(CLI::App& command, FollowOptions& options) {
   add_scene(command, options);
   command

@@ -33,6 +33,15 @@ CLI::Validator finite_number(bool negative_too) {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator positive_length() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (parse_real(text, value) && value > 0) return "";
+    return "must be a length > 0 in mm, not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator one_of(const std::vector<std::string>& names) {
   return CLI::IsMember(names).description("");
 }

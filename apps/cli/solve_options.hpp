@@ -36,6 +36,7 @@ void check_solver(const SolveOptions& options);
 // What CLI11 says of a number in words of its own.
 [[nodiscard]] CLI::Validator integer_from(std::int64_t low, std::int64_t high);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);
+[[nodiscard]] CLI::Validator positive_length();
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& names);
 
 }  // namespace softkin::cli

@@ -132,11 +132,22 @@ class Inverse {
     settings.accuracy_mm = accuracy_mm();
     settings.preferred_tolerance = options_.preferred_tolerance;
     first.state.actuation = first.actuation;
+    if (response_.free().empty()) return stay(std::move(first));
     const Pose start = response_.pose_of(std::move(first), true);
     SearchResult found = search_inverse(response_, start, settings);
     result_.iterations = found.iterations;
     for (int i = 1; i <= options_.other_starts && unreached(found); ++i) try_from(i, start, settings, found);
     conclude(std::move(found), settings);
+  }
+
+  /// No actuator may change.
+  void stay(Equilibrium first) {
+    Pose pose = response_.pose_of(std::move(first), false);
+    result_.status = pose.miss <= 1 ? InverseStatus::reached : InverseStatus::unreachable;
+    if (pose.miss > 1) result_.remark = "no actuator may change";
+    result_.active.assign(model_.actuators.size(), 0);
+    result_.sensitivity = statics_.sensitivity(pose.equilibrium.state, options_.statics);
+    finish(std::move(pose));
   }
 
   [[nodiscard]] bool unreached(const SearchResult& found) const {
@@ -187,6 +198,11 @@ class Inverse {
     if (result_.status == InverseStatus::reached) result_.remark.clear();
     result_.slope = found.slope;
     tell_active(found, settings);
+    if (reached && found.slopes.sensitivity.regular) {
+      const int before = static_cast<int>(response_.history().size());
+      response_.release(found.pose, found.slopes, settings.preferred, settings.resolution_mm);
+      if (static_cast<int>(response_.history().size()) > before) found.slopes.sensitivity.regular = false;
+    }
     const bool same = !(found.pose.idle.array() > 0).any() && found.slopes.sensitivity.regular;
     slacken(found.pose, settings);
     if (same) {

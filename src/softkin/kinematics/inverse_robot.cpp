@@ -54,7 +54,8 @@ Actuation RobotResponse::actuation_of(const Eigen::VectorXd& shares, const Actua
   for (Index i = 0; i < shares.size(); ++i) {
     const Index a = free_[static_cast<std::size_t>(i)];
     const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
-    actuation[a] = std::clamp(actuator.low + shares[i] * width(a), actuator.low, actuator.high);
+    const double value = shares[i] < 1 ? actuator.low + shares[i] * width(a) : actuator.high;
+    actuation[a] = std::clamp(value, actuator.low, actuator.high);
   }
   return actuation;
 }
@@ -102,6 +103,23 @@ bool RobotResponse::solve(const Actuation& actuation, const State& from, Equilib
   history_.push_back({actuation, found.report.status, error, found.report.iterations});
   least_error_ = std::min(least_error_, error);
   return converged;
+}
+
+void RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm) {
+  const State& state = pose.equilibrium.state;
+  const Actuation longer = actuation_of(preferred, state.actuation);
+  Actuation released = state.actuation;
+  for (std::size_t k = 0; k < cables_.size(); ++k) {
+    const Index i = cables_[k], a = free_[static_cast<std::size_t>(i)];
+    const double tension = pose.tensions[static_cast<Index>(k)];
+    const double rate = std::abs(slopes.tensions(static_cast<Index>(k), i));
+    if (!(tension > 0) || !(longer[a] > state.actuation[a])) continue;
+    if (tension * slopes.terms.col(i).norm() < resolution_mm * rate) released[a] = longer[a];
+  }
+  Equilibrium found;
+  if (released == state.actuation || !any_left() || !solve(released, state, found)) return;
+  const Pose slack = pose_of(std::move(found), taut_);
+  if (slack.miss <= 1) pose = slack;
 }
 
 Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& from, Pose& to) {

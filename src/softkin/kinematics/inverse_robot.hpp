@@ -27,8 +27,9 @@ class RobotResponse : public Response {
   bool slopes(const Pose& at, Slopes& slopes) override;
   [[nodiscard]] bool any_left() const override { return static_cast<int>(history_.size()) < most_; }
 
-  /// From here on so many equilibria, those so far included.
-  void allow(int most) { most_ = most; }
+  /// Of a pose that reaches its goals: lets go of cables that hardly pull and are preferred longer.
+  void release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm);
+
   [[nodiscard]] bool interrupted() const { return interrupted_; }
   [[nodiscard]] const std::vector<InverseRecord>& history() const { return history_; }
   [[nodiscard]] const std::vector<Index>& free() const { return free_; }

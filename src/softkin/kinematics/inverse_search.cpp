@@ -8,7 +8,7 @@ namespace softkin {
 
 namespace {
 
-constexpr double first_radius = 0.5, least_radius = 1e-7;
+constexpr double first_radius = 0.5, least_radius = 1e-8;
 constexpr double enough = 1e-4, good = 0.75, poor = 0.25;  // actual reduction over that predicted
 /// Slopes are updated instead of computed where the norm of the terms has become so much smaller.
 constexpr double quick = 0.1;
@@ -80,7 +80,8 @@ class Search {
     const double slope = fresh_ ? result_.slope : projected_slope(pose(), result_.slopes);
     const double known = settings_.accuracy_mm / pose().terms.norm();
     return slope <= std::max(relative_slope, known) * result_.slopes.terms.norm() ||
-           step_.move.cwiseAbs().maxCoeff() <= least_radius;
+           (step_.move.cwiseAbs().maxCoeff() <= least_radius &&
+            step_.predicted_norm > (1 - poor * meets) * pose().terms.norm());
   }
 
   void advance() {

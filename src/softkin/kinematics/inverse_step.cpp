@@ -9,7 +9,7 @@ namespace softkin {
 namespace {
 
 /// A range's end, or a tension of zero, that is nearer than this share of the ranges is reached.
-constexpr double at_the_end = 1e-7;
+constexpr double at_the_end = 1e-9;
 
 /// Moves that stay in the ranges and the radius and slacken no cable: rows move >= bounds.
 struct Region {
@@ -61,6 +61,12 @@ Eigen::VectorXd weights_of(const Pose& pose, const Eigen::VectorXd& preferred) {
       .select(Eigen::VectorXd::Constant(pose.shares.size(), hardly), Eigen::VectorXd::Ones(pose.shares.size()));
 }
 
+/// What rounding leaves at the end of a range is there.
+Eigen::VectorXd ended(Eigen::VectorXd shares) {
+  for (double& share : shares) share = share < at_the_end ? 0 : share > 1 - at_the_end ? 1 : share;
+  return shares;
+}
+
 /// Moves along the blind directions to the point nearest to the preferred actuation.
 Eigen::VectorXd sideways_move(const Pose& pose, const Eigen::MatrixXd& blind, const Region& region,
                               const Eigen::VectorXd& move, const Eigen::VectorXd& preferred) {
@@ -100,8 +106,7 @@ InverseStep find_step(const Pose& pose, const Slopes& slopes, const Eigen::Matri
     step.sideways = more.cwiseAbs().maxCoeff();
     step.move += more * std::min(1.0, limits.sideways / std::max(step.sideways, 1e-300));
   }
-  const Eigen::ArrayXd shares = pose.shares.array();
-  step.move = step.move.array().max(-shares).min(1 - shares);  // of rounding
+  step.move = ended(pose.shares + step.move) - pose.shares;
   return step;
 }
 
