@@ -147,6 +147,11 @@ TEST(TargetSensitivity, WithoutReuseNothingDependsOnEarlierSolves) {
       state = used.solve(earlier, state, tight()).state;
       (void)used.sensitivity(state);
     }
+    state = used.solve(values({1.12, 1.22, 0.95}), state, tight()).state;
+    const Sensitivity reused = used.sensitivity(state), at_once = used.sensitivity(state, anew()),
+                      expected = fresh.sensitivity(state, anew());
+    EXPECT_NE(reused.positions[0], expected.positions[0]);  // another factor, other rounding
+    EXPECT_EQ(at_once.positions[0], expected.positions[0]);
     for (const bool from_rest : {false, true}) {
       const State start = from_rest ? used.rest() : state;
       const Actuation asked = values({1.15, 1.25, 0.93});
