@@ -160,7 +160,7 @@ TEST(Follow, LoadsHaveTheirUnitsInTheCommands) {
 
 TEST(Follow, AlgorithmTwoIsAsAccurateAsItIsAsked) {
   const FollowFolder folder;
-  ASSERT_EQ(folder.follow({"--method", "gradient", "--tolerance", "0.2"}).exit_code, 0);
+  ASSERT_EQ(folder.follow({"--method", "gradient"}).exit_code, 0);
   const Rows errors = read_rows(folder.out + "/errors.csv");
   for (std::size_t i = 0; i < 5; ++i) EXPECT_LE(cell(errors, i, "error_mm"), 0.2);
 }
@@ -199,6 +199,7 @@ TEST(Follow, RefusesBadPathsWithLineAndColumn) {
   folder.expect_refused({"--marker", "tip", "--max-step", "1e-9", "--tolerance", "-1"}, "--tolerance");
   folder.expect_refused({"--marker", "tip", "--plot", "a.png"}, "must end in .svg");
   folder.expect_refused({"--marker", "tip", "--solver", "local-global"}, "target-shape");
+  folder.expect_refused({"--marker", "tip", "--descents", "9"}, "--method gradient");
   folder.write("out", "a file");
   folder.expect_refused({"--marker", "tip"}, "its folder cannot be made");
 }
