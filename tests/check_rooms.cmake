@@ -6,6 +6,7 @@ set(model_sees core model)
 set(io_sees core model io)
 set(energy_sees core energy)
 set(statics_sees core model energy statics)
+set(kinematics_sees core model statics kinematics)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)

@@ -13,6 +13,9 @@ using Run = std::function<int()>;
 
 void add_compare(CLI::App& app, Run& run);
 void add_fk(CLI::App& app, Run& run);
+void add_follow(CLI::App& app, Run& run);
+void add_ik(CLI::App& app, Run& run);
 void add_mesh(CLI::App& app, Run& run);
+void add_workspace(CLI::App& app, Run& run);
 
 }  // namespace softkin::cli

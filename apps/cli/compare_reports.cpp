@@ -36,13 +36,26 @@ ReportedStep step_of(const Json& json) {
   for (const auto& [name, value] : json.at("actuation").items()) step.actuation.emplace_back(name, value.get<double>());
   for (const auto& [name, point] : json.at("markers").items()) step.markers.emplace_back(name, point_of(point));
   step.loads = loads_of(json.at("actuators"));
+  if (json.contains("time_s")) step.time = json.at("time_s").get<double>();
   step.status = json.at("status").get<std::string>();
   return step;
 }
 
+std::map<std::string, std::string> units_of(const Json& report) {
+  std::map<std::string, std::string> units;
+  if (!report.contains("actuators")) return units;
+  for (const auto& [name, actuator] : report.at("actuators").items()) {
+    const std::string unit = actuator.at("unit").template get<std::string>();
+    units[name] = unit == "ratio to rest" ? "-" : unit;
+  }
+  return units;
+}
+
 ReportedPath path_of(const std::string& file, const Json& json) {
-  ReportedPath path{
-      file, json.at("formulation").get<std::string>() + ", " + json.at("solver").at("name").get<std::string>(), {}};
+  ReportedPath path{file,
+                    json.at("formulation").get<std::string>() + ", " + json.at("solver").at("name").get<std::string>(),
+                    {},
+                    units_of(json)};
   double elapsed = 0;
   for (const Json& step : json.at("steps")) {
     elapsed += step.at("seconds").get<double>();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <optional>
 #include <softkin/core/types.hpp>
 #include <string>
 #include <utility>
@@ -13,13 +15,15 @@ struct ReportedStep {
   std::vector<std::pair<std::string, Vec3>> markers;      // in the order of the scene [mm]
   std::vector<std::pair<std::string, double>> loads;  // "air [kPa]", "tendon [N]"; none in the target-shape formulation
   std::string status;
-  double elapsed = 0;  // from the begin of the first step to the end of this one [s]
+  std::optional<double> time;  // in the path [s]
+  double elapsed = 0;          // from the begin of the first step to the end of this one [s]
 };
 
 struct ReportedPath {
   std::string file;
   std::string method;  // "physical, newton"
   std::vector<ReportedStep> steps;
+  std::map<std::string, std::string> units;  // of the commands, where the report tells them; a ratio is "-"
 };
 
 /// Throws InvalidInput where the file is not a report of `softkin fk` with at least one step.

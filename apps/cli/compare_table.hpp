@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <softkin/io/svg_plot.hpp>
 
 #include "compare_reports.hpp"
 #include "mesh_text.hpp"
@@ -17,6 +18,8 @@ class Comparison {
 
   [[nodiscard]] std::string text() const;
   [[nodiscard]] Json json() const;
+  /// Turns, distances and loads over the steps, and the marker's ways through space.
+  [[nodiscard]] Plot plot() const;
 
  private:
   /// Until the first step that turns at least so far [s]; nothing where none does.

@@ -7,12 +7,12 @@
 
 #include "command.hpp"
 #include "fk_options.hpp"
-#include "fk_outputs.hpp"
 #include "fk_robot.hpp"
 #include "fk_run.hpp"
 #include "fk_steps.hpp"
 #include "fk_table.hpp"
 #include "mesh_text.hpp"
+#include "output_files.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -29,12 +29,13 @@ int run_fk(const FkOptions& options) {
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
   const std::vector<Step> steps = asked_steps(model, options);
-  check_outputs(options, inputs, steps.size());
+  const std::vector<Output> outputs = options.outputs(steps.size());
+  check_outputs(outputs, inputs);
   line.show(-1, "assembling");
   const Statics statics(model);
   line.clear();
   catch_interrupt();
-  const OutputFolders folders(options);
+  const OutputFolders folders(outputs);
   if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
   return run_steps(model, statics, options, steps);
 }

@@ -12,29 +12,8 @@ namespace softkin::cli {
 
 namespace {
 
-constexpr int most_threads = 512;
-constexpr int most_iterations = 1'000'000'000;
-
-CLI::Validator integer_from(std::int64_t low, std::int64_t high) {
-  const auto check = [low, high](const std::string& text) -> std::string {
-    std::int64_t value = 0;
-    if (parse_integer(text, value) && value >= low && value <= high) return "";
-    return "must be an integer from " + std::to_string(low) + " to " + std::to_string(high) + ", not " + text;
-  };
-  return CLI::Validator(check, "");
-}
-
-CLI::Validator finite_number(bool negative_too) {
-  const auto check = [negative_too](const std::string& text) -> std::string {
-    double value = 0;
-    if (parse_real(text, value) && (negative_too || value >= 0)) return "";
-    return std::string("must be a finite number") + (negative_too ? "" : ", 0 or more") + ", not " + text;
-  };
-  return CLI::Validator(check, "");
-}
-
 void add_files(CLI::App& command, FkOptions& options) {
-  command.add_option("SCENE", options.scene, "Scene, YAML (docs/scene.md)")->type_name("")->required();
+  add_scene(command, options);
   command
       .add_option(
           "--path", options.path,
@@ -46,48 +25,10 @@ void add_files(CLI::App& command, FkOptions& options) {
   command.add_option("--report", options.report, "All numbers of all steps, with their strain histograms")
       ->type_name("F.json");
   command.add_option("--image", options.image, "Picture of the last shape")->type_name("F.png");
-}
-
-CLI::Validator one_of(const std::vector<std::string>& names) {
-  return CLI::IsMember(names).description("");
-}
-
-void add_solver(CLI::App& command, FkOptions& options) {
-  const StaticsOptions defaults;
   command
-      .add_option("--formulation", options.formulation,
-                  "physical: elastic laws, pressures, tensions and forces;\ntarget-shape: Fang et al. 2020; default: "
-                  "the scene's")
-      ->type_name("NAME")
-      ->check(one_of({"physical", "target-shape"}));
-  command
-      .add_option("--solver", options.solver_name,
-                  "newton (default), or local-global: Algorithm 1 of Fang et al.\n2020, target-shape only, with the "
-                  "same equilibria but slower")
-      ->type_name("NAME")
-      ->check(one_of({"newton", "local-global"}));
-  command
-      .add_option("--tolerance", options.tolerance_mm,
-                  "Stop when no vertex moves farther than this in an iteration\n[mm]; default: 8e-8 of the robot's "
-                  "diagonal, which is the\npaper's 1e-5 mm on its robots")
-      ->type_name("MM")
-      ->check(finite_number(false));
-  command
-      .add_option("--max-iterations", options.max_iterations,
-                  "Give up on a step after so many, of Newton's method or of\nAlgorithm 1 (default: " +
-                      std::to_string(defaults.max_iterations) + ")")
-      ->type_name("N")
-      ->check(integer_from(1, most_iterations));
-  command
-      .add_option("--anderson", options.anderson,
-                  "local-global: earlier iterations that Anderson acceleration\ncombines, 0 to 20; 0: Algorithm 1 as "
-                  "printed (default: " +
-                      std::to_string(defaults.anderson) + ")")
-      ->type_name("N")
-      ->check(integer_from(0, 20));
-  command.add_option("--threads", options.threads, "0: as many as the machine has (default)")
-      ->type_name("N")
-      ->check(integer_from(0, most_threads));
+      .add_option("--plot", options.plot,
+                  "With --path: commands, markers, pressures and tensions over\nthe steps, and the markers' ways")
+      ->type_name("F.svg");
 }
 
 }  // namespace
@@ -96,18 +37,17 @@ bool FkOptions::series() const {
   return lower_extension(output) == ".pvd";
 }
 
-Solver FkOptions::solver() const {
-  return solver_name == "local-global" ? Solver::local_global : Solver::newton;
-}
-
-StaticsOptions FkOptions::statics() const {
-  StaticsOptions result;
-  result.solver = solver();
-  result.step_tolerance_mm = tolerance_mm;
-  result.max_iterations = max_iterations;
-  result.anderson = anderson.value_or(result.anderson);
-  result.threads = threads;
-  return result;
+std::vector<Output> FkOptions::outputs(std::size_t steps) const {
+  std::vector<Output> outputs;
+  const auto add = [&](const char* option, const std::string& file) {
+    if (!file.empty()) outputs.push_back({option, file});
+  };
+  add("--output", output);
+  if (series()) outputs.back().shapes = steps;
+  add("--report", report);
+  add("--image", image);
+  add("--plot", plot);
+  return outputs;
 }
 
 void add_options(CLI::App& command, FkOptions& options) {
@@ -119,21 +59,14 @@ void add_options(CLI::App& command, FkOptions& options) {
       ->type_name("A=V")
       ->expected(1)
       ->take_all();
-  command
-      .add_option(
-          "--force", options.forces,
-          "NAME=FX,FY,FZ: another size and direction for the scene's\nforce of that name [N], such as a payload; "
-          "physical; repeatable")
-      ->type_name("N=F")
-      ->expected(1)
-      ->take_all();
+  add_force(command, options);
   command
       .add_option("--view", options.view,
                   "Picture: direction X Y Z from the robot to the eye (default:\n-0.5 -1 0.45); 0 0 1 looks from above")
       ->type_name("NUMBER")
       ->expected(3)
       ->check(finite_number(true));
-  add_solver(command, options);
+  add_solver(command, options, "--tolerance");
   command.add_flag("--resume", options.resume,
                    "Go on where the same command was interrupted; needs --path,\n--report and -o F.pvd");
   command.add_flag("--json", options.json, "Print the report instead of the table");
@@ -145,12 +78,15 @@ void check_usage(const FkOptions& options) {
     throw InvalidInput("--output " + options.output + ": must end in .vtu (the last shape) or .pvd (every step)");
   if (!options.image.empty() && lower_extension(options.image) != ".png")
     throw InvalidInput("--image " + options.image + ": must end in .png");
+  if (!options.plot.empty() && lower_extension(options.plot) != ".svg")
+    throw InvalidInput("--plot " + options.plot + ": must end in .svg");
+  if (!options.plot.empty() && options.path.empty())
+    throw InvalidInput("--plot draws the steps of a path: it needs --path F.csv");
   if (!options.view.empty() && options.image.empty())
     throw InvalidInput("--view is the view of the picture: it needs --image F.png");
   if (!options.view.empty() && std::hypot(options.view[0], options.view[1], options.view[2]) == 0)
     throw InvalidInput("--view 0 0 0: must be a direction, so not zero");
-  if (options.anderson && options.solver() != Solver::local_global)
-    throw InvalidInput("--anderson accelerates Algorithm 1: it needs --solver local-global");
+  check_solver(options);
   if (options.resume && (options.path.empty() || !options.series() || options.report.empty()))
     throw InvalidInput("--resume needs the --path, --report and --output F.pvd of the run that was interrupted");
 }

@@ -1,31 +1,25 @@
 #pragma once
 
 #include <CLI/App.hpp>
-#include <optional>
-#include <softkin/statics/statics.hpp>
 #include <string>
 #include <vector>
+
+#include "output_files.hpp"
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
 /// What the user asks of `softkin fk`. An empty file name: not given.
-struct FkOptions {
-  std::string scene, path;
-  std::string output, report, image;
-  std::string solver_name = "newton";
-  std::string formulation;            // empty: the scene's
+struct FkOptions : SolveOptions {
+  std::string path;
+  std::string output, report, image, plot;
   std::vector<std::string> settings;  // ACTUATOR=VALUE
-  std::vector<std::string> forces;    // NAME=FX,FY,FZ
   std::vector<double> view;           // from the robot to the eye; empty: the picture's default
-  double tolerance_mm = StaticsOptions().step_tolerance_mm;
-  int max_iterations = StaticsOptions().max_iterations;
-  std::optional<int> anderson;  // local-global
-  int threads = StaticsOptions().threads;
   bool json = false, resume = false;
 
+  /// The files to write; a path has so many steps.
+  [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const;
   [[nodiscard]] bool series() const;  // every step's shape, .pvd
-  [[nodiscard]] Solver solver() const;
-  [[nodiscard]] StaticsOptions statics() const;
 };
 
 void add_options(CLI::App& command, FkOptions& options);

@@ -69,7 +69,7 @@ Json history_json(const std::vector<IterationRecord>& history) {
   return json;
 }
 
-Json solver_json(const FkOptions& options) {
+Json solver_json(const SolveOptions& options) {
   const StaticsOptions statics = options.statics();
   Json json = {{"name", options.solver_name},
                {"tolerance_mm", statics.step_tolerance_mm},
@@ -198,7 +198,7 @@ Json step_json(const Model& model, const Equilibrium& equilibrium, const Element
   return step;
 }
 
-Report::Report(const Model& model, const FkOptions& options)
+Report::Report(const Model& model, const SolveOptions& options)
     : head_{{"softkin", SOFTKIN_VERSION},
             {"scene", options.scene},
             {"robot_fingerprint", fingerprint_of(model)},

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fk_options.hpp"
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
@@ -16,10 +16,12 @@ class Report {
  public:
   using Json = nlohmann::ordered_json;
 
-  Report(const Model& model, const FkOptions& options);
+  Report(const Model& model, const SolveOptions& options);
 
   /// What it is about: version, scene, robot, formulation, materials, actuators, solver, units, mesh, notes.
   [[nodiscard]] const Json& head() const { return head_; }
+  /// One more entry of what it is about.
+  void note(const std::string& key, Json value) { head_[key] = std::move(value); }
   /// Throws Json::exception on a step that step_json did not make.
   void add(Json step);
   [[nodiscard]] std::size_t size() const { return lines_.size(); }

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "fk_fingerprint.hpp"
-#include "fk_outputs.hpp"
 #include "fk_units.hpp"
+#include "output_files.hpp"
 
 namespace softkin::cli {
 
@@ -17,6 +17,16 @@ namespace fs = std::filesystem;
 using Json = Report::Json;
 
 namespace {
+
+/// The shape of a step as it was written, or nothing.
+std::optional<Points> stored_shape(const Json& step, const fs::path& file) {
+  try {
+    Points positions = read_vtu_points(file);
+    if (fingerprint_of(positions) == step.at("shape_fingerprint").get<std::string>()) return positions;
+  } catch (const InvalidInput&) {  // not there or damaged: the step is solved again
+  }
+  return std::nullopt;
+}
 
 class ReportOnDisk {
  public:
@@ -70,46 +80,18 @@ class ReportOnDisk {
     if (time != asked_[i].time) refuse(number_of_step + " has another time than " + where + "; the path has changed");
   }
 
-  /// The shape of a step as it was written, or nothing.
-  [[nodiscard]] std::optional<Points> shape(const Json& step, std::size_t i) const {
-    const fs::path file = series_file(options_.output, i);
-    try {
-      Points positions = read_vtu_points(file);
-      if (fingerprint_of(positions) == step.at("shape_fingerprint").get<std::string>()) return positions;
-    } catch (const InvalidInput&) {  // not there or damaged: the step is solved again
-    }
-    return std::nullopt;
-  }
-
-  /// What the next step starts from, as if the step had just been solved.
-  [[nodiscard]] State state(const Json& step, Points positions) const {
-    State result{std::move(positions), {}, Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size()))};
-    if (model_.formulation == Formulation::physical) result.share = step.at("shape_load_share").get<double>();
-    const Json& actuation = step.at("shape_actuation");
-    if (!actuation.is_null()) result.actuation = Actuation::Zero(result.multipliers.size());
-    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      const Actuator& actuator = model_.actuators[a];
-      const auto i = static_cast<Index>(a);
-      if (!actuation.is_null()) result.actuation[i] = actuation.at(actuator.name).get<double>();
-      const std::string key = multiplier_key(actuator);
-      if (model_.formulation == Formulation::physical && !key.empty())
-        result.multipliers[i] = step.at("actuators").at(actuator.name).at(key).get<double>();
-    }
-    return result;
-  }
-
   Finished take_steps(Report& report) const {
     Finished finished;
     const Json& steps = json_.at("steps");
     for (std::size_t i = 0; i < steps.size(); ++i) check_step(steps.at(i), i);
     for (std::size_t i = 0; i < steps.size(); ++i) {
-      std::optional<Points> positions = shape(steps.at(i), i);
-      if (!positions) {
+      std::optional<State> state = stored_state(model_, steps.at(i), series_file(options_.output, i));
+      if (!state) {
         finished.remark = series_file(options_.output, i).string() + " is missing or not the shape of the report";
         break;
       }
       report.add(steps.at(i));
-      finished.state = state(steps.at(i), std::move(*positions));
+      finished.state = std::move(*state);
       ++finished.steps;
     }
     return finished;
@@ -122,6 +104,24 @@ class ReportOnDisk {
 };
 
 }  // namespace
+
+std::optional<State> stored_state(const Model& model, const Json& step, const fs::path& shape) {
+  std::optional<Points> positions = stored_shape(step, shape);
+  if (!positions) return std::nullopt;
+  State result{std::move(*positions), {}, Eigen::VectorXd::Zero(static_cast<Index>(model.actuators.size()))};
+  if (model.formulation == Formulation::physical) result.share = step.at("shape_load_share").get<double>();
+  const Json& actuation = step.at("shape_actuation");
+  if (!actuation.is_null()) result.actuation = Actuation::Zero(result.multipliers.size());
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const auto i = static_cast<Index>(a);
+    if (!actuation.is_null()) result.actuation[i] = actuation.at(actuator.name).get<double>();
+    const std::string key = multiplier_key(actuator);
+    if (model.formulation == Formulation::physical && !key.empty())
+      result.multipliers[i] = step.at("actuators").at(actuator.name).at(key).get<double>();
+  }
+  return result;
+}
 
 void add_shape(Json& step, const std::string& file, const Points& positions) {
   step["shape"] = file;

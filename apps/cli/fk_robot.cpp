@@ -66,7 +66,7 @@ void change_forces(RobotSpec& spec, const std::vector<std::string>& forces) {
 
 }  // namespace
 
-Model asked_robot(const FkOptions& options, std::vector<fs::path>& inputs) {
+Model asked_robot(const SolveOptions& options, std::vector<fs::path>& inputs) {
   RobotSpec spec = read_scene_and(inputs, options.scene);
   if (options.formulation == "physical") spec.formulation = Formulation::physical;
   if (options.formulation == "target-shape") spec.formulation = Formulation::target_shape;

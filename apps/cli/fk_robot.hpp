@@ -4,7 +4,7 @@
 #include <softkin/model/model.hpp>
 #include <vector>
 
-#include "fk_options.hpp"
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
@@ -12,6 +12,6 @@ namespace softkin::cli {
 ///
 /// inputs  the files that the scene names are added
 /// throws  InvalidInput naming option, or file and line
-[[nodiscard]] Model asked_robot(const FkOptions& options, std::vector<std::filesystem::path>& inputs);
+[[nodiscard]] Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
 
 }  // namespace softkin::cli

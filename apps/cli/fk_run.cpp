@@ -2,18 +2,20 @@
 
 #include <cstdio>
 #include <softkin/io/file.hpp>
+#include <softkin/io/svg_plot.hpp>
 #include <softkin/io/vtk.hpp>
 #include <utility>
 
 #include "command.hpp"
 #include "fk_files.hpp"
-#include "fk_outputs.hpp"
 #include "fk_progress.hpp"
 #include "fk_report.hpp"
 #include "fk_resume.hpp"
 #include "fk_table.hpp"
 #include "fk_units.hpp"
 #include "mesh_text.hpp"
+#include "output_files.hpp"
+#include "plot_fk.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -54,7 +56,7 @@ class FkRun {
 
   void resume() {
     Finished finished = take_finished(model_, options_, steps_, report_);
-    remove_torn_files(options_, steps_.size());
+    remove_torn_files(options_.outputs(steps_.size()));
     if (!finished.remark.empty()) say(finished.remark);
     if (finished.steps == 0) return say("nothing to resume: starting with step 0");
     state_ = std::move(finished.state);
@@ -117,7 +119,15 @@ class FkRun {
                   last_converged());
     if (report_.size() > 0 && !options_.image.empty())
       write_image(options_.image, model_, state_.positions, options_.view, image_title());
+    if (report_.size() > 0 && !options_.plot.empty()) write_plot();
     if (options_.json) print(report_.text());
+  }
+
+  void write_plot() const {
+    const Report::Json report = Report::Json::parse(report_.text());  // with the steps of an interrupted run
+    const std::string scene = std::filesystem::path(options_.scene).filename().string();
+    const std::string title = scene + ": " + formulation_name(model_.formulation) + ", " + options_.solver_name;
+    write_svg(options_.plot, plot_of_steps(model_, report.at("steps"), title));
   }
 
   [[nodiscard]] std::string image_title() const {
@@ -135,11 +145,13 @@ class FkRun {
     say(findings(model_, report_.last()));
     if (!options_.output.empty()) say("shapes: " + options_.output + " (open it in ParaView)");
     if (!options_.image.empty()) say("picture: " + options_.image);
+    if (!options_.plot.empty()) say("plot: " + options_.plot);
     if (!options_.report.empty()) say("report: " + options_.report);
   }
 
   [[nodiscard]] int stopped() const {
-    const bool files = !options_.output.empty() || !options_.report.empty() || !options_.image.empty();
+    const bool files =
+        !options_.output.empty() || !options_.report.empty() || !options_.image.empty() || !options_.plot.empty();
     const bool resumable = options_.series() && !options_.report.empty() && !options_.path.empty();
     std::string text = "interrupted";
     if (report_.size() == 0) text += "; nothing was finished";

@@ -7,6 +7,7 @@
 #include <softkin/io/scanner.hpp>
 #include <string_view>
 
+#include "actuator_settings.hpp"
 #include "fk_units.hpp"
 #include "terminal.hpp"
 
@@ -16,57 +17,6 @@ namespace {
 
 constexpr const char* time_column = "t_s";
 constexpr Index time_target = -1;
-
-std::vector<std::string> actuator_names(const Model& model) {
-  std::vector<std::string> names;
-  for (const Actuator& actuator : model.actuators) names.push_back(actuator.name);
-  return names;
-}
-
-std::string unknown_actuator(const Model& model, const std::string& name) {
-  const std::vector<std::string> names = actuator_names(model);
-  return "no actuator " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
-}
-
-std::optional<Index> find_actuator(const Model& model, const std::string& name) {
-  for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (model.actuators[a].name == name) return static_cast<Index>(a);
-  return std::nullopt;
-}
-
-bool in_range(const Actuator& actuator, double value) {
-  return value >= actuator.low && value <= actuator.high;
-}
-
-/// What --set asks for, per actuator.
-using Settings = std::vector<std::optional<double>>;
-
-Settings read_settings(const Model& model, const std::vector<std::string>& settings) {
-  Settings values(model.actuators.size());
-  for (const std::string& setting : settings) {
-    const auto refuse = [&](const std::string& why) { throw InvalidInput("--set " + excerpt(setting) + ": " + why); };
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) refuse("expected ACTUATOR=VALUE, for example --set air=1.5");
-    const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
-    const std::optional<Index> a = find_actuator(model, name);
-    if (!a) refuse(unknown_actuator(model, name));
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
-    double value = 0;
-    if (!parse_command(actuator, text, value)) refuse(expected_command(actuator) + ", not " + excerpt(text));
-    if (!in_range(actuator, value))
-      refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator));
-    if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");
-    values[static_cast<std::size_t>(*a)] = value;
-  }
-  return values;
-}
-
-Actuation start_actuation(const Model& model, const Settings& settings) {
-  Actuation actuation = model.rest_actuation();
-  for (std::size_t a = 0; a < settings.size(); ++a)
-    if (settings[a]) actuation[static_cast<Index>(a)] = *settings[a];
-  return actuation;
-}
 
 /// An actuator that is controlled by its load may have the unit in its column's name: air_kPa, tendon_N.
 std::string column_with_unit(const Actuator& actuator) {
@@ -120,7 +70,7 @@ class PathReader {
         file_(file),
         table_(read_csv(file)),
         targets_(column_targets(model, file, table_, settings)),
-        start_{start_actuation(model, settings), std::nullopt, 0} {}
+        start_{with_settings(model.rest_actuation(), settings), std::nullopt, 0} {}
 
   [[nodiscard]] std::vector<Step> steps() const {
     std::vector<Step> steps;
@@ -148,7 +98,7 @@ class PathReader {
         continue;
       }
       const Actuator& actuator = model_.actuators[static_cast<std::size_t>(targets_[column])];
-      if (!in_range(actuator, value))
+      if (!(value >= actuator.low && value <= actuator.high))
         fail(row,
              "column '" + table_.columns[column] + "': " + number(value, 12) + " is outside " + range_text(actuator));
       step.actuation[targets_[column]] = value;
@@ -166,9 +116,9 @@ class PathReader {
 }  // namespace
 
 std::vector<Step> asked_steps(const Model& model, const FkOptions& options) {
-  const Settings settings = read_settings(model, options.settings);
+  const Settings settings = read_settings(model, "--set", options.settings);
   if (!options.path.empty()) return PathReader(model, options.path, settings).steps();
-  return {{start_actuation(model, settings), std::nullopt, 0}};
+  return {{with_settings(model.rest_actuation(), settings), std::nullopt, 0}};
 }
 
 }  // namespace softkin::cli

@@ -82,6 +82,7 @@ CsvTable read_csv(const std::filesystem::path& path) {
   if (!next_line(scanner, line)) throw InvalidInput({path.string()}, "has no header");
   CsvTable table;
   table.columns = read_header(scanner, line);
+  table.header_line = scanner.here().line;
   while (next_line(scanner, line)) {
     table.rows.push_back(read_row(scanner, line, table.columns));
     table.lines.push_back(scanner.here().line);

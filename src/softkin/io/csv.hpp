@@ -10,6 +10,7 @@ namespace softkin {
 struct CsvTable {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;
+  std::size_t header_line = 0;
   std::vector<std::size_t> lines;  // line of each row in the file, for messages
 };
 

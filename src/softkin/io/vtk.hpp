@@ -32,12 +32,14 @@ struct Field {
   std::vector<double> values;
 };
 
-/// A deformed robot as ParaView shows it: cells are the tetrahedra, then the prisms.
+/// What ParaView shows: cells are the tetrahedra, then the prisms, the triangles and the single points.
 struct VtuContent {
   Points points;  // [mm]
   std::vector<Tetrahedron> tetrahedra;
   std::vector<EdgeNodes> edge_nodes;  // order 2: of every tetrahedron, and no prisms; order 1: empty
   std::vector<Prism> prisms;
+  std::vector<Triangle> triangles{};  // of a surface
+  bool cloud = false;                 // every point is a cell of its own too
   std::vector<Field> point_fields, cell_fields;
   std::vector<Index> cell_regions;  // per cell, index into region_names or -1; empty: none
   std::vector<std::string> region_names;

@@ -73,7 +73,8 @@ class VtuWriter {
       : file_(std::move(file)),
         content_(content),
         points_(static_cast<std::size_t>(content.points.rows())),
-        cells_(content.tetrahedra.size() + content.prisms.size()) {}
+        cells_(content.tetrahedra.size() + content.prisms.size() + content.triangles.size() +
+               (content.cloud ? points_ : 0)) {}
 
   std::string build() {
     check();
@@ -121,6 +122,7 @@ void VtuWriter::check() const {
   check_vertices(content_.tetrahedra, "tetrahedron");
   check_vertices(content_.edge_nodes, "tetrahedron");
   check_vertices(content_.prisms, "prism");
+  check_vertices(content_.triangles, "triangle");
   const std::string refusal =
       refusal_of_orders(content_.tetrahedra.size(), content_.edge_nodes.size(), content_.prisms.size());
   if (!refusal.empty()) fail(refusal);
@@ -210,6 +212,14 @@ void VtuWriter::write_cells() {
   for (const Prism& prism : content_.prisms) {
     append(prism);
     end_cell(13);
+  }
+  for (const Triangle& triangle : content_.triangles) {
+    append(triangle);
+    end_cell(5);
+  }
+  for (std::size_t i = 0; content_.cloud && i < points_; ++i) {
+    connectivity.push_back(static_cast<Index>(i));
+    end_cell(1);
   }
   xml_ += "<Cells>\n";
   write_array("connectivity", 1, connectivity.data(), connectivity.size());

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <softkin/statics/physical_statics.hpp>
+#include <softkin/statics/physical_lease.hpp>
+#include <softkin/statics/physical_predictor.hpp>
 
 namespace softkin {
 
@@ -13,40 +14,6 @@ double largest_move(const Points& a, const Points& b) {
 bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
 }
-
-}  // namespace
-
-/// A workspace, for the time of a solve.
-class PhysicalStatics::Lease {
- public:
-  /// One that was left at the start, if there is; its factor is as good as new.
-  Lease(const PhysicalStatics& owner, const Points& start) : owner_(owner) {
-    const std::lock_guard lock(owner_.mutex_);
-    auto& idle = owner_.idle_;
-    auto found =
-        std::find_if(idle.begin(), idle.end(), [&](const auto& work) { return same_shape(work->home, start); });
-    if (found == idle.end() && !idle.empty()) found = idle.end() - 1;
-    if (found == idle.end()) {
-      work_ = std::make_unique<PhysicalSystem::Workspace>(owner_.system_);
-    } else {
-      work_ = std::move(*found);
-      idle.erase(found);
-    }
-  }
-  ~Lease() {
-    const std::lock_guard lock(owner_.mutex_);
-    owner_.idle_.push_back(std::move(work_));
-  }
-  Lease(const Lease&) = delete;
-  Lease& operator=(const Lease&) = delete;
-  [[nodiscard]] PhysicalSystem::Workspace& work() { return *work_; }
-
- private:
-  const PhysicalStatics& owner_;
-  std::unique_ptr<PhysicalSystem::Workspace> work_;
-};
-
-namespace {
 
 /// Shortest step of the continuation, over the way asked for.
 constexpr double least_advance = 1e-4;
@@ -82,6 +49,11 @@ class Continuation {
     (void)release(to, at, false);
     bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
     work_.home.resize(0, 3);
+    if (!factorised && from.actuation == to.actuation && from.share == to.share) {
+      const auto outcome = settle_here(to, at);
+      if (outcome == PhysicalNewton::Outcome::interrupted) return Status::interrupted;
+      if (outcome == PhysicalNewton::Outcome::converged) return Status::converged;
+    }
     while (done < 1) {
       const double next = std::min(1.0, done + advance);
       const Demand there = between(from, to, next);
@@ -89,13 +61,13 @@ class Continuation {
       if (release(there, at, false)) factorised = false;
       if (!factorised && !prepare(here, at)) return limit(done, "the stiffness at the start is not stable");
       factorised = true;
-      const double move_mm = predict(here, there, trial);
+      const double move_mm = predict(system_, here, there, active_, work_, team_, trial);
       const Points predicted = trial.positions;
       const int before = report_.iterations;
       auto outcome = settle(there, PhysicalNewton::Policy::descend, trial);
       if (outcome == PhysicalNewton::Outcome::stuck && next - done < follow_below && prepare(here, at)) {
         trial = at;
-        (void)predict(here, there, trial);
+        (void)predict(system_, here, there, active_, work_, team_, trial);
         outcome = settle(there, PhysicalNewton::Policy::follow, trial);
       }
       if (outcome == PhysicalNewton::Outcome::interrupted) return Status::interrupted;
@@ -192,22 +164,20 @@ class Continuation {
     return balance.force.allFinite();
   }
 
-  /// First-order change of shape and multipliers, with the factor at hand. Returns the largest move of a vertex [mm].
-  double predict(const Demand& here, const Demand& there, Iterate& at) {
-    PhysicalSystem::Balance balance;
-    Eigen::VectorXd step, change;
-    system_.upset(at, here, there, active_, work_, balance, team_);
-    system_.step(balance, work_, step, change, team_);
-    const Points before = at.positions;
-    if (step.allFinite() && change.allFinite()) {
-      system_.advance(step, 1, work_, at.positions, team_);
-      at.multipliers += change;
+  /// Newton at once, where the start is as near to the equilibrium asked for as any prediction from it.
+  PhysicalNewton::Outcome settle_here(const Demand& demand, Iterate& at) {
+    const std::vector<bool> before = active_;
+    Iterate trial = at;
+    auto outcome = settle(demand, PhysicalNewton::Policy::descend, trial);
+    if (newton_.inverted()) outcome = PhysicalNewton::Outcome::stuck;
+    if (outcome == PhysicalNewton::Outcome::converged) {
+      at = std::move(trial);
+      ++report_.continuation_steps;
+      report_.reached = 1;
+    } else {
+      active_ = before;
     }
-    system_.freedoms().hold(there.share, at.positions);
-    for (Index a = 0; a < system_.actuators(); ++a)
-      if (!system_.constrains(a) && system_.measures().measures(a))
-        at.multipliers[a] = system_.unit(a) * there.actuation[a];
-    return largest_move(before, at.positions);
+    return outcome;
   }
 
   /// Newton, with cables released where they would push and taken up where they are too long.
@@ -302,7 +272,7 @@ Equilibrium PhysicalStatics::solve(const Actuation& actuation, const State& star
   report.solver = "newton";
   report.tolerance_mm = options.tolerance_mm;
   report.reached = 0;
-  Lease lease(*this, start.positions);
+  Lease lease(*this, start.positions, options.reuse_factor);
 
   const Demand from = demand_of(system_, model, start), to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators())};

@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <softkin/statics/physical_newton.hpp>
+#include <softkin/statics/sensitivity.hpp>
 
 namespace softkin {
 
@@ -9,6 +10,8 @@ namespace softkin {
 /// for, in steps as long as Newton allows, each begun with a tangent predictor.
 class PhysicalStatics {
  public:
+  class Lease;
+
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held
   explicit PhysicalStatics(const Model& model) : system_(model) {}
 
@@ -16,16 +19,19 @@ class PhysicalStatics {
     double tolerance_mm = 0;
     int max_iterations = 0;  // of all Newton steps together
     bool keep_history = true;
+    bool reuse_factor = true;
   };
 
   /// Arguments are checked already. report.seconds is left to the caller.
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const Options& options,
                                   const ProgressCallback& progress, Team& team) const;
 
+  /// Of an equilibrium; see Statics::sensitivity.
+  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
+
   [[nodiscard]] const PhysicalSystem& system() const { return system_; }
 
  private:
-  class Lease;
   void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
                    PhysicalSystem::Workspace& work, Iterate& at, SolveReport& report) const;
 

@@ -67,12 +67,17 @@ void PhysicalSystem::evaluate(const Iterate& at, const Demand& demand, const std
   freedoms_->reduce(work.gradient, at.positions, balance.force);
 }
 
-int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
-                              double shift, Workspace& work, Team& team, const Balance* balance) const {
+void PhysicalSystem::assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work,
+                              Team& team) const {
   elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
   Eigen::VectorXd scale(actuators());
   for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
   measures_.second_derivatives(at.positions, scale, work.slots, team);
+}
+
+int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
+                              double shift, Workspace& work, Team& team, const Balance* balance) const {
+  assemble(at, demand, kind, work, team);
   freedoms_->reduce_matrix(*pattern_, work.slots, work.gradient, at.positions, work.values, team);
 
   const BlockColumns& columns = freedoms_->columns();
@@ -85,22 +90,26 @@ int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std
   each_diagonal([&](double value) { trace += std::abs(value); });
   const double mean = trace / std::max<Index>(1, columns.size());
   if (shift > 0) each_diagonal([&](double& value) { value += shift * mean; });
-  int negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
+  const int negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
+  return negative - couple(at, active, work, team, balance);
+}
 
+int PhysicalSystem::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
+                           const Balance* balance) const {
   work.active.clear();
   for (Index a = 0; a < actuators(); ++a)
     if (active[a]) work.active.push_back(a);
   const Index count = static_cast<Index>(work.active.size());
-  work.constraint_slopes.resize(columns.size(), count);
+  work.constraint_slopes.resize(freedoms_->size(), count);
   for (Index i = 0; i < count; ++i) {
     freedoms_->reduce(work.slopes[work.active[i]], at.positions, work.constraint_slopes.col(i));
     work.constraint_slopes.col(i) *= sign(work.active[i]);
   }
-  work.solutions.resize(columns.size(), count + (balance ? 1 : 0));
+  work.solutions.resize(freedoms_->size(), count + (balance ? 1 : 0));
   work.solutions.leftCols(count) = work.constraint_slopes;
   if (balance) work.solutions.col(count) = -balance->force;
   work.factor.solve(work.solutions, team);
-  if (count == 0) return negative;
+  if (count == 0) return 0;
   work.responses = work.solutions.leftCols(count);
   Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;
   work.scale.resize(count);
@@ -110,8 +119,7 @@ int PhysicalSystem::factorise(const Iterate& at, const Demand& demand, const std
   work.schur.compute(schur);
   const Eigen::VectorXd eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(schur, Eigen::EigenvaluesOnly).eigenvalues();
-  for (Index i = 0; i < count; ++i) negative -= eigenvalues[i] < -dependent;
-  return negative;
+  return static_cast<int>((eigenvalues.array() < -dependent).count());
 }
 
 void PhysicalSystem::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,

@@ -68,6 +68,24 @@ class PhysicalSystem {
   int factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind, double shift,
                 Workspace& work, Team& team, const Balance* balance = nullptr) const;
 
+  /// What the last factorisation holds of the active measures, from their slopes at an iterate that was just evaluated.
+  /// Returns how many negative eigenvalues of the stiffness they take away.
+  int couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
+             const Balance* balance = nullptr) const;
+
+  /// Stiffness of the elements and measures at an iterate, as factorise() makes it itself.
+  void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
+  /// Makes the stiffness that was assembled or factorised last ready for multiply().
+  void gather(Workspace& work, Team& team) const;
+  /// K times every column, over the unknowns, at an iterate that was just evaluated. product: of vectors' size
+  void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
+                Team& team) const;
+
+  /// Derivative of the gradient of the Lagrangian by the command of a load or a dea at fixed positions, #V by 3
+  /// [N per unit of command].
+  void command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
+                     Team& team) const;
+
   /// Newton step of the balance with which the last factorisation was made.
   void first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 

@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/statics/local_global.hpp>
 #include <softkin/statics/measure.hpp>
+#include <softkin/statics/neighbourhood.hpp>
+#include <softkin/statics/physical_lease.hpp>
+#include <softkin/statics/physical_predictor.hpp>
 #include <softkin/statics/physical_statics.hpp>
 #include <softkin/statics/statics.hpp>
 #include <softkin/statics/target_shape_newton.hpp>
@@ -123,7 +127,8 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   if (parts_->physical) {
     if (options.solver == Solver::local_global)
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
-    result = parts_->physical->solve(actuation, start, {tolerance, options.max_iterations, options.keep_history},
+    result = parts_->physical->solve(actuation, start,
+                                     {tolerance, options.max_iterations, options.keep_history, options.reuse_factor},
                                      progress, team);
   } else {
     result.actuation = actuation;
@@ -140,6 +145,51 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   SolveReport& report = result.report;
   report.seconds = seconds_since(begin);
   return result;
+}
+
+Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options) const {
+  const Model& model = parts_->model;
+  check_start(model, at, options);
+  if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
+    throw InvalidInput("the sensitivity of a shape needs the actuation of which it is the equilibrium");
+  if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
+  if (parts_->physical && at.multipliers.size() != at.actuation.size())
+    throw InvalidInput("the sensitivity of a shape needs the tensions and pressures of its equilibrium");
+  Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));
+  if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, team);
+  return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, team);
+}
+
+struct Neighbourhood::Parts {
+  Parts(const Model& robot, const State& centre, int threads) : model(robot), at(centre), team(threads) {}
+  const Model& model;
+  State at;
+  Team team;
+  std::optional<PhysicalStatics::Lease> lease;
+  std::optional<PhysicalPredictor> physical;
+};
+
+Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int threads) {
+  const Model& model = statics.parts_->model;
+  StaticsOptions options;
+  options.threads = threads;
+  check_start(model, at, options);
+  if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
+    throw InvalidInput("predictions around a shape need the actuation of which it is the equilibrium");
+  parts_ = std::make_unique<Parts>(model, at, threads);
+  if (!statics.parts_->physical || at.multipliers.size() == 0) return;
+  const PhysicalStatics& physical = *statics.parts_->physical;
+  parts_->lease.emplace(physical, at.positions, false);
+  parts_->physical.emplace(physical.system(), parts_->lease->work(), at, parts_->team);
+}
+
+Neighbourhood::~Neighbourhood() = default;
+Neighbourhood::Neighbourhood(Neighbourhood&&) noexcept = default;
+Neighbourhood& Neighbourhood::operator=(Neighbourhood&&) noexcept = default;
+
+State Neighbourhood::predict(const Actuation& actuation) {
+  check_actuation(parts_->model, actuation);
+  return parts_->physical ? parts_->physical->predict(actuation, parts_->team) : parts_->at;
 }
 
 }  // namespace softkin

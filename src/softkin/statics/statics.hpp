@@ -4,6 +4,7 @@
 #include <softkin/core/progress.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/sensitivity.hpp>
 
 namespace softkin {
 
@@ -25,6 +26,7 @@ struct StaticsOptions {
   int anderson = 6;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
   int threads = 0;             // 0: as many as the machine has and the robot is worth; the result is the same
   bool keep_history = true;    // SolveReport::history
+  bool reuse_factor = true;    // of an earlier solve that ended at the start; false: the result is that of a new object
 };
 
 /// Equilibria of one robot. Assembles and factorises once; solve() is const and may run on several threads at once.
@@ -53,7 +55,17 @@ class Statics {
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions& options = {},
                                   const ProgressCallback& progress = {}) const;
 
+  /// How an equilibrium changes with its actuation, by implicit differentiation of the equations that solve() meets;
+  /// with the factor that the solve left behind where there is one.
+  ///
+  /// at       an equilibrium that solve() returned; its actuation and, physical, its multipliers must be known
+  /// returns  zero by slack cables, which are those without tension that are shorter than they may be; another one
+  ///          without tension counts as taut, as when it is pulled. Not regular at a limit of existence
+  /// throws   InvalidInput on a size mismatch, an unknown actuation, or a number that is not finite
+  [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {}) const;
+
  private:
+  friend class Neighbourhood;
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

@@ -41,10 +41,14 @@ End follow(const Actuation& from, const Actuation& to, TargetShapeSearch& search
 TargetShapeNewton::TargetShapeNewton(const TargetShapeUnknowns& unknowns, const GlobalStep& global)
     : global_(global), unknowns_(unknowns) {}
 
-std::unique_ptr<TargetShapeWorkspace> TargetShapeNewton::take_workspace() const {
+std::unique_ptr<TargetShapeWorkspace> TargetShapeNewton::take_workspace(const Points* shape) const {
   {
     const std::lock_guard lock(mutex_);
     if (!workspaces_.empty()) {
+      const auto found = std::find_if(workspaces_.begin(), workspaces_.end(), [&](const auto& workspace) {
+        return shape != nullptr && workspace->home.rows() == shape->rows() && workspace->home == *shape;
+      });
+      if (found != workspaces_.end()) std::swap(*found, workspaces_.back());
       std::unique_ptr<TargetShapeWorkspace> workspace = std::move(workspaces_.back());
       workspaces_.pop_back();
       return workspace;
@@ -66,6 +70,7 @@ void TargetShapeNewton::solve(const Actuation& start, const StaticsOptions& opti
   Points& positions = result.state.positions;
   const Points begin = positions;
   std::unique_ptr<TargetShapeWorkspace> workspace = take_workspace();
+  workspace->home.resize(0, 3);
   TargetShapeSearch search(unknowns_, global_, *workspace, options, progress, team, report);
   End end = search.run(result.actuation, patience, positions);
   if (end == End::stuck) {
@@ -73,6 +78,7 @@ void TargetShapeNewton::solve(const Actuation& start, const StaticsOptions& opti
     const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
     end = follow(from, result.actuation, search, positions, report);
   }
+  if (end == End::converged && report.factorisations > 0) workspace->home = positions;
   put_back(std::move(workspace));
   if (end == End::stuck) {
     positions = begin;

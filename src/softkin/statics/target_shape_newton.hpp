@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mutex>
+#include <softkin/statics/sensitivity.hpp>
 #include <softkin/statics/target_shape_newton_search.hpp>
 
 namespace softkin {
@@ -25,8 +26,12 @@ class TargetShapeNewton {
   void solve(const Actuation& start, const StaticsOptions& options, const ProgressCallback& progress, Team& team,
              Equilibrium& result) const;
 
+  /// Of an equilibrium; see Statics::sensitivity.
+  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
+
  private:
-  [[nodiscard]] std::unique_ptr<TargetShapeWorkspace> take_workspace() const;
+  /// One that was left at the shape, if there is and a shape is given.
+  [[nodiscard]] std::unique_ptr<TargetShapeWorkspace> take_workspace(const Points* shape = nullptr) const;
   void put_back(std::unique_ptr<TargetShapeWorkspace> workspace) const;
 
   const GlobalStep& global_;

@@ -5,7 +5,7 @@
 
 namespace softkin {
 
-/// What a search works in; it holds nothing that outlives a search.
+/// What a search works in; it holds nothing that outlives a search but, for sensitivities, the last factor.
 struct TargetShapeWorkspace {
   explicit TargetShapeWorkspace(const TargetShapeUnknowns& unknowns);
 
@@ -13,6 +13,7 @@ struct TargetShapeWorkspace {
   TargetShapeSystem::Scratch local;  // of the last shape evaluated
   TargetShapeSystem::Scratch start;  // of the shape that a step starts from
   TargetShapeSystem::Scratch work;
+  Points home;  // equilibrium near which the tangent was factorised; empty: none
 };
 
 /// Runs of Newton's method, one after another.

@@ -37,6 +37,10 @@ class TargetShapeSystem {
   /// out     another scratch; its residual, #V by 3, becomes the derivative of local.residual along `change`
   void residual_change(const Scratch& local, const Points& change, Scratch& out, Team& team) const;
 
+  /// How the residual changes with the command of one actuator at fixed positions, at the shape of the last local_step:
+  /// out.residual becomes the derivative of local.residual.
+  void command_change(const Scratch& local, Index actuator, Scratch& out, Team& team) const;
+
   /// Where `change`, taken with the turns that it makes the targets make, would move the elements: out.residual is what
   /// the global step asks for to go there (see turned_move_of_body).
   void turned_move(const Scratch& local, const Points& change, Scratch& out, Team& team) const;

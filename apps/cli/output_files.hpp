@@ -2,23 +2,29 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
-#include "fk_options.hpp"
-
 namespace softkin::cli {
+
+/// A file that a command is asked to write.
+struct Output {
+  std::string option;  // that names it, for messages
+  std::filesystem::path file;
+  std::size_t shapes = 0;  // a series' .pvd: its shapes are written beside it
+};
 
 /// NAME_0007.vtu beside NAME.pvd.
 [[nodiscard]] std::filesystem::path series_file(const std::filesystem::path& pvd, std::size_t step);
 
 /// Throws InvalidInput where an output would replace an input, another output, or what is no plain file.
-void check_outputs(const FkOptions& options, const std::vector<std::filesystem::path>& inputs, std::size_t steps);
+void check_outputs(const std::vector<Output>& outputs, const std::vector<std::filesystem::path>& inputs);
 
 /// Makes the folders of the outputs; at the end removes those of them that stayed empty.
 class OutputFolders {
  public:
   /// Throws InvalidInput where a folder cannot be made or written to.
-  explicit OutputFolders(const FkOptions& options);
+  explicit OutputFolders(const std::vector<Output>& outputs);
   ~OutputFolders();
   OutputFolders(const OutputFolders&) = delete;
   OutputFolders& operator=(const OutputFolders&) = delete;
@@ -31,6 +37,6 @@ class OutputFolders {
 };
 
 /// Removes what a killed run left half written beside its outputs.
-void remove_torn_files(const FkOptions& options, std::size_t steps);
+void remove_torn_files(const std::vector<Output>& outputs);
 
 }  // namespace softkin::cli

@@ -1,4 +1,4 @@
-#include "fk_outputs.hpp"
+#include "output_files.hpp"
 
 #include <unistd.h>
 
@@ -17,22 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Output {
-  const char* option;
-  fs::path file;
-};
-
-std::vector<Output> outputs_of(const FkOptions& options) {
-  std::vector<Output> outputs;
-  const auto add = [&](const char* option, const std::string& file) {
-    if (!file.empty()) outputs.push_back({option, file});
-  };
-  add("--output", options.output);
-  add("--report", options.report);
-  add("--image", options.image);
-  return outputs;
-}
-
 fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
@@ -45,15 +29,15 @@ fs::path resolved(const fs::path& file) {
 }
 
 [[noreturn]] void refuse(const Output& output, const std::string& why) {
-  throw InvalidInput(std::string(output.option) + " " + output.file.string() + ": " + why);
+  throw InvalidInput(output.option + " " + output.file.string() + ": " + why);
 }
 
-void check_series(const Output& output, const std::vector<fs::path>& inputs, std::size_t steps) {
+void check_series(const Output& output, const std::vector<fs::path>& inputs) {
   std::set<fs::path> beside;
   for (const fs::path& input : inputs)
     if (resolved(folder_of(input)) == resolved(folder_of(output.file))) beside.insert(input.filename());
   if (beside.empty()) return;
-  for (std::size_t i = 0; i < steps; ++i) {
+  for (std::size_t i = 0; i < output.shapes; ++i) {
     const fs::path name = series_file(output.file, i).filename();
     if (beside.count(name) > 0) refuse(output, "its " + name.string() + " would replace a file that is read");
   }
@@ -94,9 +78,9 @@ fs::path series_file(const fs::path& pvd, std::size_t step) {
   return fs::path(pvd).replace_filename(pvd.stem().string() + number);
 }
 
-void check_outputs(const FkOptions& options, const std::vector<fs::path>& inputs, std::size_t steps) {
-  std::map<fs::path, const char*> taken;
-  for (const Output& output : outputs_of(options)) {
+void check_outputs(const std::vector<Output>& outputs, const std::vector<fs::path>& inputs) {
+  std::map<fs::path, std::string> taken;
+  for (const Output& output : outputs) {
     std::error_code failure;
     if (!output.file.has_filename() || fs::is_directory(output.file, failure))
       refuse(output, "is a folder, not a file");
@@ -105,13 +89,13 @@ void check_outputs(const FkOptions& options, const std::vector<fs::path>& inputs
     const fs::path file = resolved(output.file);
     for (const fs::path& input : inputs)
       if (resolved(input) == file) refuse(output, "would replace a file that is read");
-    if (!taken.emplace(file, output.option).second) refuse(output, std::string("is the file of ") + taken[file]);
-    if (options.series() && output.file == options.output) check_series(output, inputs, steps);
+    if (!taken.emplace(file, output.option).second) refuse(output, "is the file of " + taken[file]);
+    check_series(output, inputs);
   }
 }
 
-OutputFolders::OutputFolders(const FkOptions& options) {
-  for (const Output& output : outputs_of(options)) {
+OutputFolders::OutputFolders(const std::vector<Output>& outputs) {
+  for (const Output& output : outputs) {
     const fs::path folder = folder_of(output.file);
     try {
       make(folder);
@@ -144,11 +128,10 @@ void OutputFolders::remove_empty() const {
   std::for_each(made_.rbegin(), made_.rend(), [&](const fs::path& folder) { fs::remove(folder, not_empty); });
 }
 
-void remove_torn_files(const FkOptions& options, std::size_t steps) {
-  for (const Output& output : outputs_of(options)) {
+void remove_torn_files(const std::vector<Output>& outputs) {
+  for (const Output& output : outputs) {
     std::set<std::string> names{output.file.filename().string()};
-    if (options.series() && output.file == options.output)
-      for (std::size_t i = 0; i < steps; ++i) names.insert(series_file(output.file, i).filename().string());
+    for (std::size_t i = 0; i < output.shapes; ++i) names.insert(series_file(output.file, i).filename().string());
     std::vector<fs::path> torn;
     for (const auto& entry : fs::directory_iterator(folder_of(output.file)))
       if (is_left_over(entry.path().filename().string(), names)) torn.push_back(entry.path());

@@ -1,0 +1,169 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/io/plain_text.hpp>
+
+#include "actuator_settings.hpp"
+#include "command.hpp"
+#include "fk_files.hpp"
+#include "fk_robot.hpp"
+#include "fk_table.hpp"
+#include "fk_units.hpp"
+#include "ik_goals.hpp"
+#include "ik_options.hpp"
+#include "ik_report.hpp"
+#include "ik_table.hpp"
+#include "mesh_text.hpp"
+#include "terminal.hpp"
+#include "workspace_start.hpp"
+
+namespace softkin::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Where the search begins, and what it may change.
+struct Search {
+  std::vector<AskedGoal> asked;
+  std::vector<Goal> goals;
+  Actuation start;
+  InverseOptions inverse;
+};
+
+Search asked_search(const Model& model, const IkOptions& options) {
+  Search search;
+  search.asked = asked_goals(model, options);
+  for (const AskedGoal& goal : search.asked) search.goals.push_back(goal.goal);
+  const Settings start = read_settings(model, "--start", options.start);
+  const Settings prefer = read_settings(model, "--prefer", options.prefer);
+  const Settings fix = read_settings(model, "--fix", options.fix);
+  for (std::size_t a = 0; a < fix.size(); ++a)
+    if (fix[a] && (start[a] || prefer[a]))
+      throw InvalidInput("--fix " + model.actuators[a].name + ": this actuator does not change, so it takes no --" +
+                         (start[a] ? "start" : "prefer"));
+  search.start =
+      options.workspace.empty() ? model.rest_actuation() : nearest_actuation(model, options.workspace, search.goals);
+  search.start = with_settings(with_settings(search.start, start), fix);
+  search.inverse = options.inverse();
+  search.inverse.preferred = with_settings(search.start, prefer);
+  for (const auto& value : fix) search.inverse.free.push_back(!value);
+  return search;
+}
+
+class IkRun {
+ public:
+  IkRun(const Model& model, const Statics& statics, const IkOptions& options, const Search& search)
+      : model_(model), statics_(statics), options_(options), search_(search) {}
+
+  int run() {
+    ProgressLine line;
+    const double begin = seconds_now();
+    const Equilibrium first = statics_.solve(search_.start, statics_.rest(), search_.inverse.statics,
+                                             [](const Progress&) { return !interrupted(); });
+    if (first.report.status != Status::converged) return no_start(first);
+    found_ = solve_inverse(model_, statics_, search_.goals, first.state, search_.inverse, [&](const Progress& p) {
+      std::string text = counted(static_cast<std::size_t>(p.iteration + 1), "equilibrium", "equilibria") + ", " +
+                         duration(seconds_now() - begin);
+      if (std::isfinite(p.step_mm)) text += ", " + number(p.step_mm, 2) + " mm off";
+      line.show(-1, text);
+      return !interrupted();
+    });
+    line.clear();
+    const double error = goal_errors(model_, search_.goals, first.state.positions).maxCoeff();
+    found_.history.insert(found_.history.begin(),
+                          {first.actuation, first.report.status, error, first.report.iterations});
+    ++found_.equilibria;
+    found_.seconds = seconds_now() - begin;
+    write();
+    if (found_.status == InverseStatus::reached) return done;
+    std::fprintf(stderr, "softkin: %s\n", ik_shortfall(model_, found_).c_str());
+    return not_converged;
+  }
+
+ private:
+  [[nodiscard]] static int no_start(const Equilibrium& first) {
+    const bool stopped = first.report.status == Status::interrupted;
+    std::fprintf(stderr, "softkin: %s\n",
+                 stopped ? "interrupted; nothing was finished"
+                         : ("the start has no equilibrium: " + first.report.remark).c_str());
+    return not_converged;
+  }
+
+  void write() const {
+    const Points& positions = found_.equilibrium.state.positions;
+    const ElementDeformation deformation = deformation_of(model_, positions);
+    Report::Json step = step_json(model_, found_.equilibrium, deformation);
+    step["seconds"] = found_.seconds;
+    step["error_mm"] = found_.errors_mm.maxCoeff();
+    const std::string title = fs::path(options_.scene).filename().string() + ": " + name_of(found_.status) + ", " +
+                              number(found_.errors_mm.maxCoeff(), 2) + " mm off";
+    if (!options_.output.empty()) write_shape(options_.output, model_, positions, deformation, true);
+    if (!options_.image.empty()) write_image(options_.image, model_, positions, options_.view, title);
+    if (!options_.plot.empty()) write_svg(options_.plot, ik_plot(found_, search_.inverse.tolerance_mm, title));
+    Report report(model_, options_);
+    report.note("ik", ik_json(model_, options_, search_.asked, found_));
+    if (!options_.json) {
+      print(ik_table(model_, search_.asked, found_, step));
+      const std::string found = findings(model_, step);
+      print((found.empty() ? "" : found + "\n") + std::string(name_of(found_.status)) + ": " + ik_summary(found_) +
+            "\n");
+    }
+    report.add(std::move(step));
+    if (!options_.report.empty()) write_file(options_.report, report.text());
+    if (options_.json) print(report.text());
+    for (const Output& output : options_.outputs())
+      if (!options_.json) print(output.option.substr(2) + ": " + output.file.string() + "\n");
+  }
+
+  const Model& model_;
+  const Statics& statics_;
+  const IkOptions& options_;
+  const Search& search_;
+  InverseResult found_;
+};
+
+int run_ik(const IkOptions& options) {
+  check_usage(options);
+  std::vector<fs::path> inputs{options.scene};
+  if (!options.workspace.empty()) inputs.emplace_back(options.workspace);
+  ProgressLine line;
+  line.show(-1, "reading the scene");
+  const Model model = asked_robot(options, inputs);
+  const Search search = asked_search(model, options);
+  check_outputs(options.outputs(), inputs);
+  line.show(-1, "assembling");
+  const Statics statics(model);
+  line.clear();
+  catch_interrupt();
+  const OutputFolders folders(options.outputs());
+  for (const std::string& doubt : doubts_about(model, search.asked))
+    std::fprintf(stderr, "softkin: warning: %s\n", doubt.c_str());
+  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+  return IkRun(model, statics, options, search).run();
+}
+
+}  // namespace
+
+void add_ik(CLI::App& app, Run& run) {
+  CLI::App* command =
+      app.add_subcommand("ik", "Inverse kinematics: the actuation that brings markers where they should be");
+  const auto options = std::make_shared<IkOptions>();
+  add_options(*command, *options);
+  command->footer(
+      "Lengths are in mm whatever the scene's unit, pressures in kPa (gauge), tensions in N. Goals out of reach end "
+      "at\n"
+      "the nearest point that the ranges allow. Exit code: 0 reached, 1 not reached, not converged or interrupted,\n"
+      "2 bad usage or bad input.\n"
+      "Example:\n"
+      "  softkin ik examples/three_chamber_actuator/three_chamber_actuator.yaml --target tip=10,-5,138");
+  command->callback([options, &run] { run = [options] { return run_ik(*options); }; });
+}
+
+}  // namespace softkin::cli

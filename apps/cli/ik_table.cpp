@@ -1,0 +1,134 @@
+#include "ik_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fk_units.hpp"
+#include "ik_report.hpp"
+#include "mesh_text.hpp"
+#include "terminal.hpp"
+
+namespace softkin::cli {
+
+namespace {
+
+constexpr int value_decimals = 4, length_decimals = 3, direction_decimals = 5;
+
+std::string load_text(const Actuator& actuator, const Report::Json& values) {
+  const std::string key = multiplier_key(actuator);
+  if (key.empty() || !values.contains(key)) return "-";
+  if (values.value("slack", false)) return "slack";
+  if (values.at(key).is_null()) return "unknown";
+  return decimal(values.at(key).get<double>(), value_decimals) + (actuator.kind == ActuatorKind::cable ? " N" : " kPa");
+}
+
+std::string coordinates_text(const Vec3& point, int decimals) {
+  return decimal(point.x(), decimals) + " " + decimal(point.y(), decimals) + " " + decimal(point.z(), decimals);
+}
+
+std::string asked_text(const Goal& goal) {
+  if (const auto* position = std::get_if<PositionGoal>(&goal.what)) {
+    std::string text;
+    for (int axis = 0; axis < 3; ++axis)
+      text += (axis > 0 ? " " : "") + (position->axes[static_cast<std::size_t>(axis)]
+                                           ? decimal(position->target[axis], length_decimals)
+                                           : std::string("any"));
+    return text + " mm";
+  }
+  if (const auto* plane = std::get_if<PlaneGoal>(&goal.what))
+    return "plane at " + coordinates_text(plane->point, length_decimals) + " mm across " +
+           coordinates_text(plane->normal.stableNormalized(), direction_decimals);
+  const auto& direction = std::get<DirectionGoal>(goal.what);
+  return "towards " + coordinates_text(direction.direction.stableNormalized(), direction_decimals);
+}
+
+std::string found_text(const Model& model, const Goal& goal, const Points& positions) {
+  const Vec3 place = place_of(model, goal, positions);
+  if (std::holds_alternative<DirectionGoal>(goal.what)) return coordinates_text(place, direction_decimals);
+  return coordinates_text(place, length_decimals) + " mm";
+}
+
+std::string ends_text(const Model& model, const InverseResult& found) {
+  std::string text;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    if (found.active[a] == 0) continue;
+    const Actuator& actuator = model.actuators[a];
+    const bool low = found.active[a] < 0;
+    text += "; " + actuator.name + " is at the " + (low ? "low" : "high") + " end of its range, " +
+            number(low ? actuator.low : actuator.high) + " " + bracketed_unit(actuator);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ik_table(const Model& model, const std::vector<AskedGoal>& goals, const InverseResult& found,
+                     const Report::Json& step) {
+  std::vector<std::vector<std::string>> rows{{"actuator", "command", "", "range", "achieved [-]", "load"}};
+  for (const Actuator& actuator : model.actuators) {
+    const auto& values = step.at("actuators").at(actuator.name);
+    const auto& achieved = values.at("achieved");
+    rows.push_back({actuator.name, decimal(values.at("requested").get<double>(), value_decimals),
+                    bracketed_unit(actuator), number(actuator.low) + " to " + number(actuator.high),
+                    achieved.is_null() ? "unknown" : decimal(achieved.get<double>(), value_decimals),
+                    load_text(actuator, values)});
+  }
+  std::vector<std::string> lines = aligned(rows, "lrlrrr");
+  rows = {{"marker", "asked", "found", "error [mm]"}};
+  for (std::size_t i = 0; i < goals.size(); ++i)
+    rows.push_back({goals[i].name, asked_text(goals[i].goal),
+                    found_text(model, goals[i].goal, found.equilibrium.state.positions),
+                    number(found.errors_mm[static_cast<Index>(i)], 2)});
+  const std::vector<std::string> more = aligned(rows, "lrrr");
+  lines.insert(lines.end(), more.begin(), more.end());
+  return joined(lines, "");
+}
+
+std::string ik_summary(const InverseResult& found) {
+  const auto count = [](int n) { return static_cast<std::size_t>(std::max(0, n)); };
+  return "error at most " + number(found.errors_mm.maxCoeff(), 2) + " mm; " +
+         counted(count(found.iterations), "iteration") + ", " +
+         counted(count(found.equilibria), "equilibrium", "equilibria") + ", " + decimal(found.seconds, 2) + " s";
+}
+
+std::string ik_shortfall(const Model& model, const InverseResult& found) {
+  const std::string off = number(found.errors_mm.maxCoeff(), 4) + " mm off";
+  if (found.status == InverseStatus::unreachable)
+    return "not reached: " + off + " at the nearest point; " + found.remark + ends_text(model, found);
+  if (found.status == InverseStatus::interrupted) return "interrupted: the best so far is " + off;
+  return "not converged: " + found.remark + "; the best is " + off + ends_text(model, found);
+}
+
+Plot ik_plot(const InverseResult& found, double tolerance_mm, const std::string& title) {
+  constexpr double least = 1e-9;  // [mm], as small as a logarithmic axis is to show
+  PlotSeries each{"each equilibrium", {}, {}, false}, best{"least so far", {}, {}, true, false};
+  PlotSeries limit{"tolerance", {}, {tolerance_mm, tolerance_mm}, true, false};
+  double lowest = HUGE_VAL;
+  for (std::size_t i = 0; i < found.history.size(); ++i) {
+    const double error = found.history[i].error_mm;
+    if (!std::isfinite(error)) continue;
+    lowest = std::min(lowest, error);
+    for (PlotSeries* series : {&each, &best}) series->x.push_back(static_cast<double>(i + 1));
+    each.y.push_back(std::max(error, least));
+    best.y.push_back(std::max(lowest, least));
+  }
+  if (each.x.empty()) {  // reached at the start
+    each.x = {1};
+    each.y = {std::max(found.errors_mm.maxCoeff(), least)};
+    best = {};
+  }
+  limit.x = {1, each.x.back()};
+  PlotPanel panel;
+  panel.x.label = "equilibria";
+  panel.x.whole = true;
+  panel.y.label = "largest error [mm]";
+  panel.y.logarithmic = true;
+  panel.series = {each, limit};
+  if (!best.x.empty()) panel.series.insert(panel.series.begin() + 1, best);
+  Plot plot;
+  plot.title = title;
+  plot.rows = {{panel}};
+  return plot;
+}
+
+}  // namespace softkin::cli

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <softkin/io/svg_plot.hpp>
+#include <softkin/kinematics/inverse.hpp>
+#include <string>
+#include <vector>
+
+#include "fk_report.hpp"
+#include "ik_goals.hpp"
+
+namespace softkin::cli {
+
+/// The actuators, then the goals, a line each. step: of step_json.
+[[nodiscard]] std::string ik_table(const Model& model, const std::vector<AskedGoal>& goals, const InverseResult& found,
+                                   const Report::Json& step);
+
+/// "error at most 3.2e-05 mm; 5 iterations, 6 equilibria, 0.21 s".
+[[nodiscard]] std::string ik_summary(const InverseResult& found);
+
+/// Why the goals are not reached: "not reached: 4.2 mm off at the nearest point; tendon1 is at the low end of its
+/// range, 0.5 [-]".
+[[nodiscard]] std::string ik_shortfall(const Model& model, const InverseResult& found);
+
+/// The least error so far over the equilibria.
+[[nodiscard]] Plot ik_plot(const InverseResult& found, double tolerance_mm, const std::string& title);
+
+}  // namespace softkin::cli

@@ -1,0 +1,198 @@
+// Paths followed by Gauss-Newton with exact Jacobians and by the paper's Algorithm 2, the same equilibrium solver
+// inside (the paper's Fig. 13).
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <softkin/io/marker_path.hpp>
+#include <softkin/kinematics/trajectory.hpp>
+
+#include "command_line.hpp"
+#include "knuckle_finger.hpp"
+
+namespace {
+
+using namespace softkin;
+using namespace softkin::bench;
+
+struct Options {
+  std::string scene = "examples/three_tendon_finger/three_tendon_finger.yaml";
+  std::vector<std::string> paths{"examples/three_tendon_finger/letter_l.csv", "examples/three_tendon_finger/flame.csv"};
+  std::vector<std::string> formulations{"physical", "target-shape"};
+  double size = 10000, local_size = 600, limit = 120;
+  double local_tolerance_mm = 1e-6;
+  int anderson = 0;
+  int order = 1, threads = 0, waypoints = 1000000;
+};
+
+struct Method {
+  const char* name;
+  InverseMethod method;
+  double asked_mm;
+};
+
+constexpr Method methods[] = {{"newton", InverseMethod::newton, 1e-3},
+                              {"gradient", InverseMethod::gradient, 0.2},
+                              {"gradient", InverseMethod::gradient, 0.01}};
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Followed {
+  std::vector<FollowedWaypoint> waypoints;
+  double seconds = 0;
+  bool whole = true;  // not stopped by the limit
+
+  [[nodiscard]] double seconds_of(std::size_t count) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) sum += waypoints[i].seconds;
+    return sum;
+  }
+};
+
+Followed follow(const Model& model, const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options,
+                double limit) {
+  Followed result;
+  const double begin = now();
+  result.waypoints = follow_path(model, statics, path, options, [=](const Progress&) { return now() - begin < limit; });
+  result.seconds = now() - begin;
+  result.whole = result.waypoints.size() == path.waypoints.size();
+  return result;
+}
+
+TrajectoryOptions trajectory(const Method& method, Solver solver, const Options& options) {
+  TrajectoryOptions result;
+  result.inverse.method = method.method;
+  result.inverse.tolerance_mm = method.asked_mm;
+  result.inverse.max_iterations = 1000;  // or the paper's 30 would end it short of 0.01 mm
+  result.inverse.statics.solver = solver;
+  if (solver == Solver::local_global) {
+    result.inverse.statics.step_tolerance_mm = options.local_tolerance_mm;
+    result.inverse.statics.anderson = options.anderson;
+  }
+  result.inverse.statics.threads = options.threads;
+  result.inverse.statics.keep_history = false;
+  return result;
+}
+
+/// The sample of a workspace in steps of a tenth of every range that is next to the path's beginning: from there all
+/// methods begin, as Algorithm 3 does.
+Actuation sample_near(const Model& model, const Statics& statics, const MarkerPath& path, const Options& options) {
+  constexpr double steps = 10;
+  MarkerPath begin{path.markers, path.axes, {path.waypoints.front()}};
+  Actuation near = follow_path(model, statics, begin, trajectory(methods[0], Solver::newton, options)).at(0).actuation;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const double low = model.actuators[a].low, width = model.actuators[a].high - low;
+    double& value = near[static_cast<Index>(a)];
+    value = std::clamp(low + width * std::round((value - low) / width * steps) / steps, low, low + width);
+  }
+  return near;
+}
+
+void print_row(const Method& method, const Followed& found, const Followed& newton, std::size_t asked) {
+  double worst = 0, equilibria = 0;
+  std::size_t missed = 0;
+  for (const FollowedWaypoint& each : found.waypoints) {
+    worst = std::max(worst, each.error_mm);
+    equilibria += each.equilibria;
+    missed += each.status == InverseStatus::reached ? 0 : 1;
+  }
+  const std::size_t count = found.waypoints.size();
+  std::printf("    %-9s %7.3g  %4zu of %-4zu", method.name, method.asked_mm, count, asked);
+  if (count == 0) {
+    std::printf("  none within the limit of %.0f s", found.seconds);
+    if (!newton.waypoints.empty())
+      std::printf(": newton is more than %.1f times faster", found.seconds / newton.seconds_of(1));
+    std::printf("\n");
+    return;
+  }
+  std::printf("  %11.2f  %12.2e  %6zu  %9.2f  %13.1f", equilibria / static_cast<double>(count), worst, missed,
+              found.seconds, 1e3 * found.seconds_of(count) / static_cast<double>(count));
+  if (&found != &newton)
+    std::printf("  %10.1f", found.seconds_of(count) / newton.seconds_of(std::min(count, newton.waypoints.size())));
+  std::printf("%s\n", found.whole ? "" : "  stopped by the limit; the ratio is of the waypoints done");
+  std::fflush(stdout);
+}
+
+void compare(const RobotSpec& spec, Solver solver, const Options& options) {
+  const Model model = compile(spec);
+  const Statics statics(model);
+  std::printf("\n%zu tetrahedra of order %d, %s, %s inside\n", model.tetrahedra.size(),
+              model.edge_nodes.empty() ? 1 : 2,
+              model.formulation == Formulation::physical ? "physical" : "target-shape",
+              solver == Solver::newton ? "newton" : "local-global");
+  std::printf("    %-9s %7s  %-12s  %11s  %12s  %6s  %9s  %13s  %10s\n", "method", "asked", "waypoints", "equilibria",
+              "worst error", "missed", "time", "a waypoint", "newton");
+  std::printf("    %-9s %7s  %-12s  %11s  %12s  %6s  %9s  %13s  %10s\n", "", "[mm]", "", "a waypoint", "[mm]", "",
+              "[s]", "[ms]", "faster");
+  for (const std::string& file : options.paths) {
+    MarkerPath path = read_marker_path(file, model);
+    if (path.waypoints.size() > static_cast<std::size_t>(options.waypoints))
+      path.waypoints.resize(static_cast<std::size_t>(options.waypoints));
+    const Actuation start = sample_near(model, statics, path, options);
+    std::printf("  %s\n", std::filesystem::path(file).stem().c_str());
+    Followed newton;
+    for (const Method& method : methods) {
+      TrajectoryOptions how = trajectory(method, solver, options);
+      how.start = start;
+      if (method.method == InverseMethod::newton) {
+        newton = follow(model, statics, path, how, options.limit);
+        print_row(method, newton, newton, path.waypoints.size());
+      } else {
+        print_row(method, follow(model, statics, path, how, options.limit), newton, path.waypoints.size());
+      }
+    }
+  }
+}
+
+int run(const Options& options) {
+  print_machine();
+  for (const std::string& formulation : options.formulations) {
+    RobotSpec spec = knuckle_finger(options.scene, options.size, options.order);
+    spec.formulation = formulation == "physical" ? Formulation::physical : Formulation::target_shape;
+    compare(spec, Solver::newton, options);
+  }
+  if (options.local_size > 0) {
+    RobotSpec spec = knuckle_finger(options.scene, options.local_size, 1);
+    spec.formulation = Formulation::target_shape;
+    compare(spec, Solver::local_global, options);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Paths on the three-tendon finger: Gauss-Newton against Algorithm 2, the same solver inside.",
+               "bench_follow"};
+  Options options;
+  app.add_option("--scene", options.scene, "of the three-tendon finger")->capture_default_str();
+  app.add_option("--paths", options.paths, "of its tip, .csv")->delimiter(',')->capture_default_str();
+  app.add_option("--formulations", options.formulations, "with newton inside")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"physical", "target-shape"}))
+      ->capture_default_str();
+  app.add_option("--size", options.size, "tetrahedra")->check(CLI::Range(200.0, 1e6))->capture_default_str();
+  app.add_option("--order", options.order, "of the tetrahedra, physical")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  app.add_option("--local-size", options.local_size, "tetrahedra with local-global inside; 0: not")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option(
+         "--local-tolerance", options.local_tolerance_mm,
+         "step at which local-global ends [mm]; at the paper's 1e-5 its error is as large as the tolerance of newton")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--anderson", options.anderson, "steps that Anderson acceleration combines; 0: as the paper ran it")
+      ->check(CLI::Range(0, 20))
+      ->capture_default_str();
+  app.add_option("--waypoints", options.waypoints, "of each path, at most")->check(CLI::Range(1, 1000000));
+  app.add_option("--limit", options.limit, "of each method on each path [s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256))->capture_default_str();
+  return run_benchmark(app, argc, argv, [&] { return run(options); });
+}

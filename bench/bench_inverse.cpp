@@ -1,0 +1,258 @@
+// Inverse kinematics: how many random targets are reached how well at what cost, what becomes of those that cannot be
+// reached, and how many updates per second follow a moving target.
+
+#include <cmath>
+#include <ctime>
+#include <numbers>
+#include <random>
+#include <softkin/io/scene.hpp>
+#include <softkin/kinematics/inverse.hpp>
+
+#include "command_line.hpp"
+#include "model/block_mesh.hpp"
+
+namespace {
+
+using namespace softkin;
+using namespace softkin::bench;
+
+struct Options {
+  std::string robot = "examples/three_chamber_actuator/three_chamber_actuator.yaml", mode = "reach";
+  std::string method = "newton";
+  int targets = 100, unreachable = 20, threads = 0, order = 0, updates = 300, other_starts = 3;
+  unsigned seed = 1;
+  double tolerance_mm = 1e-3, size = 2000, millimetres_per_update = 0.5;
+};
+
+/// A beam of 64 x 20 x 20 mm with three chambers around its axis, of about so many tetrahedra.
+RobotSpec beam(double size) {
+  const int across = 5 * std::max(1, static_cast<int>(std::lround(std::cbrt(size / 2000))));
+  const int along = std::max(8, static_cast<int>(std::lround(size / (0.91 * 6 * across * across))));
+  Mesh mesh = testing::block_mesh({along, across, across}, {64, 20, 20});
+  const double places[3][2] = {{4, 4}, {12, 4}, {8, 12}};
+  for (int i = 0; i < 3; ++i)
+    testing::add_volume_region(mesh, "chamber" + std::to_string(i + 1), [&](const Vec3& p) {
+      return p.x() > 8 && p.x() < 56 && p.y() > places[i][0] && p.y() < places[i][0] + 4 && p.z() > places[i][1] &&
+             p.z() < places[i][1] + 4;
+    });
+  RobotSpec spec = testing::block_robot(std::move(mesh));
+  spec.formulation = Formulation::physical;
+  spec.materials[0].elastic.emplace().youngs_modulus = 1;
+  spec.materials[0].elastic->poisson_ratio = 0.4;
+  spec.materials[0].shape_ratio.reset();
+  for (int i = 0; i < 3; ++i) {
+    ActuatorSpec air;
+    air.name = "chamber" + std::to_string(i + 1);
+    air.region = air.name;
+    air.kind = ActuatorKind::pneumatic;
+    air.low = 1;
+    air.high = 2;
+    spec.actuators.push_back(air);
+  }
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  return spec;
+}
+
+RobotSpec robot_of(const Options& options) {
+  if (options.robot == "beam") return beam(options.size);
+  RobotSpec spec = read_scene(options.robot);
+  return spec;
+}
+
+struct Answer {
+  InverseResult result;
+  double processor = 0;  // time of all threads [s]
+};
+
+struct Tally {
+  int count = 0, reached = 0, flagged = 0, lost = 0, most_equilibria = 0;
+  double worst_mm = 0, equilibria = 0, iterations = 0, seconds = 0, processor = 0, slope = 0;
+  bool inside = true;
+
+  void add(const Model& model, const Answer& answer) {
+    const InverseResult& result = answer.result;
+    processor += answer.processor;
+    ++count;
+    const double error = result.errors_mm.maxCoeff();
+    reached += result.status == InverseStatus::reached ? 1 : 0;
+    flagged += result.status == InverseStatus::unreachable ? 1 : 0;
+    lost += result.status == InverseStatus::not_converged ? 1 : 0;
+    if (result.status == InverseStatus::reached) worst_mm = std::max(worst_mm, error);
+    slope = std::max(slope, result.slope);
+    equilibria += result.equilibria;
+    most_equilibria = std::max(most_equilibria, result.equilibria);
+    iterations += result.iterations;
+    seconds += result.seconds;
+    for (const InverseRecord& record : result.history)
+      for (std::size_t a = 0; a < model.actuators.size(); ++a)
+        inside = inside && record.actuation[static_cast<Index>(a)] >= model.actuators[a].low &&
+                 record.actuation[static_cast<Index>(a)] <= model.actuators[a].high;
+  }
+};
+
+Vec3 tip_of(const Model& model, const State& state) {
+  return model.markers[0].point.at(state.positions);
+}
+
+class Bench {
+ public:
+  explicit Bench(const Options& options)
+      : options_(options), model_(compile(robot_of(options))), statics_(model_), engine_(options.seed) {
+    inverse_.statics.threads = options.threads;
+    inverse_.statics.keep_history = false;
+    inverse_.tolerance_mm = options.tolerance_mm;
+    inverse_.other_starts = options.other_starts;
+    if (options.method == "gradient") inverse_.method = InverseMethod::gradient;
+    std::printf("%s: %zu tetrahedra of order %d, %zu actuators, marker '%s'; seed %u\n", options.robot.c_str(),
+                model_.tetrahedra.size(), model_.edge_nodes.empty() ? 1 : 2, model_.actuators.size(),
+                model_.markers.at(0).name.c_str(), options.seed);
+    std::fflush(stdout);
+  }
+
+  int reach() {
+    rest_ = statics_.solve(model_.rest_actuation(), statics_.rest(), inverse_.statics).state;
+    Tally near, far;
+    double reach_mm = 0;
+    for (int i = 0; i < options_.targets; ++i) {
+      const Equilibrium made = statics_.solve(random_actuation(), rest_, inverse_.statics);
+      if (made.report.status != Status::converged) continue;
+      reach_mm = std::max(reach_mm, (tip_of(model_, made.state) - tip_of(model_, rest_)).norm());
+      const Answer answer = solve(tip_of(model_, made.state), rest_);
+      near.add(model_, answer);
+      tell("reachable", i, answer.result);
+    }
+    print("reachable", near);
+    std::uniform_real_distribution<double> any(-1, 1);
+    for (int i = 0; i < options_.unreachable; ++i) {
+      Vec3 direction(any(engine_), any(engine_), any(engine_));
+      // twice as far from the tip at rest as any point that was reached
+      const Answer answer = solve(tip_of(model_, rest_) + 2 * reach_mm * direction.normalized(), rest_);
+      far.add(model_, answer);
+      tell("unreachable", i, answer.result);
+    }
+    print("out of reach", far);
+    return 0;
+  }
+
+  /// The tip drawn along a closed curve inside the reach, in steps of so many mm.
+  int drag() {
+    State state = statics_.rest();
+    const Index m = static_cast<Index>(model_.actuators.size());
+    const int points = 48;
+    std::vector<Vec3> curve;
+    std::vector<State> states;
+    for (int i = 0; i < points; ++i) {
+      Actuation actuation(m);
+      for (Index a = 0; a < m; ++a) {
+        const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+        const double phase = 2 * std::numbers::pi * (static_cast<double>(i) / points + static_cast<double>(a) / 3.0);
+        actuation[a] = actuator.low + (actuator.high - actuator.low) * (0.35 + 0.25 * std::cos(phase));
+      }
+      state = statics_.solve(actuation, state, inverse_.statics).state;
+      states.push_back(state);
+      curve.push_back(tip_of(model_, state));
+    }
+    state = states[0];
+    Tally tally;
+    Vec3 at = curve[0];
+    std::size_t next = 1;
+    Sensitivity last;
+    std::vector<double> times;
+    for (int i = 0; i < options_.updates; ++i) {
+      double left = options_.millimetres_per_update;
+      while ((curve[next] - at).norm() < left) {
+        left -= (curve[next] - at).norm();
+        at = curve[next];
+        next = (next + 1) % curve.size();
+      }
+      at += left * (curve[next] - at).normalized();
+      Answer answer = solve(at, state, last.regular ? &last : nullptr);
+      tally.add(model_, answer);
+      times.push_back(answer.result.seconds);
+      state = std::move(answer.result.equilibrium.state);
+      last = std::move(answer.result.sensitivity);
+    }
+    std::printf("target moves %.3g mm per update: %.1f updates/s (median %.1f), %.2f equilibria per update\n",
+                options_.millimetres_per_update, tally.count / tally.seconds, 1 / median(times),
+                tally.equilibria / tally.count);
+    print("dragged", tally);
+    return 0;
+  }
+
+ private:
+  Actuation random_actuation() {
+    Actuation actuation(static_cast<Index>(model_.actuators.size()));
+    for (Index a = 0; a < actuation.size(); ++a) {
+      const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+      actuation[a] = std::uniform_real_distribution<double>(actuator.low, actuator.high)(engine_);
+    }
+    return actuation;
+  }
+
+  Answer solve(const Vec3& target, const State& start, const Sensitivity* sensitivity = nullptr) {
+    inverse_.start_sensitivity = sensitivity;
+    const std::clock_t begin = std::clock();
+    Answer answer{solve_inverse(model_, statics_, {{PositionGoal{0, target}}}, start, inverse_), 0};
+    answer.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    return answer;
+  }
+
+  static void tell(const char* what, int number, const InverseResult& result) {
+    if (std::getenv("SOFTKIN_BENCH_VERBOSE") == nullptr) return;
+    std::printf("  %s %d: status %d, error %.3g mm, slope %.3g mm, %d iterations, %d equilibria, %.2f s %s\n", what,
+                number, static_cast<int>(result.status), result.errors_mm.maxCoeff(), result.slope, result.iterations,
+                result.equilibria, result.seconds, result.remark.c_str());
+    std::fflush(stdout);
+  }
+
+  static void print(const char* what, const Tally& t) {
+    if (t.count == 0) return;
+    std::printf(
+        "%s: %d targets, %d reached (%.1f %%, worst error %.2e mm), %d flagged unreachable, %d not converged; largest "
+        "slope %.1e mm per range; mean %.2f equilibria (most %d), %.2f iterations, %.1f ms (%.1f ms of processor "
+        "time); ranges %s\n",
+        what, t.count, t.reached, 100.0 * t.reached / t.count, t.worst_mm, t.flagged, t.lost, t.slope,
+        t.equilibria / t.count, t.most_equilibria, t.iterations / t.count, 1e3 * t.seconds / t.count,
+        1e3 * t.processor / t.count, t.inside ? "held by every equilibrium" : "VIOLATED");
+    std::fflush(stdout);
+  }
+
+  const Options& options_;
+  Model model_;
+  Statics statics_;
+  InverseOptions inverse_;
+  State rest_;
+  std::mt19937 engine_;
+};
+
+int run(const Options& options) {
+  print_machine();
+  Bench bench(options);
+  return options.mode == "drag" ? bench.drag() : bench.reach();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Inverse kinematics of a robot: random targets, or a target that moves.", "bench_inverse"};
+  Options options;
+  app.add_option("--robot", options.robot, "a scene, or 'beam': three chambers in a block")->capture_default_str();
+  app.add_option("--mode", options.mode, "reach: random targets; drag: one that moves")
+      ->check(CLI::IsMember({"reach", "drag"}))
+      ->capture_default_str();
+  app.add_option("--method", options.method)->check(CLI::IsMember({"newton", "gradient"}))->capture_default_str();
+  app.add_option("--targets", options.targets, "reachable ones, made by forward kinematics")->capture_default_str();
+  app.add_option("--unreachable", options.unreachable)->capture_default_str();
+  app.add_option("--tolerance", options.tolerance_mm, "[mm]")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--other-starts", options.other_starts)->check(CLI::Range(0, 100))->capture_default_str();
+  app.add_option("--updates", options.updates, "drag: how many")->check(CLI::Range(1, 1000000))->capture_default_str();
+  app.add_option("--move", options.millimetres_per_update, "drag: of the target per update [mm]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--size", options.size, "of the beam, tetrahedra")
+      ->check(CLI::Range(1000.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed)->capture_default_str();
+  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256))->capture_default_str();
+  return run_benchmark(app, argc, argv, [&] { return run(options); });
+}

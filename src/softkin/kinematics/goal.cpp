@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/kinematics/goal_terms.hpp>
+#include <string>
+
+namespace softkin {
+
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+Vec3 marker_at(const Model& model, Index marker, const Points& positions) {
+  return model.markers[static_cast<std::size_t>(marker)].point.at(positions);
+}
+
+/// Of a vector that may vanish: markers may come to lie on each other.
+Vec3 unit(const Vec3& vector) {
+  const double length = vector.stableNorm();
+  return length > 0 ? Vec3(vector / length) : Vec3::Zero();
+}
+
+/// Errors of one goal, unweighted: one value per coordinate that counts [mm].
+Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& positions) {
+  return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 miss = marker_at(model, g.marker, positions) - g.target;
+                                 Eigen::VectorXd terms(std::count(g.axes.begin(), g.axes.end(), true));
+                                 for (Index axis = 0, row = 0; axis < 3; ++axis)
+                                   if (g.axes[static_cast<std::size_t>(axis)]) terms[row++] = miss[axis];
+                                 return terms;
+                               },
+                               [&](const PlaneGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 miss = marker_at(model, g.marker, positions) - g.point;
+                                 return Eigen::VectorXd::Constant(1, unit(g.normal).dot(miss));
+                               },
+                               [&](const DirectionGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 line =
+                                     marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
+                                 return g.lever_mm * (unit(line) - unit(g.direction));
+                               }},
+                    goal.what);
+}
+
+/// Derivative of terms_of along a change of the positions.
+Eigen::VectorXd change_of(const Model& model, const Goal& goal, const Points& positions, const Points& moves) {
+  return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
+                                 return terms_of(model, {PositionGoal{g.marker, Vec3::Zero(), g.axes}}, moves);
+                               },
+                               [&](const PlaneGoal& g) -> Eigen::VectorXd {
+                                 return terms_of(model, {PlaneGoal{g.marker, Vec3::Zero(), g.normal}}, moves);
+                               },
+                               [&](const DirectionGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 line =
+                                     marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
+                                 const Vec3 move = marker_at(model, g.to, moves) - marker_at(model, g.from, moves);
+                                 const double length = line.stableNorm();
+                                 if (!(length > 0)) return Vec3::Zero();
+                                 const Vec3 along = line / length;
+                                 return g.lever_mm / length * (move - along.dot(move) * along);
+                               }},
+                    goal.what);
+}
+
+template <class Each>
+Eigen::VectorXd joined(const std::vector<Goal>& goals, const Each& each) {
+  std::vector<double> all;
+  for (const Goal& goal : goals) {
+    const Eigen::VectorXd terms = std::sqrt(goal.weight) * each(goal);
+    all.insert(all.end(), terms.data(), terms.data() + terms.size());
+  }
+  return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Index>(all.size()));
+}
+
+class Check {
+ public:
+  Check(const Model& model, std::size_t number) : model_(model), name_("goal " + std::to_string(number + 1)) {}
+
+  void operator()(const PositionGoal& goal) const {
+    marker(goal.marker);
+    finite(goal.target, "target");
+    if (goal.axes == std::array<bool, 3>{}) refuse("no coordinate of its target counts");
+  }
+  void operator()(const PlaneGoal& goal) const {
+    marker(goal.marker);
+    finite(goal.point, "plane's point");
+    directed(goal.normal, "plane's normal");
+  }
+  void operator()(const DirectionGoal& goal) const {
+    marker(goal.from);
+    marker(goal.to);
+    if (goal.from == goal.to) refuse("the direction from a marker to itself is none");
+    directed(goal.direction, "direction");
+    positive(goal.lever_mm, "lever");
+  }
+  void positive(double value, const std::string& what) const {
+    if (!(value > 0 && std::isfinite(value))) refuse("its " + what + " must be finite and > 0");
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput(name_ + ": " + why); }
+  void marker(Index index) const {
+    if (index < 0 || index >= static_cast<Index>(model_.markers.size()))
+      refuse("the robot has no marker number " + std::to_string(index));
+  }
+  void finite(const Vec3& vector, const std::string& what) const {
+    if (!vector.allFinite()) refuse("its " + what + " holds a coordinate that is not finite");
+  }
+  void directed(const Vec3& vector, const std::string& what) const {
+    finite(vector, what);
+    if (!(vector.stableNorm() > 0)) refuse("its " + what + " is zero");
+  }
+
+  const Model& model_;
+  std::string name_;
+};
+
+}  // namespace
+
+void check_goals(const Model& model, const std::vector<Goal>& goals) {
+  if (goals.empty()) throw InvalidInput("inverse kinematics needs a goal");
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const Check check(model, i);
+    std::visit(check, goals[i].what);
+    check.positive(goals[i].weight, "weight");
+  }
+}
+
+Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, const Points& positions) {
+  Eigen::VectorXd errors(static_cast<Index>(goals.size()));
+  for (std::size_t i = 0; i < goals.size(); ++i)
+    errors[static_cast<Index>(i)] = terms_of(model, goals[i], positions).stableNorm();
+  return errors;
+}
+
+Eigen::VectorXd goal_terms(const Model& model, const std::vector<Goal>& goals, const Points& positions) {
+  return joined(goals, [&](const Goal& goal) { return terms_of(model, goal, positions); });
+}
+
+Eigen::MatrixXd goal_slopes(const Model& model, const std::vector<Goal>& goals, const Points& positions,
+                            const Sensitivity& sensitivity) {
+  Eigen::MatrixXd slopes(goal_terms(model, goals, positions).size(), static_cast<Index>(sensitivity.positions.size()));
+  for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
+    slopes.col(static_cast<Index>(a)) =
+        joined(goals, [&](const Goal& goal) { return change_of(model, goal, positions, sensitivity.positions[a]); });
+  return slopes;
+}
+
+}  // namespace softkin

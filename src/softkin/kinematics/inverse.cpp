@@ -1,0 +1,272 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/kinematics/inverse_gradient.hpp>
+#include <softkin/kinematics/inverse_robot.hpp>
+#include <softkin/kinematics/inverse_search.hpp>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+/// A direction in which whole ranges move the terms by less than this share of the tolerance moves nothing.
+constexpr double resolution_of_tolerance = 0.1;
+/// Another minimum must be so much better than the first to be worth a jump.
+constexpr double worthwhile = 0.99;
+
+void check_size(const Model& model, const Sensitivity& given) {
+  const std::size_t m = model.actuators.size();
+  const auto fits = [&](const Points& p) { return p.rows() == model.rest.rows() && p.allFinite(); };
+  if (given.positions.size() != m || given.multipliers.rows() != static_cast<Index>(m) ||
+      given.multipliers.cols() != static_cast<Index>(m) ||
+      !std::all_of(given.positions.begin(), given.positions.end(), fits))
+    throw InvalidInput("the sensitivity at the start is of another robot, or not finite");
+}
+
+void check_options(const Model& model, const State& start, const InverseOptions& options) {
+  const auto m = static_cast<Index>(model.actuators.size());
+  if (m == 0) throw InvalidInput("inverse kinematics needs a robot with an actuator");
+  if (!(options.tolerance_mm > 0) || !std::isfinite(options.tolerance_mm) || !(options.preferred_tolerance > 0) ||
+      options.max_equilibria < 1 || options.max_iterations < 1 || options.other_starts < 0)
+    throw InvalidInput(
+        "options of inverse kinematics out of range: tolerances > 0, equilibria and iterations >= 1, other starts >= "
+        "0");
+  if (!options.free.empty() && static_cast<Index>(options.free.size()) != m)
+    throw InvalidInput("the list of free actuators has " + std::to_string(options.free.size()) +
+                       " entries, the robot " + std::to_string(m) + " actuators");
+  if (options.preferred.size() > 0) check_actuation(model, options.preferred);
+  if (start.actuation.size() > 0) check_actuation(model, start.actuation);
+  if (options.start_sensitivity != nullptr) check_size(model, *options.start_sensitivity);
+}
+
+std::vector<Index> free_actuators(const Model& model, const InverseOptions& options) {
+  std::vector<Index> free;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if ((options.free.empty() || options.free[a]) && model.actuators[a].high > model.actuators[a].low)
+      free.push_back(static_cast<Index>(a));
+  return free;
+}
+
+/// Place i of a sequence that fills the unit cube evenly (Halton 1960).
+Eigen::VectorXd evenly(int place, Index size) {
+  Eigen::VectorXd point(size);
+  int base = 1;
+  for (Index i = 0; i < size; ++i) {
+    const auto divides = [&](int d) { return base % d == 0; };
+    for (bool prime = false; !prime;) {
+      ++base;
+      prime = true;
+      for (int d = 2; d * d <= base; ++d) prime = prime && !divides(d);
+    }
+    double value = 0, digit = 1;
+    for (int n = place; n > 0; n /= base) value += n % base * (digit /= base);
+    point[i] = value;
+  }
+  return point;
+}
+
+class Inverse {
+ public:
+  Inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals, const InverseOptions& options,
+          const ProgressCallback& progress)
+      : model_(model),
+        statics_(statics),
+        goals_(goals),
+        options_(options),
+        response_(model, statics, goals, options, free_actuators(model, options), progress) {}
+
+  InverseResult solve(const State& start) {
+    Equilibrium first;
+    if (settle(start, first)) {
+      if (options_.method == InverseMethod::newton) {
+        search(std::move(first));
+      } else {
+        descend_from(std::move(first));
+      }
+    }
+    result_.equilibria = static_cast<int>(response_.history().size());
+    result_.history = response_.history();
+    return std::move(result_);
+  }
+
+ private:
+  /// The start as an equilibrium; it is taken for one where it says all that solve() says.
+  bool settle(const State& start, Equilibrium& first) {
+    const auto m = static_cast<Index>(model_.actuators.size());
+    const bool known = start.actuation.size() == m && start.multipliers.size() == m && start.share == 1;
+    first.state = start;
+    first.actuation = start.actuation.size() > 0 ? start.actuation : model_.rest_actuation();
+    first.report.status = Status::converged;
+    if (known || response_.solve(first.actuation, start, first)) return true;
+    result_.equilibrium = first;
+    result_.errors_mm = goal_errors(model_, goals_, first.state.positions);
+    result_.active.assign(model_.actuators.size(), 0);
+    result_.status = response_.interrupted() ? InverseStatus::interrupted : InverseStatus::not_converged;
+    result_.remark = response_.interrupted() ? "interrupted" : "the start has no equilibrium: " + first.report.remark;
+    return false;
+  }
+
+  [[nodiscard]] double accuracy_mm() const {
+    return options_.statics.step_tolerance_mm > 0 ? options_.statics.step_tolerance_mm : 8e-8 * model_.diagonal_mm;
+  }
+
+  void descend_from(Equilibrium first) {
+    response_.keep_slack();
+    Pose pose = response_.pose_of(std::move(first), false);
+    const bool reached = descend(response_, model_.diagonal_mm, accuracy_mm(), options_.max_iterations, pose,
+                                 result_.iterations, result_.remark);
+    result_.status = reached ? InverseStatus::reached : InverseStatus::not_converged;
+    if (response_.interrupted()) result_.status = InverseStatus::interrupted;
+    if (reached) result_.remark.clear();
+    finish(std::move(pose));
+    result_.active.assign(model_.actuators.size(), 0);
+  }
+
+  void search(Equilibrium first) {
+    const Actuation preferred = options_.preferred.size() > 0 ? options_.preferred : first.actuation;
+    SearchSettings settings;
+    settings.preferred = response_.shares_of(preferred);
+    settings.resolution_mm = resolution_of_tolerance * options_.tolerance_mm;
+    settings.accuracy_mm = accuracy_mm();
+    settings.preferred_tolerance = options_.preferred_tolerance;
+    first.state.actuation = first.actuation;
+    if (response_.free().empty()) return stay(std::move(first));
+    const Pose start = response_.pose_of(std::move(first), true);
+    SearchResult found = search_inverse(response_, start, settings);
+    result_.iterations = found.iterations;
+    for (int i = 1; i <= options_.other_starts && unreached(found); ++i) try_from(i, start, settings, found);
+    conclude(std::move(found), settings);
+  }
+
+  /// No actuator may change.
+  void stay(Equilibrium first) {
+    Pose pose = response_.pose_of(std::move(first), false);
+    result_.status = pose.miss <= 1 ? InverseStatus::reached : InverseStatus::unreachable;
+    if (pose.miss > 1) result_.remark = "no actuator may change";
+    result_.active.assign(model_.actuators.size(), 0);
+    result_.sensitivity = statics_.sensitivity(pose.equilibrium.state, options_.statics);
+    finish(std::move(pose));
+  }
+
+  [[nodiscard]] bool unreached(const SearchResult& found) const {
+    return (found.end == SearchEnd::stationary || found.end == SearchEnd::stuck) && response_.any_left();
+  }
+
+  void try_from(int place, const Pose& start, const SearchSettings& settings, SearchResult& best) {
+    Pose there;
+    if (response_.go(evenly(place, start.shares.size()), start, there) == Response::Outcome::failed) return;
+    if (response_.interrupted()) {
+      best.end = SearchEnd::interrupted;
+      return;
+    }
+    SearchResult found = search_inverse(response_, there, settings);
+    result_.iterations += found.iterations;
+    const bool good = found.end == SearchEnd::reached || found.end == SearchEnd::stationary;
+    if (found.end == SearchEnd::interrupted) {
+      best.end = SearchEnd::interrupted;
+    } else if ((good && best.end == SearchEnd::stuck && found.pose.terms.norm() <= best.pose.terms.norm()) ||
+               found.pose.terms.norm() < worthwhile * best.pose.terms.norm()) {
+      best = std::move(found);
+    }
+  }
+
+  void conclude(SearchResult found, const SearchSettings& settings) {
+    const bool reached = found.pose.miss <= 1;
+    switch (found.end) {
+      case SearchEnd::reached:
+        result_.status = InverseStatus::reached;
+        break;
+      case SearchEnd::stationary:
+        result_.status = InverseStatus::unreachable;
+        result_.remark = "no change of the actuation inside the ranges brings the goals nearer";
+        break;
+      case SearchEnd::none_left:
+        result_.status = reached ? InverseStatus::reached : InverseStatus::not_converged;
+        result_.remark = "the limit of " + std::to_string(options_.max_equilibria) + " equilibria was reached";
+        break;
+      case SearchEnd::stuck:
+        result_.status = reached ? InverseStatus::reached : InverseStatus::not_converged;
+        result_.remark = "the search came to a limit of the robot's equilibria";
+        break;
+      case SearchEnd::interrupted:
+        result_.status = reached ? InverseStatus::reached : InverseStatus::interrupted;
+        result_.remark = "interrupted";
+        break;
+    }
+    if (result_.status == InverseStatus::reached) result_.remark.clear();
+    result_.slope = found.slope;
+    tell_active(found, settings);
+    if (reached && found.slopes.sensitivity.regular) {
+      const int before = static_cast<int>(response_.history().size());
+      response_.release(found.pose, found.slopes, settings.preferred, settings.resolution_mm);
+      if (static_cast<int>(response_.history().size()) > before) found.slopes.sensitivity.regular = false;
+    }
+    const bool same = !(found.pose.idle.array() > 0).any() && found.slopes.sensitivity.regular;
+    slacken(found.pose, settings);
+    if (same) {
+      result_.sensitivity = std::move(found.slopes.sensitivity);
+    } else {
+      result_.sensitivity = statics_.sensitivity(found.pose.equilibrium.state, options_.statics);
+    }
+    finish(std::move(found.pose));
+  }
+
+  /// Commands at an end of their range beyond which the error, or where there is none the distance from the preferred
+  /// actuation, would go on falling.
+  void tell_active(const SearchResult& found, const SearchSettings& settings) {
+    constexpr double at_the_end = 1e-9;
+    result_.active.assign(model_.actuators.size(), 0);
+    const Pose& pose = found.pose;
+    if (found.slopes.terms.cols() != pose.shares.size()) return;
+    const bool reached = pose.miss <= 1;
+    const Eigen::VectorXd slope =
+        reached ? Eigen::VectorXd(pose.shares - settings.preferred)
+                : Eigen::VectorXd(found.slopes.terms.transpose() * pose.terms / pose.terms.norm());
+    const double least = reached ? options_.preferred_tolerance : 1e-9 * found.slopes.terms.norm();
+    for (Index i = 0; i < pose.shares.size(); ++i) {
+      int& active = result_.active[static_cast<std::size_t>(response_.free()[static_cast<std::size_t>(i)])];
+      if (pose.shares[i] <= at_the_end && slope[i] > least) active = -1;
+      if (pose.shares[i] >= 1 - at_the_end && slope[i] < -least) active = 1;
+    }
+  }
+
+  /// Gives slack cables the length that is preferred: their shape is the same.
+  void slacken(Pose& pose, const SearchSettings& settings) const {
+    State& state = pose.equilibrium.state;
+    const Actuation preferred = response_.actuation_of(settings.preferred, state.actuation);
+    for (Index i = 0; i < pose.idle.size(); ++i) {
+      if (!(pose.idle[i] > 0)) continue;
+      const Index a = response_.free()[static_cast<std::size_t>(i)];
+      state.actuation[a] = std::max(state.actuation[a], preferred[a]);
+    }
+  }
+
+  void finish(Pose pose) {
+    result_.errors_mm = goal_errors(model_, goals_, pose.equilibrium.state.positions);
+    result_.equilibrium = std::move(pose.equilibrium);
+    result_.equilibrium.actuation = result_.equilibrium.state.actuation;
+  }
+
+  const Model& model_;
+  const Statics& statics_;
+  const std::vector<Goal>& goals_;
+  const InverseOptions& options_;
+  RobotResponse response_;
+  InverseResult result_;
+};
+
+}  // namespace
+
+InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
+                            const State& start, const InverseOptions& options, const ProgressCallback& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  check_goals(model, goals);
+  check_options(model, start, options);
+  InverseResult result = Inverse(model, statics, goals, options, progress).solve(start);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace softkin

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <softkin/kinematics/goal.hpp>
+#include <softkin/statics/statics.hpp>
+
+namespace softkin {
+
+/// newton: damped Gauss-Newton with the exact Jacobian. gradient: Algorithm 2 of the paper with central differences.
+enum class InverseMethod { newton, gradient };
+
+struct InverseOptions {
+  InverseMethod method = InverseMethod::newton;
+  double tolerance_mm = 1e-3;  // every goal's error at which it is reached, > 0
+  int max_equilibria = 200;    // >= 1; newton
+  int max_iterations = 30;     // >= 1; gradient: i_max
+  int other_starts = 3;        // >= 0; newton: from where it is tried again before a goal is called unreachable
+  Actuation preferred{};       // m, in the ranges: with more actuators than needed, the actuation to stay near; empty:
+                               // the start's
+  double preferred_tolerance = 1e-3;  // > 0; distance from the nearest such actuation, share of each range [-]; newton
+  std::vector<bool> free{};           // m: actuators that may change; empty: all
+  const Sensitivity* start_sensitivity = nullptr;  // of the start, an equilibrium, such as the last
+                                                   // result's; null: is computed
+  StaticsOptions statics{};
+};
+
+/// reached: every goal is met. unreachable: no allowed change of the actuation brings the goals nearer, to first order.
+enum class InverseStatus { reached, unreachable, not_converged, interrupted };
+
+/// An equilibrium that was asked for on the way.
+struct InverseRecord {
+  Actuation actuation;  // asked for
+  Status status = Status::not_converged;
+  double error_mm = 0;  // largest of the goals; infinite where status is not converged
+  int iterations = 0;   // of Newton's method or Algorithm 1
+};
+
+struct InverseResult {
+  InverseStatus status = InverseStatus::not_converged;
+  Equilibrium equilibrium;    // at the best actuation found, inside every range
+  Eigen::VectorXd errors_mm;  // per goal
+  std::vector<int> active;    // m: -1 at the low end of its range and pushed there, +1 at the high end, else 0
+  double slope = 0;           // norm of the projected gradient of the error (root of the weighted sum of squares)
+                              // by the share of each range [mm]: 0 where no allowed change helps; newton
+  Sensitivity sensitivity;    // at the equilibrium; newton
+  int iterations = 0, equilibria = 0;
+  std::vector<InverseRecord> history;  // every equilibrium
+  std::string remark;                  // why it stopped, where status is not reached
+  double seconds = 0;
+};
+
+/// Actuation at which the goals are met, or met as nearly as the ranges allow.
+///
+/// start     an equilibrium: State with its actuation, inside the ranges; statics.rest() with empty actuation will do
+/// progress  iteration: equilibria so far; step_mm: the least error so far, of the farthest goal [mm]
+/// returns   not reaching a goal is a status; commands never leave their ranges, not during the search either. A cable
+///           that ends slack stays as long as it was preferred where its path allows
+/// source    Gauss-Newton in a trust region: Levenberg 1944, Marquardt 1963, More 1978; ranges and slack cables as
+///           inequalities of its quadratic steps (Nocedal and Wright 2006, Section 16.5); curvature of the errors that
+///           stay: Dennis, Gay and Welsch 1981; updated slopes: Broyden 1965.
+///           gradient: Fang et al. 2020, Alg. 2, as corrected in docs/paper.md
+/// throws    InvalidInput as check_goals and Statics::solve do; on options out of range, sizes that do not fit, a
+///           preferred actuation or a start outside the ranges
+[[nodiscard]] InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
+                                          const State& start, const InverseOptions& options = {},
+                                          const ProgressCallback& progress = {});
+
+}  // namespace softkin

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <softkin/kinematics/goal_terms.hpp>
+#include <softkin/kinematics/inverse_robot.hpp>
+#include <softkin/statics/measure.hpp>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::infinity();
+/// Share of the way below which an equilibrium on it is not worth having.
+constexpr double least_way = 0.02;
+
+}  // namespace
+
+RobotResponse::RobotResponse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
+                             const InverseOptions& options, std::vector<Index> free, const ProgressCallback& progress)
+    : model_(model),
+      statics_(statics),
+      goals_(goals),
+      options_(options),
+      free_(std::move(free)),
+      progress_(progress),
+      least_error_(none),
+      most_(options.max_equilibria) {
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    if (pulls(free_[i])) cables_.push_back(static_cast<Index>(i));
+}
+
+bool RobotResponse::pulls(Index actuator) const {
+  const Actuator& a = model_.actuators[static_cast<std::size_t>(actuator)];
+  return model_.formulation == Formulation::physical && a.kind == ActuatorKind::cable && a.control == Control::ratio;
+}
+
+double RobotResponse::width(Index actuator) const {
+  const Actuator& a = model_.actuators[static_cast<std::size_t>(actuator)];
+  return a.high - a.low;
+}
+
+Eigen::VectorXd RobotResponse::shares_of(const Actuation& actuation) const {
+  Eigen::VectorXd shares(static_cast<Index>(free_.size()));
+  for (Index i = 0; i < shares.size(); ++i) {
+    const Index a = free_[static_cast<std::size_t>(i)];
+    shares[i] = (actuation[a] - model_.actuators[static_cast<std::size_t>(a)].low) / width(a);
+  }
+  return shares.cwiseMax(0).cwiseMin(1);
+}
+
+Actuation RobotResponse::actuation_of(const Eigen::VectorXd& shares, const Actuation& others) const {
+  Actuation actuation = others;
+  for (Index i = 0; i < shares.size(); ++i) {
+    const Index a = free_[static_cast<std::size_t>(i)];
+    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    const double value = shares[i] < 1 ? actuator.low + shares[i] * width(a) : actuator.high;
+    actuation[a] = std::clamp(value, actuator.low, actuator.high);
+  }
+  return actuation;
+}
+
+Pose RobotResponse::pose_of(Equilibrium equilibrium, bool taut) const {
+  Pose pose;
+  const Points& positions = equilibrium.state.positions;
+  pose.terms = goal_terms(model_, goals_, positions);
+  pose.miss = goal_errors(model_, goals_, positions).maxCoeff() / options_.tolerance_mm;
+  pose.equilibrium = std::move(equilibrium);
+  pose.idle.setZero(static_cast<Index>(free_.size()));
+  pose.tensions.setZero(static_cast<Index>(cables_.size()));
+  if (taut) tauten(pose);
+  pose.shares = shares_of(pose.equilibrium.state.actuation);
+  return pose;
+}
+
+/// Statics::sensitivity counts a cable as taut that is as long as its path. One whose path is shorter than its range
+/// allows stays slack.
+void RobotResponse::tauten(Pose& pose) const {
+  State& state = pose.equilibrium.state;
+  for (std::size_t i = 0; i < cables_.size(); ++i) {
+    const Index a = free_[static_cast<std::size_t>(cables_[i])];
+    const Actuator& cable = model_.actuators[static_cast<std::size_t>(a)];
+    pose.tensions[static_cast<Index>(i)] = std::max(0.0, state.multipliers[a]);
+    if (state.multipliers[a] > 0) continue;
+    const double path = achieved_ratio(model_, cable, state.positions);
+    if (path < cable.low) continue;
+    state.actuation[a] = std::min(state.actuation[a], path);
+    pose.idle[cables_[i]] = 1;
+  }
+}
+
+bool RobotResponse::solve(const Actuation& actuation, const State& from, Equilibrium& found) {
+  const auto go_on = [this](const Progress&) {
+    const bool on =
+        !progress_ || progress_({static_cast<int>(history_.size()), least_error_, options_.tolerance_mm, -1});
+    interrupted_ = interrupted_ || !on;
+    return on;
+  };
+  found = statics_.solve(actuation, from, options_.statics, go_on);
+  const bool converged = found.report.status == Status::converged;
+  const double error = converged ? goal_errors(model_, goals_, found.state.positions).maxCoeff() : none;
+  interrupted_ = interrupted_ || found.report.status == Status::interrupted;
+  history_.push_back({actuation, found.report.status, error, found.report.iterations});
+  least_error_ = std::min(least_error_, error);
+  return converged;
+}
+
+void RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm) {
+  const State& state = pose.equilibrium.state;
+  const Actuation longer = actuation_of(preferred, state.actuation);
+  Actuation released = state.actuation;
+  for (std::size_t k = 0; k < cables_.size(); ++k) {
+    const Index i = cables_[k], a = free_[static_cast<std::size_t>(i)];
+    const double tension = pose.tensions[static_cast<Index>(k)];
+    const double rate = std::abs(slopes.tensions(static_cast<Index>(k), i));
+    if (!(tension > 0) || !(longer[a] > state.actuation[a])) continue;
+    if (tension * slopes.terms.col(i).norm() < resolution_mm * rate) released[a] = longer[a];
+  }
+  Equilibrium found;
+  if (released == state.actuation || !any_left() || !solve(released, state, found)) return;
+  const Pose slack = pose_of(std::move(found), taut_);
+  if (slack.miss <= 1) pose = slack;
+}
+
+Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& from, Pose& to) {
+  const State& state = from.equilibrium.state;
+  Equilibrium found;
+  const bool converged = solve(actuation_of(shares, state.actuation), state, found);
+  if (interrupted_) return Outcome::interrupted;
+  const bool halfway =
+      found.report.status == Status::limit && found.report.reached > least_way && found.state.share == 1;
+  if (!converged && !halfway) return Outcome::failed;
+  found.report.status = Status::converged;  // at the actuation of its state
+  found.report.remark.clear();
+  to = pose_of(std::move(found), taut_);
+  return converged ? Outcome::arrived : Outcome::halfway;
+}
+
+bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
+  const State& state = at.equilibrium.state;
+  const bool given = options_.start_sensitivity != nullptr && history_.empty() && at.idle.isZero(0);
+  slopes.sensitivity = given ? *options_.start_sensitivity : statics_.sensitivity(state, options_.statics);
+  if (!slopes.sensitivity.regular) return false;
+  const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity);
+  const auto free = static_cast<Index>(free_.size());
+  slopes.terms.resize(all.rows(), free);
+  slopes.tensions.resize(static_cast<Index>(cables_.size()), free);
+  for (Index i = 0; i < free; ++i) {
+    const Index a = free_[static_cast<std::size_t>(i)];
+    slopes.terms.col(i) = width(a) * all.col(a);
+    for (std::size_t k = 0; k < cables_.size(); ++k)
+      slopes.tensions(static_cast<Index>(k), i) =
+          width(a) * slopes.sensitivity.multipliers(free_[static_cast<std::size_t>(cables_[k])], a);
+  }
+  return slopes.terms.allFinite() && slopes.tensions.allFinite();
+}
+
+}  // namespace softkin

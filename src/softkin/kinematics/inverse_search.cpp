@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/kinematics/inverse_search.hpp>
+#include <softkin/kinematics/inverse_step.hpp>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+constexpr double first_radius = 0.5, least_radius = 1e-8;
+constexpr double enough = 1e-4, good = 0.75, poor = 0.25;  // actual reduction over that predicted
+/// Slopes are updated instead of computed where the norm of the terms has become so much smaller.
+constexpr double quick = 0.1;
+constexpr double least_sideways = 0.1;  // of the preferred tolerance
+/// A step that is to leave less than this share of the errors meets the goals; what follows it shrinks by the other.
+constexpr double meets = 0.01, shrinks = 0.5;
+constexpr double relative_slope = 1e-5;  // of the norm of the slopes, at which nothing helps
+
+class Search {
+ public:
+  Search(Response& response, const Pose& start, const SearchSettings& settings)
+      : response_(response), settings_(settings) {
+    result_.pose = start;
+    const Eigen::Index free = start.shares.size();
+    secant_.setZero(free, free);
+    limits_.resolution_mm = settings.resolution_mm;
+    limits_.radius = first_radius;
+  }
+
+  SearchResult run() {
+    if (!renew()) return std::move(result_);
+    if (pose().miss <= 1) compare();
+    while (!finished()) {
+      if (!response_.any_left()) {
+        finish(SearchEnd::none_left);
+      } else {
+        advance();
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  Pose& pose() { return result_.pose; }
+  [[nodiscard]] const Eigen::MatrixXd& curvature() const { return use_secant_ ? secant_ : none_; }
+
+  /// Ends with the slopes of the pose itself.
+  void finish(SearchEnd end) {
+    if (pose().miss > 1 && best_.shares.size() > 0) return_to_best();
+    result_.end = fresh_ || renew() ? end : SearchEnd::stuck;
+    finished_ = true;
+  }
+
+  bool renew() {
+    fresh_ = response_.slopes(pose(), result_.slopes);
+    none_.setZero(pose().shares.size(), pose().shares.size());
+    if (fresh_) result_.slope = projected_slope(pose(), result_.slopes);
+    return fresh_;
+  }
+
+  /// Finds the next step; true where none is needed. Updated slopes do for a step, not for a verdict.
+  bool finished() {
+    for (int look = 0; !finished_ && look < 2; ++look) {
+      step_ = find_step(pose(), result_.slopes, curvature(), settings_.preferred, limits_);
+      if (!(pose().miss <= 1 ? near_enough() : nothing_helps())) return false;
+      if (fresh_) {
+        finish(pose().miss <= 1 ? SearchEnd::reached : SearchEnd::stationary);
+      } else {
+        look_again();
+      }
+    }
+    return finished_;
+  }
+
+  bool near_enough() const { return step_.sideways <= settings_.preferred_tolerance; }
+
+  /// The direction of the error is known as well as the pose is.
+  bool nothing_helps() {
+    const double slope = fresh_ ? result_.slope : projected_slope(pose(), result_.slopes);
+    const double known = settings_.accuracy_mm / pose().terms.norm();
+    return slope <= std::max(relative_slope, known) * result_.slopes.terms.norm() ||
+           (step_.move.cwiseAbs().maxCoeff() <= least_radius &&
+            step_.predicted_norm > (1 - poor * meets) * pose().terms.norm());
+  }
+
+  void advance() {
+    ++result_.iterations;
+    Pose trial;
+    const auto outcome = response_.go(pose().shares + step_.move, pose(), trial);
+    if (outcome == Response::Outcome::interrupted) return end_at_once(SearchEnd::interrupted);
+    if (outcome == Response::Outcome::failed) return shorten();
+    const Eigen::VectorXd move = trial.shares - pose().shares;
+    if (!(move.norm() > 0)) return shorten();
+    if (pose().miss <= 1) return take(std::move(trial), move);
+    const double predicted = predicted_reduction(pose(), result_.slopes, curvature(), move);
+    const double actual = 0.5 * (pose().terms.squaredNorm() - trial.terms.squaredNorm());
+    choose_model(move, actual);
+    if (!(actual > 0) || !(actual >= enough * predicted)) {
+      if (leads_on(trial)) return take(std::move(trial), move);
+      return fresh_ ? shorten() : look_again();
+    }
+    const double length = move.cwiseAbs().maxCoeff();
+    if (outcome == Response::Outcome::halfway || actual < poor * predicted) {
+      limits_.radius = std::max(0.5 * length, 10 * least_radius);
+    } else if (actual > good * predicted && length > 0.9 * limits_.radius) {
+      limits_.radius = std::min(1.0, 2 * limits_.radius);
+    }
+    take(std::move(trial), move);
+  }
+
+  /// Where actuators move the goals unequally far, the way to them is a narrow bend: a step that was to meet them and
+  /// increases the errors is good if the one that follows it is much shorter (Deuflhard 2011: natural monotonicity).
+  bool leads_on(const Pose& trial) {
+    const double length = step_.move.norm();
+    if (!fresh_ || !(step_.predicted_norm < meets * pose().terms.norm()) || !(length < most_bend_ * shrinks))
+      return false;
+    const InverseStep next = find_step(trial, result_.slopes, none_, trial.shares, limits_);
+    if (!(next.move.norm() < shrinks * length)) return false;
+    most_bend_ = length;
+    return true;
+  }
+
+  void end_at_once(SearchEnd end) {
+    result_.end = end;
+    finished_ = true;
+  }
+
+  void look_again() {
+    if (!renew()) end_at_once(SearchEnd::stuck);
+  }
+
+  void shorten() {
+    limits_.radius = 0.25 * std::min(limits_.radius, step_.move.cwiseAbs().maxCoeff());
+    if (limits_.radius < least_radius) finish(pose().miss <= 1 ? SearchEnd::reached : SearchEnd::stuck);
+  }
+
+  /// Which model has told the reduction better: with or without the curvature of the terms?
+  void choose_model(const Eigen::VectorXd& move, double actual) {
+    const double plain = predicted_reduction(pose(), result_.slopes, none_, move);
+    const double full = predicted_reduction(pose(), result_.slopes, secant_, move);
+    use_secant_ = std::abs(full - actual) < std::abs(plain - actual);
+  }
+
+  /// Goes on from the trial, with updated slopes where that is quick, else with its own.
+  void take(Pose trial, const Eigen::VectorXd& move) {
+    const bool update = trial.miss <= 1 || trial.terms.norm() < quick * pose().terms.norm();
+    const Pose from = std::exchange(pose(), std::move(trial));
+    const Eigen::MatrixXd before = result_.slopes.terms;
+    if (update) {
+      const Eigen::VectorXd lack = pose().terms - from.terms - before * move;
+      result_.slopes.terms += lack * move.transpose() / move.squaredNorm();
+      fresh_ = false;
+    } else {
+      const bool known = fresh_;
+      if (!renew()) return end_at_once(SearchEnd::stuck);
+      if (known) learn(before, from.terms, move);
+    }
+    if (pose().miss <= 1) compare();
+  }
+
+  /// Of poses that reach the goals keeps the one nearest to the preferred actuation.
+  void compare() {
+    const double distance = distance_from(pose(), settings_.preferred);
+    if (best_.shares.size() == 0 || distance < best_distance_) {
+      best_ = pose();
+      best_slopes_ = result_.slopes;
+      best_fresh_ = fresh_;
+      best_distance_ = distance;
+      return;
+    }
+    limits_.sideways = 0.25 * std::min(limits_.sideways, (pose().shares - best_.shares).cwiseAbs().maxCoeff());
+    return_to_best();
+    if (limits_.sideways < least_sideways * settings_.preferred_tolerance) finish(SearchEnd::reached);
+  }
+
+  void return_to_best() {
+    pose() = best_;
+    result_.slopes = best_slopes_;
+    fresh_ = best_fresh_;
+    if (fresh_) result_.slope = projected_slope(pose(), result_.slopes);
+  }
+
+  /// Secant curvature of the terms, sized down where their errors vanish.
+  void learn(const Eigen::MatrixXd& before, const Eigen::VectorXd& terms_before, const Eigen::VectorXd& move) {
+    const Eigen::MatrixXd& after = result_.slopes.terms;
+    const Eigen::VectorXd bent = (after - before).transpose() * pose().terms;
+    const Eigen::VectorXd turned = after.transpose() * pose().terms - before.transpose() * terms_before;
+    const double along = turned.dot(move);
+    if (!(std::abs(along) > 1e-12 * turned.norm() * move.norm())) return;
+    const double had = move.dot(secant_ * move);
+    if (had != 0) secant_ *= std::min(1.0, std::abs(move.dot(bent) / had));
+    const Eigen::VectorXd lack = bent - secant_ * move;
+    secant_ += (lack * turned.transpose() + turned * lack.transpose()) / along -
+               lack.dot(move) / (along * along) * turned * turned.transpose();
+  }
+
+  Response& response_;
+  const SearchSettings& settings_;
+  SearchResult result_;
+  StepLimits limits_;
+  InverseStep step_;
+  Eigen::MatrixXd secant_, none_;
+  Pose best_;  // reaches the goals, nearest to the preferred actuation so far
+  Slopes best_slopes_;
+  double best_distance_ = 0;
+  double most_bend_ = 10;  // longest step that may increase the errors, all shares together
+  bool fresh_ = false, best_fresh_ = false, use_secant_ = false, finished_ = false;
+};
+
+}  // namespace
+
+SearchResult search_inverse(Response& response, const Pose& start, const SearchSettings& settings) {
+  return Search(response, start, settings).run();
+}
+
+}  // namespace softkin

@@ -1,0 +1,124 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <softkin/kinematics/inverse_step.hpp>
+#include <softkin/kinematics/small_program.hpp>
+
+namespace softkin {
+
+namespace {
+
+/// A range's end, or a tension of zero, that is nearer than this share of the ranges is reached.
+constexpr double at_the_end = 1e-9;
+
+/// Moves that stay in the ranges and the radius and slacken no cable: rows move >= bounds.
+struct Region {
+  Eigen::MatrixXd rows;
+  Eigen::VectorXd bounds;
+
+  Region(const Pose& pose, const Slopes& slopes, double radius) {
+    const Eigen::Index free = pose.shares.size(), cables = pose.tensions.size();
+    rows.setZero(2 * free + cables, free);
+    bounds.resize(2 * free + cables);
+    rows.topRows(free).setIdentity();
+    rows.middleRows(free, free).diagonal().setConstant(-1);
+    bounds.head(free) = (-pose.shares).cwiseMax(-radius);
+    bounds.segment(free, free) = -(1 - pose.shares.array()).min(radius);
+    for (Eigen::Index i = 0; i < cables; ++i) {
+      const double scale = slopes.tensions.row(i).norm();
+      rows.row(2 * free + i) = slopes.tensions.row(i) / (scale > 0 ? scale : 1);
+      bounds[2 * free + i] = scale > 0 ? -pose.tensions[i] / scale : -1;
+    }
+  }
+};
+
+/// Directions that change the terms, and the rest; of J^T J.
+struct Split {
+  Eigen::MatrixXd blind;  // f by the number of directions that move nothing
+
+  Split(const Eigen::MatrixXd& normal, double resolution_mm) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
+    const auto small = (eigen.eigenvalues().array() < resolution_mm * resolution_mm).count();
+    blind = eigen.eigenvectors().leftCols(small);  // ascending
+  }
+};
+
+/// Positive definite: the magnitudes of its curvatures. Directions that move nothing are made stiff: over them rounding
+/// would decide.
+Eigen::MatrixXd made_definite(const Eigen::MatrixXd& hessian, double resolution_mm) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
+  const Eigen::VectorXd magnitude = eigen.eigenvalues().cwiseAbs();
+  const double most = std::max(magnitude.maxCoeff(), resolution_mm * resolution_mm);
+  const double least = std::max(resolution_mm * resolution_mm, 1e-14 * most);
+  const Eigen::VectorXd made = (magnitude.array() < least).select(most, magnitude);
+  return eigen.eigenvectors() * made.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+/// A slack cable that is preferred longer than its path is there already, whatever its path.
+Eigen::VectorXd weights_of(const Pose& pose, const Eigen::VectorXd& preferred) {
+  constexpr double hardly = 1e-6;  // keeps the program definite
+  return (pose.idle.array() > 0 && preferred.array() >= pose.shares.array())
+      .select(Eigen::VectorXd::Constant(pose.shares.size(), hardly), Eigen::VectorXd::Ones(pose.shares.size()));
+}
+
+/// What rounding leaves at the end of a range is there.
+Eigen::VectorXd ended(Eigen::VectorXd shares) {
+  for (double& share : shares) share = share < at_the_end ? 0 : share > 1 - at_the_end ? 1 : share;
+  return shares;
+}
+
+/// Moves along the blind directions to the point nearest to the preferred actuation.
+Eigen::VectorXd sideways_move(const Pose& pose, const Eigen::MatrixXd& blind, const Region& region,
+                              const Eigen::VectorXd& move, const Eigen::VectorXd& preferred) {
+  const Eigen::VectorXd weights = weights_of(pose, preferred);
+  const Eigen::MatrixXd h = blind.transpose() * weights.asDiagonal() * blind;
+  const Eigen::VectorXd g = blind.transpose() * weights.cwiseProduct(pose.shares + move - preferred);
+  const Eigen::VectorXd along = solve_small_program(h, g, region.rows * blind, region.bounds - region.rows * move);
+  return blind * along;
+}
+
+}  // namespace
+
+double predicted_reduction(const Pose& pose, const Slopes& slopes, const Eigen::MatrixXd& curvature,
+                           const Eigen::VectorXd& move) {
+  const Eigen::VectorXd change = slopes.terms * move;
+  return -(pose.terms.dot(change) + 0.5 * change.squaredNorm() + 0.5 * move.dot(curvature * move));
+}
+
+double distance_from(const Pose& pose, const Eigen::VectorXd& preferred) {
+  const Eigen::VectorXd apart = pose.shares - preferred;
+  return 0.5 * apart.dot(weights_of(pose, preferred).cwiseProduct(apart));
+}
+
+InverseStep find_step(const Pose& pose, const Slopes& slopes, const Eigen::MatrixXd& curvature,
+                      const Eigen::VectorXd& preferred, const StepLimits& limits) {
+  const Region region(pose, slopes, limits.radius);
+  const Eigen::MatrixXd normal = slopes.terms.transpose() * slopes.terms;
+  InverseStep step;
+  step.move = solve_small_program(made_definite(normal + curvature, limits.resolution_mm),
+                                  slopes.terms.transpose() * pose.terms, region.rows, region.bounds);
+  step.predicted = predicted_reduction(pose, slopes, curvature, step.move);
+  step.predicted_norm = (pose.terms + slopes.terms * step.move).norm();
+  const Split split(normal, limits.resolution_mm);
+  // where the goals stay out of reach, how near they are comes before how near the actuation is
+  if (split.blind.cols() > 0 && (pose.miss <= 1 || step.predicted_norm < 0.5 * pose.terms.norm())) {
+    const Eigen::VectorXd more = sideways_move(pose, split.blind, region, step.move, preferred);
+    step.sideways = more.cwiseAbs().maxCoeff();
+    step.move += more * std::min(1.0, limits.sideways / std::max(step.sideways, 1e-300));
+  }
+  step.move = ended(pose.shares + step.move) - pose.shares;
+  return step;
+}
+
+double projected_slope(const Pose& pose, const Slopes& slopes) {
+  const double norm = pose.terms.norm();
+  if (!(norm > 0)) return 0;
+  Region region(pose, slopes, 1);
+  for (Eigen::Index i = 0; i < region.bounds.size(); ++i)
+    region.bounds[i] = region.bounds[i] > -at_the_end ? 0 : -HUGE_VAL;
+  const Eigen::Index free = pose.shares.size();
+  const Eigen::VectorXd gradient = slopes.terms.transpose() * pose.terms / norm;
+  return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds).norm();
+}
+
+}  // namespace softkin

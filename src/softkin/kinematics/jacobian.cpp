@@ -1,0 +1,23 @@
+#include <softkin/core/error.hpp>
+#include <softkin/kinematics/jacobian.hpp>
+
+namespace softkin {
+
+Eigen::MatrixXd jacobian(const Model& model, const Sensitivity& sensitivity, const std::vector<Index>& markers) {
+  Eigen::MatrixXd result(3 * static_cast<Index>(markers.size()), static_cast<Index>(sensitivity.positions.size()));
+  for (std::size_t p = 0; p < markers.size(); ++p) {
+    if (markers[p] < 0 || markers[p] >= static_cast<Index>(model.markers.size()))
+      throw InvalidInput("the robot has no marker number " + std::to_string(markers[p]));
+    const EmbeddedPoint& point = model.markers[static_cast<std::size_t>(markers[p])].point;
+    for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
+      result.block<3, 1>(3 * static_cast<Index>(p), static_cast<Index>(a)) = point.at(sensitivity.positions[a]);
+  }
+  return result;
+}
+
+Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equilibrium& equilibrium,
+                         const std::vector<Index>& markers) {
+  return jacobian(model, statics.sensitivity(equilibrium.state), markers);
+}
+
+}  // namespace softkin

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <softkin/model/model.hpp>
+#include <softkin/statics/statics.hpp>
+
+namespace softkin {
+
+/// Derivatives of marker positions by the commands of the actuators.
+///
+/// sensitivity  of an equilibrium of the model, m actuators
+/// markers      p indices into model.markers
+/// returns      3p x m: x, y, z of each marker [mm per unit of command: 1 (ratio), N or kPa]
+/// throws       InvalidInput on a marker that the model does not have
+[[nodiscard]] Eigen::MatrixXd jacobian(const Model& model, const Sensitivity& sensitivity,
+                                       const std::vector<Index>& markers);
+
+/// The same at an equilibrium that statics.solve() returned; zero where its sensitivity is not regular.
+///
+/// throws  as the above and Statics::sensitivity do
+[[nodiscard]] Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equilibrium& equilibrium,
+                                       const std::vector<Index>& markers);
+
+}  // namespace softkin

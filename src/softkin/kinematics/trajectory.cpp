@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/kinematics/goal_terms.hpp>
+#include <softkin/kinematics/small_program.hpp>
+#include <softkin/kinematics/trajectory.hpp>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+constexpr double most_waypoints = 1e6;
+constexpr double damping = 1e-5;       // of the largest slope: below it a direction moves nothing
+constexpr double largest_move = 0.5;   // of a range, that a prediction is trusted with
+constexpr double largest_stretch = 2;  // of the last move, over which its curvature is trusted
+constexpr double least_move = 1e-6;    // shares, over which a change of slopes can be told
+
+Eigen::VectorXd widths(const Model& model) {
+  Eigen::VectorXd widths(static_cast<Index>(model.actuators.size()));
+  for (Index a = 0; a < widths.size(); ++a) {
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    widths[a] = actuator.high - actuator.low;
+  }
+  return widths;
+}
+
+/// The shortest move of the shares, inside the ranges, after which terms + slopes * move is least.
+Eigen::VectorXd move_to(const Eigen::VectorXd& terms, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& shares) {
+  const Index m = shares.size();
+  const double size = slopes.colwise().norm().maxCoeff();
+  if (!(size > 0)) return Eigen::VectorXd::Zero(m);
+  Eigen::MatrixXd h = slopes.transpose() * slopes, rows(2 * m, m);
+  h.diagonal().array() += std::pow(damping * size, 2);
+  rows << Eigen::MatrixXd::Identity(m, m), -Eigen::MatrixXd::Identity(m, m);
+  Eigen::VectorXd bounds(2 * m);
+  bounds << -shares, shares.array() - 1;
+  bounds = bounds.cwiseMin(0);  // rounding
+  return solve_small_program(h, slopes.transpose() * terms, rows, bounds);
+}
+
+void check_path(const MarkerPath& path) {
+  if (path.markers.empty() || path.axes.size() != path.markers.size())
+    throw InvalidInput("the path has no markers, or not the axes of each");
+  if (path.waypoints.empty()) throw InvalidInput("the path has no waypoints");
+  for (std::size_t i = 0; i < path.waypoints.size(); ++i)
+    if (path.waypoints[i].targets.size() != path.markers.size())
+      throw InvalidInput("waypoint " + std::to_string(i) + " has " + std::to_string(path.waypoints[i].targets.size()) +
+                         " targets, the path " + std::to_string(path.markers.size()) + " markers");
+}
+
+/// Of the marker that has the longest way [mm].
+double longest_way(const Waypoint& from, const Waypoint& to) {
+  double longest = 0;
+  for (std::size_t m = 0; m < from.targets.size(); ++m)
+    longest = std::max(longest, (to.targets[m] - from.targets[m]).norm());
+  return longest;
+}
+
+Waypoint between(const Waypoint& from, const Waypoint& to, double share) {
+  Waypoint waypoint;
+  waypoint.inserted = true;
+  waypoint.line = to.line;
+  for (std::size_t m = 0; m < from.targets.size(); ++m)
+    waypoint.targets.emplace_back((1 - share) * from.targets[m] + share * to.targets[m]);
+  if (from.time && to.time) waypoint.time = (1 - share) * *from.time + share * *to.time;
+  return waypoint;
+}
+
+}  // namespace
+
+MarkerPath densified(const MarkerPath& path, double max_step_mm) {
+  if (!(max_step_mm > 0)) throw InvalidInput("the longest step must be > 0 mm");
+  MarkerPath dense{path.markers, path.axes, {}};
+  double count = 0;
+  for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
+    if (i > 0) {
+      const Waypoint &from = path.waypoints[i - 1], &to = path.waypoints[i];
+      const double parts = std::max(1.0, std::ceil(longest_way(from, to) / max_step_mm * (1 - 1e-12)));
+      count += parts;
+      if (!(count < most_waypoints))
+        throw InvalidInput("a step of " + std::to_string(max_step_mm) + " mm makes more than a million waypoints");
+      for (double part = 1; part < parts; ++part) dense.waypoints.push_back(between(from, to, part / parts));
+    }
+    dense.waypoints.push_back(path.waypoints[i]);
+  }
+  return dense;
+}
+
+std::vector<Goal> goals_of(const MarkerPath& path, const Waypoint& waypoint) {
+  std::vector<Goal> goals;
+  for (std::size_t m = 0; m < path.markers.size(); ++m)
+    goals.push_back({PositionGoal{path.markers[m], waypoint.targets[m], path.axes[m]}, 1});
+  return goals;
+}
+
+PathFollower::PathFollower(const Model& model, const Statics& statics, const MarkerPath& path,
+                           const TrajectoryOptions& options)
+    : model_(model), statics_(statics), path_(path), options_(options), state_(statics.rest()) {
+  check_path(path);
+  for (const Waypoint& waypoint : path.waypoints) check_goals(model, goals_of(path, waypoint));
+  if (options_.start.size() > 0) check_actuation(model, options_.start);
+}
+
+Eigen::VectorXd PathFollower::shares_of(const Actuation& actuation) const {
+  Eigen::VectorXd shares = Eigen::VectorXd::Zero(actuation.size());
+  for (Index a = 0; a < shares.size(); ++a) {
+    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    if (actuator.high > actuator.low) shares[a] = (actuation[a] - actuator.low) / (actuator.high - actuator.low);
+  }
+  return shares;
+}
+
+Actuation PathFollower::actuation_of(const Eigen::VectorXd& shares) const {
+  Actuation actuation(shares.size());
+  for (Index a = 0; a < shares.size(); ++a) {
+    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    actuation[a] = std::clamp(actuator.low + shares[a] * (actuator.high - actuator.low), actuator.low, actuator.high);
+  }
+  return actuation;
+}
+
+void PathFollower::resume(std::size_t waypoint, State at) {
+  next_ = waypoint;
+  state_ = std::move(at);
+  sensitivity_ = {};
+  slopes_.resize(0, 0);
+  slopes_before_.resize(0, 0);
+}
+
+/// As solve_inverse tells, before it has begun.
+ProgressCallback PathFollower::told(const ProgressCallback& progress) const {
+  if (!progress) return {};
+  const double error = goal_errors(model_, goals_of(path_, path_.waypoints.at(next_)), state_.positions).maxCoeff();
+  return [&progress, error, tolerance = options_.inverse.tolerance_mm](const Progress&) {
+    return progress({0, error, tolerance, -1});
+  };
+}
+
+/// Brings the robot to where the first waypoint is sought from; false where it was interrupted.
+bool PathFollower::first(InverseResult& spent, const ProgressCallback& progress) {
+  Equilibrium found = statics_.solve(options_.start, state_, options_.inverse.statics, told(progress));
+  ++spent.equilibria;
+  spent.seconds += found.report.seconds;
+  if (found.report.status == Status::interrupted) return false;
+  if (found.report.status == Status::converged) state_ = std::move(found.state);
+  return true;
+}
+
+InverseResult PathFollower::advance(const ProgressCallback& progress) {
+  const Waypoint& waypoint = path_.waypoints.at(next_);
+  const std::vector<Goal> goals = goals_of(path_, waypoint);
+  InverseResult spent;
+  spent.status = InverseStatus::interrupted;
+  if (next_ == 0 && options_.start.size() > 0 && !first(spent, progress)) return spent;
+  State from = state_;
+  bool moved = false;
+  if (const std::optional<Actuation> guess = predicted(goals)) {
+    Equilibrium there = statics_.solve(*guess, state_, options_.inverse.statics, told(progress));
+    ++spent.equilibria;
+    spent.seconds += there.report.seconds;
+    if (there.report.status == Status::interrupted) return spent;
+    moved = there.report.status == Status::converged;
+    if (moved) from = std::move(there.state);
+  }
+  InverseOptions inverse = options_.inverse;
+  if (next_ > 0) inverse.other_starts = 0;
+  inverse.start_sensitivity = sensitivity_.regular && !moved ? &sensitivity_ : nullptr;
+  InverseResult found = solve_inverse(model_, statics_, goals, from, inverse, progress);
+  found.equilibria += spent.equilibria;
+  found.seconds += spent.seconds;
+  if (found.status == InverseStatus::interrupted) return found;
+  learn(goals, found);
+  ++next_;
+  return found;
+}
+
+/// Commands for the goals by the markers' Taylor series from the waypoint before: slopes, and along the last move their
+/// change. Nothing where that change is not known: solve_inverse itself begins with the slopes.
+std::optional<Actuation> PathFollower::predicted(const std::vector<Goal>& goals) const {
+  if (!options_.predict || slopes_.size() == 0 || slopes_before_.size() == 0) return std::nullopt;
+  const Eigen::VectorXd shares = shares_of(state_.actuation);
+  const Eigen::VectorXd terms = goal_terms(model_, goals, state_.positions);
+  const Eigen::VectorXd straight = move_to(terms, slopes_, shares);
+  const double stretch = straight.dot(move_) / move_.squaredNorm();
+  if (!(std::abs(stretch) <= largest_stretch)) return std::nullopt;
+  const Eigen::VectorXd bend = 0.5 * stretch * stretch * (slopes_ - slopes_before_) * move_;
+  const Eigen::VectorXd move = move_to(terms + bend, slopes_, shares);
+  if (!move.allFinite() || move.cwiseAbs().maxCoeff() > largest_move) return std::nullopt;
+  return actuation_of(shares + move);
+}
+
+void PathFollower::learn(const std::vector<Goal>& goals, const InverseResult& found) {
+  const Eigen::VectorXd before = shares_of(state_.actuation.size() > 0 ? state_.actuation : model_.rest_actuation());
+  state_ = found.equilibrium.state;
+  sensitivity_ = found.sensitivity;
+  slopes_before_ = std::exchange(slopes_, {});
+  if (!sensitivity_.regular) return;
+  slopes_ = goal_slopes(model_, goals, state_.positions, sensitivity_) * widths(model_).asDiagonal();
+  for (std::size_t a = 0; a < options_.inverse.free.size(); ++a)
+    if (!options_.inverse.free[a]) slopes_.col(static_cast<Index>(a)).setZero();
+  move_ = shares_of(state_.actuation) - before;
+  if (slopes_before_.size() > 0 && !(move_.norm() > least_move)) slopes_before_.resize(0, 0);
+}
+
+FollowedWaypoint followed(const Model& model, const MarkerPath& path, const InverseResult& found) {
+  FollowedWaypoint result;
+  result.status = found.status;
+  result.actuation = found.equilibrium.actuation;
+  for (const Index m : path.markers)
+    result.markers.push_back(model.markers[static_cast<std::size_t>(m)].point.at(found.equilibrium.state.positions));
+  result.error_mm = found.errors_mm.maxCoeff();
+  result.equilibria = found.equilibria;
+  result.iterations = found.iterations;
+  result.seconds = found.seconds;
+  result.remark = found.remark;
+  return result;
+}
+
+std::vector<FollowedWaypoint> follow_path(const Model& model, const Statics& statics, const MarkerPath& path,
+                                          const TrajectoryOptions& options, const ProgressCallback& progress) {
+  PathFollower follower(model, statics, path, options);
+  std::vector<FollowedWaypoint> waypoints;
+  while (!follower.done()) {
+    const InverseResult found = follower.advance(progress);
+    if (found.status == InverseStatus::interrupted) break;
+    waypoints.push_back(followed(model, path, found));
+  }
+  return waypoints;
+}
+
+}  // namespace softkin

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <softkin/kinematics/inverse.hpp>
+#include <softkin/model/marker_path.hpp>
+
+namespace softkin {
+
+/// The path with waypoints inserted, evenly on the straight lines between those given, so that no marker is to move
+/// farther from one to the next than a distance [mm]; times likewise.
+///
+/// throws  InvalidInput where the distance is not > 0, or more than a million waypoints would come of it
+[[nodiscard]] MarkerPath densified(const MarkerPath& path, double max_step_mm);
+
+/// Its markers at their targets.
+[[nodiscard]] std::vector<Goal> goals_of(const MarkerPath& path, const Waypoint& waypoint);
+
+struct TrajectoryOptions {
+  InverseOptions inverse{};  // start_sensitivity is set here; other_starts is for the first waypoint alone, as a jump
+                             // to another shape would tear the path
+  bool predict = true;       // newton: the next actuation from the Jacobian and its change
+  Actuation start{};         // m: from where the first waypoint is sought, such as that of the nearest sample of a
+                             // workspace; empty: rest
+};
+
+/// Follows a path: inverse kinematics waypoint by waypoint, each from the solution before.
+class PathFollower {
+ public:
+  /// model, statics and path must outlive it. throws InvalidInput on a path without markers or waypoints, a waypoint
+  /// with other numbers of targets than markers, and as solve_inverse does
+  PathFollower(const Model& model, const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options);
+
+  [[nodiscard]] std::size_t next() const { return next_; }  // waypoint
+  [[nodiscard]] bool done() const { return next_ == path_.waypoints.size(); }
+
+  /// Goes on with a waypoint as if the ones before it had just been done. at: the equilibrium of the one before.
+  void resume(std::size_t waypoint, State at);
+
+  /// Solves the next waypoint; equilibria counts those of the prediction too. Where it is interrupted the next waypoint
+  /// stays the same. A waypoint that cannot be reached ends at the nearest point that the ranges allow.
+  ///
+  /// source  Fang et al. 2020, Alg. 3; prediction: Taylor series of the markers along the path to second order
+  [[nodiscard]] InverseResult advance(const ProgressCallback& progress = {});
+
+ private:
+  [[nodiscard]] Eigen::VectorXd shares_of(const Actuation& actuation) const;
+  [[nodiscard]] Actuation actuation_of(const Eigen::VectorXd& shares) const;
+  [[nodiscard]] ProgressCallback told(const ProgressCallback& progress) const;
+  [[nodiscard]] bool first(InverseResult& spent, const ProgressCallback& progress);
+  [[nodiscard]] std::optional<Actuation> predicted(const std::vector<Goal>& goals) const;
+  void learn(const std::vector<Goal>& goals, const InverseResult& found);
+
+  const Model& model_;
+  const Statics& statics_;
+  const MarkerPath& path_;
+  TrajectoryOptions options_;
+  std::size_t next_ = 0;
+  State state_;                    // where the next waypoint is sought from
+  Sensitivity sensitivity_;        // there; not regular: not known
+  Eigen::MatrixXd slopes_;         // there, of the goals' terms by shares of the ranges [mm]; empty: not known
+  Eigen::MatrixXd slopes_before_;  // at the waypoint before that
+  Eigen::VectorXd move_;           // from there [shares]
+};
+
+/// What a waypoint came to.
+struct FollowedWaypoint {
+  InverseStatus status = InverseStatus::not_converged;
+  Actuation actuation;
+  std::vector<Vec3> markers;  // of the path, where they are [mm]
+  double error_mm = 0;        // of the marker that is farthest from its target
+  int equilibria = 0, iterations = 0;
+  double seconds = 0;
+  std::string remark;
+};
+
+/// Of the path's markers; found: for the waypoint.
+[[nodiscard]] FollowedWaypoint followed(const Model& model, const MarkerPath& path, const InverseResult& found);
+
+/// The whole path; what was done where progress stopped it. Throws as PathFollower does.
+[[nodiscard]] std::vector<FollowedWaypoint> follow_path(const Model& model, const Statics& statics,
+                                                        const MarkerPath& path, const TrajectoryOptions& options = {},
+                                                        const ProgressCallback& progress = {});
+
+}  // namespace softkin

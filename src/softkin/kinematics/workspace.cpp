@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <softkin/core/error.hpp>
+#include <softkin/kinematics/workspace.hpp>
+#include <softkin/statics/neighbourhood.hpp>
+#include <thread>
+
+namespace softkin {
+
+namespace {
+
+/// An equilibrium that is so many times as far from its prediction as that is from the group's middle, and so far over
+/// the robot's diagonal, may be another one than the robot would move to.
+constexpr double most_correction = 0.5, least_snap = 0.01;
+
+double largest_move(const Points& a, const Points& b) {
+  return (b - a).rowwise().norm().maxCoeff();
+}
+
+/// Moves the sample nearest to the mean to the front; distances in shares of the ranges.
+void begin_with_the_middle(const Model& model, const Actuations& actuations, std::vector<Index>& group) {
+  const std::vector<Index> varied = varied_actuators(model);
+  Eigen::MatrixXd shares(static_cast<Index>(varied.size()), static_cast<Index>(group.size()));
+  for (std::size_t d = 0; d < varied.size(); ++d) {
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(varied[d])];
+    for (std::size_t i = 0; i < group.size(); ++i)
+      shares(static_cast<Index>(d), static_cast<Index>(i)) =
+          (actuations(group[i], varied[d]) - actuator.low) / (actuator.high - actuator.low);
+  }
+  const Eigen::VectorXd mean = shares.rowwise().mean();
+  Index middle = 0;
+  (shares.colwise() - mean).colwise().squaredNorm().minCoeff(&middle);
+  std::rotate(group.begin(), group.begin() + middle, group.begin() + middle + 1);
+}
+
+class Group {
+ public:
+  Group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+        const ProgressCallback& progress)
+      : model_(model), statics_(statics), plan_(plan), options_(options), progress_(progress) {
+    options_.threads = 1;
+    options_.reuse_factor = false;
+    options_.keep_history = false;
+  }
+
+  /// Nothing where progress stopped it.
+  std::optional<WorkspaceSample> solve(Index number) {
+    const Actuation actuation = plan_.actuations.row(number);
+    Equilibrium found =
+        around_ ? from_middle(actuation) : statics_.solve(actuation, statics_.rest(), options_, progress_);
+    if (around_ && failed(found)) {
+      const int before = found.report.iterations;
+      found = statics_.solve(actuation, statics_.rest(), options_, progress_);
+      found.report.iterations += before;
+    }
+    if (found.report.status == Status::interrupted) return std::nullopt;
+    WorkspaceSample sample = sample_of(found, number);
+    if (!around_ && found.report.status == Status::converged) {
+      around_.emplace(statics_, found.state);
+      middle_ = std::move(found.state);
+    }
+    return sample;
+  }
+
+ private:
+  [[nodiscard]] static bool failed(const Equilibrium& found) {
+    return found.report.status != Status::converged && found.report.status != Status::interrupted;
+  }
+
+  [[nodiscard]] Equilibrium from_middle(const Actuation& actuation) {
+    const State predicted = around_->predict(actuation);
+    Equilibrium found = statics_.solve(actuation, predicted, options_, progress_);
+    const double correction = largest_move(predicted.positions, found.state.positions);
+    const double move = largest_move(middle_.positions, predicted.positions);
+    const bool snapped = model_.formulation == Formulation::physical && correction > most_correction * move &&
+                         correction > least_snap * model_.diagonal_mm;
+    if (found.report.status == Status::interrupted || !(failed(found) || snapped)) return found;
+    const int before = found.report.iterations;
+    found = statics_.solve(actuation, middle_, options_, progress_);
+    found.report.iterations += before;
+    return found;
+  }
+
+  [[nodiscard]] WorkspaceSample sample_of(const Equilibrium& found, Index number) const {
+    WorkspaceSample sample;
+    sample.number = number;
+    sample.actuation = found.actuation;
+    sample.status = found.report.status;
+    sample.iterations = found.report.iterations;
+    if (sample.status != Status::converged) return sample;
+    sample.multipliers = found.state.multipliers;
+    sample.markers.resize(static_cast<Index>(model_.markers.size()), 3);
+    for (std::size_t p = 0; p < model_.markers.size(); ++p)
+      sample.markers.row(static_cast<Index>(p)) = model_.markers[p].point.at(found.state.positions);
+    return sample;
+  }
+
+  const Model& model_;
+  const Statics& statics_;
+  const WorkspacePlan& plan_;
+  StaticsOptions options_;
+  const ProgressCallback& progress_;
+  State middle_;  // the first equilibrium of the group
+  std::optional<Neighbourhood> around_;
+};
+
+}  // namespace
+
+Index group_size(Index samples) {
+  return std::clamp<Index>(samples / 50, 8, 64);
+}
+
+WorkspacePlan plan_workspace(const Model& model, const SamplingOptions& options) {
+  WorkspacePlan plan;
+  plan.actuations = sample_actuations(model, options);
+  const std::vector<Index> order = order_of_neighbours(model, plan.actuations);
+  for (auto begin = order.begin(); begin != order.end();) {
+    const auto end = begin + std::min<std::ptrdiff_t>(group_size(options.samples), order.end() - begin);
+    begin_with_the_middle(model, plan.actuations, plan.groups.emplace_back(begin, end));
+    begin = end;
+  }
+  return plan;
+}
+
+bool solve_group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+                 const GroupTask& task, const std::function<void(const WorkspaceSample&)>& give,
+                 const ProgressCallback& progress) {
+  const std::vector<Index>& samples = plan.groups.at(static_cast<std::size_t>(task.group));
+  const auto is_missing = [](const std::optional<Status>& known) { return !known; };
+  auto missing = std::count_if(task.known.begin(), task.known.end(), is_missing);
+  Group group(model, statics, plan, options, progress);
+  bool has_middle = false;
+  for (std::size_t i = 0; i < samples.size() && missing > 0; ++i) {
+    const std::optional<Status>& known = task.known.at(i);
+    if (known && (has_middle || *known != Status::converged)) continue;
+    const std::optional<WorkspaceSample> sample = group.solve(samples[i]);  // known: for its shape
+    if (!sample) return false;
+    has_middle = has_middle || sample->status == Status::converged;
+    if (known) continue;
+    give(*sample);
+    --missing;
+  }
+  return true;
+}
+
+void solve_groups(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+                  int threads, GroupDesk& desk, const ProgressCallback& progress) {
+  std::atomic<bool> stopped = false;
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const ProgressCallback go_on = [&](const Progress& p) { return !stopped && (!progress || progress(p)); };
+  const auto work = [&] {
+    try {
+      while (!stopped) {
+        const std::optional<GroupTask> task = desk.take();
+        if (!task) return;
+        const auto keep = [&](const WorkspaceSample& sample) { desk.keep(sample); };
+        if (!solve_group(model, statics, plan, options, *task, keep, go_on)) stopped = true;
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+      stopped = true;
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace softkin

@@ -1,0 +1,101 @@
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+#include <set>
+
+#include "fk_samples.hpp"
+
+namespace {
+
+using namespace softkin::testing;
+using nlohmann::json;
+
+/// Texts of a plot; the numbers of points of its curves.
+struct PlotText {
+  std::set<std::string> texts;
+  std::vector<std::size_t> points;
+
+  explicit PlotText(const std::string& file) {
+    pugi::xml_document xml;
+    EXPECT_TRUE(xml.load_string(read_text(file).c_str())) << file;
+    for (const auto& found : xml.select_nodes("//text")) texts.insert(found.node().child_value());
+    for (const auto& found : xml.select_nodes("//polyline")) {
+      const std::string text = found.node().attribute("points").value();
+      points.push_back(static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')));
+    }
+  }
+  void expect(const std::vector<std::string>& wanted) const {
+    for (const std::string& text : wanted) EXPECT_TRUE(texts.count(text)) << "no '" << text << "'";
+  }
+};
+
+TEST(PlotOption, FkDrawsWhatThePathDoes) {
+  const BlockFolder folder(physical_scene());
+  const std::string path = folder.write("path.csv", "t_s,air,tendon\n0,1,1\n1,1.1,0.98\n3,1.2,0.96\n");
+  const ProgramResult result = run_fk(folder.scene, {"--path", path, "--plot", folder / "out/plot.svg"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("plot: " + (folder / "out/plot.svg")), std::string::npos) << result.output;
+  const PlotText plot(folder / "out/plot.svg");
+  plot.expect({"time [s]", "command [-]", "air", "tendon", "corner", "position [mm]", "gauge pressure [kPa]",
+               "tension [N]", "x [mm]", "z [mm]", "seen along y"});
+  ASSERT_FALSE(plot.points.empty());
+  EXPECT_EQ(plot.points.front(), 3u);
+}
+
+TEST(PlotOption, FkDrawsAlongTheOnlyCommandThatChanges) {
+  const BlockFolder folder;
+  const std::string path = folder.write("path.csv", "air\n1\n1.1\n1.2\n");
+  ASSERT_EQ(run_fk(folder.scene, {"--path", path, "--plot", folder / "plot.svg"}).exit_code, 0);
+  const PlotText plot(folder / "plot.svg");
+  plot.expect({"air [-]", "position [mm]"});
+  EXPECT_FALSE(plot.texts.count("command [-]"));
+  const std::string back = folder.write("back.csv", "air\n1\n1.1\n1\n");  // no function of its command
+  ASSERT_EQ(run_fk(folder.scene, {"--path", back, "--plot", folder / "back.svg"}).exit_code, 0);
+  PlotText(folder / "back.svg").expect({"step", "command [-]"});
+}
+
+TEST(PlotOption, FkMarksWhatDidNotConvergeAndKeepsStepsOfAnInterruptedRun) {
+  const BlockFolder folder;
+  const std::string path = folder.write("path.csv", "air\n1\n1.2\n1.4\n");
+  const std::vector<std::string> options{
+      "--path",         path,       "--plot",       folder / "plot.svg", "--report", folder / "r.json", "-o",
+      folder / "s.pvd", "--solver", "local-global", "--max-iterations",  "2"};
+  EXPECT_EQ(run_fk(folder.scene, options).exit_code, 1);
+  PlotText(folder / "plot.svg").expect({"not converged"});
+  const std::string before = read_text(folder / "plot.svg");
+  json report = json::parse(read_text(folder / "r.json"));
+  report["steps"].erase(2);
+  folder.write("r.json", report.dump());
+  std::vector<std::string> again = options;
+  again.emplace_back("--resume");
+  EXPECT_EQ(run_fk(folder.scene, again).exit_code, 1);
+  EXPECT_EQ(read_text(folder / "plot.svg"), before);
+}
+
+TEST(PlotOption, FkRefusesPlotsThatCannotBe) {
+  const BlockFolder folder;
+  const std::string path = folder.write("path.csv", "air\n1\n1.2\n");
+  expect_refused(folder, {"--plot", folder / "plot.svg"}, "--plot draws the steps of a path");
+  expect_refused(folder, {"--path", path, "--plot", folder / "plot.png"}, "must end in .svg");
+  expect_refused(folder, {"--path", path, "--plot", folder / "a.svg", "--report", folder / "a.svg"},
+                 "--plot " + (folder / "a.svg") + ": is the file of --report");
+  expect_refused(folder, {"--path", path, "--plot", folder.scene + "/a.svg"}, "--plot");
+}
+
+TEST(PlotOption, CompareDrawsDifferences) {
+  const BlockFolder folder(physical_scene());
+  const std::string path = folder.write("path.csv", "air\n1\n1.1\n1.2\n"), a = folder / "a.json", b = folder / "b.json";
+  ASSERT_EQ(run_fk(folder.scene, {"--path", path, "--report", a}).exit_code, 0);
+  ASSERT_EQ(run_fk(folder.scene, {"--path", path, "--report", b, "--force", "payload=0,0,-0.1"}).exit_code, 0);
+  const ProgramResult result = run_program({"compare", a, b, "--turn", "tip", "corner", "--plot", folder / "c.svg"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  PlotText(folder / "c.svg")
+      .expect({"air [-]", "turn [degrees]", "tip off by [mm]", "load [kPa]", "load [N]", "1: air", "2: air",
+               "2: physical, newton"});
+  for (const auto& [file, why] : {std::pair{a, ".svg"}, std::pair{folder / "c.png", ".svg"}}) {
+    const ProgramResult refused = run_program({"compare", a, b, "--plot", file});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.errors.find(why), std::string::npos) << refused.errors;
+  }
+}
+
+}  // namespace

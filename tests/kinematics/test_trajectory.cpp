@@ -1,0 +1,248 @@
+#include <cmath>
+#include <numbers>
+#include <softkin/kinematics/trajectory.hpp>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin {
+namespace {
+
+using testing::chambers_beam;
+
+/// Three chambers around the axis of a beam, which bend its tip in any direction and lengthen it.
+RobotSpec beam(Formulation formulation) {
+  RobotSpec spec = chambers_beam(3);
+  spec.formulation = formulation;
+  for (ActuatorSpec& actuator : spec.actuators) {
+    actuator.low = 1;
+    actuator.high = 2;
+  }
+  if (formulation == Formulation::target_shape) spec.materials[0].shape_ratio = 0.8;
+  return spec;
+}
+
+struct Robot {
+  Model model;
+  Statics statics;
+
+  explicit Robot(const RobotSpec& spec) : model(compile(spec)), statics(model) {}
+  explicit Robot(Formulation formulation = Formulation::physical) : Robot(beam(formulation)) {}
+
+  [[nodiscard]] Vec3 tip(const State& state) const { return model.markers[0].point.at(state.positions); }
+};
+
+Actuation turn(double share) {
+  const double angle = 2 * std::numbers::pi * share;
+  return Actuation{{1.4 + 0.25 * std::cos(angle), 1.4 + 0.25 * std::sin(angle), 1.4 - 0.25 * std::cos(2 * angle)}};
+}
+
+/// Where the tip is along a closed curve of actuations: reachable by construction.
+MarkerPath made_by_actuation(const Robot& robot, int count) {
+  MarkerPath path{{0}, {{true, true, true}}, {}};
+  State state = robot.statics.rest();
+  for (int i = 0; i < count; ++i) {
+    const Equilibrium found = robot.statics.solve(turn(static_cast<double>(i) / (count - 1)), state);
+    EXPECT_EQ(found.report.status, Status::converged);
+    state = found.state;
+    Waypoint waypoint;
+    waypoint.targets = {robot.tip(state)};
+    path.waypoints.push_back(waypoint);
+  }
+  return path;
+}
+
+double mean_equilibria(const std::vector<FollowedWaypoint>& waypoints) {
+  double sum = 0;
+  for (const FollowedWaypoint& each : waypoints) sum += each.equilibria;
+  return sum / static_cast<double>(waypoints.size());
+}
+
+void expect_reached(const Robot& robot, const MarkerPath& path, const std::vector<FollowedWaypoint>& found,
+                    double tolerance_mm) {
+  ASSERT_EQ(found.size(), path.waypoints.size());
+  State state = robot.statics.rest();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].status, InverseStatus::reached) << i << " " << found[i].remark;
+    EXPECT_LE(found[i].error_mm, tolerance_mm) << i;
+    check_actuation(robot.model, found[i].actuation);
+    const Equilibrium again = robot.statics.solve(found[i].actuation, state);  // forward kinematics has the last word
+    ASSERT_EQ(again.report.status, Status::converged);
+    state = again.state;
+    EXPECT_LE((robot.tip(state) - path.waypoints[i].targets[0]).norm(), tolerance_mm + 1e-5) << i;
+    EXPECT_LE((found[i].markers[0] - robot.tip(state)).norm(), 1e-5) << i;
+  }
+}
+
+class FollowPath : public ::testing::TestWithParam<Formulation> {};
+
+TEST_P(FollowPath, LeadsTheTipAlongAReachableCurve) {
+  const Robot robot(GetParam());
+  const MarkerPath path = made_by_actuation(robot, 25);
+  const std::vector<FollowedWaypoint> found = follow_path(robot.model, robot.statics, path);
+  expect_reached(robot, path, found, 1e-3);
+  EXPECT_LE(mean_equilibria(found), 3);
+  for (std::size_t i = 1; i < found.size(); ++i)  // three coordinates, three chambers: one solution nearby
+    EXPECT_LE((found[i].actuation - turn(static_cast<double>(i) / 24)).norm(), 0.01) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, FollowPath, ::testing::Values(Formulation::physical, Formulation::target_shape));
+
+TEST(Trajectory, PredictionSavesEquilibria) {
+  const Robot robot;
+  const MarkerPath path = made_by_actuation(robot, 41);
+  TrajectoryOptions without;
+  without.predict = false;
+  const auto plain = follow_path(robot.model, robot.statics, path, without);
+  const auto predicted = follow_path(robot.model, robot.statics, path);
+  expect_reached(robot, path, predicted, 1e-3);
+  EXPECT_LT(mean_equilibria(predicted), 0.9 * mean_equilibria(plain));
+}
+
+TEST(Trajectory, OutsideTheWorkspaceItKeepsToTheNearestPointsAndComesBack) {
+  const Robot robot;
+  const Actuation half = Actuation::Constant(3, 1.5);
+  const Vec3 inside = robot.tip(robot.statics.solve(half, robot.statics.rest()).state);
+  MarkerPath path{{0}, {{true, true, true}}, {}};
+  constexpr int count = 21;
+  for (int i = 0; i < count; ++i) {  // along the axis, farther than the longest robot reaches, and back
+    Waypoint waypoint;
+    waypoint.targets = {inside + Vec3(12 * std::sin(std::numbers::pi * i / (count - 1)), 0, 0)};
+    path.waypoints.push_back(waypoint);
+  }
+  const auto found = follow_path(robot.model, robot.statics, path);
+  ASSERT_EQ(found.size(), static_cast<std::size_t>(count));
+  int out = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool reached = found[i].status == InverseStatus::reached;
+    EXPECT_TRUE(reached || found[i].status == InverseStatus::unreachable) << i << " " << found[i].remark;
+    EXPECT_EQ(reached, found[i].error_mm <= 1e-3) << i;
+    EXPECT_NEAR(found[i].error_mm, (found[i].markers[0] - path.waypoints[i].targets[0]).norm(), 1e-9);
+    check_actuation(robot.model, found[i].actuation);
+    out += reached ? 0 : 1;
+    if (i > 0) {
+      EXPECT_LE((found[i].markers[0] - found[i - 1].markers[0]).norm(),
+                1.5 * (path.waypoints[i].targets[0] - path.waypoints[i - 1].targets[0]).norm() + 0.05);
+    }
+  }
+  EXPECT_GT(out, 5);
+  EXPECT_EQ(found.front().status, InverseStatus::reached);
+  EXPECT_EQ(found.back().status, InverseStatus::reached);
+  EXPECT_GT(found[count / 2].error_mm, 1);
+  const Actuation most = Actuation::Constant(3, 2);  // no sample of the ranges is nearer than what was found
+  for (const double a : {1.0, 1.5, 2.0})
+    for (const double b : {1.0, 1.5, 2.0}) {
+      const State state = robot.statics.solve(Actuation{{a, b, 2.0}}, robot.statics.rest()).state;
+      EXPECT_GE((robot.tip(state) - path.waypoints[count / 2].targets[0]).norm(), found[count / 2].error_mm - 1e-3);
+    }
+  EXPECT_EQ(robot.statics.solve(most, robot.statics.rest()).report.status, Status::converged);
+}
+
+TEST(Trajectory, CoordinatesThatDoNotCountAreFree) {
+  const Robot robot;
+  MarkerPath path = made_by_actuation(robot, 9);
+  path.axes[0] = {false, true, true};
+  for (Waypoint& waypoint : path.waypoints) waypoint.targets[0].x() = 0;
+  for (const FollowedWaypoint& each : follow_path(robot.model, robot.statics, path)) {
+    EXPECT_EQ(each.status, InverseStatus::reached) << each.remark;
+    EXPECT_GT(each.markers[0].x(), 40);
+  }
+}
+
+TEST(Trajectory, InterruptedItKeepsWhatIsDoneAndGoesOnFromThere) {
+  const Robot robot;
+  const MarkerPath path = made_by_actuation(robot, 12);
+  const auto whole = follow_path(robot.model, robot.statics, path);
+
+  PathFollower follower(robot.model, robot.statics, path, {});
+  State last;
+  for (int i = 0; i < 5; ++i) last = follower.advance().equilibrium.state;
+  const InverseResult stopped = follower.advance([](const Progress&) { return false; });
+  EXPECT_EQ(stopped.status, InverseStatus::interrupted);
+  EXPECT_EQ(follower.next(), 5u);
+
+  PathFollower again(robot.model, robot.statics, path, {});
+  again.resume(5, last);
+  while (!again.done()) {
+    const std::size_t i = again.next();
+    const FollowedWaypoint found = followed(robot.model, path, again.advance());
+    EXPECT_EQ(found.status, InverseStatus::reached);
+    EXPECT_LE((found.actuation - whole[i].actuation).norm(), 1e-3) << i;
+  }
+  int calls = 0;
+  const auto part =
+      follow_path(robot.model, robot.statics, path, {}, [&calls](const Progress&) { return ++calls < 40; });
+  EXPECT_GT(part.size(), 0u);
+  EXPECT_LT(part.size(), path.waypoints.size());
+  for (const FollowedWaypoint& each : part) EXPECT_EQ(each.status, InverseStatus::reached);
+}
+
+TEST(Trajectory, StartsWhereItIsTold) {
+  const Robot robot;
+  MarkerPath path = made_by_actuation(robot, 2);
+  path.waypoints.resize(1);
+  TrajectoryOptions near;
+  near.start = turn(0);
+  const auto from_rest = follow_path(robot.model, robot.statics, path);
+  const auto from_near = follow_path(robot.model, robot.statics, path, near);
+  EXPECT_LE(from_near[0].equilibria, 2);
+  EXPECT_LT(from_near[0].equilibria, from_rest[0].equilibria);
+  EXPECT_LE((from_near[0].actuation - turn(0)).norm(), 1e-4);
+}
+
+TEST(Trajectory, AlgorithmTwoFollowsToo) {
+  const Robot robot(Formulation::target_shape);
+  const MarkerPath path = made_by_actuation(robot, 25);
+  MarkerPath begin{path.markers, path.axes, {path.waypoints.begin(), path.waypoints.begin() + 3}};
+  TrajectoryOptions gradient;
+  gradient.inverse.method = InverseMethod::gradient;
+  gradient.inverse.tolerance_mm = 0.2;
+  gradient.start = turn(0);
+  const auto slow = follow_path(robot.model, robot.statics, begin, gradient);
+  expect_reached(robot, begin, slow, 0.2);
+  EXPECT_GT(mean_equilibria(slow), mean_equilibria(follow_path(robot.model, robot.statics, begin)));
+}
+
+TEST(Densified, InsertsEvenlyOnTheStraightLines) {
+  MarkerPath path{{0, 1}, {{true, true, true}, {true, true, true}}, {}};
+  path.waypoints.resize(3);
+  path.waypoints[0] = {{Vec3(0, 0, 0), Vec3(5, 5, 5)}, 1.0, 2, false};
+  path.waypoints[1] = {{Vec3(3, 0, 0), Vec3(5, 9, 5)}, 3.0, 3, false};  // the second has the longer way: 4 mm
+  path.waypoints[2] = {{Vec3(3, 0, 0.9), Vec3(5, 9, 5)}, 3.5, 4, false};
+  const MarkerPath dense = densified(path, 1);
+  ASSERT_EQ(dense.waypoints.size(), 6u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double share = static_cast<double>(i) / 4;
+    EXPECT_EQ(dense.waypoints[i].inserted, i % 4 != 0);
+    EXPECT_LE((dense.waypoints[i].targets[0] - Vec3(3 * share, 0, 0)).norm(), 1e-12);
+    EXPECT_LE((dense.waypoints[i].targets[1] - Vec3(5, 5 + 4 * share, 5)).norm(), 1e-12);
+    EXPECT_NEAR(*dense.waypoints[i].time, 1 + 2 * share, 1e-12);
+  }
+  EXPECT_FALSE(dense.waypoints[5].inserted);
+  EXPECT_EQ(densified(path, 100).waypoints.size(), 3u);
+  for (const double bad : {0.0, -1.0, std::nan(""), 1e-9})
+    EXPECT_THROW((void)densified(path, bad), InvalidInput) << bad;
+}
+
+TEST(Trajectory, RefusesWhatIsNoPath) {
+  const Robot robot;
+  const auto refused = [&](const MarkerPath& path, const TrajectoryOptions& options = {}) {
+    EXPECT_THROW(PathFollower(robot.model, robot.statics, path, options), InvalidInput);
+  };
+  MarkerPath path{{0}, {{true, true, true}}, {{{Vec3(60, 10, 10)}, {}, 0, false}}};
+  EXPECT_NO_THROW(PathFollower(robot.model, robot.statics, path, {}));
+  refused({{0}, {{true, true, true}}, {}});
+  refused({{}, {}, path.waypoints});
+  refused({{7}, path.axes, path.waypoints});
+  refused({{0}, {{false, false, false}}, path.waypoints});
+  path.waypoints[0].targets[0].y() = std::nan("");
+  refused(path);
+  path.waypoints[0].targets.clear();
+  refused(path);
+  path.waypoints[0].targets = {Vec3(60, 10, 10)};
+  TrajectoryOptions outside;
+  outside.start = Actuation::Constant(3, 5);
+  refused(path, outside);
+}
+
+}  // namespace
+}  // namespace softkin
