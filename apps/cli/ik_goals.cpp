@@ -68,8 +68,7 @@ class Argument {
   [[nodiscard]] Coordinates coordinates(const std::string& text, bool empty_too = false) const {
     Coordinates found;
     if (!parse_coordinates(text, empty_too, found))
-      refuse("expected three finite numbers" + std::string(empty_too ? ", or some of them," : "") + " in " + form_ +
-             ", not " + excerpt(text));
+      refuse("expected three finite numbers in " + form_ + ", not " + excerpt(text));
     return found;
   }
 
