@@ -21,6 +21,8 @@ struct Options {
   std::vector<std::string> paths{"examples/three_tendon_finger/letter_l.csv", "examples/three_tendon_finger/flame.csv"};
   std::vector<std::string> formulations{"physical", "target-shape"};
   double size = 10000, local_size = 600, limit = 120;
+  double local_tolerance_mm = 1e-6;
+  int anderson = 0;
   int order = 1, threads = 0, waypoints = 1000000;
 };
 
@@ -66,6 +68,10 @@ TrajectoryOptions trajectory(const Method& method, Solver solver, const Options&
   result.inverse.tolerance_mm = method.asked_mm;
   result.inverse.max_iterations = 1000;  // or the paper's 30 would end it short of 0.01 mm
   result.inverse.statics.solver = solver;
+  if (solver == Solver::local_global) {
+    result.inverse.statics.step_tolerance_mm = options.local_tolerance_mm;
+    result.inverse.statics.anderson = options.anderson;
+  }
   result.inverse.statics.threads = options.threads;
   result.inverse.statics.keep_history = false;
   return result;
@@ -96,7 +102,10 @@ void print_row(const Method& method, const Followed& found, const Followed& newt
   const std::size_t count = found.waypoints.size();
   std::printf("    %-9s %7.3g  %4zu of %-4zu", method.name, method.asked_mm, count, asked);
   if (count == 0) {
-    std::printf("  none within the limit of %.0f s\n", found.seconds);
+    std::printf("  none within the limit of %.0f s", found.seconds);
+    if (!newton.waypoints.empty())
+      std::printf(": newton is more than %.1f times faster", found.seconds / newton.seconds_of(1));
+    std::printf("\n");
     return;
   }
   std::printf("  %11.2f  %12.2e  %6zu  %9.2f  %13.1f", equilibria / static_cast<double>(count), worst, missed,
@@ -171,6 +180,14 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--local-size", options.local_size, "tetrahedra with local-global inside; 0: not")
       ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option(
+         "--local-tolerance", options.local_tolerance_mm,
+         "step at which local-global ends [mm]; at the paper's 1e-5 its error is as large as the tolerance of newton")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--anderson", options.anderson, "steps that Anderson acceleration combines; 0: as the paper ran it")
+      ->check(CLI::Range(0, 20))
       ->capture_default_str();
   app.add_option("--waypoints", options.waypoints, "of each path, at most")->check(CLI::Range(1, 1000000));
   app.add_option("--limit", options.limit, "of each method on each path [s]")

@@ -4,7 +4,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libpugixml-dev zlib1g-dev libpng-dev
-          libcli11-dev libmetis-dev)
+          libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev)
 case "${1:-}" in
   "") ;;
   --tests) packages+=(libgtest-dev clang-format-14) ;;
@@ -23,7 +23,7 @@ fi
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "$system has no apt; softkin is made for Debian 12 and Ubuntu 24.04." \
        "Install a C++20 compiler (gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
-       "pugixml, zlib, libpng, CLI11 and METIS, with their headers; for the tests also GoogleTest and clang-format 14." \
+       "pugixml, zlib, libpng, CLI11, METIS, nanoflann and Qhull, with their headers; for the tests also GoogleTest and clang-format 14." \
        "Then run make again with SETUP=true, e.g.: make run SETUP=true"
 fi
 

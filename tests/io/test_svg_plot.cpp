@@ -285,6 +285,37 @@ TEST(SvgPlot, SeriesDifferWithoutColours) {
   EXPECT_EQ(std::distance(legend[0].children("text").begin(), legend[0].children("text").end()), 6);
 }
 
+TEST(SvgPlot, PairsAreJoinedOneByOneAndPaleLinesAreGrey) {
+  PlotSeries gaps = series("gaps", {0, 1, 4, 5, 9}, {0, 2, 0, 3, 9}), below = series("below", {0, 9}, {1, 1});
+  gaps.pairs = true;
+  gaps.marks = false;
+  below.pale = true;
+  const Drawing drawing(plot_of({gaps, below}));
+  const auto groups = Drawing::groups(drawing.panels[0], "series");
+  const std::string d = groups[0].child("path").attribute("d").value();
+  EXPECT_EQ(std::count(d.begin(), d.end(), 'M'), 2);  // the fifth point has no partner
+  EXPECT_EQ(std::count(d.begin(), d.end(), 'L'), 2);
+  EXPECT_FALSE(groups[0].child("polyline"));
+  const std::string grey = groups[1].child("polyline").attribute("stroke").value();
+  EXPECT_EQ(grey.substr(1, 2), grey.substr(3, 2));
+  EXPECT_EQ(grey.substr(3, 2), grey.substr(5, 2));
+  EXPECT_FALSE(groups[1].child("polyline").attribute("stroke-dasharray"));
+}
+
+TEST(SvgPlot, EndsOfAxesThatAreGivenHold) {
+  Plot plot = plot_of({series("a", {0, 10}, {0, 10})});
+  plot.rows[0][0].x.low = 2;
+  plot.rows[0][0].x.high = 4;
+  const Drawing drawing(plot);
+  const Scale across = Drawing::scale(drawing.panels[0], true);
+  const pugi::xml_node frame = Drawing::frame(drawing.panels[0]);
+  EXPECT_NEAR(across.at(2), frame.attribute("x").as_double(), 0.05);
+  EXPECT_NEAR(across.at(4), frame.attribute("x").as_double() + frame.attribute("width").as_double(), 0.05);
+  const std::string clip = Drawing::groups(drawing.panels[0], "series")[0].attribute("clip-path").value();
+  EXPECT_EQ(clip, "url(#frame0)");  // what lies outside is cut
+  EXPECT_STREQ(drawing.panels[0].child("clipPath").attribute("id").value(), "frame0");
+}
+
 TEST(SvgPlot, LongSeriesStaySmallAndKeepTheirSpikes) {
   constexpr int count = 1'000'000, spike = 654'321;
   PlotSeries wave = series("wave", {}, {}), cloud = series("cloud", {}, {});

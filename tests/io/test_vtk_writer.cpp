@@ -79,6 +79,21 @@ TEST(VtkWriter, StoresWhatTheFormatAsksFor) {
   EXPECT_NE(file.find("98 111 100 121 0\n"), std::string::npos);
 }
 
+TEST(VtkWriter, StoresTrianglesAndSinglePoints) {
+  const TempFolder folder;
+  VtuContent content;
+  content.points = Eigen::Map<const Points>(kPoints.data(), 3, 3);
+  content.triangles = {{0, 2, 1}};
+  content.cloud = true;
+  content.cell_fields = {{"area", 1, {1, 2, 3, 4}}};
+  write_vtu(folder.file("a.vtu"), content);
+  const std::string file = slurp(folder.file("a.vtu"));
+  EXPECT_NE(file.find("NumberOfCells=\"4\""), std::string::npos);
+  EXPECT_EQ(stored(file, "connectivity"), packed<std::int32_t>({0, 2, 1, 0, 1, 2}));
+  EXPECT_EQ(stored(file, "offsets"), packed<std::int64_t>({3, 4, 5, 6}));
+  EXPECT_EQ(stored(file, "types"), packed<std::uint8_t>({5, 1, 1, 1}));
+}
+
 TEST(VtkWriter, RoundTripOfManyBlocks) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> coordinate(-100, 100);
@@ -126,6 +141,8 @@ TEST(VtkWriter, RefusesBadContent) {
       {"cell field 'region' stands twice", [](VtuContent& c) { c.cell_fields[0].name = "region"; }},
       {"tetrahedron 1 has the vertex 8, outside 0 to 7", [](VtuContent& c) { c.tetrahedra[1][2] = 8; }},
       {"prism 0 has the vertex -1", [](VtuContent& c) { c.prisms[0][5] = -1; }},
+      {"triangle 1 has the vertex 8, outside 0 to 7", [](VtuContent& c) { c.triangles = {{0, 1, 2}, {0, 1, 8}}; }},
+      {"'volume ratio' has 3 values instead of 11 x 1", [](VtuContent& c) { c.cloud = true; }},
       {"2 cell regions for 3 cells", [](VtuContent& c) { c.cell_regions.pop_back(); }},
       {"cell 1 is of region 2, but there are 2", [](VtuContent& c) { c.cell_regions[1] = 2; }},
       {"cell 1 is of region -2", [](VtuContent& c) { c.cell_regions[1] = -2; }},

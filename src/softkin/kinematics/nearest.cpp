@@ -35,11 +35,9 @@ std::vector<NearestPoints::Found> NearestPoints::find(const Eigen::VectorXd& tar
   const auto most = std::min(static_cast<std::size_t>(count), static_cast<std::size_t>(tree_->points.rows()));
   std::vector<Eigen::Index> rows(most);
   std::vector<double> squares(most);
-  nanoflann::KNNResultSet<double, Eigen::Index> result(most);
-  result.init(rows.data(), squares.data());
-  tree_->search.index->findNeighbors(result, target.data(), nanoflann::SearchParams());
+  tree_->search.query(target.data(), most, rows.data(), squares.data());
   std::vector<Found> found;
-  for (std::size_t i = 0; i < result.size(); ++i) found.push_back({static_cast<Index>(rows[i]), std::sqrt(squares[i])});
+  for (std::size_t i = 0; i < most; ++i) found.push_back({static_cast<Index>(rows[i]), std::sqrt(squares[i])});
   return found;
 }
 

@@ -6,10 +6,10 @@
 
 namespace softkin {
 
-/// How far conjugate_residuals came: what is left of the right-hand side that went worst, over it.
+/// How conjugate_residuals went: lengths over those of the right-hand sides, of the one that is worst.
 struct Remainder {
-  double first = 0;  // after one round
-  double last = 0;
+  double left = 0;   // of what is left
+  double apart = 0;  // of A b - b: how far A is from the identity
 };
 
 /// Solves A X = B for a few right-hand sides together; each gains from the directions that the others ask for. Meant
@@ -28,6 +28,9 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
   const auto share_left = [&](Eigen::Index column) {
     return sizes[column] > 0 ? left.col(column).norm() / sizes[column] : 0.0;
   };
+  const auto raise = [](double& most, double value) {
+    if (!(value <= most)) most = value;  // also where it is not a number
+  };
   std::vector<Eigen::VectorXd> directions, images;  // images: orthonormal
   Eigen::MatrixXd asked, answered;
   Remainder remainder;
@@ -40,6 +43,9 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
     asked = left(Eigen::all, open);
     answered.resizeLike(asked);
     product(asked, answered);
+    if (round == 0)
+      for (Eigen::Index i = 0; i < asked.cols(); ++i)
+        raise(remainder.apart, (answered.col(i) - asked.col(i)).norm() / asked.col(i).norm());
     const std::size_t known = images.size();
     for (Eigen::Index i = 0; i < asked.cols(); ++i) {
       Eigen::VectorXd direction = asked.col(i), image = answered.col(i);
@@ -59,14 +65,10 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
         x.col(column) += part * directions.back();
       }
     }
-    remainder.last = 0;
-    for (const Eigen::Index i : open) {
-      const double share = share_left(i);
-      if (!(share <= remainder.last)) remainder.last = share;  // also where it is not a number
-    }
-    if (round == 0) remainder.first = remainder.last;
+    remainder.left = 0;
+    for (const Eigen::Index i : open) raise(remainder.left, share_left(i));
     if (images.size() == known) break;
-    if (round > 0 && std::pow(remainder.last, static_cast<double>(rounds) / (round + 1)) > tolerance) break;
+    if (round > 0 && std::pow(remainder.left, static_cast<double>(rounds) / (round + 1)) > tolerance) break;
   }
   return remainder;
 }

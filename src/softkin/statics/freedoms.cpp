@@ -190,6 +190,29 @@ void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double sc
   }
 }
 
+/// Second derivative in the turns: x turns to second order by w x (w x arm) / 2.
+Mat3 Freedoms::bend_of(const Region& region, const Points& gradient, const Points& positions) {
+  const Vec3 middle = center_of(region, positions);
+  Mat3 bend = Mat3::Zero();
+  for (const Index v : region.vertices) {
+    const Vec3 arm = positions.row(v).transpose() - middle, force = gradient.row(v).transpose();
+    bend += 0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
+  }
+  return bend;
+}
+
+void Freedoms::add_turning(const Points& gradient, const Points& positions,
+                           const Eigen::Ref<const Eigen::VectorXd>& unknowns, Eigen::Ref<Eigen::VectorXd> out) const {
+  for (const Region& region : regions_) {
+    const Mat3 bend = bend_of(region, gradient, positions);
+    const Index first = columns_.unknowns[region.node] + static_cast<Index>(region.slide_axes.size());
+    for (std::size_t i = 0; i < region.turn_axes.size(); ++i)
+      for (std::size_t k = 0; k < region.turn_axes.size(); ++k)
+        out[first + static_cast<Index>(i)] +=
+            bend(region.turn_axes[i], region.turn_axes[k]) * unknowns[first + static_cast<Index>(k)];
+  }
+}
+
 /// block_of(entry, block): a block of the matrix over vertices, by rows.
 template <class BlockOf>
 void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Points& positions,
@@ -232,14 +255,8 @@ void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Poi
       target += product;
     if (same_node && part.row != part.column) target += product.transpose();
   }
-  // x turns to second order by w x (w x arm) / 2
-  for (std::size_t r = 0; r < regions_.size(); ++r) {
-    const Region& region = regions_[r];
-    Mat3 bend = Mat3::Zero();
-    for (const Index v : region.vertices) {
-      const Vec3 arm = positions.row(v).transpose() - middles[r], force = gradient.row(v).transpose();
-      bend += 0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
-    }
+  for (const Region& region : regions_) {
+    const Mat3 bend = bend_of(region, gradient, positions);
     const Index width = columns_.width(region.node), slides = static_cast<Index>(region.slide_axes.size());
     Eigen::Map<Eigen::MatrixXd> target(values.data() + columns_.offsets[columns_.starts[region.node]], width, width);
     for (Index i = slides; i < width; ++i)

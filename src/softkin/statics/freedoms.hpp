@@ -35,6 +35,10 @@ class Freedoms {
   void reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
                      const Points& positions, LargeVector<double>& values, Team& team) const;
 
+  /// Adds what the gradient adds for turns to that second derivative, times unknowns.
+  void add_turning(const Points& gradient, const Points& positions, const Eigen::Ref<const Eigen::VectorXd>& unknowns,
+                   Eigen::Ref<Eigen::VectorXd> out) const;
+
   /// Puts what is fixed at rest + share (held - rest), and rigid regions into the pose that fits them best.
   void hold(double share, Points& positions) const;
 
@@ -53,6 +57,7 @@ class Freedoms {
     bool transposed;    // the entry's row node is the column's
   };
 
+  [[nodiscard]] static Mat3 bend_of(const Region& region, const Points& gradient, const Points& positions);
   template <class BlockOf>
   void reduce(const BlockOf& block_of, const Points& gradient, const Points& positions, LargeVector<double>& values,
               Team& team) const;

@@ -11,7 +11,7 @@ namespace {
 constexpr double accuracy = 1e-10;
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with that.
 constexpr int most_rounds = 8, exact_rounds = 3;
-/// What rounding may leave after a round with the factor of the stiffness itself: more, and that is singular.
+/// What rounding may add to a solution with the factor of the stiffness itself: more, and that is singular.
 constexpr double singular = 1e-6;
 /// A cable without tension that is as long as it may be but for this share is held.
 constexpr double verge = 1e-9;
@@ -99,7 +99,7 @@ bool PhysicalSensitivity::solve(const Iterate& at, bool exact_factor) {
   join(found_, left);
   const Remainder remainder =
       conjugate_residuals(product, accuracy, exact_factor ? exact_rounds : most_rounds, left, x);
-  if (!(remainder.last <= accuracy) || (exact_factor && !(remainder.first <= singular)) || !x.allFinite()) return false;
+  if (!(remainder.left <= accuracy) || (exact_factor && !(remainder.apart <= singular)) || !x.allFinite()) return false;
   found_ = split(x);
   return true;
 }

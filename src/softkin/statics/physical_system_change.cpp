@@ -9,17 +9,11 @@ void PhysicalSystem::gather(Workspace& work, Team& team) const {
 void PhysicalSystem::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work,
                               Eigen::MatrixXd& product, Team& team) const {
   Points force;
-  const Points origin = Points::Zero(at.positions.rows(), 3);
-  Eigen::VectorXd turned(freedoms_->size()), unturned(freedoms_->size());
   for (Index i = 0; i < vectors.cols(); ++i) {
     freedoms_->expand(vectors.col(i), at.positions, work.moves);
     pattern_->multiply(work.blocks, work.moves, force, team);
     freedoms_->reduce(force, at.positions, product.col(i));
-    if (model_.rigid.empty()) continue;
-    // reduce() is linear in the arms: at the moves instead of the positions it gives the torques' change
-    freedoms_->reduce(work.gradient, work.moves, turned);
-    freedoms_->reduce(work.gradient, origin, unturned);
-    product.col(i) += turned - unturned;
+    freedoms_->add_turning(work.gradient, at.positions, vectors.col(i), product.col(i));
   }
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/statics/local_global.hpp>
 #include <softkin/statics/measure.hpp>
@@ -147,6 +148,7 @@ Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options)
   check_start(model, at, options);
   if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
     throw InvalidInput("the sensitivity of a shape needs the actuation of which it is the equilibrium");
+  if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
   if (parts_->physical && at.multipliers.size() != at.actuation.size())
     throw InvalidInput("the sensitivity of a shape needs the tensions and pressures of its equilibrium");
   Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));

@@ -54,10 +54,10 @@ class TargetShapeTangent {
   /// Solves K steps = rights, a column each, for the exact K at a shape near that of the factor, symmetric or not, by
   /// conjugate residuals.
   ///
-  /// most_left  share of a preconditioned right-hand side that the first round may leave
-  /// returns    false where so many rounds do not do
+  /// apart    how far the preconditioned K may be from the identity, in the preconditioned right-hand sides
+  /// returns  false where it is farther, or so many rounds do not do
   [[nodiscard]] bool solve_exactly(const TargetShapeSystem::Scratch& local, const Points& positions,
-                                   const Eigen::MatrixXd& rights, int rounds, double most_left, Team& team,
+                                   const Eigen::MatrixXd& rights, int rounds, double apart, Team& team,
                                    Eigen::MatrixXd& steps);
 
   [[nodiscard]] const Freedoms& freedoms() const { return unknowns_.freedoms; }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <softkin/statics/conjugate_residuals.hpp>
 #include <softkin/statics/target_shape_newton.hpp>
 
@@ -8,15 +9,15 @@ namespace {
 
 /// Of the residual, seen through the preconditioner.
 constexpr double accuracy = 1e-10;
-/// What rounding may leave after a round with the factor of K itself: more, and K is singular.
-constexpr double singular = 1e-6;
+/// What rounding may add to a solution with the factor of K itself: more, and K is singular.
+constexpr double singular = 1e-6, unlimited = std::numeric_limits<double>::infinity();
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with one that is never exact.
 constexpr int symmetric_rounds = 8, most_rounds = 60;
 
 }  // namespace
 
 bool TargetShapeTangent::solve_exactly(const TargetShapeSystem::Scratch& local, const Points& positions,
-                                       const Eigen::MatrixXd& rights, int rounds, double most_left, Team& team,
+                                       const Eigen::MatrixXd& rights, int rounds, double apart, Team& team,
                                        Eigen::MatrixXd& steps) {
   const auto precondition_all = [&](Eigen::MatrixXd& columns) {
     factor_.solve(columns, team);
@@ -34,7 +35,7 @@ bool TargetShapeTangent::solve_exactly(const TargetShapeSystem::Scratch& local, 
   precondition_all(left);
   if (!left.allFinite()) return false;
   const Remainder remainder = conjugate_residuals(multiply_all, accuracy, rounds, left, steps);
-  return remainder.first <= most_left && remainder.last <= accuracy && steps.allFinite();
+  return remainder.apart <= apart && remainder.left <= accuracy && steps.allFinite();
 }
 
 Sensitivity TargetShapeNewton::sensitivity(const State& at, bool reuse_factor, Team& team) const {
@@ -51,16 +52,16 @@ Sensitivity TargetShapeNewton::sensitivity(const State& at, bool reuse_factor, T
     unknowns_.freedoms.reduce(workspace->work.residual, at.positions, rights.col(a));
   }
   const bool near = reuse_factor && workspace->home.rows() == at.positions.rows() && workspace->home == at.positions;
-  const auto solve = [&](int rounds, double most_left) {
-    return tangent.solve_exactly(local, at.positions, rights, rounds, most_left, team, steps);
+  const auto solve = [&](int rounds, double apart) {
+    return tangent.solve_exactly(local, at.positions, rights, rounds, apart, team, steps);
   };
-  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, 1);
+  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, unlimited);
   if (!result.regular) {
     SolveReport report;
     workspace->home.resize(0, 3);
     if (tangent.factorise(local, at.positions, false, team, report)) {
       const bool exact = tangent.symmetric() && report.projections == 0;
-      result.regular = solve(most_rounds, exact ? singular : 1);
+      result.regular = solve(most_rounds, exact ? singular : unlimited);
     }
     if (result.regular) workspace->home = at.positions;
   }
