@@ -121,7 +121,7 @@ Json ik_json(const Model& model, const IkOptions& options, const std::vector<Ask
                {"seconds", found.seconds}};
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (found.active[a] != 0) json["at_end_of_range"][model.actuators[a].name] = found.active[a] < 0 ? "low" : "high";
-  if (newton) json["slope_mm_per_range"] = found.slope;
+  if (newton && found.status != InverseStatus::reached) json["slope_mm_per_range"] = found.slope;
   if (newton && found.sensitivity.regular) json["jacobian"] = jacobian_json(model, found.sensitivity);
   json["history"] = history_json(found.history);
   return json;

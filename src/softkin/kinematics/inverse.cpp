@@ -172,44 +172,41 @@ class Inverse {
     }
   }
 
-  void conclude(SearchResult found, const SearchSettings& settings) {
-    const bool reached = found.pose.miss <= 1;
-    switch (found.end) {
+  void tell_status(SearchEnd end, bool reached) {
+    switch (end) {
       case SearchEnd::reached:
-        result_.status = InverseStatus::reached;
         break;
       case SearchEnd::stationary:
         result_.status = InverseStatus::unreachable;
         result_.remark = "no change of the actuation inside the ranges brings the goals nearer";
         break;
       case SearchEnd::none_left:
-        result_.status = reached ? InverseStatus::reached : InverseStatus::not_converged;
         result_.remark = "the limit of " + std::to_string(options_.max_equilibria) + " equilibria was reached";
         break;
       case SearchEnd::stuck:
-        result_.status = reached ? InverseStatus::reached : InverseStatus::not_converged;
         result_.remark = "the search came to a limit of the robot's equilibria";
         break;
       case SearchEnd::interrupted:
-        result_.status = reached ? InverseStatus::reached : InverseStatus::interrupted;
+        result_.status = InverseStatus::interrupted;
         result_.remark = "interrupted";
         break;
     }
-    if (result_.status == InverseStatus::reached) result_.remark.clear();
+    if (!reached) return;
+    result_.status = InverseStatus::reached;
+    result_.remark.clear();
+  }
+
+  void conclude(SearchResult found, const SearchSettings& settings) {
+    const bool reached = found.pose.miss <= 1;
+    tell_status(found.end, reached);
     result_.slope = found.slope;
     tell_active(found, settings);
-    if (reached && found.slopes.sensitivity.regular) {
-      const int before = static_cast<int>(response_.history().size());
-      response_.release(found.pose, found.slopes, settings.preferred, settings.resolution_mm);
-      if (static_cast<int>(response_.history().size()) > before) found.slopes.sensitivity.regular = false;
-    }
-    const bool same = !(found.pose.idle.array() > 0).any() && found.slopes.sensitivity.regular;
+    const bool released = reached && found.slopes.sensitivity.regular &&
+                          response_.release(found.pose, found.slopes, settings.preferred, settings.resolution_mm);
+    const bool same = found.slopes.sensitivity.regular && !released && !(found.pose.idle.array() > 0).any();
     slacken(found.pose, settings);
-    if (same) {
-      result_.sensitivity = std::move(found.slopes.sensitivity);
-    } else {
-      result_.sensitivity = statics_.sensitivity(found.pose.equilibrium.state, options_.statics);
-    }
+    result_.sensitivity = same ? std::move(found.slopes.sensitivity)
+                               : statics_.sensitivity(found.pose.equilibrium.state, options_.statics);
     finish(std::move(found.pose));
   }
 

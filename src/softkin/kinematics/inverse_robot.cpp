@@ -105,7 +105,7 @@ bool RobotResponse::solve(const Actuation& actuation, const State& from, Equilib
   return converged;
 }
 
-void RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm) {
+bool RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm) {
   const State& state = pose.equilibrium.state;
   const Actuation longer = actuation_of(preferred, state.actuation);
   Actuation released = state.actuation;
@@ -117,9 +117,11 @@ void RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::Vecto
     if (tension * slopes.terms.col(i).norm() < resolution_mm * rate) released[a] = longer[a];
   }
   Equilibrium found;
-  if (released == state.actuation || !any_left() || !solve(released, state, found)) return;
-  const Pose slack = pose_of(std::move(found), taut_);
-  if (slack.miss <= 1) pose = slack;
+  if (released == state.actuation || !any_left() || !solve(released, state, found)) return false;
+  Pose slack = pose_of(std::move(found), taut_);
+  if (slack.miss > 1) return false;
+  pose = std::move(slack);
+  return true;
 }
 
 Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& from, Pose& to) {

@@ -27,8 +27,9 @@ class RobotResponse : public Response {
   bool slopes(const Pose& at, Slopes& slopes) override;
   [[nodiscard]] bool any_left() const override { return static_cast<int>(history_.size()) < most_; }
 
-  /// Of a pose that reaches its goals: lets go of cables that hardly pull and are preferred longer.
-  void release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm);
+  /// Of a pose that reaches its goals: lets go of cables that hardly pull and are preferred longer. True where the pose
+  /// is another one then.
+  bool release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm);
 
   [[nodiscard]] bool interrupted() const { return interrupted_; }
   [[nodiscard]] const std::vector<InverseRecord>& history() const { return history_; }
@@ -49,8 +50,8 @@ class RobotResponse : public Response {
   std::vector<Index> cables_;  // places in free_ of what only pulls
   const ProgressCallback& progress_;
   std::vector<InverseRecord> history_;
-  double least_error_ = 0;
-  int most_ = 0;
+  double least_error_;  // [mm]
+  int most_;
   bool interrupted_ = false, taut_ = true;
 };
 
