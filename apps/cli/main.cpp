@@ -36,9 +36,9 @@ int main(int argc, char** argv) {
   });
   cli::Run run;
   cli::add_fk(app, run);
+  cli::add_ik(app, run);
   cli::add_follow(app, run);
   cli::add_compare(app, run);
-  cli::add_ik(app, run);
   cli::add_mesh(app, run);
   cli::add_workspace(app, run);
   try {
