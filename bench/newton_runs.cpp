@@ -98,7 +98,7 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
   Team team(options.threads);
   Run run;
   run.setup = now() - begin;
-  const double start = now(), settled = 8e-8 * model.diagonal_mm;
+  const double start = now(), rounding = 1e-13 * model.diagonal_mm;
   const Actuation actuation = Actuation::Constant(1, target.ratio);
   const Vec3 tip = vector_of(target.tip);
   Points positions = model.rest;
@@ -115,7 +115,7 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
       run.iterations = count;
     }
     run.done = inside;
-    if (run.tip_error <= options.tip_error_mm / 10 || record.step_mm < settled) break;
+    if (run.tip_error <= options.tip_error_mm / 10 || record.step_mm < rounding) break;
     run.out_of_time = run.setup + time > options.limit;
     if (run.out_of_time) break;
     iteration.extrapolate();

@@ -86,21 +86,33 @@ Eigen::MatrixXd dense_of(const BlockColumns& columns, const LargeVector<double>&
   return dense;
 }
 
-/// Random blocks in the pattern, those on the diagonal symmetric.
-LargeVector<double> random_blocks(const BlockPattern& pattern, Eigen::MatrixXd& dense) {
-  std::mt19937 engine(4);
-  std::normal_distribution<double> normal;
-  LargeVector<double> blocks(9 * static_cast<std::size_t>(pattern.entries()));
-  dense = Eigen::MatrixXd::Zero(3 * pattern.vertices(), 3 * pattern.vertices());
-  pattern.each([&](std::int64_t entry, Index row, Index column) {
-    Mat3 block = Mat3::NullaryExpr([&] { return normal(engine); });
-    if (row == column) block = (block + block.transpose()).eval();
-    for (int i = 0; i < 9; ++i) blocks[9 * entry + i] = block(i / 3, i % 3);
-    dense.block<3, 3>(3 * row, 3 * column) = block;
-    dense.block<3, 3>(3 * column, 3 * row) = block.transpose();
-  });
-  return blocks;
-}
+/// Random blocks for every clique, those on the diagonal symmetric; their sums over the pattern, and these as a matrix.
+struct RandomMatrix {
+  explicit RandomMatrix(const Sample& sample) : slots(9 * static_cast<std::size_t>(sample.cliques.slots.back())) {
+    std::mt19937 engine(4);
+    std::normal_distribution<double> normal;
+    for (Index c = 0; c < sample.cliques.count(); ++c) {
+      std::int64_t slot = sample.cliques.slots[c];
+      for (std::int64_t a = 0; slot < sample.cliques.slots[c + 1]; ++a)
+        for (std::int64_t b = 0; b <= a; ++b, ++slot) {
+          Mat3 block = Mat3::NullaryExpr([&] { return normal(engine); });
+          if (a == b) block = (block + block.transpose()).eval();
+          for (int i = 0; i < 9; ++i) slots[9 * slot + i] = block(i / 3, i % 3);
+        }
+    }
+    Team alone(1);
+    sample.pattern->gather(slots, blocks, alone);
+    dense = Eigen::MatrixXd::Zero(3 * sample.pattern->vertices(), 3 * sample.pattern->vertices());
+    sample.pattern->each([&](std::int64_t entry, Index row, Index column) {
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks.data() + 9 * entry);
+      dense.block<3, 3>(3 * row, 3 * column) = block;
+      dense.block<3, 3>(3 * column, 3 * row) = block.transpose();
+    });
+  }
+
+  LargeVector<double> slots, blocks;
+  Eigen::MatrixXd dense;
+};
 
 }  // namespace
 
@@ -151,14 +163,13 @@ TEST(Freedoms, MovedFarRegionsKeepTheirShapeAndSupportsTheirPlace) {
 
 TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
   const Sample sample(held_robot());
-  Eigen::MatrixXd dense;
-  const LargeVector<double> blocks = random_blocks(*sample.pattern, dense);
-  const Eigen::MatrixXd t = tangent_of(sample), expected = t.transpose() * dense * t;
+  const RandomMatrix matrix(sample);
+  const Eigen::MatrixXd t = tangent_of(sample), expected = t.transpose() * matrix.dense * t;
   Team alone(1), pair(2);
   LargeVector<double> values, shared;
   const Points none = Points::Zero(sample.model.rest.rows(), 3);
-  sample.freedoms->reduce_matrix(blocks, none, sample.positions, values, alone);
-  sample.freedoms->reduce_matrix(blocks, none, sample.positions, shared, pair);
+  sample.freedoms->reduce_matrix(*sample.pattern, matrix.slots, none, sample.positions, values, alone);
+  sample.freedoms->reduce_matrix(*sample.pattern, matrix.slots, none, sample.positions, shared, pair);
   EXPECT_EQ(values, shared);
   EXPECT_LT((dense_of(sample.freedoms->columns(), values) - expected).norm(), 1e-12 * expected.norm());
 }
@@ -167,16 +178,16 @@ TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
 /// of which all of the symmetric K follows.
 TEST(Freedoms, ReducedMatrixIsTheSlopeOfTheReducedGradient) {
   const Sample sample(held_robot());
-  Eigen::MatrixXd dense;
-  const LargeVector<double> blocks = random_blocks(*sample.pattern, dense);
+  const RandomMatrix hessian(sample);
   Team alone(1);
   const auto gradient_at = [&](const Points& positions) {
     Points gradient;
-    sample.pattern->multiply(blocks, positions, gradient, alone);
+    sample.pattern->multiply(hessian.blocks, positions, gradient, alone);
     return gradient;
   };
   LargeVector<double> values;
-  sample.freedoms->reduce_matrix(blocks, gradient_at(sample.positions), sample.positions, values, alone);
+  sample.freedoms->reduce_matrix(*sample.pattern, hessian.slots, gradient_at(sample.positions), sample.positions,
+                                 values, alone);
   const Eigen::MatrixXd matrix = dense_of(sample.freedoms->columns(), values);
   constexpr double reach = 1e-5;
   const auto slope_at = [&](const Eigen::VectorXd& unknowns, double scale) {

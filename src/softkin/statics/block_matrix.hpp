@@ -31,14 +31,14 @@ class BlockPattern {
   /// Block of one entry: the sum of its slots, by rows.
   void sum(const LargeVector<double>& slots, std::int64_t entry, double (&block)[9]) const {
     for (double& value : block) value = 0;
-    for (std::int64_t s = source_starts_[entry]; s < source_starts_[entry + 1]; ++s) {
-      const double* slot = slots.data() + 9 * (sources_[s] / 2);
-      if (sources_[s] % 2 == 0) {
-        for (int k = 0; k < 9; ++k) block[k] += slot[k];
-      } else {
-        for (int r = 0; r < 3; ++r)
-          for (int c = 0; c < 3; ++c) block[3 * r + c] += slot[3 * c + r];
-      }
+    each_slot(entry, [&](std::int64_t slot, bool transposed) { add_slot(slots.data() + 9 * slot, transposed, block); });
+  }
+  static void add_slot(const double* slot, bool transposed, double (&block)[9]) {
+    if (!transposed) {
+      for (int k = 0; k < 9; ++k) block[k] += slot[k];
+    } else {
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) block[3 * r + c] += slot[3 * c + r];
     }
   }
 
@@ -47,6 +47,13 @@ class BlockPattern {
 
   [[nodiscard]] Index vertices() const { return static_cast<Index>(starts_.size()) - 1; }
   [[nodiscard]] std::int64_t entries() const { return static_cast<std::int64_t>(columns_.size()); }
+
+  /// visit(slot, transposed) for the slots whose sum the block of an entry is.
+  template <class Visit>
+  void each_slot(std::int64_t entry, const Visit& visit) const {
+    for (std::int64_t s = source_starts_[entry]; s < source_starts_[entry + 1]; ++s)
+      visit(sources_[s] / 2, sources_[s] % 2 != 0);
+  }
 
   /// visit(entry, row, column), column <= row
   template <class Visit>

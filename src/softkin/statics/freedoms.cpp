@@ -91,7 +91,7 @@ void Freedoms::number(const BlockPattern& pattern) {
 }
 
 void Freedoms::find_sources(const BlockPattern& pattern, const std::vector<Index>& node_of) {
-  sources_.assign(columns_.rows.size(), {-1, false});
+  std::vector<std::pair<std::int64_t, bool>> block_of(columns_.rows.size(), {-1, false});  // and is it the transpose
   pattern.each([&](std::int64_t block, Index row, Index column) {
     const Index i = node_of[row], j = node_of[column];
     if (i < 0 || j < 0) return;
@@ -100,10 +100,24 @@ void Freedoms::find_sources(const BlockPattern& pattern, const std::vector<Index
                last = columns_.rows.begin() + columns_.starts[low + 1];
     const std::int64_t entry = std::lower_bound(first, last, high) - columns_.rows.begin();
     if (region_of_[row] < 0 && region_of_[column] < 0)
-      sources_[entry] = {block, i < j};
+      block_of[entry] = {block, i < j};
     else
       region_blocks_.push_back({block, entry, row, column, i < j});
   });
+  source_starts_.push_back(0);
+  for (const auto& [block, flipped] : block_of) {
+    if (block >= 0)
+      pattern.each_slot(
+          block, [&](std::int64_t slot, bool transposed) { sources_.push_back(2 * slot + (transposed != flipped)); });
+    source_starts_.push_back(static_cast<std::int64_t>(sources_.size()));
+  }
+}
+
+std::vector<Index> Freedoms::vertex_order() const {
+  std::vector<Index> order;
+  for (const Index v : vertex_of_)
+    if (v >= 0) order.push_back(v);
+  return order;
 }
 
 std::vector<Vec3> Freedoms::centers(const Points& positions) const {
@@ -213,34 +227,38 @@ void Freedoms::add_turning(const Points& gradient, const Points& positions,
   }
 }
 
-/// block_of(entry, block): a block of the matrix over vertices, by rows.
-template <class BlockOf>
-void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Points& positions,
-                      LargeVector<double>& values, Team& team) const {
+void Freedoms::reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
+                             const Points& positions, LargeVector<double>& values, Team& team) const {
   values.resize(static_cast<std::size_t>(columns_.offsets.back()));
+  const auto sources = static_cast<std::int64_t>(sources_.size());
   team.pieces(columns_.nodes(), [&](Index begin, Index end) {
-    double block[9];
+    constexpr std::int64_t ahead = 12;  // the slots lie all over the memory
     for (Index j = begin; j < end; ++j)
       for (Index e = columns_.starts[j]; e < columns_.starts[j + 1]; ++e) {
+        double block[9] = {};
+        for (std::int64_t s = source_starts_[e]; s < source_starts_[e + 1]; ++s) {
+          const char* next =
+              reinterpret_cast<const char*>(slots.data() + 9 * (sources_[std::min(s + ahead, sources - 1)] / 2));
+          __builtin_prefetch(next);
+          __builtin_prefetch(next + 64);
+          BlockPattern::add_slot(slots.data() + 9 * (sources_[s] / 2), sources_[s] % 2 != 0, block);
+        }
         double* value = values.data() + columns_.offsets[e];
-        const Source source = sources_[e];
-        if (source.block < 0) {  // of a region, or zero
+        if (vertex_of_[j] < 0 || vertex_of_[columns_.rows[e]] < 0) {  // of a region
           std::fill(value, values.data() + columns_.offsets[e + 1], 0.0);
           continue;
         }
-        block_of(source.block, block);
-        const int row_step = source.transposed ? 1 : 3, column_step = 4 - row_step;
         const auto &row_fixed = fixed_[vertex_of_[columns_.rows[e]]], &column_fixed = fixed_[vertex_of_[j]];
         for (int c = 0; c < 3; ++c)
           for (int r = 0; r < 3; ++r)
-            if (!row_fixed[r] && !column_fixed[c]) *value++ = block[r * row_step + c * column_step];
+            if (!row_fixed[r] && !column_fixed[c]) *value++ = block[3 * r + c];
       }
   });
   if (regions_.empty()) return;
   const std::vector<Vec3> middles = centers(positions);
   for (const RegionBlock& part : region_blocks_) {
     double sum[9];
-    block_of(part.block, sum);
+    pattern.sum(slots, part.block, sum);
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(sum);
     const Eigen::MatrixXd product =
         tangent(part.row, middles, positions).transpose() * block * tangent(part.column, middles, positions);
@@ -263,20 +281,6 @@ void Freedoms::reduce(const BlockOf& block_of, const Points& gradient, const Poi
       for (Index k = slides; k < width; ++k)
         target(i, k) += bend(region.turn_axes[i - slides], region.turn_axes[k - slides]);
   }
-}
-
-void Freedoms::reduce_matrix(const LargeVector<double>& blocks, const Points& gradient, const Points& positions,
-                             LargeVector<double>& values, Team& team) const {
-  const auto block_of = [&](std::int64_t entry, double(&block)[9]) {
-    std::copy(blocks.data() + 9 * entry, blocks.data() + 9 * (entry + 1), block);
-  };
-  reduce(block_of, gradient, positions, values, team);
-}
-
-void Freedoms::reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
-                             const Points& positions, LargeVector<double>& values, Team& team) const {
-  const auto block_of = [&](std::int64_t entry, double(&block)[9]) { pattern.sum(slots, entry, block); };
-  reduce(block_of, gradient, positions, values, team);
 }
 
 void Freedoms::hold(double share, Points& positions) const {

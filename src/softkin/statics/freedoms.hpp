@@ -18,6 +18,9 @@ class Freedoms {
   /// Pattern of the matrix over the unknowns, in the order of elimination, which is theirs.
   [[nodiscard]] const BlockColumns& columns() const { return columns_; }
 
+  /// Vertices that are not of a rigid region, in the order of elimination.
+  [[nodiscard]] std::vector<Index> vertex_order() const;
+
   /// T^T vectors. positions: where the rigid regions are
   void reduce(const Points& vectors, const Points& positions, Eigen::Ref<Eigen::VectorXd> out) const;
 
@@ -28,10 +31,7 @@ class Freedoms {
   void move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double scale, Points& positions) const;
 
   /// The second derivative in the unknowns of an energy with the given gradient and Hessian in x: T^T H T and, for
-  /// turns, what the gradient adds. values: of columns(). The Hessian is given by its blocks, or by the pattern's
-  /// slots.
-  void reduce_matrix(const LargeVector<double>& blocks, const Points& gradient, const Points& positions,
-                     LargeVector<double>& values, Team& team) const;
+  /// turns, what the gradient adds. values: of columns(). The Hessian is given by the slots of the pattern.
   void reduce_matrix(const BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
                      const Points& positions, LargeVector<double>& values, Team& team) const;
 
@@ -47,10 +47,6 @@ class Freedoms {
     std::vector<int> slide_axes, turn_axes;
     Index node = -1;
   };
-  struct Source {
-    std::int64_t block;
-    bool transposed;
-  };
   struct RegionBlock {  // a block of the matrix over vertices of which one or both are of a rigid region
     std::int64_t block, entry;
     Index row, column;  // vertices
@@ -58,9 +54,6 @@ class Freedoms {
   };
 
   [[nodiscard]] static Mat3 bend_of(const Region& region, const Points& gradient, const Points& positions);
-  template <class BlockOf>
-  void reduce(const BlockOf& block_of, const Points& gradient, const Points& positions, LargeVector<double>& values,
-              Team& team) const;
   void find_regions(const Model& model);
   void number(const BlockPattern& pattern);
   void find_sources(const BlockPattern& pattern, const std::vector<Index>& node_of);
@@ -75,7 +68,9 @@ class Freedoms {
   std::vector<Index> vertex_of_;      // per node in elimination order; -1: a region
   std::vector<Index> first_unknown_;  // per vertex, -1: none of its own
   BlockColumns columns_;
-  std::vector<Source> sources_;  // per entry of columns_; block -1: of a region
+  // per entry of columns_, in the order in which the matrix is written: its slots, 2 each, plus 1 where it is the
+  // transpose
+  std::vector<std::int64_t> source_starts_, sources_;  // none: of a region
   std::vector<RegionBlock> region_blocks_;
 };
 

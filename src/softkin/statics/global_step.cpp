@@ -6,7 +6,7 @@
 
 namespace softkin {
 
-GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix)
+GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order)
     : region_of_(model.rest.rows(), -1), fixed_(model.fixed), rest_(model.rest), held_(model.held) {
   add_regions(model);
   for (int axis = 0; axis < 3; ++axis) {
@@ -22,7 +22,7 @@ GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& ma
       groups_.back().free = std::move(free);
     }
   }
-  for (Group& group : groups_) make_group(matrix, group);
+  for (Group& group : groups_) make_group(matrix, order, group);
 }
 
 void GlobalStep::add_regions(const Model& model) {
@@ -34,7 +34,7 @@ void GlobalStep::add_regions(const Model& model) {
     }
 }
 
-void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, Group& group) {
+void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order, Group& group) {
   const Index handles = 4 * static_cast<Index>(regions_.size());
   const Index count = static_cast<Index>(group.free.size());
   std::vector<Index> place(rest_.rows(), -1);
@@ -68,7 +68,10 @@ void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, Group& gr
   if (count == 0) return;
   Eigen::SparseMatrix<double> free_part(count, count);
   free_part.setFromTriplets(entries.begin(), entries.end());
-  group.factor.emplace_back(free_part);
+  std::vector<Index> own_order;
+  for (const Index v : order)
+    if (place[v] >= 0) own_order.push_back(place[v]);
+  group.factor.emplace_back(free_part, own_order);
   Team alone(1);
   for (Index h = 0; h < handles; h += 3) {
     Points columns = Points::Zero(count, 3);

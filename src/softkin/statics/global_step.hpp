@@ -20,8 +20,10 @@ struct Pose {
 /// Gauss-Newton. The step so minimises the energy at fixed targets exactly, rigid regions included.
 class GlobalStep {
  public:
-  /// matrix: lower triangle, one coordinate. throws InvalidInput where a part is not held
-  GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix);
+  /// matrix  lower triangle, one coordinate
+  /// order   vertices in a good order of elimination, all that are free among them; empty: one is sought
+  /// throws  InvalidInput where a part is not held
+  GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order = {});
 
   /// Moves positions (#V by 3) by the step that residual (#V by 3) asks for; poses move along.
   void step(const Points& residual, Points& positions, std::vector<Pose>& poses, Team& team) const;
@@ -48,7 +50,7 @@ class GlobalStep {
   };
 
   void add_regions(const Model& model);
-  void make_group(const Eigen::SparseMatrix<double>& matrix, Group& group);
+  void make_group(const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order, Group& group);
   void place(const RigidBody& region, const Pose& pose, Points& positions) const;
   [[nodiscard]] Handles handles_of(const Points& residual) const;
   [[nodiscard]] Handles handles_of(const std::vector<Pose>& poses) const;

@@ -133,11 +133,7 @@ void cut(const Tree& tree, std::vector<Index>& subtrees, std::vector<Index>& top
             [&](Index a, Index b) { return lighter(b, a) || (!lighter(a, b) && a < b); });
 }
 
-}  // namespace
-
-Ordering nested_dissection(const Matrix& matrix) {
-  Graph graph = graph_of(matrix);
-  const std::vector<Index> order = dissect(graph);
+Ordering postordered(const Graph& graph, const std::vector<Index>& order) {
   const std::vector<Index> parent = elimination_tree(graph, order);
   const Tree tree = tree_of(parent, column_counts(graph, order, parent));
   std::vector<Index> subtrees, top, places;
@@ -153,6 +149,18 @@ Ordering nested_dissection(const Matrix& matrix) {
   places.insert(places.end(), top.begin(), top.end());
   for (const Index place : places) result.order.push_back(order[place]);
   return result;
+}
+
+}  // namespace
+
+Ordering nested_dissection(const Matrix& matrix) {
+  Graph graph = graph_of(matrix);
+  const std::vector<Index> order = dissect(graph);
+  return postordered(graph, order);
+}
+
+Ordering postordered(const Matrix& matrix, const std::vector<Index>& order) {
+  return postordered(graph_of(matrix), order);
 }
 
 }  // namespace softkin

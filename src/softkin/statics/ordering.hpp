@@ -18,4 +18,9 @@ struct Ordering {
 /// matrix  structurally symmetric; the lower triangle is read
 [[nodiscard]] Ordering nested_dissection(const Eigen::SparseMatrix<double>& matrix);
 
+/// The same from an order that is known already, of this or a larger matrix of the same mesh.
+///
+/// order  every row once
+[[nodiscard]] Ordering postordered(const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order);
+
 }  // namespace softkin

@@ -31,7 +31,7 @@ PhysicalSystem::PhysicalSystem(const Model& model)
   pattern_ = std::make_unique<BlockPattern>(static_cast<Index>(model.rest.rows()), cliques);
   freedoms_ = std::make_unique<Freedoms>(model, *pattern_);
   symbolic_ = std::make_shared<const FrontTree>(make_front_tree(freedoms_->columns()));
-  turning_ = std::make_unique<GlobalStep>(model, elastic_.laplacian());
+  turning_ = std::make_unique<GlobalStep>(model, elastic_.laplacian(), freedoms_->vertex_order());
 }
 
 PhysicalSystem::Workspace::Workspace(const PhysicalSystem& system)

@@ -35,8 +35,8 @@ Index supernode_end(const Matrix& lower, Index begin, Index limit) {
 
 }  // namespace
 
-SparseFactor::SparseFactor(const Matrix& matrix) {
-  Ordering ordering = nested_dissection(matrix);
+SparseFactor::SparseFactor(const Matrix& matrix, const std::vector<Index>& order) {
+  Ordering ordering = order.empty() ? nested_dissection(matrix) : postordered(matrix, order);
   order_ = std::move(ordering.order);
   top_ = ordering.pieces.back();
 

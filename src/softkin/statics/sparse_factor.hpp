@@ -11,8 +11,10 @@ namespace softkin {
 /// elimination tree are solved on several threads, and the result does not depend on their number.
 class SparseFactor {
  public:
-  /// matrix: the lower triangle is read. throws InvalidInput where it is not positive definite
-  explicit SparseFactor(const Eigen::SparseMatrix<double>& matrix);
+  /// matrix  the lower triangle is read
+  /// order   of elimination, every row once; empty: one is sought (METIS)
+  /// throws  InvalidInput where the matrix is not positive definite
+  explicit SparseFactor(const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order = {});
 
   /// right_side, n x 3, becomes the solution.
   void solve(Points& right_side, Team& team) const;

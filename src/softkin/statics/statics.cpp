@@ -85,8 +85,12 @@ struct Statics::Parts {
   }
   struct TargetShape {
     explicit TargetShape(const Model& robot)
-        : system(robot), global(robot, system.global_matrix()), newton(robot, system, global) {}
+        : system(robot),
+          unknowns(robot, system),
+          global(robot, system.global_matrix(), unknowns.freedoms.vertex_order()),
+          newton(unknowns, global) {}
     TargetShapeSystem system;
+    TargetShapeUnknowns unknowns;
     GlobalStep global;
     TargetShapeNewton newton;
   };

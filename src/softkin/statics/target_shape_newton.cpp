@@ -38,8 +38,8 @@ End follow(const Actuation& from, const Actuation& to, TargetShapeSearch& search
 
 }  // namespace
 
-TargetShapeNewton::TargetShapeNewton(const Model& model, const TargetShapeSystem& system, const GlobalStep& global)
-    : global_(global), unknowns_(model, system) {}
+TargetShapeNewton::TargetShapeNewton(const TargetShapeUnknowns& unknowns, const GlobalStep& global)
+    : global_(global), unknowns_(unknowns) {}
 
 std::unique_ptr<TargetShapeWorkspace> TargetShapeNewton::take_workspace(const Points* shape) const {
   {

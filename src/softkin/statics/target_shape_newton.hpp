@@ -17,7 +17,7 @@ namespace softkin {
 class TargetShapeNewton {
  public:
   /// All must outlive the object.
-  TargetShapeNewton(const Model& model, const TargetShapeSystem& system, const GlobalStep& global);
+  TargetShapeNewton(const TargetShapeUnknowns& unknowns, const GlobalStep& global);
 
   /// From result.state.positions to the equilibrium at result.actuation; fills state.positions and the report, its
   /// seconds aside. Stops at a full step that moves no vertex farther than report.tolerance_mm.
@@ -35,7 +35,7 @@ class TargetShapeNewton {
   void put_back(std::unique_ptr<TargetShapeWorkspace> workspace) const;
 
   const GlobalStep& global_;
-  TargetShapeUnknowns unknowns_;
+  const TargetShapeUnknowns& unknowns_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<TargetShapeWorkspace>> workspaces_;  // not in use: as many as solves ran at once
 };

@@ -79,7 +79,7 @@ void TargetShapeMatrix::add_triangle(const Triangle& triangle, const TargetStiff
 }
 
 void TargetShapeMatrix::assemble(const TargetShapeSystem::Scratch& local, bool projected, LargeVector<double>& slots,
-                                 LargeVector<double>& blocks, Team& team) const {
+                                 Team& team) const {
   slots.resize(9 * static_cast<std::size_t>(slots_.back()));
   std::size_t index = 0, element = 0, triangle = 0;
   system_.sets().each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
@@ -115,7 +115,6 @@ void TargetShapeMatrix::assemble(const TargetShapeSystem::Scratch& local, bool p
     if constexpr (K == 3) triangle += static_cast<std::size_t>(set.count);
     ++index;
   });
-  pattern_.gather(slots, blocks, team);
 }
 
 }  // namespace softkin

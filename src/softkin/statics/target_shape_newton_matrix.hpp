@@ -16,13 +16,11 @@ class TargetShapeMatrix {
 
   [[nodiscard]] const BlockPattern& pattern() const { return pattern_; }
 
-  /// Values of pattern() [mm^3] at the shape of the last local_step.
+  /// Blocks of all elements [mm^3] at the shape of the last local_step: slots of pattern().
   ///
   /// local      the scratch of that local_step
   /// projected  with every element's matrix positive semidefinite
-  /// slots      work space
-  void assemble(const TargetShapeSystem::Scratch& local, bool projected, LargeVector<double>& slots,
-                LargeVector<double>& blocks, Team& team) const;
+  void assemble(const TargetShapeSystem::Scratch& local, bool projected, LargeVector<double>& slots, Team& team) const;
 
  private:
   /// A cable's triangle moves with the vertices that its three points are sums of.

@@ -57,8 +57,8 @@ bool TargetShapeTangent::factorise(const TargetShapeSystem::Scratch& local, cons
   constexpr double first_shift = 1e-8, last_shift = 1e4, growth = 10;
   gradient_ = -local.residual;
   const auto assemble = [&](bool positive) {
-    unknowns_.matrix.assemble(local, positive, slots_, blocks_, team);
-    unknowns_.freedoms.reduce_matrix(blocks_, gradient_, positions, values_, team);
+    unknowns_.matrix.assemble(local, positive, slots_, team);
+    unknowns_.freedoms.reduce_matrix(unknowns_.matrix.pattern(), slots_, gradient_, positions, values_, team);
   };
   bool definite = false;
   if (!projected) {

@@ -73,7 +73,7 @@ class TargetShapeTangent {
 
   const TargetShapeUnknowns& unknowns_;
   SparseLdlt factor_;
-  LargeVector<double> slots_, blocks_, values_, shifted_;
+  LargeVector<double> slots_, values_, shifted_;
   std::vector<TargetShapeSystem::Redistribution> redistributions_;
   Eigen::MatrixXd sources_, targets_;  // of the redistributions over the unknowns: factor^-1 source, target
   Eigen::MatrixXd capacitance_;        // inverse of I + targets^T sources
