@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   cli::Run run;
   cli::add_fk(app, run);
   cli::add_compare(app, run);
+  cli::add_drive(app, run);
   cli::add_mesh(app, run);
   cli::add_workspace(app, run);
   try {
