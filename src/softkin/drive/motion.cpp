@@ -8,6 +8,7 @@ namespace softkin {
 namespace {
 
 constexpr std::int64_t fewest_steps = 6;  // MIN_STEPS_PER_SEGMENT of Marlin
+constexpr double shortest_s = 0.1;
 constexpr double no_move_mm = 1e-9;       // of cable: rounding of ratios
 constexpr double slack_of_limits = 1e-9;  // relative
 
@@ -52,8 +53,8 @@ class Merger {
  public:
   Merger(Steps start, std::vector<Move>& moves) : given_(start), emitted_(std::move(start)), moves_(moves) {}
 
-  void add(const Steps& target, double seconds, std::size_t line) {
-    const bool holds = target == given_;
+  /// holds: the cables are to stay where they are, to the last digit.
+  void add(const Steps& target, bool holds, double seconds, std::size_t line) {
     given_ = target;
     line_ = line;
     if (holds) {
@@ -65,9 +66,8 @@ class Merger {
   }
 
   void finish() {
-    flush();
-    if (given_ == emitted_) return;
-    waiting_ = 0.1;  // too short for the board to plan; it is told where the cable should be
+    if (given_ == emitted_) return flush();
+    if (waiting_ == 0) waiting_ = shortest_s;  // a rest had the time of this move
     move();
   }
 
@@ -88,10 +88,12 @@ class Merger {
   }
   void rest(double seconds) {
     if (seconds <= 0) return;
-    if (!moves_.empty() && rests_ == moves_.size())
+    if (!moves_.empty() && rests_ == moves_.size()) {
       moves_.back().seconds += seconds;
-    else
+      moves_.back().line = line_;
+    } else {
       moves_.push_back({emitted_, seconds, line_});
+    }
     rests_ = moves_.size();
   }
 
@@ -188,7 +190,7 @@ class Planner {
                  text_of(tendon.max_speed_mm_per_s) + " mm/s (" + tendon.origin.text() + ")");
     }
     check_acceleration(row, speeds_, speeds, (last_seconds_ + seconds) / 2, "the way to");
-    merger.add(to_steps(machine_, motors), seconds, row.line);
+    merger.add(to_steps(machine_, motors), motors == here_, seconds, row.line);
     speeds_ = speeds;
     last_seconds_ = seconds;
     here_ = motors;
