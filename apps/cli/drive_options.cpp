@@ -22,6 +22,15 @@ CLI::Validator baud_rate() {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator seconds() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (parse_real(text, value) && value >= 0 && value <= 600) return "";
+    return "must be 0 to 600 s, not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
 void add_outputs(CLI::App& command, DriveOptions& options) {
   command.add_flag("--dry-run", options.dry_run, "Print what would be sent, and send nothing");
   command.add_option("--gcode", options.gcode, "Write the tendons' moves for Marlin")->type_name("F.gcode");
@@ -32,6 +41,11 @@ void add_outputs(CLI::App& command, DriveOptions& options) {
   command.add_option("--baud", options.baud, "Rate of the port (default: 115200; many boards have 250000)")
       ->type_name("N")
       ->check(baud_rate());
+  command
+      .add_option("--boot-wait", options.boot_wait_s,
+                  "Wait so long before the first line [s]: many boards boot when\ntheir port is opened (default: 3)")
+      ->type_name("S")
+      ->check(seconds());
   command.add_option("--log", options.log, "With --port: every line sent and received, with its time")->type_name("F");
 }
 

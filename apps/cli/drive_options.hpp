@@ -17,6 +17,7 @@ struct DriveOptions {
   std::string gcode, schedule, log;  // to write
   std::string port;
   int baud = 115200;
+  double boot_wait_s = 3;
   bool dry_run = false, return_home = false, json = false;
 
   /// As given, or that of the scene's name: finger.yaml has finger.hardware.yaml.

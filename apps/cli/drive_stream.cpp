@@ -125,7 +125,9 @@ StreamReport send_to_board(SerialPort& port, const DriveOptions& options, const 
               std::to_string(lines) + "/" + std::to_string(program.lines.size()) + " lines, " +
                   duration(seconds_now() - begin) + "; Ctrl-C stops, Ctrl-Z pauses");
   };
-  return stream(port, program, {}, hooks);
+  LinkOptions link;
+  link.boot_s = options.boot_wait_s;
+  return stream(port, program, link, hooks);
 }
 
 std::string stream_text(const DriveOptions& options, const GcodeProgram& program, const StreamReport& report) {
