@@ -12,6 +12,7 @@ enum ExitCode : int { done = 0, not_converged = 1, bad_input = 2 };
 using Run = std::function<int()>;
 
 void add_compare(CLI::App& app, Run& run);
+void add_drive(CLI::App& app, Run& run);
 void add_fk(CLI::App& app, Run& run);
 void add_follow(CLI::App& app, Run& run);
 void add_ik(CLI::App& app, Run& run);

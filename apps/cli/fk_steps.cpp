@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <softkin/core/error.hpp>
-#include <softkin/io/csv.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <string_view>
+#include <utility>
 
 #include "actuator_settings.hpp"
 #include "fk_units.hpp"
@@ -24,12 +24,16 @@ std::string column_with_unit(const Actuator& actuator) {
   return unit.empty() ? "" : actuator.name + "_" + unit;
 }
 
+}  // namespace
+
 std::optional<Index> actuator_of_column(const Model& model, const std::string& column) {
   if (const std::optional<Index> a = find_actuator(model, column)) return a;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (column == column_with_unit(model.actuators[a])) return static_cast<Index>(a);
   return std::nullopt;
 }
+
+namespace {
 
 /// Where a column names an actuator with a unit that it does not take, says so; else what an unknown name says.
 std::string unknown_column(const Model& model, const std::string& column) {
@@ -65,10 +69,10 @@ std::vector<Index> column_targets(const Model& model, const std::string& file, c
 
 class PathReader {
  public:
-  PathReader(const Model& model, const std::string& file, const Settings& settings)
+  PathReader(const Model& model, const std::string& file, CsvTable table, const Settings& settings)
       : model_(model),
         file_(file),
-        table_(read_csv(file)),
+        table_(std::move(table)),
         targets_(column_targets(model, file, table_, settings)),
         start_{with_settings(model.rest_actuation(), settings), std::nullopt, 0} {}
 
@@ -115,9 +119,13 @@ class PathReader {
 
 }  // namespace
 
+std::vector<Step> path_steps(const Model& model, const std::string& file, CsvTable table) {
+  return PathReader(model, file, std::move(table), Settings(model.actuators.size())).steps();
+}
+
 std::vector<Step> asked_steps(const Model& model, const FkOptions& options) {
   const Settings settings = read_settings(model, "--set", options.settings);
-  if (!options.path.empty()) return PathReader(model, options.path, settings).steps();
+  if (!options.path.empty()) return PathReader(model, options.path, read_csv(options.path), settings).steps();
   return {{with_settings(model.rest_actuation(), settings), std::nullopt, 0}};
 }
 

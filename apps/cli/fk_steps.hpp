@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <softkin/io/csv.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
 #include <string>
@@ -21,5 +22,12 @@ struct Step {
 /// The steps of --path, or the one of --set. Actuators that neither names keep their rest value.
 /// Throws InvalidInput naming option, or file and line.
 [[nodiscard]] std::vector<Step> asked_steps(const Model& model, const FkOptions& options);
+
+/// The steps of a table of commands that was read from a file: what --path takes. Throws InvalidInput naming file and
+/// line.
+[[nodiscard]] std::vector<Step> path_steps(const Model& model, const std::string& file, CsvTable table);
+
+/// Whose command a column of such a table holds: the actuator's that it names, with the unit of its load if it has one.
+[[nodiscard]] std::optional<Index> actuator_of_column(const Model& model, const std::string& column);
 
 }  // namespace softkin::cli

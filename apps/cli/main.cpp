@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   cli::add_ik(app, run);
   cli::add_follow(app, run);
   cli::add_compare(app, run);
+  cli::add_drive(app, run);
   cli::add_mesh(app, run);
   cli::add_workspace(app, run);
   try {

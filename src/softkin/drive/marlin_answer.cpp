@@ -1,0 +1,82 @@
+#include <charconv>
+#include <softkin/drive/marlin_answer.hpp>
+
+namespace softkin {
+
+namespace {
+
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+/// The whole text as a line's number.
+std::optional<long> number_in(std::string_view text) {
+  text = without_blanks(text);
+  long value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || failure != std::errc() || end != text.data() + text.size() || value < 0) return std::nullopt;
+  return value;
+}
+
+bool has(std::string_view line, std::string_view part) {
+  return line.find(part) != std::string_view::npos;
+}
+
+MarlinAnswer parse_ok(std::string_view line) {
+  MarlinAnswer answer{MarlinAnswer::Kind::ok, {}, {}};
+  if (const std::size_t at = line.find(" N"); at != std::string_view::npos)
+    answer.number = number_in(line.substr(at + 2, line.find(' ', at + 2) - at - 2));
+  return answer;
+}
+
+/// One damaged byte leaves a mark of these messages whole, so that noise is not taken for a fault of the board.
+MarlinAnswer parse_error(std::string_view line) {
+  const bool of_a_line = has(line, "Last Line") || has(line, "hecksum") || has(line, "Line Number");
+  if (!of_a_line) return {MarlinAnswer::Kind::halted, {}, {}};
+  MarlinAnswer answer{MarlinAnswer::Kind::line_error, {}, {}};
+  if (const std::size_t at = line.rfind("Last Line: "); at != std::string_view::npos)
+    answer.number = number_in(line.substr(at + 11));
+  return answer;
+}
+
+/// Nothing where a coordinate is not whole: half a report is none.
+std::optional<MarlinAnswer> parse_position(std::string_view line) {
+  MarlinAnswer answer{MarlinAnswer::Kind::position, {}, {}};
+  const std::size_t count = line.find(" Count");
+  if (count == std::string_view::npos) return std::nullopt;
+  line = line.substr(0, count);
+  while (!(line = without_blanks(line)).empty()) {
+    if (line.size() < 3 || line[1] != ':') return std::nullopt;
+    double value = 0;
+    const auto [end, failure] = std::from_chars(line.data() + 2, line.data() + line.size(), value);
+    if (failure != std::errc() || (end != line.data() + line.size() && *end != ' ')) return std::nullopt;
+    answer.position.emplace_back(line[0], value);
+    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+  }
+  return answer;
+}
+
+}  // namespace
+
+MarlinAnswer parse_answer(std::string_view line) {
+  using Kind = MarlinAnswer::Kind;
+  line = without_blanks(line);
+  if (line == "ok" || line.starts_with("ok ")) return parse_ok(line);
+  for (const std::string_view begin : {"Resend:", "rs "})
+    if (line.starts_with(begin)) {
+      const auto number = number_in(line.substr(begin.size()));
+      return number ? MarlinAnswer{Kind::resend, number, {}} : MarlinAnswer{};
+    }
+  if (line == "start" || line.starts_with("echo:Marlin ") || line.starts_with("Marlin "))
+    return {Kind::started, {}, {}};
+  if (line.starts_with("Error:")) return parse_error(line);
+  if (line.starts_with("!!")) return {Kind::halted, {}, {}};
+  if (has(line, "busy:")) return {Kind::busy, {}, {}};
+  if (line.starts_with("X:"))
+    if (auto answer = parse_position(line)) return *answer;
+  return {};
+}
+
+}  // namespace softkin

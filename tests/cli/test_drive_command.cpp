@@ -1,0 +1,289 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "../drive/faulty_marlin.hpp"
+#include "fk_samples.hpp"
+#include "start_program.hpp"
+
+namespace softkin {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::BlockFolder;
+using testing::FaultyMarlin;
+using testing::physical_scene;
+using testing::ProgramResult;
+using testing::read_text;
+using testing::run_program;
+
+/// Tendon of 20 mm at rest, on X.
+const std::string one_motor =
+    "softkin_hardware: 1\n"
+    "board: {approach_speed_mm_per_s: 4}\n"
+    "tendons:\n"
+    "  - {actuator: tendon, axis: X, backlash_mm: 0.5, max_speed_mm_per_s: 8}\n";
+
+/// The block with the hardware of its name and commands.csv.
+struct DriveFolder : BlockFolder {
+  std::string commands;
+
+  explicit DriveFolder(const std::string& hardware = one_motor, const std::string& text = physical_scene())
+      : BlockFolder(text) {
+    write("block.hardware.yaml", hardware);
+    commands = write("commands.csv", "t_s,tendon\n0,1\n1,0.9\n2,0.8\n3.5,0.8\n4.5,0.9\n");
+  }
+
+  [[nodiscard]] ProgramResult drive(const std::vector<std::string>& options) const {
+    std::vector<std::string> arguments{"drive", scene, commands};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_program(arguments);
+  }
+
+  /// One line on standard error, exit code 2, nothing printed, nothing written.
+  void refused(const std::vector<std::string>& options, const std::string& message) const {
+    const std::size_t before = files();
+    const ProgramResult result = drive(options);
+    EXPECT_EQ(result.exit_code, 2) << message;
+    EXPECT_EQ(result.output, "") << message;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    EXPECT_EQ(result.errors.rfind("softkin: ", 0), 0u) << result.errors;
+    EXPECT_NE(result.errors.find(message), std::string::npos) << "no '" << message << "' in " << result.errors;
+    EXPECT_EQ(files(), before) << message;
+  }
+  void refused_rows(const std::string& text, const std::string& message) const {
+    write("commands.csv", text);
+    refused({"--dry-run", "--gcode", *this / "a.gcode"}, commands + message);
+  }
+  void refused_hardware(const std::string& text, const std::string& message) const {
+    write("block.hardware.yaml", text);
+    refused({"--gcode", *this / "new/a.gcode"}, (*this / "block.hardware.yaml") + message);
+  }
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(DriveCommand, DryRunPrintsAndWritesNothing) {
+  const DriveFolder folder;
+  const std::size_t before = folder.files();
+  const ProgramResult result = folder.drive({"--dry-run"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(folder.files(), before);
+  EXPECT_TRUE(has(result.output, "default: board: configure true\n")) << result.output;
+  EXPECT_TRUE(has(result.output,
+                  "default: tendon 'tendon': rest_length_mm 20, steps_per_mm 80, drum_radius_mm none "
+                  "(a mm of the axis is a mm of cable), direction 1, slack_offset_mm 0, "
+                  "length_limits_mm [10, 24] (the actuator's range), max_acceleration_mm_per_s2 500\n"))
+      << result.output;
+  EXPECT_TRUE(has(result.output, "16.00 to 20.00  10.00 to 24.00         0 to 320"));
+  // wound up 0, 2, 4, 4, 2 mm; 0.5 mm behind where it pays out
+  EXPECT_TRUE(has(result.output, "G92 X0\nG1 X2 F120\nG1 X4 F120\nG4 P1500\nG1 X1.5 F150\nM400\n")) << result.output;
+}
+
+TEST(DriveCommand, WritesGcodeAndReportsJson) {
+  const DriveFolder folder;
+  const std::string file = folder / "out/block.gcode";
+  const ProgramResult result = folder.drive({"--gcode", file, "--json", "--return"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_TRUE(has(read_text(file), "G92 X0\nG1 X2 F120\nG1 X4 F120\nG4 P1500\nG1 X1.5 F150\nG1 X-0.5 F240\nG1 X0 F240"))
+      << read_text(file);
+  const json report = json::parse(result.output);
+  EXPECT_EQ(report["rows"], 5);
+  EXPECT_EQ(report["motion_s"], 4.5);
+  EXPECT_EQ(report["tendons"]["tendon"]["steps"], (json{-40, 320}));
+  EXPECT_EQ(report["defaults"].size(), 2u);
+}
+
+TEST(DriveCommand, SchedulesPressures) {
+  const std::string hardware =
+      "softkin_hardware: 1\nchambers: [{actuator: air, channel: pump, limits_kPa: [0, 500]}]\n";
+  DriveFolder folder(hardware, testing::loaded_scene());
+  folder.write("commands.csv", "t_s,air_kPa\n0,0\n0.5,120\n2,80.25\n");
+  const std::string file = folder / "schedule.csv";
+  const ProgramResult result = folder.drive({"--schedule", file});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(read_text(file), "t_s,pump_kPa\n0,0\n0.5,120\n2,80.25\n");
+  folder.write("commands.csv", "t_s,air\n0,0\n0.5,501\n");
+  folder.refused({"--dry-run"},
+                 folder.commands + ":3: chamber 'air': pressure 501 kPa is above its limit of 500 kPa (");
+  folder.write("commands.csv", "air\n0\n");
+  folder.refused({"--dry-run"}, folder.commands + ": has no column t_s [s]");
+  folder.write("commands.csv", "t_s,air_psi\n0,0\n");
+  folder.refused({"--dry-run"}, "column 'air_psi': actuator 'air' takes a pressure: its column is 'air' or 'air_kPa'");
+  folder.write("commands.csv", "t_s,tendon_N\n0,3\n");
+  folder.refused({"--dry-run"}, folder.commands + ": cable 'tendon' is commanded by its tension");
+}
+
+TEST(DriveCommand, TakesThePressuresOfVolumes) {
+  const DriveFolder folder(one_motor + "chambers: [{actuator: air, limits_kPa: [0, 5000]}]\n");
+  folder.write("commands.csv", "t_s,air\n0,1\n1,1.2\n");
+  const std::string report = folder / "report.json", schedule = folder / "schedule.csv";
+  folder.refused({"--dry-run"}, folder.commands +
+                                    ": chamber 'air' is commanded by its volume, and a regulator sets "
+                                    "pressures: add a column 'air_pressure_kPa', or name the report");
+  const ProgramResult fk = testing::run_fk(folder.scene, {"--path", folder.commands, "--report", report});
+  ASSERT_EQ(fk.exit_code, 0) << fk.errors;
+  const ProgramResult result = folder.drive({"--pressures", report, "--schedule", schedule});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const double kpa = json::parse(read_text(report))["steps"][1]["actuators"]["air"]["pressure_kPa"];
+  EXPECT_GT(kpa, 1);
+  const std::string text = read_text(schedule);
+  EXPECT_NEAR(std::stod(text.substr(text.rfind(',') + 1)), kpa, 1e-6 * kpa) << text;
+
+  folder.write("commands.csv", "t_s,air\n0,1\n1,1.25\n");
+  folder.refused({"--pressures", report, "--dry-run"}, report + ": its step 1 is of air = 1.2, but ");
+  folder.write("commands.csv", "t_s,air\n0,1\n");
+  folder.refused({"--pressures", report, "--dry-run"}, "it has 2 steps, but " + folder.commands + " has 1 row");
+  folder.refused({"--pressures", folder.scene, "--dry-run"}, "this is no report of softkin");
+  folder.write("commands.csv", "t_s,air,air_pressure_kPa\n0,1,0\n1,1.2,33\n");
+  folder.refused({"--pressures", report, "--dry-run"}, "has the column 'air_pressure_kPa' already");
+  EXPECT_TRUE(has(folder.drive({"--dry-run"}).output, "t_s,air_kPa\n0,0\n1,33\n"));
+}
+
+TEST(DriveCommand, RefusesRowsByLine) {
+  const DriveFolder folder;
+  folder.refused_rows("", ": has no header");
+  folder.refused_rows("t_s,tendon\n0,1\n1,1.21\n", ":3: column 'tendon': 1.21 is outside its range, 0.5 to 1.2 [-]");
+  folder.refused_rows("t_s,tendon\n0,1\n1,nan\n", ":3: column 'tendon' must hold a finite number");
+  folder.refused_rows("t_s,tendon\n0,1\n1\n", ":3: the row has 1 cells");
+  folder.refused_rows("t_s,tendon\n1,1\n1,1\n", ":3: t_s must increase");
+  folder.refused_rows("t_ms,tendon\n0,1\n", ": column 't_ms': no actuator 't_ms'");
+  folder.refused_rows("t_s,tendon_mm\n0,20\n",
+                      ": column 'tendon_mm': actuator 'tendon' takes a ratio without unit: its column is 'tendon'");
+  folder.refused_rows("t_s,tendon,tendon_pressure_kPa\n0,1,3\n", ": column 'tendon_pressure_kPa': no actuator");
+  folder.refused_rows("t_s,tendon\n0,1\n1,0.5\n",
+                      ":3: tendon 'tendon': 10 mm/s to reach this row is above its limit of 8 mm/s (");
+  folder.refused_rows("t_s,tendon\n0,1\n0.008,0.999\n",
+                      ":3: tendon 'tendon': a change of speed by 2.5 mm/s on the way to this row takes 625 mm/s^2");
+  folder.refused_rows("t_s,air\n0,1\n", ": chamber 'air' is commanded by its volume");
+}
+
+TEST(DriveCommand, RefusesHardwareByLine) {
+  const DriveFolder folder;
+  const std::string head = "softkin_hardware: 1\ntendons:\n";
+  folder.refused_hardware(head + "  - {actuator: tendon, axis: X, backlash_um: 500}\n",
+                          ":3: unknown key 'backlash_um'");
+  folder.refused_hardware(head + "  - {actuator: tendom, axis: X}\n",
+                          ":3: the scene has no actuator 'tendom'; did you mean 'tendon'?");
+  folder.refused_hardware(head + "  - {actuator: air, axis: X}\n", ":3: actuator 'air' stands in 'tendons'");
+  folder.refused_hardware("softkin_hardware: 1\n", ": actuator 'tendon', which ");
+  folder.refused_hardware(head + "  - {actuator: tendon, axis: X, length_limits_mm: [17, 21]}\n", "");
+  fs::remove(folder / "block.hardware.yaml");
+  folder.refused({"--dry-run"}, (folder / "block.hardware.yaml") + ": no such file; describe motors and regulators");
+  folder.refused({"--dry-run", "--hardware", folder / "no.yaml"}, "no.yaml: no such file");
+}
+
+TEST(DriveCommand, RefusesOptions) {
+  const DriveFolder folder;
+  folder.refused({}, "nothing is to be done: give --dry-run");
+  folder.refused({"--dry-run", "--port", "/dev/null"}, "--dry-run sends nothing, and --port sends");
+  folder.refused({"--dry-run", "--log", folder / "log"}, "--log is of what is sent and received: it needs --port");
+  folder.refused({"--port", "/dev/null", "--gcode", folder / "a.gcode"}, "port /dev/null: is no serial port");
+  folder.refused({"--port", folder / "no", "--log", folder / "log"}, "no: No such file or directory");
+  folder.refused({"--dry-run", "--baud", "0"}, "--baud: must be an integer from 1200 to 4000000 baud, not 0");
+  folder.refused({"--dry-run", "--boot-wait", "-1"}, "--boot-wait: must be 0 to 600 s, not -1");
+  folder.refused({"--schedule", folder / "a.csv"}, "commands no chamber");
+  folder.refused({"--gcode", folder.commands}, "would replace a file that is read");
+  folder.refused({"--gcode", folder / "block.hardware.yaml"}, "would replace a file that is read");
+}
+
+TEST(DriveCommand, SendsToABoard) {
+  const DriveFolder folder;
+  testing::LineFaults faults;
+  faults.share = 0.02;
+  FaultyMarlin board(faults);
+  const std::string log = folder / "out/drive.log";
+  const ProgramResult result = folder.drive({"--port", board.port(), "--boot-wait", "0", "--log", log});
+  board.end();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_TRUE(has(result.output, "finished after line 4 of 4: the position is known; the motors stand at X 1.500 mm\n"))
+      << result.output;
+  ASSERT_EQ(board.motions().size(), 3u);
+  EXPECT_EQ(board.motions()[1].at('X'), 4);
+  EXPECT_EQ(board.motions()[2].at('X'), 1.5);
+  const std::string text = read_text(log);
+  EXPECT_TRUE(has(text, " s > N10000 M110 N10000*")) << text;
+  EXPECT_TRUE(has(text, " G1 X4 F120*"));
+  EXPECT_TRUE(has(text, " s < ok"));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(line.size() > 35 && line[10] == 'T' && line[23] == 'Z') << line;
+}
+
+TEST(DriveCommand, SaysWhereAStreamEnded) {
+  const DriveFolder folder;
+  testing::LineFaults faults;
+  faults.reboot_after_moves = 2;
+  FaultyMarlin board(faults);
+  const ProgramResult result = folder.drive({"--port", board.port(), "--boot-wait", "0", "--json"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(has(result.errors,
+                  "the board has booted anew (it sent 'start'): the position is unknown; the board "
+                  "accepted lines up to 1 (" +
+                      folder.commands + ":3) of 4, and perhaps those up to 2; bring the motors home"))
+      << result.errors;
+  const json stream = json::parse(result.output)["stream"];
+  EXPECT_EQ(stream["end"], "rebooted");
+  EXPECT_EQ(stream["position_known"], false);
+  EXPECT_EQ(stream["acknowledged"], 1);
+  EXPECT_EQ(stream["sent"], 2);
+}
+
+TEST(DriveCommand, CtrlCStopsWithTheMovesDone) {
+  const DriveFolder folder;
+  std::string rows = "tendon\n";
+  for (int i = 0; i < 2000; ++i) rows += i % 2 ? "0.9\n" : "0.8\n";
+  folder.write("commands.csv", rows);
+  for (const int interrupts : {1, 2}) {
+    testing::LineFaults faults;
+    faults.busy = 1;  // every move takes 20 ms
+    faults.delay_s = 0.02;
+    FaultyMarlin board(faults);
+    testing::StartedProgram program(
+        folder, {"drive", folder.scene, folder.commands, "--port", board.port(), "--boot-wait", "0"});
+    ASSERT_TRUE(program.wait_until([&] { return board.moves() >= 5; }));
+    program.send(SIGINT);
+    if (interrupts == 2) {
+      ::usleep(2000);  // signals of one kind that wait are one
+      program.send(SIGINT);
+    }
+    const ProgramResult result = program.wait();
+    board.end();
+    EXPECT_EQ(result.exit_code, 1) << result.errors;
+    EXPECT_LT(board.motions().size(), 500u);
+    EXPECT_TRUE(has(result.errors, "stopped ")) << result.errors;
+    if (interrupts == 1) {
+      EXPECT_TRUE(has(result.errors, "stopped after line ")) << result.errors;
+      EXPECT_TRUE(has(result.errors, "the motors stand at X ")) << result.errors;
+    }
+  }
+}
+
+TEST(DriveCommand, CtrlZPausesAndGoesOn) {
+  const DriveFolder folder;
+  std::string rows = "tendon\n";
+  for (int i = 0; i < 40; ++i) rows += i % 2 ? "0.9\n" : "0.8\n";
+  folder.write("commands.csv", rows);
+  testing::LineFaults faults;
+  faults.busy = 1;
+  faults.delay_s = 0.02;
+  FaultyMarlin board(faults);
+  testing::StartedProgram program(folder,
+                                  {"drive", folder.scene, folder.commands, "--port", board.port(), "--boot-wait", "0"});
+  ASSERT_TRUE(program.wait_until([&] { return board.moves() >= 5; }));
+  program.send(SIGTSTP);
+  ASSERT_TRUE(program.wait_until([&] { return has(read_text(folder / "stderr.txt"), "paused: Ctrl-Z goes on"); }));
+  ::usleep(300'000);  // the move in flight ends
+  const long paused = board.moves();
+  ::usleep(100'000);
+  EXPECT_EQ(board.moves(), paused);
+  EXPECT_LT(paused, 30);
+  program.send(SIGTSTP);
+  EXPECT_EQ(program.wait().exit_code, 0);
+}
+
+}  // namespace
+}  // namespace softkin
