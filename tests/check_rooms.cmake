@@ -8,6 +8,7 @@ set(energy_sees core energy)
 set(statics_sees core model energy statics)
 set(kinematics_sees core model statics kinematics)
 set(drive_sees core model drive)
+set(calibration_sees core model statics kinematics calibration)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)

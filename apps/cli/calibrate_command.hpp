@@ -1,0 +1,10 @@
+#pragma once
+
+#include "command.hpp"
+
+namespace softkin::cli {
+
+// Subcommands of calibrate.
+void add_calibrate_material(CLI::App& calibrate, Run& run);
+
+}  // namespace softkin::cli
