@@ -7,6 +7,8 @@ set(io_sees core model io)
 set(energy_sees core energy)
 set(statics_sees core model energy statics)
 set(kinematics_sees core model statics kinematics)
+set(calibration_sees core model io energy statics kinematics calibration)
+set(vision_sees core io calibration vision)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)
