@@ -14,6 +14,7 @@ using Run = std::function<int()>;
 void add_compare(CLI::App& app, Run& run);
 void add_fk(CLI::App& app, Run& run);
 void add_mesh(CLI::App& app, Run& run);
+void add_measure(CLI::App& app, Run& run);
 void add_workspace(CLI::App& app, Run& run);
 
 }  // namespace softkin::cli

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   cli::add_fk(app, run);
   cli::add_compare(app, run);
   cli::add_mesh(app, run);
+  cli::add_measure(app, run);
   cli::add_workspace(app, run);
   try {
     app.parse(argc, argv);

@@ -170,7 +170,8 @@ MarkerPlace refined(const RgbImage& picture, const Blob& blob, const PlaneView& 
   for (const Weighed& each : weighed)
     variance += noise * each.area * each.area * (each.place - result.place).squaredNorm() / 2 / (sum * sum);
   result.pixel = view.to_pixel(result.place);
-  result.error = std::hypot(std::sqrt(variance), view.error_at(result.pixel));
+  result.error = std::hypot(std::sqrt(variance), pixel_error * std::sqrt(view.pixel_area(result.pixel)),
+                            view.error_at(result.pixel));
   return result;
 }
 

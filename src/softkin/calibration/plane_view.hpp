@@ -6,6 +6,9 @@
 
 namespace softkin {
 
+/// Standard error that no picture goes below, however little noise it has: pixels differ, light is uneven [px].
+inline constexpr double pixel_error = 0.02;
+
 /// A point of the measured plane and where the picture shows it.
 struct PlanePoint {
   Vec2 pixel;  // lens distortion taken out [px]

@@ -186,7 +186,7 @@ SpecimenEdge edge_near(const RgbImage& picture, const PlaneView& view, const Fra
   SpecimenEdge edge;
   edge.position = fit.offset;
   edge.place = frame.place(fit.offset, 0);
-  edge.error = std::hypot(fit.offset_error, view.error_at(view.to_pixel(edge.place)));
+  edge.error = std::hypot(fit.offset_error, pixel_error * frame.pixel, view.error_at(view.to_pixel(edge.place)));
   edge.slant = -std::atan(slope) * 180 / std::numbers::pi;
   edge.slant_error = fit.slope_error / (1 + slope * slope) * 180 / std::numbers::pi;
   return edge;

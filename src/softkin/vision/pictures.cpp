@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -76,6 +78,11 @@ void check_rate(double rate, const std::string& name) {
 struct Film::Video {
   cv::VideoCapture capture;
 };
+
+void prepare_opencv(int threads) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  if (threads > 0) cv::setNumThreads(threads);
+}
 
 RgbImage read_picture(const fs::path& path) {
   const std::string content = read_file(path);

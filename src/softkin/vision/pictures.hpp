@@ -9,6 +9,9 @@
 
 namespace softkin {
 
+/// Before anything else of this room: threads of OpenCV (0: one a core), and its own messages off.
+void prepare_opencv(int threads);
+
 /// A picture of any common form (PNG, JPEG, TIFF, BMP, ...), 8 bits a channel, turned as its camera says it should be.
 /// throws  InvalidInput: cannot be read, cut off, smaller than 16 x 16 pixels
 [[nodiscard]] RgbImage read_picture(const std::filesystem::path& path);
