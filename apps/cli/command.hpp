@@ -18,6 +18,7 @@ void add_fk(CLI::App& app, Run& run);
 void add_follow(CLI::App& app, Run& run);
 void add_ik(CLI::App& app, Run& run);
 void add_mesh(CLI::App& app, Run& run);
+void add_measure(CLI::App& app, Run& run);
 void add_workspace(CLI::App& app, Run& run);
 
 }  // namespace softkin::cli

@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   cli::add_drive(app, run);
   cli::add_mesh(app, run);
   cli::add_calibrate(app, run);
+  cli::add_measure(app, run);
   cli::add_workspace(app, run);
   try {
     app.parse(argc, argv);

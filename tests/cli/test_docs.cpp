@@ -241,6 +241,10 @@ class Checker {
  public:
   void check(const Block& block) {
     std::string printed;
+#ifndef SOFTKIN_OPENCV
+    for (const auto& [line, command] : block.commands)
+      if (command.starts_with("build/softkin measure ")) return;  // built without it
+#endif
     for (const auto& [line, command] : block.commands) {
       const int expected = line == block.commands.back().first ? block.exit_code : 0;
       for (std::size_t from = 0; from != std::string::npos;) {

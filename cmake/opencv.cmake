@@ -1,0 +1,12 @@
+# SOFTKIN_OPENCV_FOUND: is there an OpenCV that softkin measure can use?
+set(SOFTKIN_OPENCV_FOUND OFF)
+if(SOFTKIN_OPENCV)
+  find_package(OpenCV QUIET COMPONENTS core imgproc imgcodecs videoio calib3d aruco)
+  if(NOT OpenCV_FOUND)
+    message(STATUS "OpenCV with its contributed modules (libopencv-dev) not found: no softkin measure")
+  elseif(OpenCV_VERSION VERSION_LESS 4.5 OR NOT OpenCV_VERSION VERSION_LESS 4.7)
+    message(STATUS "OpenCV ${OpenCV_VERSION} is not 4.5 or 4.6, which softkin measure is made for: left out")
+  else()
+    set(SOFTKIN_OPENCV_FOUND ON)
+  endif()
+endif()

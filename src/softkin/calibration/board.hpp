@@ -1,0 +1,39 @@
+#pragma once
+
+#include <softkin/calibration/camera.hpp>
+#include <string>
+
+namespace softkin {
+
+/// A printed flat pattern of known size.
+///
+/// Rows and columns count from the top left as printed. Its frame [mm]: x to the right, y up, the origin at the lower
+/// left corner of the lower left tag (grid) or square (charuco, checker).
+struct BoardSpec {
+  enum class Kind { grid, charuco, checker };
+  Kind kind = Kind::grid;
+  int columns = 0, rows = 0;          // grid: tags; charuco, checker: squares; charuco: rows odd
+  double square = 0;                  // charuco, checker: side of a square [mm]
+  double tag = 0, gap = 0;            // grid, charuco: side of a tag; grid: between tags [mm]
+  std::string dictionary = "4x4_50";  // of the tags
+  int first = 0;                      // grid: number of the tag at the top left; the others follow row by row
+
+  [[nodiscard]] double width() const;   // [mm]
+  [[nodiscard]] double height() const;  // [mm]
+  [[nodiscard]] int tags() const;       // how many
+};
+
+/// Reads "5x4,tag=12mm,gap=3mm", "charuco,7x5,square=10mm,tag=7mm" or "checker,9x6,square=10mm"; a length without a
+/// unit is refused. Further keys: dictionary=5x5_100, first=10 (grid).
+/// throws  InvalidInput naming the part that is wrong
+[[nodiscard]] BoardSpec parse_board(const std::string& text);
+
+/// A length such as "25mm" or "1in" [mm]. what: for messages.
+/// throws  InvalidInput: no unit, no number, not > 0
+[[nodiscard]] double parse_length(const std::string& text, const std::string& what);
+
+/// The corner of a grid's tag in the board's frame [mm]; number: from 0 at the top left; corner: 0 top left, then
+/// clockwise.
+[[nodiscard]] Vec2 grid_corner(const BoardSpec& board, int number, int corner);
+
+}  // namespace softkin

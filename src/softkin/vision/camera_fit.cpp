@@ -1,0 +1,57 @@
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/vision/camera_fit.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr std::size_t least_pictures = 4;
+constexpr double most_focal_error = 0.03;  // of the focal length
+
+}  // namespace
+
+Camera fit_camera(const std::vector<BoardSight>& sights, int width, int height, std::vector<double>& errors) {
+  if (sights.size() < least_pictures)
+    throw InvalidInput("a camera is found from " + std::to_string(least_pictures) +
+                       " pictures of the board or more, better 10 to 20 under different angles");
+  std::vector<std::vector<cv::Point3f>> places;
+  std::vector<std::vector<cv::Point2f>> pixels;
+  for (const BoardSight& sight : sights) {
+    places.emplace_back();
+    pixels.emplace_back();
+    for (const PlanePoint& point : sight.points) {
+      places.back().emplace_back(static_cast<float>(point.place.x()), static_cast<float>(point.place.y()), 0.0F);
+      pixels.back().emplace_back(static_cast<float>(point.pixel.x()), static_cast<float>(point.pixel.y()));
+    }
+  }
+  cv::Mat matrix, distortion, turns, shifts, spread, spread_outside, each;
+  Camera camera{.width = width, .height = height, .pictures = static_cast<int>(sights.size())};
+  try {
+    camera.reprojection_error = cv::calibrateCamera(places, pixels, cv::Size(width, height), matrix, distortion, turns,
+                                                    shifts, spread, spread_outside, each, cv::CALIB_FIX_K3);
+  } catch (const cv::Exception&) {
+    throw InvalidInput("no camera fits these pictures; is the board flat, and are they all from one camera?");
+  }
+  camera.fx = matrix.at<double>(0, 0);
+  camera.fy = matrix.at<double>(1, 1);
+  camera.cx = matrix.at<double>(0, 2);
+  camera.cy = matrix.at<double>(1, 2);
+  distortion = distortion.reshape(1, 1);
+  camera.k1 = distortion.at<double>(0, 0);
+  camera.k2 = distortion.at<double>(0, 1);
+  camera.p1 = distortion.at<double>(0, 2);
+  camera.p2 = distortion.at<double>(0, 3);
+  camera.focal_error = std::max(spread.at<double>(0), spread.at<double>(1));
+  errors.clear();
+  for (int i = 0; i < each.rows; ++i) errors.push_back(each.at<double>(i));
+  if (!std::isfinite(camera.reprojection_error) || !(camera.focal_error < most_focal_error * camera.fx))
+    throw InvalidInput(
+        "these pictures do not tell the focal length (it is uncertain by more than 3 %): take the board "
+        "under different angles, tilted by 20 to 45 degrees");
+  return camera;
+}
+
+}  // namespace softkin

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/io/text_mesh_tools.hpp>
+#include <softkin/vision/pictures.hpp>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int least_side = 16;  // [px]
+
+RgbImage as_rgb(const cv::Mat& bgr) {
+  RgbImage picture(bgr.cols, bgr.rows);
+  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, picture.bytes.data());
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  return picture;
+}
+
+/// A JPEG that was cut off decodes into a picture whose lower part is grey.
+bool is_cut_off(const std::string& content) {
+  if (!content.starts_with("\xFF\xD8\xFF")) return false;
+  const std::size_t end = content.rfind("\xFF\xD9");
+  return end == std::string::npos || end < content.size() / 2;
+}
+
+/// The last number in a file's name, by which frames are ordered.
+std::optional<long> number_of(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  const std::size_t end = stem.find_last_of("0123456789");
+  if (end == std::string::npos) return std::nullopt;
+  const std::size_t before = stem.find_last_not_of("0123456789", end),
+                    begin = before == std::string::npos ? 0 : before + 1;
+  if (end - begin > 15) return std::nullopt;
+  return std::stol(stem.substr(begin, end - begin + 1));
+}
+
+/// In the order of their numbers. A gap would shift the clock, so it is refused.
+std::vector<fs::path> pictures_in(const fs::path& folder) {
+  std::vector<std::pair<long, fs::path>> found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string extension = lower_extension(entry.path());
+    for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".ppm", ".pgm", ".webp"}) {
+      if (!entry.is_regular_file() || extension != known) continue;
+      const auto number = number_of(entry.path());
+      if (!number) throw InvalidInput({entry.path().string()}, "a frame needs a number in its name");
+      found.emplace_back(*number, entry.path());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<fs::path> pictures;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (i > 0 && found[i].first != found[i - 1].first + 1)
+      throw InvalidInput({found[i].second.string()}, "the frame before it is " +
+                                                         found[i - 1].second.filename().string() +
+                                                         "; numbers must follow one another, for they are the clock");
+    pictures.push_back(found[i].second);
+  }
+  if (pictures.empty()) throw InvalidInput({folder.string()}, "no picture in this folder");
+  return pictures;
+}
+
+void check_rate(double rate, const std::string& name) {
+  if (!(rate > 0 && rate <= 1e6)) throw InvalidInput({name}, "frames per second must be above 0, at most 1e6");
+}
+
+}  // namespace
+
+struct Film::Video {
+  cv::VideoCapture capture;
+};
+
+void prepare_opencv(int threads) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  if (threads > 0) cv::setNumThreads(threads);
+}
+
+RgbImage read_picture(const fs::path& path) {
+  const std::string content = read_file(path);
+  cv::Mat bgr;
+  try {
+    if (!content.empty() && !is_cut_off(content))
+      bgr = cv::imdecode(cv::Mat(1, static_cast<int>(content.size()), CV_8U, const_cast<char*>(content.data())),
+                         cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    bgr.release();
+  }
+  if (bgr.empty())
+    throw InvalidInput({path.string()},
+                       is_cut_off(content) ? "the picture is cut off" : "not a picture that can be read");
+  if (bgr.cols < least_side || bgr.rows < least_side)
+    throw InvalidInput({path.string()}, "the picture is smaller than 16 x 16 pixels");
+  return as_rgb(bgr);
+}
+
+bool is_film(const fs::path& path) {
+  if (fs::is_directory(path)) return true;
+  const std::string extension = lower_extension(path);
+  for (const char* known : {".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv"})
+    if (extension == known) return true;
+  return false;
+}
+
+Film::Film(const fs::path& path, std::optional<double> rate) : name_(path.string()) {
+  if (fs::is_directory(path)) {
+    pictures_ = pictures_in(path);
+    frames_ = pictures_.size();
+    if (!rate) throw InvalidInput({name_}, "a folder of pictures has no clock: give --fps, the frames per second");
+    rate_ = *rate;
+  } else {
+    (void)fs::file_size(path);  // names what is wrong with the file
+    video_ = std::make_unique<Video>();
+    try {
+      video_->capture.open(name_);
+    } catch (const cv::Exception&) {
+      video_->capture.release();
+    }
+    if (!video_->capture.isOpened()) throw InvalidInput({name_}, "not a video that can be read");
+    rate_ = rate ? *rate : video_->capture.get(cv::CAP_PROP_FPS);
+    if (!rate && !(rate_ > 0)) throw InvalidInput({name_}, "the video does not say its frames per second: give --fps");
+    frames_ = static_cast<std::size_t>(std::max(0.0, video_->capture.get(cv::CAP_PROP_FRAME_COUNT)));
+  }
+  check_rate(rate_, name_);
+}
+
+Film::Film(std::vector<fs::path> pictures, std::optional<double> rate)
+    : name_(pictures.at(0).string()), pictures_(std::move(pictures)), frames_(pictures_.size()) {
+  if (!rate) throw InvalidInput("pictures have no clock: give --fps, the frames per second");
+  rate_ = *rate;
+  check_rate(rate_, name_);
+}
+
+Film::~Film() = default;
+
+std::optional<Frame> Film::next() {
+  Frame frame{RgbImage(0, 0), static_cast<double>(position_) / rate_, ""};
+  if (video_) {
+    cv::Mat bgr;
+    if (!video_->capture.read(bgr) || bgr.empty()) {
+      if (position_ == 0) throw InvalidInput({name_}, "the video has no frame that can be read");
+      return std::nullopt;
+    }
+    frame.picture = as_rgb(bgr);
+    frame.name = name_ + ": frame " + std::to_string(position_ + 1);
+  } else {
+    if (position_ == pictures_.size()) return std::nullopt;
+    frame.name = pictures_[position_].string();
+    frame.picture = read_picture(frame.name);
+  }
+  if (position_++ == 0) {
+    width_ = frame.picture.width;
+    height_ = frame.picture.height;
+  }
+  if (frame.picture.width != width_ || frame.picture.height != height_)
+    throw InvalidInput({frame.name}, "the picture is not of the size of the first");
+  return frame;
+}
+
+}  // namespace softkin

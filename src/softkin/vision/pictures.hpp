@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <softkin/io/rgb_image.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin {
+
+/// Before anything else of this room: threads of OpenCV (0: one a core), and its own messages off.
+void prepare_opencv(int threads);
+
+/// A picture of any common form (PNG, JPEG, TIFF, BMP, ...), 8 bits a channel, turned as its camera says it should be.
+/// throws  InvalidInput: cannot be read, cut off, smaller than 16 x 16 pixels
+[[nodiscard]] RgbImage read_picture(const std::filesystem::path& path);
+
+/// A frame of a film.
+struct Frame {
+  RgbImage picture;
+  double time = 0;   // since the first [s]
+  std::string name;  // for messages
+};
+
+/// A film: a video file, a folder of pictures whose names end in consecutive numbers, or pictures one after
+/// another.
+class Film {
+ public:
+  /// rate  frames in a second; none: what the video says
+  /// throws  InvalidInput: cannot be read, no frame, no rate, a rate that is not > 0
+  Film(const std::filesystem::path& path, std::optional<double> rate);
+  Film(std::vector<std::filesystem::path> pictures, std::optional<double> rate);
+  ~Film();
+  Film(const Film&) = delete;
+  Film& operator=(const Film&) = delete;
+
+  /// The next frame; none after the last. Throws InvalidInput where a picture cannot be read or differs in size.
+  [[nodiscard]] std::optional<Frame> next();
+  [[nodiscard]] double rate() const { return rate_; }
+  /// How many frames there should be; 0: not known.
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+
+ private:
+  struct Video;
+
+  std::string name_;
+  std::vector<std::filesystem::path> pictures_;
+  std::unique_ptr<Video> video_;
+  double rate_ = 0;
+  std::size_t frames_ = 0, position_ = 0;
+  int width_ = 0, height_ = 0;
+};
+
+/// Is this a film: a folder, or a file with the extension of a video?
+[[nodiscard]] bool is_film(const std::filesystem::path& path);
+
+}  // namespace softkin
