@@ -51,9 +51,8 @@ double interface_x(const std::string& scene, const std::string& formulation) {
 TEST(CalibrateMaterial, RecoversTheSpecimensOfTheExample) {
   const TemporaryFolder folder;
   const std::string fragment = folder / "materials.yaml", plot = folder / "fit.svg", residuals = folder / "r.csv";
-  const ProgramResult result =
-      run_program(command({bar + "specimens.csv", "--twist", bar + "twist.csv", "-o", fragment, "--plot", plot,
-                           "--residuals", residuals, "--cells", "2", "--json"}));
+  const ProgramResult result = run_program(command({bar + "specimens.csv", "--twist", bar + "twist.csv", "-o", fragment,
+                                                    "--plot", plot, "--residuals", residuals, "--json"}));
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report = json::parse(result.output);
   EXPECT_NEAR(report["physical"]["ratio"]["ratio"].get<double>(), 3.75, 0.03 * 3.75);
