@@ -49,6 +49,8 @@ Track follow(Film& film, Measurer& measurer) {
       track.lost.emplace_back(error.what());
     }
   }
+  if (film.frames() > track.frames + 1)
+    track.lost.push_back("the film says that it has " + std::to_string(film.frames()) + " frames; it ends early");
   return track;
 }
 

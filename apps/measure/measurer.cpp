@@ -14,8 +14,8 @@ namespace softkin::cli {
 
 namespace {
 
-constexpr double tag_corner_error = 0.05;  // standard error of a tag's centre by its own corners [px]
-constexpr double clicked_error = 0.5;      // of a pixel that the user read off a screen [px]
+constexpr double tag_error = 0.05;     // standard error of a tag's centre, from pictures with known answers [px]
+constexpr double clicked_error = 0.5;  // of a pixel that the user read off a screen [px]
 
 const MarkerPlace& named(const std::vector<NamedMarker>& markers, const std::string& name) {
   for (const NamedMarker& marker : markers)
@@ -149,7 +149,7 @@ void Measurer::append_tags(std::vector<NamedMarker>& markers, const RgbImage& pi
     const Vec2 centre = found[number]->centre();
     place.pixel = request_.camera ? distorted(*request_.camera, centre) : centre;
     place.place = view.ideal_to_mm(centre);
-    place.error = std::hypot(tag_corner_error * std::sqrt(view.pixel_area(place.pixel)), view.error_at(place.pixel));
+    place.error = std::hypot(tag_error * std::sqrt(view.pixel_area(place.pixel)), view.error_at(place.pixel));
     markers.push_back({name, place});
   }
 }

@@ -73,7 +73,11 @@ inline Vec2 seen_pixel(const Photograph& photo, const Vec2& place) {
 inline Vec2 place_at(const Photograph& photo, const Eigen::Matrix3d& to_plane, const Vec2& pixel) {
   Vec2 ideal = pixel;
   if (photo.camera)
-    for (int i = 0; i < 25; ++i) ideal += pixel - bent(*photo.camera, ideal);
+    for (int i = 0; i < 50; ++i) {
+      const Vec2 miss = pixel - bent(*photo.camera, ideal);
+      ideal += miss;
+      if (miss.squaredNorm() < 1e-14) break;
+    }
   return (to_plane * ideal.homogeneous()).hnormalized();
 }
 

@@ -108,8 +108,9 @@ TEST(Dots, RefusesWhatIsNotOneWholeDot) {
         << place.transpose() << refused({{place, 5, red}}, "red");
   const std::string ring = refused({{{30, 30}, 3, paper}, {{30, 30}, 6, red}}, "red");
   EXPECT_NE(ring.find("not a full dot"), std::string::npos) << ring;
-  const std::string cross = refused({{{30, 30}, 4, red}, {{36, 30}, 4, red}, {{30, 36}, 4, red}}, "red");
-  EXPECT_NE(cross.find("nothing of this colour is round"), std::string::npos) << cross;
+  const std::string rod =
+      refused({{{20, 30}, 4, red}, {{27, 30}, 4, red}, {{34, 30}, 4, red}, {{41, 30}, 4, red}}, "red");
+  EXPECT_NE(rod.find("nothing of this colour is round"), std::string::npos) << rod;
   photo.exposure = 8;
   EXPECT_NE(refused({one}, "red").find("over-exposed"), std::string::npos) << refused({one}, "red");
   photo.exposure = 1;

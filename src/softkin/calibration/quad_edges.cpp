@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/calibration/quad_edges.hpp>
+#include <utility>
 #include <vector>
 
 namespace softkin {
@@ -53,24 +54,37 @@ std::optional<Line> fitted(std::vector<Vec2> points) {
   return line;
 }
 
+/// Darkest on the inner half and lightest on the outer half of the mean profile: ink and paper, also where the dark
+/// border and the margin are hardly wider than the blur.
+std::pair<double, double> levels_of(const std::vector<std::vector<double>>& profiles) {
+  const std::size_t size = profiles[0].size();
+  double dark = 255, light = 0;
+  for (std::size_t k = 0; k < size; ++k) {
+    double mean = 0;
+    for (const std::vector<double>& each : profiles) mean += each[k] / static_cast<double>(profiles.size());
+    if (2 * k < size) dark = std::min(dark, mean);
+    if (2 * k >= size) light = std::max(light, mean);
+  }
+  return {dark, light};
+}
+
 std::optional<Line> edge_line(const RgbImage& picture, const Vec2& from, const Vec2& to, const Vec2& middle,
                               double module, const std::optional<Camera>& camera) {
   const double length = (to - from).norm();
   const Vec2 along = (to - from) / length;
   Vec2 outwards(along.y(), -along.x());
   if (outwards.dot(middle - from) > 0) outwards = -outwards;
-  const double reach = std::clamp(0.6 * module * length, 1.5, 5.0);
+  const double depth = 2 * std::abs(outwards.dot(middle - from));  // of the square behind this edge
+  const double reach = std::clamp(0.75 * module * depth, 1.5, 5.0);
   const int count = std::clamp(static_cast<int>(length), 10, 60);
   std::vector<std::vector<double>> profiles;
   std::vector<Vec2> places;
-  double dark = 0, light = 0;
   for (int i = 0; i < count; ++i) {
     const double share = end_share + (1 - 2 * end_share) * (i + 0.5) / count;
     places.push_back(from + share * (to - from));
     profiles.push_back(profile(picture, places.back(), outwards, reach));
-    dark += (profiles.back()[0] + profiles.back()[1]) / (2 * count);
-    light += (profiles.back().back() + profiles.back()[profiles.back().size() - 2]) / (2 * count);
   }
+  const auto [dark, light] = levels_of(profiles);
   if (!(light - dark > least_contrast)) return std::nullopt;
   std::vector<Vec2> points;
   for (int i = 0; i < count; ++i) {

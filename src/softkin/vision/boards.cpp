@@ -103,6 +103,8 @@ std::vector<PlanePoint> charuco_corners(const RgbImage& picture, const BoardSpec
     const Vec2 seen(corners[i].x, corners[i].y);
     points.push_back({camera ? undistorted(*camera, seen) : seen, places[i]});
   }
+  // the tags reach farther out than the crossings between squares
+  for (const auto& [number, tag] : camera ? tags_on(picture, board, camera) : tags) append(points, board, number, tag);
   return points;
 }
 
@@ -110,8 +112,7 @@ std::vector<PlanePoint> checker_corners(const RgbImage& picture, const BoardSpec
                                         const std::optional<Camera>& camera) {
   const int columns = board.columns - 1, rows = board.rows - 1;
   std::vector<cv::Point2f> corners;
-  if (!cv::findChessboardCornersSB(gray_of(picture), cv::Size(columns, rows), corners,
-                                   cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY))
+  if (!cv::findChessboardCornersSB(gray_of(picture), cv::Size(columns, rows), corners, cv::CALIB_CB_ACCURACY))
     throw InvalidInput("the board is not found: no " + std::to_string(columns) + " x " + std::to_string(rows) +
                        " inner corners of " + std::to_string(board.columns) + " x " + std::to_string(board.rows) +
                        " squares; all of it must be in the picture");

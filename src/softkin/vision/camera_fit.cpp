@@ -10,6 +10,21 @@ namespace {
 
 constexpr std::size_t least_pictures = 4;
 constexpr double most_focal_error = 0.03;  // of the focal length
+constexpr double least_tilt = 0.2;         // between two boards [rad]: seen straight, near and small is far and large
+
+/// Largest angle between the planes of two of the boards [rad].
+double tilt_between(const cv::Mat& turns) {
+  std::vector<cv::Matx33d> frames;
+  for (int i = 0; i < turns.rows; ++i) {
+    frames.emplace_back();
+    cv::Rodrigues(turns.at<cv::Vec3d>(i), frames.back());
+  }
+  double least = 1;
+  for (const cv::Matx33d& a : frames)
+    for (const cv::Matx33d& b : frames)
+      least = std::min(least, a(0, 2) * b(0, 2) + a(1, 2) * b(1, 2) + a(2, 2) * b(2, 2));
+  return std::acos(std::max(-1.0, least));
+}
 
 }  // namespace
 
@@ -47,10 +62,11 @@ Camera fit_camera(const std::vector<BoardSight>& sights, int width, int height, 
   camera.focal_error = std::max(spread.at<double>(0), spread.at<double>(1));
   errors.clear();
   for (int i = 0; i < each.rows; ++i) errors.push_back(each.at<double>(i));
-  if (!std::isfinite(camera.reprojection_error) || !(camera.focal_error < most_focal_error * camera.fx))
+  if (!std::isfinite(camera.reprojection_error) || !(camera.focal_error < most_focal_error * camera.fx) ||
+      !(tilt_between(turns) > least_tilt))
     throw InvalidInput(
-        "these pictures do not tell the focal length (it is uncertain by more than 3 %): take the board "
-        "under different angles, tilted by 20 to 45 degrees");
+        "these pictures do not tell the focal length: take the board under different angles, tilted by "
+        "20 to 45 degrees to different sides");
   return camera;
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -26,8 +27,9 @@ RgbImage as_rgb(const cv::Mat& bgr) {
   return picture;
 }
 
-/// A JPEG that was cut off decodes into a picture whose lower part is grey.
+/// A JPEG that was cut off would decode into a picture whose lower part is grey; libpng would print its own words.
 bool is_cut_off(const std::string& content) {
+  if (content.starts_with("\x89PNG")) return content.rfind("IEND") == std::string::npos;
   if (!content.starts_with("\xFF\xD8\xFF")) return false;
   const std::size_t end = content.rfind("\xFF\xD9");
   return end == std::string::npos || end < content.size() / 2;
@@ -81,6 +83,7 @@ struct Film::Video {
 
 void prepare_opencv(int threads) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // quiet; what is wrong with a video is said by Film
   if (threads > 0) cv::setNumThreads(threads);
 }
 

@@ -52,7 +52,8 @@ std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionar
                            const std::optional<Camera>& camera) {
   const auto known = dictionary_of(dictionary);
   const cv::Ptr<cv::aruco::DetectorParameters> parameters = cv::aruco::DetectorParameters::create();
-  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
+  // OpenCV's own refinement may jump to a corner of the pattern beside; refine_quad starts from the contour
+  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<int> numbers;
   cv::aruco::detectMarkers(gray_of(picture), known, corners, numbers, parameters);
@@ -60,11 +61,8 @@ std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionar
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     std::array<Vec2, 4> rough;
     for (std::size_t k = 0; k < 4; ++k) rough[k] = Vec2(corners[i][k].x, corners[i][k].y);
-    Tag tag{numbers[i], rough};
-    const auto refined = refine_quad(picture, rough, 1.0 / (known->markerSize + 2), camera);
-    for (std::size_t k = 0; k < 4; ++k)
-      tag.corners[k] = refined ? (*refined)[k] : camera ? undistorted(*camera, rough[k]) : rough[k];
-    tags.push_back(tag);
+    const auto corner = refine_quad(picture, rough, 1.0 / (known->markerSize + 2), camera);
+    if (corner) tags.push_back({numbers[i], *corner});
   }
   std::stable_sort(tags.begin(), tags.end(), [](const Tag& a, const Tag& b) { return a.number < b.number; });
   return tags;
