@@ -213,10 +213,10 @@ class TensileRun {
     for (int i = 0; i <= 200; ++i) even.push_back(end * i / 200);
     int style = 2;
     for (const FittedLaw& law : laws_) {
-      PlotSeries fitted{law.name, even, stresses(law, even), true, false, style};
+      PlotSeries fitted{law.name, even, stresses(law, even), true, false, false, style};
       curves.series.push_back(fitted);
       const auto count = static_cast<std::ptrdiff_t>(law.fit.points);
-      PlotSeries left{law.name, {curve_.strain.begin(), curve_.strain.begin() + count}, {}, true, true, style++};
+      PlotSeries left{law.name, {curve_.strain.begin(), curve_.strain.begin() + count}, {}, true, true, false, style++};
       left.y = stresses(law, left.x);
       for (std::size_t i = 0; i < left.y.size(); ++i) left.y[i] -= curve_.stress[i];
       off.series.push_back(left);
