@@ -48,7 +48,8 @@ def bar(interface, length):
     cosine, sine = math.cos(math.radians(2)), math.sin(math.radians(2))
 
     def paint(x, y):
-        x, y = x * cosine + y * sine, y * cosine - x * sine
+        x, y = x - 40, y - 12.5  # turned about the middle of the picture
+        x, y = 40 + x * cosine + y * sine, 12.5 + y * cosine - x * sine
         for centre, colour in ((10, GREEN), (70, YELLOW)):
             if math.hypot(x - centre, y - 20) < 2:
                 return colour
