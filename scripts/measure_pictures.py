@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Renders the pictures of examples/measure: a two-material bar at rest and stretched, and a dot on its way.
+"""Renders the pictures of docs/images/measure: a two-material bar at rest and stretched, and a dot on its way.
 
 They are made, not photographed, so that their true lengths are known (docs/measure.md says them). Needs Python alone.
 """
@@ -48,7 +48,8 @@ def bar(interface, length):
     cosine, sine = math.cos(math.radians(2)), math.sin(math.radians(2))
 
     def paint(x, y):
-        x, y = x * cosine + y * sine, y * cosine - x * sine
+        x, y = x - 40, y - 12.5  # turned about the middle of the picture
+        x, y = 40 + x * cosine + y * sine, 12.5 + y * cosine - x * sine
         for centre, colour in ((10, GREEN), (70, YELLOW)):
             if math.hypot(x - centre, y - 20) < 2:
                 return colour
@@ -59,7 +60,7 @@ def bar(interface, length):
 
 
 def main():
-    folder = pathlib.Path(__file__).resolve().parent.parent / "examples" / "measure"
+    folder = pathlib.Path(__file__).resolve().parent.parent / "docs" / "images" / "measure"
     (folder / "track").mkdir(parents=True, exist_ok=True)
     # A is strained by 0.06, B by 0.24
     render(folder / "rest.png", 480, 150, 6, bar(20, 52))

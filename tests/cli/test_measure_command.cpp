@@ -68,7 +68,7 @@ TEST_F(Measure, DotsInMillimetresFromTwoOfThem) {
   const ProgramResult result = measure(
       {picture, "--dots", "green,blue,tip=red", "--scale", "green,blue=5cm", "--angle", "green,tip", "-o", table});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  for (const char* part : {"tip", "x [mm]", "error [mm]", "scale: 0.2 mm per pixel", "no --camera given",
+  for (const char* part : {"tip", "x [mm]", "error [mm]", "mm per pixel in the middle", "no --camera given",
                            "origin at the first point of the scale"})
     EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
   const CsvTable read = read_csv(table);
