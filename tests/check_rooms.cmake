@@ -7,6 +7,7 @@ set(io_sees core model io)
 set(energy_sees core energy)
 set(statics_sees core model energy statics)
 set(kinematics_sees core model statics kinematics)
+set(calibration_sees core model statics kinematics calibration)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)
