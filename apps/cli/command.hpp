@@ -11,6 +11,7 @@ enum ExitCode : int { done = 0, not_converged = 1, bad_input = 2 };
 /// The subcommand that the user chose, set while the command line is parsed; returns the exit code.
 using Run = std::function<int()>;
 
+void add_calibrate(CLI::App& app, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_fk(CLI::App& app, Run& run);
 void add_mesh(CLI::App& app, Run& run);

@@ -32,11 +32,12 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
   app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
   app.callback([&app] {
-    if (app.get_subcommands().empty()) throw CLI::RequiredError("a command (fk, compare, mesh)");
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("a command (fk, compare, calibrate, mesh)");
   });
   cli::Run run;
   cli::add_fk(app, run);
   cli::add_compare(app, run);
+  cli::add_calibrate(app, run);
   cli::add_mesh(app, run);
   cli::add_workspace(app, run);
   try {
