@@ -4,8 +4,9 @@
 
 namespace softkin::cli {
 
-// The subcommands of `softkin calibrate`, a file each.
+// Subcommands of calibrate.
 void add_calibrate_dea(CLI::App& calibrate, Run& run);
+void add_calibrate_material(CLI::App& calibrate, Run& run);
 void add_calibrate_pressure(CLI::App& calibrate, Run& run);
 
 }  // namespace softkin::cli

@@ -37,8 +37,8 @@ int main(int argc, char** argv) {
   cli::Run run;
   cli::add_fk(app, run);
   cli::add_compare(app, run);
-  cli::add_calibrate(app, run);
   cli::add_mesh(app, run);
+  cli::add_calibrate(app, run);
   cli::add_workspace(app, run);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,192 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <softkin/calibration/ratio_fit.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double most_log_ratio = 9.210340371976184;  // ln 1e4
+constexpr double tolerance = 1e-6;                    // of the logarithm of Eq. (16)
+constexpr int most_simulations = 60;
+
+/// The logarithm of a test's ratio, by the logarithm of what Eq. (16) makes of it: nearly a line of slope 1.
+class Search {
+ public:
+  Search(const StretchedSpecimen& specimen, SpecimenTest& test) : specimen_(specimen), test_(test) {}
+
+  void run(double guess, SpecimenFit& fit) {
+    const double wanted = std::log(elasticity_ratio(specimen_));
+    double x = std::clamp(guess, -most_log_ratio, most_log_ratio);
+    while (fit.simulations < most_simulations) {
+      const SpecimenResponse found = test_.at(x);
+      ++fit.simulations;
+      if (found.status != Status::converged) return end(fit, found.status, found.remark);
+      const double off = seen(found) - wanted;
+      learn_slope(x, off);
+      if (std::abs(off) < tolerance || high_ - low_ < tolerance) {
+        fit.own_log_ratio = x;
+        fit.sensitivity_mm = rod_sensitivity_mm(specimen_) * slope_;
+        return end(fit, Status::converged, "");
+      }
+      (off < 0 ? low_ : high_) = x;
+      if (std::abs(x) >= most_log_ratio && (x > 0) == (off < 0))
+        return end(fit, Status::limit, "no ratio from 1e-4 to 1e4 moves the interface so far");
+      x = next(x, off);
+    }
+    end(fit, Status::not_converged, "the bisection did not end");
+  }
+
+ private:
+  static void end(SpecimenFit& fit, Status status, const std::string& remark) {
+    fit.status = status;
+    fit.remark = remark;
+  }
+
+  /// The logarithm of Eq. (16) in the simulated test.
+  [[nodiscard]] double seen(const SpecimenResponse& response) const {
+    StretchedSpecimen simulated = specimen_;
+    simulated.interface_moved_mm =
+        std::clamp(response.moved_mm, 1e-9 * specimen_.stretch_mm, (1 - 1e-9) * specimen_.stretch_mm);
+    return std::log(elasticity_ratio(simulated));
+  }
+
+  void learn_slope(double x, double off) {
+    const double rise = (off - last_off_) / (x - last_x_);
+    if (std::isfinite(rise) && rise > 0.05 && rise < 20) slope_ = rise;
+    last_x_ = x;
+    last_off_ = off;
+  }
+
+  /// The secant's step, where it stays inside what is known and halves the interval every other time; else the middle.
+  double next(double x, double off) {
+    const bool bracketed = low_ > -2 * most_log_ratio && high_ < 2 * most_log_ratio;
+    const double secant = x - std::clamp(off / slope_, -1.0, 1.0);
+    if (!bracketed) return std::clamp(secant, -most_log_ratio, most_log_ratio);
+    const double width = high_ - low_;
+    const bool slow = width > 0.5 * width_before_last_;
+    width_before_last_ = last_width_;
+    last_width_ = width;
+    if (slow || secant <= low_ || secant >= high_) return 0.5 * (low_ + high_);
+    return secant;
+  }
+
+  const StretchedSpecimen& specimen_;
+  SpecimenTest& test_;
+  double low_ = -3 * most_log_ratio, high_ = 3 * most_log_ratio;
+  double last_width_ = std::numeric_limits<double>::infinity();
+  double width_before_last_ = std::numeric_limits<double>::infinity();
+  double slope_ = 1, last_x_ = std::numeric_limits<double>::quiet_NaN(), last_off_ = 0;
+};
+
+double guess_of(const StretchedSpecimen& specimen, const SpecimenOptions& options, Formulation formulation) {
+  const double ratio = elasticity_ratio(specimen);
+  return formulation == Formulation::physical ? std::log(ratio)
+                                              : closed_form_log_ratio(ratio, options.stiffer_shape_ratio);
+}
+
+/// Least squares of force = modulus x what the force is for 1 MPa.
+Moduli moduli_from(const std::vector<double>& forces, const std::vector<double>& unit_forces, double ratio) {
+  double products = 0, squares = 0, rest = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    products += forces[i] * unit_forces[i];
+    squares += unit_forces[i] * unit_forces[i];
+  }
+  Moduli moduli;
+  moduli.b_mpa = products / squares;
+  moduli.a_mpa = ratio * moduli.b_mpa;
+  for (std::size_t i = 0; i < forces.size(); ++i) rest += std::pow(forces[i] - moduli.b_mpa * unit_forces[i], 2);
+  if (forces.size() > 1)
+    moduli.spread =
+        std::sqrt(rest / static_cast<double>(forces.size() - 1) / squares * static_cast<double>(forces.size())) /
+        moduli.b_mpa;
+  moduli.specimens = forces.size();
+  return moduli;
+}
+
+std::optional<Moduli> simulated_moduli(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
+                                       const RatioFit& fit) {
+  std::vector<double> forces, unit_forces;
+  for (std::size_t i = 0; i < specimens.size(); ++i) {
+    if (!specimens[i].force_n || fit.specimens[i].status != Status::converged) continue;
+    const double simulated_area = options.width_mm * options.height_mm;
+    forces.push_back(*specimens[i].force_n);
+    unit_forces.push_back(fit.specimens[i].response.force_n * specimens[i].area_mm2.value_or(simulated_area) /
+                          simulated_area);
+  }
+  if (forces.empty()) return std::nullopt;
+  return moduli_from(forces, unit_forces, fit.estimate.ratio);
+}
+
+template <class Specimen>
+std::vector<SpecimenResponse> predicted(const std::vector<Specimen>& specimens, const SpecimenOptions& options,
+                                        Formulation formulation, double log_ratio, const ShareDone& progress) {
+  std::vector<SpecimenResponse> responses;
+  for (const Specimen& specimen : specimens) {
+    if (progress) progress(static_cast<double>(responses.size()) / static_cast<double>(specimens.size()));
+    responses.push_back(SpecimenTest(options, formulation, specimen).at(log_ratio));
+  }
+  return responses;
+}
+
+}  // namespace
+
+RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
+                   Formulation formulation, const ShareDone& progress) {
+  RatioFit result;
+  result.formulation = formulation;
+  std::vector<SpecimenTest> tests;
+  std::vector<double> log_ratios, sensitivities;
+  for (const StretchedSpecimen& specimen : specimens) {
+    if (progress) progress(static_cast<double>(tests.size()) / static_cast<double>(specimens.size()));
+    const double guess = guess_of(specimen, options, formulation);
+    tests.emplace_back(options, formulation, specimen);
+    SpecimenFit& fit = result.specimens.emplace_back();
+    Search(specimen, tests.back()).run(guess, fit);
+    if (fit.status != Status::converged) continue;
+    log_ratios.push_back(fit.own_log_ratio);
+    sensitivities.push_back(fit.sensitivity_mm);
+  }
+  if (specimens.empty()) throw InvalidInput("a ratio needs at least one specimen");
+  if (log_ratios.empty()) return result;
+  result.estimate = combined_ratio(log_ratios, sensitivities);
+  result.status = Status::converged;
+  for (std::size_t i = 0; i < specimens.size(); ++i) {
+    SpecimenFit& fit = result.specimens[i];
+    if (fit.status == Status::converged) {
+      fit.response = tests[i].at(std::log(result.estimate.ratio));
+      fit.status = fit.response.status;
+      fit.remark = fit.response.remark;
+    }
+    if (fit.status != Status::converged) result.status = fit.status;
+  }
+  if (formulation == Formulation::physical) result.moduli = simulated_moduli(specimens, options, result);
+  return result;
+}
+
+std::optional<Moduli> rod_moduli(const std::vector<StretchedSpecimen>& specimens, double area_mm2) {
+  std::vector<double> forces, unit_forces, log_ratios, sensitivities;
+  for (const StretchedSpecimen& s : specimens) {
+    log_ratios.push_back(std::log(elasticity_ratio(s)));
+    sensitivities.push_back(rod_sensitivity_mm(s));
+    if (!s.force_n) continue;
+    const double strain_b = (s.stretch_mm - s.interface_moved_mm) / (s.length_mm - s.interface_mm);
+    forces.push_back(*s.force_n);
+    unit_forces.push_back(s.area_mm2.value_or(area_mm2) * strain_b);
+  }
+  if (forces.empty()) return std::nullopt;
+  return moduli_from(forces, unit_forces, combined_ratio(log_ratios, sensitivities).ratio);
+}
+
+std::vector<SpecimenResponse> predict(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
+                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
+  return predicted(specimens, options, formulation, log_ratio, progress);
+}
+
+std::vector<SpecimenResponse> predict(const std::vector<TwistedSpecimen>& specimens, const SpecimenOptions& options,
+                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
+  return predicted(specimens, options, formulation, log_ratio, progress);
+}
+
+}  // namespace softkin

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <softkin/model/material_tests.hpp>
+#include <softkin/statics/statics.hpp>
+
+namespace softkin {
+
+/// How both ends are held: not at all across the bar (sliding), or as in the jaws of a testing machine (clamped).
+enum class Grip { clamped, sliding };
+
+/// What the simulated specimens have in common.
+struct SpecimenOptions {
+  double width_mm = 20, height_mm = 10;  // of the cross-section, > 0
+  int cells = 0;                         // of the mesh across the height, >= 1; 0: 3 physical, 4 target-shape
+  Grip grip = Grip::clamped;             // of stretched specimens; twisted ones are clamped
+  Law law = Law::neo_hookean;            // physical: one that takes E and nu
+  double poisson_ratio = 0.45;           // physical, of both materials [-], -1 < nu < 0.5
+  double stiffer_shape_ratio = 1;        // target-shape: R_omega of the stiffer material, 0 < R <= 1
+  StaticsOptions statics;
+};
+
+/// Cells across the height, as they are or as 0 stands for.
+[[nodiscard]] int cells_across(const SpecimenOptions& options, Formulation formulation);
+
+/// The shape ratios of A and B whose ratio has this logarithm; the stiffer one has that of the options.
+struct ShapeRatios {
+  double a = 1, b = 1;
+};
+[[nodiscard]] ShapeRatios shape_ratios(double log_ratio, double stiffer);
+
+struct SpecimenResponse {
+  Status status = Status::not_converged;
+  std::string remark;     // of the solver, where status is not converged
+  double moved_mm = 0;    // mean of the interface, along the bar
+  double turned_deg = 0;  // of the interface about the bar's axis
+  double force_n = 0;     // physical: along the bar at the free end, for E_B = 1 MPa
+};
+
+/// A tensile or a twist test of a two-material bar, simulated. Physical: tetrahedra of order 2; target-shape: of order
+/// 1, the only one it has.
+class SpecimenTest {
+ public:
+  /// throws  InvalidInput on a bar that cannot be meshed
+  SpecimenTest(const SpecimenOptions& options, Formulation formulation, const StretchedSpecimen& specimen);
+  SpecimenTest(const SpecimenOptions& options, Formulation formulation, const TwistedSpecimen& specimen);
+
+  /// log_ratio  physical: ln(E_A / E_B); target-shape: ln(R_omega A / R_omega B)
+  [[nodiscard]] SpecimenResponse at(double log_ratio);
+
+ private:
+  SpecimenTest(const SpecimenOptions& options, Formulation formulation, double length_mm, double interface_mm);
+  void hold(const std::vector<Index>& vertices, std::array<bool, 3> axes);
+  void slide();
+  void set_materials(double log_ratio);
+  [[nodiscard]] std::vector<Index> vertices_at(double x) const;
+  [[nodiscard]] double turn_of_interface(const Points& positions) const;
+  [[nodiscard]] double force_at_end(const Model& model, const Points& positions) const;
+
+  SpecimenOptions options_;
+  double length_mm_, interface_mm_;
+  RobotSpec robot_;
+  Points last_;  // the last equilibrium; no rows: none yet
+};
+
+}  // namespace softkin
