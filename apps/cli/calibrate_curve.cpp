@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/error.hpp>
+#include <softkin/io/scanner.hpp>
 #include <softkin/io/text_mesh_tools.hpp>
 
 #include "terminal.hpp"
@@ -94,7 +95,7 @@ std::vector<std::vector<std::string>> input_rows(const ActuatorCurve& curve) {
 }
 
 std::string table_text(const std::vector<std::vector<std::string>>& rows) {
-  return joined(aligned(rows, std::string(rows.front().size(), 'r')), "") + "\n";
+  return joined(aligned(rows, std::string(rows.front().size(), 'r')), "");
 }
 
 std::string branch_quality(const char* name, const CurveBranch& branch, const BranchQuality& quality,
@@ -195,6 +196,15 @@ Json curve_json(const FittedCurve& fitted) {
 void check_ending(const char* option, const std::string& file, const char* ending) {
   if (!file.empty() && lower_extension(file) != ending)
     throw InvalidInput(std::string(option) + " " + file + ": must end in " + ending);
+}
+
+CLI::Validator positive_number() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (parse_real(text, value) && value > 0) return "";
+    return "must be a finite number above 0, not " + text;
+  };
+  return CLI::Validator(check, "");
 }
 
 }  // namespace softkin::cli

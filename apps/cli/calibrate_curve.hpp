@@ -1,5 +1,7 @@
 #pragma once
 
+#include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 #include <softkin/calibration/curve_fit.hpp>
 #include <softkin/io/svg_plot.hpp>
 #include <string>
@@ -30,5 +32,7 @@ struct FittedCurve {
 
 /// Throws InvalidInput where a file is given that does not end so.
 void check_ending(const char* option, const std::string& file, const char* ending);
+
+[[nodiscard]] CLI::Validator positive_number();
 
 }  // namespace softkin::cli

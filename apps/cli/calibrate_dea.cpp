@@ -9,7 +9,6 @@
 #include <softkin/io/actuator_curve_file.hpp>
 #include <softkin/io/actuator_tests.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/scanner.hpp>
 
 #include "calibrate_command.hpp"
 #include "calibrate_curve.hpp"
@@ -154,15 +153,6 @@ int calibrate_dea(const DeaOptions& options) {
   if (!options.plot.empty()) text += "plot: " + options.plot + "\n";
   print(text);
   return done;
-}
-
-CLI::Validator positive_number() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (parse_real(text, value) && value > 0) return "";
-    return "must be a finite number above 0, not " + text;
-  };
-  return CLI::Validator(check, "");
 }
 
 void add_options(CLI::App& command, DeaOptions& options) {

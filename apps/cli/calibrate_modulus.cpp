@@ -114,7 +114,7 @@ std::string table_of(const ActuatorCurve& curve, const std::vector<double>& rati
     rows.back().push_back(pressures[i] ? decimal(*pressures[i], 2) : "no equilibrium");
     json["predicted_kPa"].push_back(pressures[i] ? Json(*pressures[i]) : Json());
   }
-  return joined(aligned(rows, std::string(rows.front().size(), 'r')), "") + "\n";
+  return joined(aligned(rows, std::string(rows.front().size(), 'r')), "");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <memory>
-#include <softkin/io/scanner.hpp>
 
 #include "calibrate_command.hpp"
 #include "calibrate_curve.hpp"
@@ -12,15 +11,6 @@
 namespace softkin::cli {
 
 namespace {
-
-CLI::Validator positive_number() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (parse_real(text, value) && value > 0) return "";
-    return "must be a finite number above 0, not " + text;
-  };
-  return CLI::Validator(check, "");
-}
 
 void add_test(CLI::App& command, PressureOptions& options) {
   command

@@ -76,8 +76,10 @@ void add_path_options(CLI::App& command, CompareOptions& options) {
                   "column or actuator that ascends (default: time where both have it, else waypoint where both have "
                   "as many, else arc)")
       ->type_name("NAME");
-  command.add_flag("--align", options.align,
-                   "Paths: first turn and move each onto the first, to the least squares (no mirroring)");
+  command.add_flag(
+      "--align", options.align,
+      "Paths: first turn and move each onto the first, to the least squares (no mirroring); predictions among each "
+      "other stay as they are");
   command
       .add_option("--plane", options.plane,
                   "Paths: axes of the robot that the two coordinates of a flat track are, such as xz; x-z: the second "

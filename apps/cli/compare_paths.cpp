@@ -50,9 +50,11 @@ class PathReport {
  public:
   PathReport(const PathCompareOptions& options, std::vector<Track> tracks)
       : options_(options), tracks_(std::move(tracks)) {
-    for (std::size_t t = 1; t < tracks_.size(); ++t)
-      comparisons_.push_back(
-          compare_paths(tracks_[0], tracks_[t], resampling_of(options, tracks_[0], tracks_[t]), options.align));
+    for (std::size_t t = 1; t < tracks_.size(); ++t) {
+      const bool same_frame = tracks_[0].robot_frame && tracks_[t].robot_frame;  // nothing to align
+      const Resampling by = resampling_of(options, tracks_[0], tracks_[t]);
+      comparisons_.push_back(compare_paths(tracks_[0], tracks_[t], by, options.align && !same_frame));
+    }
   }
 
   [[nodiscard]] std::string text() const {

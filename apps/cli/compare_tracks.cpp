@@ -62,7 +62,7 @@ std::vector<double> parameter_of(const ReportedPath& path, const std::string& by
 }
 
 Track track_of(const ReportedPath& path, const std::string& marker, const std::string& by) {
-  return {path.file, places_of(path, marker_of(path, marker)), {true, true, true}, parameter_of(path, by)};
+  return {path.file, places_of(path, marker_of(path, marker)), {true, true, true}, parameter_of(path, by), true};
 }
 
 /// A track of two coordinates, laid into a plane of the robot.
@@ -144,7 +144,7 @@ Track sum_track(const PathCompareOptions& options, const ReportedPath& path) {
   check_others(path, singles);
   std::vector<SingleSweep> sweeps;
   for (const Single& single : singles) sweeps.push_back(single.sweep());
-  Track track{"sum of single actuators", {}, {true, true, true}, parameter_of(path, options.by)};
+  Track track{"sum of single actuators", {}, {true, true, true}, parameter_of(path, options.by), true};
   for (const ReportedStep& step : path.steps) {
     std::vector<double> commands;
     for (const Single& single : singles) commands.push_back(command_of(path, step, single.actuator()));

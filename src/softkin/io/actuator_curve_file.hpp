@@ -6,7 +6,7 @@
 
 namespace softkin {
 
-/// Reads a curve file, YAML (docs/calibration.md).
+/// Reads a curve file, YAML (docs/pressure.md).
 /// throws  InvalidInput naming file and line: unknown keys or units, points that do not ascend, numbers out of range
 [[nodiscard]] ActuatorCurve read_actuator_curve(const std::filesystem::path& path);
 

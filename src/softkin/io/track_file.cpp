@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* axis_names[] = {"x", "y", "z"};
 constexpr const char* length_units[] = {"mm", "cm", "m", "um", "in", "px"};
+constexpr const char* wrong_times[] = {"t", "time", "t_ms", "t_us", "t_min", "t_h", "time_s", "time_ms", "t_sec"};
 
 /// Column of each coordinate of a marker.
 using Coordinates = std::array<std::optional<std::size_t>, 3>;
@@ -68,8 +69,7 @@ class TrackColumns {
     const std::string& name = table_.columns[column];
     std::string marker;
     std::size_t axis = 0;
-    if (name == "t" || name == "time" || name.starts_with("time_") ||
-        (name.starts_with("t_") && name != "t_s" && !take_axis(name, marker, axis)))
+    if (std::find(std::begin(wrong_times), std::end(wrong_times), name) != std::end(wrong_times))
       fail("column " + excerpt(name) + ": a time is in s, in column t_s");
     if (take_axis(name, marker, axis))
       fail("column " + excerpt(name) + ": its unit is missing: write '" + name + "_mm'");
@@ -95,7 +95,7 @@ Track read_track(const std::filesystem::path& path, const std::string& marker, c
   const TrackColumns columns(path.string(), table);
   const Coordinates& coordinates = columns.of(marker);
   const std::optional<std::size_t> along = columns.parameter(parameter);
-  Track track{path.string(), {}, {false, false, false}, {}};
+  Track track{path.string(), {}, {false, false, false}, {}, false};
   for (std::size_t axis = 0; axis < 3; ++axis) track.axes[axis] = coordinates[axis].has_value();
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     Vec3 point = Vec3::Zero();
