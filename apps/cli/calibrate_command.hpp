@@ -5,6 +5,8 @@
 namespace softkin::cli {
 
 // Subcommands of calibrate.
+void add_calibrate_dea(CLI::App& calibrate, Run& run);
 void add_calibrate_material(CLI::App& calibrate, Run& run);
+void add_calibrate_pressure(CLI::App& calibrate, Run& run);
 
 }  // namespace softkin::cli

@@ -2,11 +2,13 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
+#include <algorithm>
 #include <memory>
 #include <softkin/io/svg_plot.hpp>
 #include <softkin/io/text_mesh_tools.hpp>
 
 #include "command.hpp"
+#include "compare_paths.hpp"
 #include "compare_table.hpp"
 #include "mesh_text.hpp"
 #include "output_files.hpp"
@@ -16,13 +18,26 @@ namespace softkin::cli {
 namespace {
 
 struct CompareOptions {
-  std::vector<std::string> reports, turn;
-  std::string marker, plot;
+  std::vector<std::string> reports, turn, sum;
+  std::string marker, plot, by, plane, output;
   std::vector<double> poses;  // [degrees]
-  bool json = false;
+  bool align = false, json = false;
+
+  /// Reports of the same steps side by side, or paths of markers?
+  [[nodiscard]] bool of_paths() const {
+    const bool asked = align || !sum.empty() || !by.empty() || !plane.empty() || !output.empty();
+    return asked || std::any_of(reports.begin(), reports.end(),
+                                [](const std::string& file) { return lower_extension(file) != ".json"; });
+  }
 };
 
+int compare_paths_of(const CompareOptions& options) {
+  return compare_tracks({options.reports, options.sum, options.marker, options.by, options.plane, options.output,
+                         options.plot, options.align, options.json});
+}
+
 int compare(const CompareOptions& options) {
+  if (options.of_paths()) return compare_paths_of(options);
   std::vector<ReportedPath> paths;
   for (const std::string& file : options.reports) {
     paths.push_back(read_reported_path(file));
@@ -42,11 +57,40 @@ int compare(const CompareOptions& options) {
 }
 
 void check(const CompareOptions& options) {
-  if (options.reports.size() < 2) throw CLI::ValidationError("REPORTS", "give two reports or more");
+  if (options.reports.size() + (options.sum.empty() ? 0 : 1) < 2)
+    throw CLI::ValidationError("REPORTS", "give two reports or more");
+  if (options.of_paths() && (!options.turn.empty() || !options.poses.empty()))
+    throw CLI::ValidationError("--turn", "compares reports of the same steps, not paths");
+  if (!options.output.empty() && lower_extension(options.output) != ".csv")
+    throw CLI::ValidationError("--output", "must end in .csv");
   if (!options.plot.empty() && lower_extension(options.plot) != ".svg")
     throw CLI::ValidationError("--plot", "must end in .svg");
   if (!options.poses.empty() && options.turn.empty())
     throw CLI::ValidationError("--poses", "give --turn too, which says what turns");
+}
+
+void add_path_options(CLI::App& command, CompareOptions& options) {
+  command
+      .add_option("--by", options.by,
+                  "Paths: which points belong together: time, waypoint (row by row), arc (shares of the length), or a "
+                  "column or actuator that ascends (default: time where both have it, else waypoint where both have "
+                  "as many, else arc)")
+      ->type_name("NAME");
+  command.add_flag(
+      "--align", options.align,
+      "Paths: first turn and move each onto the first, to the least squares (no mirroring); predictions among each "
+      "other stay as they are");
+  command
+      .add_option("--plane", options.plane,
+                  "Paths: axes of the robot that the two coordinates of a flat track are, such as xz; x-z: the second "
+                  "turned round")
+      ->type_name("AXES");
+  command
+      .add_option("--sum", options.sum,
+                  "Paths: reports in which one actuator moves each; adds the sum of their displacements for the "
+                  "commands of the first report among the files")
+      ->type_name("F.json");
+  command.add_option("-o,--output", options.output, "Paths: every waypoint with its error")->type_name("F.csv");
 }
 
 }  // namespace
@@ -54,11 +98,12 @@ void check(const CompareOptions& options) {
 void add_compare(CLI::App& app, Run& run) {
   const auto options = std::make_shared<CompareOptions>();
   CLI::App& command =
-      *app.add_subcommand("compare", "Reports of the same steps side by side: distances, turns, loads, times");
+      *app.add_subcommand("compare", "Reports of the same steps side by side, or predicted beside measured paths");
   command
       .add_option("REPORTS", options->reports,
-                  "Two or more reports of softkin fk --report; the first is the one to compare with")
-      ->type_name("F.json")
+                  "Two or more reports of softkin fk --report; the first is the one to compare with. Or paths: reports "
+                  "and tracks F.csv (t_s,x_mm,y_mm,z_mm or tip_x_mm, ...; F.csv@tip chooses a marker)")
+      ->type_name("F")
       ->required();
   command
       .add_option("--marker", options->marker,
@@ -76,10 +121,12 @@ void add_compare(CLI::App& app, Run& run) {
       .add_option("--plot", options->plot,
                   "Turns, distances and loads over the steps, and the marker's way by each report")
       ->type_name("F.svg");
+  add_path_options(command, *options);
   command.add_flag("--json", options->json, "Print JSON; its keys name the units");
   command.footer(
       "Times are sums over the steps of a report, so they are those of a path that begins at rest. Exit code: 0 done, "
-      "2 bad usage or bad input.\nExample:\n  softkin compare physical.json target.json --turn tip end --poses 90 180");
+      "2 bad usage or bad input.\nExample:\n  softkin compare physical.json target.json --turn tip end --poses 90 180\n"
+      "  softkin compare camera.csv predicted.json --marker tip --plane xz --align --plot errors.svg");
   command.callback([&run, options] {
     check(*options);
     run = [options] { return compare(*options); };

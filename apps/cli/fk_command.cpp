@@ -6,6 +6,7 @@
 #include <softkin/statics/statics.hpp>
 
 #include "command.hpp"
+#include "curve_settings.hpp"
 #include "fk_options.hpp"
 #include "fk_robot.hpp"
 #include "fk_run.hpp"
@@ -36,7 +37,8 @@ int run_fk(const FkOptions& options) {
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
-  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+  if (!options.json)
+    print(options.scene + ": " + summary(model, options.solver_name) + "\n" + curve_remarks(model, options.settings));
   return run_steps(model, statics, options, steps);
 }
 

@@ -18,7 +18,8 @@ void add_files(CLI::App& command, FkOptions& options) {
       .add_option(
           "--path", options.path,
           "A column per actuator (air; with a load's unit if you like:\nair_kPa), a row per step, each step solved "
-          "from the last; a\ncolumn t_s is the time in the series [s]")
+          "from the last; with a curve\nof the actuator also air_kPa (gauge), air_kPa_abs, skin_kV; a\ncolumn t_s is "
+          "the time in the series [s]")
       ->type_name("F.csv");
   command.add_option("-o,--output", options.output, "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...")
       ->type_name("F");
@@ -55,7 +56,8 @@ void add_options(CLI::App& command, FkOptions& options) {
   command
       .add_option("--set", options.settings,
                   "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
-                  "controlled by that (air=50,\nair=50kPa, tendon=3N); repeatable; other actuators rest")
+                  "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
+                  "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest")
       ->type_name("A=V")
       ->expected(1)
       ->take_all();

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <softkin/model/curve_command.hpp>
 #include <utility>
 
+#include "curve_settings.hpp"
 #include "fk_fingerprint.hpp"
 #include "fk_units.hpp"
 
@@ -110,6 +112,8 @@ Json actuators_json(const Model& model) {
                                 {"control", control_name(actuator)},
                                 {"unit", unit.empty() ? "ratio to rest" : unit},
                                 {"range", {actuator.low, actuator.high}}};
+    if (actuator.curve)
+      actuators[actuator.name]["curve"] = {{"file", actuator.curve->file}, {"branch", branch_name(actuator.branch)}};
   }
   return actuators;
 }
@@ -142,6 +146,10 @@ Json actuator_json(const Model& model, const Equilibrium& found, std::size_t a) 
   const auto i = static_cast<Index>(a);
   const double achieved = achieved_ratio(model, actuator, found.state.positions);
   Json json = {{"requested", found.actuation[i]}, {"achieved", known(achieved)}};
+  if (actuator.curve) {
+    const auto input = input_by_curve(actuator, found.actuation[i], actuator.branch);
+    json[curve_key(*actuator.curve)] = input ? known(*input) : Json();
+  }
   const std::string key = multiplier_key(actuator);
   if (model.formulation != Formulation::physical || key.empty()) return json;
   const double multiplier = found.state.multipliers[i];

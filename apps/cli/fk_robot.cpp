@@ -22,7 +22,8 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const std::string& scene
       return read(path);
     };
   };
-  return parse_scene(read_file(scene), scene, {noting(read_mesh), noting(read_stl), noting(read_sidecar)});
+  return parse_scene(read_file(scene), scene,
+                     {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {
@@ -66,7 +67,7 @@ void change_forces(RobotSpec& spec, const std::vector<std::string>& forces) {
 
 }  // namespace
 
-Model asked_robot(const SolveOptions& options, std::vector<fs::path>& inputs) {
+RobotSpec asked_spec(const SolveOptions& options, std::vector<fs::path>& inputs) {
   RobotSpec spec = read_scene_and(inputs, options.scene);
   if (options.formulation == "physical") spec.formulation = Formulation::physical;
   if (options.formulation == "target-shape") spec.formulation = Formulation::target_shape;
@@ -75,7 +76,11 @@ Model asked_robot(const SolveOptions& options, std::vector<fs::path>& inputs) {
         "--solver local-global is for the target-shape formulation, and this robot is physical: leave it out, or add "
         "--formulation target-shape");
   change_forces(spec, options.forces);
-  return compile(spec);
+  return spec;
+}
+
+Model asked_robot(const SolveOptions& options, std::vector<fs::path>& inputs) {
+  return compile(asked_spec(options, inputs));
 }
 
 }  // namespace softkin::cli

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "actuator_settings.hpp"
+#include "curve_settings.hpp"
 #include "fk_units.hpp"
 #include "terminal.hpp"
 
@@ -24,16 +25,31 @@ std::string column_with_unit(const Actuator& actuator) {
   return unit.empty() ? "" : actuator.name + "_" + unit;
 }
 
+/// The end of a column's name that holds inputs of an actuator's curve: "kPa" of air_kPa; empty: it holds none.
+std::string curve_unit_of(const Actuator& actuator, const std::string& column) {
+  for (const std::string& unit : curve_units(actuator))
+    if (column == actuator.name + "_" + unit) return unit;
+  return "";
+}
+
 }  // namespace
 
 std::optional<Index> actuator_of_column(const Model& model, const std::string& column) {
   if (const std::optional<Index> a = find_actuator(model, column)) return a;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (column == column_with_unit(model.actuators[a])) return static_cast<Index>(a);
+    if (column == column_with_unit(model.actuators[a]) || !curve_unit_of(model.actuators[a], column).empty())
+      return static_cast<Index>(a);
   return std::nullopt;
 }
 
 namespace {
+
+std::string curve_columns(const Actuator& actuator) {
+  std::string text;
+  for (const std::string& unit : curve_units(actuator))
+    text += ", or by its curve '" + actuator.name + "_" + unit + "'";
+  return text;
+}
 
 /// Where a column names an actuator with a unit that it does not take, says so; else what an unknown name says.
 std::string unknown_column(const Model& model, const std::string& column) {
@@ -44,7 +60,7 @@ std::string unknown_column(const Model& model, const std::string& column) {
   const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
   const std::string with_unit = column_with_unit(actuator);
   return "actuator '" + actuator.name + "' takes a " + command_name(actuator) +
-         (with_unit.empty() ? " without unit: its column is '" + actuator.name + "'"
+         (with_unit.empty() ? " without unit: its column is '" + actuator.name + "'" + curve_columns(actuator)
                             : ": its column is '" + actuator.name + "' or '" + with_unit + "'");
 }
 
@@ -92,16 +108,29 @@ class PathReader {
     throw InvalidInput({file_, table_.lines[row]}, message);
   }
 
+  /// What a cell asks of its actuator; a pressure or voltage becomes the ratio of the actuator's curve.
+  [[nodiscard]] double command(std::size_t row, std::size_t column, const Actuator& actuator) const {
+    const double given = table_.rows[row][column];
+    const std::string unit =
+        table_.columns[column] == actuator.name ? "" : curve_unit_of(actuator, table_.columns[column]);
+    if (unit.empty()) return given;
+    try {
+      return ratio_of(actuator, {unit == "kPa_abs" ? given - actuator.curve->atmosphere_kPa : given, actuator.branch});
+    } catch (const InvalidInput& error) {
+      fail(row, "column '" + table_.columns[column] + "': " + error.what());
+    }
+  }
+
   [[nodiscard]] Step step(std::size_t row) const {
     Step step = start_;
     step.line = table_.lines[row];
     for (std::size_t column = 0; column < targets_.size(); ++column) {
-      const double value = table_.rows[row][column];
       if (targets_[column] == time_target) {
-        step.time = value;
+        step.time = table_.rows[row][column];
         continue;
       }
       const Actuator& actuator = model_.actuators[static_cast<std::size_t>(targets_[column])];
+      const double value = command(row, column, actuator);
       if (!(value >= actuator.low && value <= actuator.high))
         fail(row,
              "column '" + table_.columns[column] + "': " + number(value, 12) + " is outside " + range_text(actuator));

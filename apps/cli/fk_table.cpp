@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "curve_settings.hpp"
 #include "fk_units.hpp"
 #include "mesh_text.hpp"
 #include "terminal.hpp"
@@ -104,6 +105,7 @@ StepTable::StepTable(const Model& model, std::size_t steps) : model_(model) {
     add(short_name(actuator.name) + " " + bracketed_unit(actuator), width);
     add("achieved [-]", width);
     if (const std::string load = load_header(model, actuator); !load.empty()) add(load, load_width);
+    if (actuator.curve) add("by curve [" + std::string(unit_of_input(actuator.curve->input) + 1) + "]", load_width);
   }
   for (const Marker& marker : model.markers) add(short_name(marker.name) + " x, y, z [mm]", 3 * length_width_ + 2);
   add("iterations", 7);
@@ -134,6 +136,10 @@ std::string StepTable::row(std::size_t step, const nlohmann::ordered_json& json)
     for (const char* key : {"requested", "achieved"}) cells.push_back(fixed_or_unknown(values.at(key)));
     if (!load_header(model_, actuator).empty())
       cells.push_back(values.value("slack", false) ? "slack" : fixed_or_unknown(values.at(multiplier_key(actuator))));
+    if (actuator.curve) {
+      const auto& input = values.at(curve_key(*actuator.curve));
+      cells.push_back(input.is_null() ? "outside" : fixed_or_unknown(input));
+    }
   }
   for (const Marker& marker : model_.markers) {
     std::string point;
@@ -157,7 +163,7 @@ std::string summary(const Model& model, const std::string& solver) {
   text += ", solver " + solver;
   for (const Actuator& a : model.actuators)
     text += "\nactuator " + a.name + ": " + kind_name(a) + ", " + number(a.rest_measure) + " " + unit_of_measure(a) +
-            " at rest, " + command_range(a);
+            " at rest, " + command_range(a) + curve_text(a);
   for (const std::string& note : model.notes) text += "\nnote: " + note;
   return text;
 }

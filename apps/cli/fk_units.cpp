@@ -3,6 +3,7 @@
 #include <softkin/io/scanner.hpp>
 #include <softkin/statics/statics.hpp>
 
+#include "curve_settings.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -61,6 +62,10 @@ std::string range_text(const Actuator& actuator) {
 }
 
 bool parse_command(const Actuator& actuator, const std::string& text, double& value) {
+  if (const auto setting = parse_curve_setting(actuator, text)) {
+    value = ratio_of(actuator, *setting);
+    return true;
+  }
   const std::string unit = command_unit(actuator);
   std::string digits = text;
   if (!unit.empty() && text.ends_with(unit)) {
@@ -72,7 +77,7 @@ bool parse_command(const Actuator& actuator, const std::string& text, double& va
 
 std::string expected_command(const Actuator& actuator) {
   const std::string unit = command_unit(actuator);
-  if (unit.empty()) return "the ratio to rest must be a finite number without unit";
+  if (unit.empty()) return "the ratio to rest must be a finite number without unit" + curve_hint(actuator);
   return std::string("the ") + command_name(actuator) + " must be a finite number in " + unit + ", such as 5 or 5" +
          unit;
 }

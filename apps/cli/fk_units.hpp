@@ -23,7 +23,9 @@ namespace softkin::cli {
 /// "its range, 1 to 2 [-]" or "its range, 0 to 80 kPa".
 [[nodiscard]] std::string range_text(const Actuator& actuator);
 
-/// Reads a value as the user gives it: a ratio without unit, a load with or without its own; false where it is neither.
+/// Reads a value as the user gives it: a ratio without unit, a load with or without its own, or the pressure or voltage
+/// of the actuator's curve with its unit, which becomes a ratio; false where it is none of these. Throws InvalidInput
+/// outside the curve.
 [[nodiscard]] bool parse_command(const Actuator& actuator, const std::string& text, double& value);
 /// "the pressure must be a finite number in kPa, such as 5 or 5kPa".
 [[nodiscard]] std::string expected_command(const Actuator& actuator);

@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
   app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
   app.callback([&app] {
-    if (app.get_subcommands().empty()) throw CLI::RequiredError("a command (fk, ik, follow, workspace, compare, mesh)");
+    if (app.get_subcommands().empty())
+      throw CLI::RequiredError("a command (fk, ik, follow, workspace, compare, calibrate, measure, drive, mesh)");
   });
   cli::Run run;
   cli::add_fk(app, run);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -111,6 +112,108 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   expect_refused({"compare", a, a, "--turn", "end", "end"}, {"at one place"});
   expect_refused({"compare", a, a, "--poses", "90"}, {"--turn"});
   expect_refused({"compare", a, a, "--turn", "begin", "end", "--poses", "-90"}, {"--poses"});
+}
+
+/// A report of one or two actuators whose marker tip moves linearly with both, times 0, 1, 2 ...
+json linear(const std::vector<std::pair<double, double>>& commands) {
+  json report{{"formulation", "physical"}, {"solver", {{"name", "newton"}}}, {"steps", json::array()}};
+  for (const auto& [a, b] : commands) {
+    report["steps"].push_back({{"actuation", {{"air1", a}, {"air2", b}}},
+                               {"status", "converged"},
+                               {"seconds", 1},
+                               {"time_s", report["steps"].size()},
+                               {"markers", {{"tip", {10 * (a - 1), 20 * (b - 1), 100}}}},
+                               {"actuators", {{"air1", json::object()}, {"air2", json::object()}}}});
+  }
+  return report;
+}
+
+const std::vector<std::pair<double, double>> both_move{{1, 1}, {1.2, 1}, {1.2, 1.3}, {1.5, 1.5}};
+
+TEST_F(Compare, APathIsComparedWithACameraTrackByTime) {
+  const std::string report = write("robot.json", linear(both_move));
+  std::string text = "t_s,x_mm,y_mm\n";  // sees x and y, a tenth of a second a row, 0.5 mm beside
+  for (int i = 0; i <= 30; ++i) {
+    const double t = 0.1 * i;
+    const auto k = static_cast<std::size_t>(std::min(2.0, std::floor(t)));
+    const double share = t - static_cast<double>(k);
+    const double a = both_move[k].first + share * (both_move[k + 1].first - both_move[k].first);
+    const double b = both_move[k].second + share * (both_move[k + 1].second - both_move[k].second);
+    text += std::to_string(t) + "," + std::to_string(10 * (a - 1) + 0.5) + "," + std::to_string(20 * (b - 1)) + "\n";
+  }
+  const std::string camera = folder_.write("camera.csv", text);
+  const ProgramResult result = run_program(
+      {"compare", report, camera, "--json", "-o", folder_ / "errors.csv", "--plot", folder_ / "errors.svg"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json track = json::parse(result.output)["tracks"][0];
+  EXPECT_EQ(track["by"], "parameter");
+  EXPECT_EQ(track["axes"], "xy");
+  EXPECT_NEAR(track["largest_mm"].get<double>(), 0.5, 1e-5);
+  EXPECT_NEAR(track["mean_mm"].get<double>(), 0.5, 1e-5);
+  EXPECT_EQ(track["error_mm"].size(), 4U);
+  EXPECT_EQ(read_text(folder_ / "errors.csv").rfind("track,waypoint,place", 0), 0U);
+  EXPECT_NE(read_text(folder_ / "errors.svg").find("<svg"), std::string::npos);
+  const ProgramResult aligned = run_program({"compare", report, camera, "--align"});
+  ASSERT_EQ(aligned.exit_code, 0) << aligned.errors;
+  for (const char* part : {"compared by time", "along xy", "aligned: turned by", "largest [mm]", "0.000"})
+    EXPECT_NE(aligned.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << aligned.output;
+}
+
+TEST_F(Compare, PlanesMarkersAndParametersAreThoseAskedFor) {
+  const std::string solid = folder_.write("solid.csv",
+                                          "alpha,tip_x_mm,tip_y_mm,tip_z_mm,base_x_mm,base_y_mm\n"
+                                          "1,0,5,0,9,9\n2,10,5,-4,9,9\n3,20,5,-8,9,9\n");
+  const std::string flat = folder_.write("flat.csv", "alpha,x_mm,y_mm\n1,0,0\n1.5,5,2\n3,20,8\n");  // y down
+  const ProgramResult result =
+      run_program({"compare", solid + "@tip", flat, "--by", "alpha", "--plane", "x-z", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json track = json::parse(result.output)["tracks"][0];
+  EXPECT_EQ(track["axes"], "xz");
+  EXPECT_NEAR(track["largest_mm"].get<double>(), 0, 1e-12);
+  expect_refused({"compare", solid, flat}, {"solid.csv:1", "several markers", "--marker"});
+  expect_refused({"compare", solid + "@tpi", flat}, {"no marker 'tpi'", "tip"});
+  expect_refused({"compare", solid + "@tip", flat, "--by", "beta"}, {"no column 'beta'"});
+  expect_refused({"compare", solid + "@tip", flat, "--plane", "xx"}, {"--plane"});
+}
+
+TEST_F(Compare, TheSumOfSingleActuatorsIsExactForALinearRobot) {
+  const std::string robot = write("robot.json", linear(both_move));
+  const std::string first = write("first.json", linear({{1, 1}, {1.3, 1}, {1.6, 1}}));
+  const std::string second = write("second.json", linear({{1, 1}, {1, 1.25}, {1, 1.6}}));
+  const ProgramResult result = run_program({"compare", robot, "--sum", first, second, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json track = json::parse(result.output)["tracks"][0];
+  EXPECT_EQ(track["file"], "sum of single actuators");
+  EXPECT_NEAR(track["largest_mm"].get<double>(), 0, 1e-9);
+  const ProgramResult aligned = run_program({"compare", robot, "--align", "--json", "--sum", first, second});
+  EXPECT_EQ(json::parse(aligned.output)["tracks"][0]["aligned"], false) << "both have the robot's axes";
+  expect_refused({"compare", robot, "--sum", first}, {"'air2' moves", "no report of the sum"});
+  expect_refused({"compare", robot, "--sum", first, first}, {"'air1' moves in"});
+  expect_refused({"compare", robot, "--sum", robot}, {"both move"});
+  const std::string narrow = write("narrow.json", linear({{1, 1}, {1.3, 1}}));
+  expect_refused({"compare", robot, "--sum", narrow, second}, {"narrow.json", "1.5", "outside this sweep"});
+  const std::string track_only = folder_.write("t.csv", "x_mm,y_mm\n0,0\n1,1\n");
+  expect_refused({"compare", track_only, "--sum", first, second}, {"--sum needs a report"});
+}
+
+TEST_F(Compare, RefusesTracksByLineAndUnit) {
+  const std::string good = folder_.write("good.csv", "t_s,x_mm,y_mm\n0,0,0\n1,1,0\n");
+  const auto refuse = [&](const std::string& text, const std::vector<std::string>& words,
+                          std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"compare", good, folder_.write("bad.csv", text)});
+    expect_refused(more, words);
+  };
+  refuse("t_s,x_cm,y_cm\n0,0,0\n", {"bad.csv:1", "x_cm", "mm"});
+  refuse("t_s,x,y\n0,0,0\n", {"bad.csv:1", "unit is missing", "x_mm"});
+  refuse("t_ms,x_mm,y_mm\n0,0,0\n", {"bad.csv:1", "t_s"});
+  refuse("t_s,x_mm,y_mm\n0,0,0\n0,1,1\n", {"bad.csv:3", "ascend"});
+  refuse("t_s,x_mm,y_mm\n0,0,0\n1,one,1\n", {"bad.csv:3", "x_mm"});
+  refuse("t_s,x_mm\n0,0\n", {"bad.csv:1", "two coordinates"});
+  refuse("t_s,x_mm,y_mm\n5,0,0\n6,1,1\n", {"bad.csv", "no waypoint"});
+  refuse("x_mm,y_mm\n0,0\n1,1\n2,2\n", {"bad.csv", "3 waypoints", "has 2"}, {"--by", "waypoint"});
+  refuse("t_s,x_mm,y_mm\n0,0,0\n1,1,1\n", {"--turn"}, {"--turn", "a", "b"});
+  refuse("t_s,x_mm,y_mm\n0,0,0\n1,1,1\n", {".csv"}, {"-o", folder_ / "out.txt"});
+  expect_refused({"compare", good, good, "-o", good}, {"would replace a file that is read"});
 }
 
 }  // namespace

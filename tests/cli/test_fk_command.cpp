@@ -390,7 +390,8 @@ TEST(FkHelp, NamesEveryOptionInALine) {
 
 TEST(FkHelp, WithoutACommandOneLineHelps) {
   EXPECT_EQ(run_program({}).errors,
-            "softkin: a command (fk, ik, follow, workspace, compare, mesh) is required (softkin --help tells more)\n");
+            "softkin: a command (fk, ik, follow, workspace, compare, calibrate, measure, drive, mesh) is required "
+            "(softkin --help tells more)\n");
   EXPECT_EQ(run_program({}).exit_code, 2);
 }
 

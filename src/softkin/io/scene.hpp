@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <softkin/io/actuator_curve_file.hpp>
 #include <softkin/io/text_meshes.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
@@ -17,6 +18,7 @@ struct SceneFiles {
   std::function<Mesh(const std::filesystem::path&)> mesh;
   std::function<TriangleSurface(const std::filesystem::path&)> surface;
   std::function<Sidecar(const std::filesystem::path&)> sidecar;
+  std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;
 };
 
 /// As read_scene, from a text in memory. file_name is for messages; the paths given to `files` are relative to its

@@ -14,13 +14,13 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch"};
+const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch", "curve"};
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
-      {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface"}},
+      {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface", "curve"}},
       {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes"}},
-      {ActuatorKind::dea, "dea", {"area"}, {"region", "prestretch"}}};
+      {ActuatorKind::dea, "dea", {"area"}, {"region", "prestretch", "curve"}}};
   return all;
 }
 
@@ -95,6 +95,21 @@ void read_cable(const Context& context, const Map& map, ActuatorSpec& actuator) 
                       " points, at most one for each segment of the cable");
 }
 
+/// A file, or a map of file and branch.
+void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator) {
+  const Node* file = &node;
+  if (node.kind == Node::Kind::map) {
+    const Map map(node, {"file", "branch"});
+    file = &map.at("file");
+    if (const Node* branch = map.find("branch"))
+      actuator.branch = choice(*branch, {"loading", "unloading"}) == 0 ? Branch::loading : Branch::unloading;
+  }
+  if (actuator.control == Control::load)
+    fail(node, node.name + " turns a pressure into a volume, but the pressure itself is controlled here: leave " +
+                   node.name + " out, or use 'control: volume'");
+  actuator.curve = load_file(context, *file, context.files.curve);
+}
+
 ActuatorSpec read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
   ActuatorSpec actuator;
   actuator.origin = map.node().origin;
@@ -107,6 +122,7 @@ ActuatorSpec read_actuator(const Context& context, Formulation formulation, cons
   if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
   if (const Node* node = map.find("distribution")) actuator.least_norm = choice(*node, {"least-norm", "uniform"}) == 0;
   if (const Node* node = map.find("prestretch")) actuator.rest = positive(*node);
+  if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
   if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);
   if (kind.kind == ActuatorKind::cable) read_cable(context, map, actuator);
   if (kind.kind == ActuatorKind::dea) actuator.region = text(map.at("region"));

@@ -42,6 +42,18 @@ void check_ratio(const ActuatorSpec& spec) {
   }
 }
 
+void check_curve(const ActuatorSpec& spec) {
+  if (spec.kind == ActuatorKind::cable) refuse(spec, "is a cable: it takes no curve");
+  if (spec.control == Control::load)
+    refuse(spec, "is controlled by its pressure, which needs no curve: control its volume, or leave the curve out");
+  const bool pressure = spec.curve->input == CurveInput::pressure;
+  if (pressure != (spec.kind == ActuatorKind::pneumatic))
+    refuse(spec, std::string("needs a curve of ") + (pressure ? "voltages" : "pressures") + ", but " +
+                     spec.curve->file + " is one of " + (pressure ? "pressures" : "voltages"));
+  if (spec.branch == Branch::unloading && !spec.curve->unloading)
+    refuse(spec, "takes the unloading branch of its curve, but " + spec.curve->file + " has none");
+}
+
 void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
   if (!(spec.weight > 0 && std::isfinite(spec.weight)))
     refuse(spec, "needs a weight above 0, not " + number_text(spec.weight));
@@ -49,6 +61,7 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
     check_load(spec, formulation);
   else
     check_ratio(spec);
+  if (spec.curve) check_curve(spec);
 }
 
 void check_members(const ActuatorSpec& spec) {
@@ -227,6 +240,8 @@ void compile_actuator_elements(Compilation& c) {
     actuator.rest = spec.rest;
     actuator.weight = spec.weight;
     actuator.least_norm = spec.least_norm;
+    actuator.curve = spec.curve;
+    actuator.branch = spec.branch;
     if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);
     if (spec.kind == ActuatorKind::dea) fill_membrane(c, spec, actuator);
     note_rest(c, actuator);

@@ -41,14 +41,16 @@ struct Actuator {
   Control control = Control::ratio;
   double low = 0, high = 0, rest = 1, weight = 5;
   bool least_norm = true;
-  std::vector<Index> tetrahedra;      // pneumatic, target-shape: elements of Model
-  std::vector<CavityFace> cavity;     // pneumatic with a region, physical: its boundary, normals out of the chamber
-  std::vector<Index> prisms;          // dea: elements of Model
-  std::vector<EmbeddedPoint> points;  // cable; or the vertices of a pneumatic actuator's surface
-  std::vector<Triangle> surface;      // pneumatic with a surface: triangles over `points`
-  std::vector<CableGap> gaps;         // cable, target-shape
-  double rest_measure = 0;            // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
-                                      // a dea's ratio 1
+  std::vector<Index> tetrahedra;       // pneumatic, target-shape: elements of Model
+  std::vector<CavityFace> cavity;      // pneumatic with a region, physical: its boundary, normals out of the chamber
+  std::vector<Index> prisms;           // dea: elements of Model
+  std::vector<EmbeddedPoint> points;   // cable; or the vertices of a pneumatic actuator's surface
+  std::vector<Triangle> surface;       // pneumatic with a surface: triangles over `points`
+  std::vector<CableGap> gaps;          // cable, target-shape
+  std::optional<ActuatorCurve> curve;  // ratio by pressure or voltage
+  Branch branch = Branch::loading;     // of the curve, where a command names none
+  double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
+                                       // a dea's ratio 1
 };
 
 struct Marker {

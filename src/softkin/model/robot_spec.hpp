@@ -3,6 +3,7 @@
 #include <optional>
 #include <softkin/core/elastic_law.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/model/actuator_curve.hpp>
 #include <softkin/model/mesh.hpp>
 #include <variant>
 
@@ -96,6 +97,8 @@ struct ActuatorSpec {
   double rest = 1;                         // value where none is asked for: a dea's prestretch; load control: 0; else 1
   double weight = 5;                       // w of Eq. (9), > 0
   bool least_norm = true;                  // false: every element takes the actuator's ratio
+  std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
+  Branch branch = Branch::loading;         // of the curve, where a command names none
   Origin origin;
 };
 

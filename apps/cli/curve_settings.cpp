@@ -1,0 +1,102 @@
+#include "curve_settings.hpp"
+
+#include <softkin/core/error.hpp>
+#include <softkin/io/scanner.hpp>
+#include <softkin/model/curve_command.hpp>
+
+#include "fk_units.hpp"
+#include "terminal.hpp"
+
+namespace softkin::cli {
+
+namespace {
+
+/// Takes an end, and a blank before it, off a text that has it.
+bool take_end(std::string& text, const std::string& end) {
+  if (!text.ends_with(end)) return false;
+  text.resize(text.size() - end.size());
+  if (text.ends_with(' ')) text.pop_back();
+  return true;
+}
+
+std::string input_text(const ActuatorCurve& curve, double input) {
+  return number(input) + unit_of_input(curve.input) + (curve.input == CurveInput::pressure ? " (gauge)" : "");
+}
+
+}  // namespace
+
+std::optional<CurveSetting> parse_curve_setting(const Actuator& actuator, const std::string& text) {
+  if (!actuator.curve) return std::nullopt;
+  CurveSetting setting{0, actuator.branch};
+  std::string rest = text;
+  for (const Branch branch : {Branch::unloading, Branch::loading})
+    if (take_end(rest, std::string(":") + branch_name(branch))) {
+      setting.branch = branch;
+      break;
+    }
+  const bool absolute = actuator.curve->input == CurveInput::pressure && take_end(rest, "kPa_abs");
+  if (!absolute && !take_end(rest, unit_of_input(actuator.curve->input) + 1)) return std::nullopt;
+  if (!parse_real(rest, setting.input)) return std::nullopt;
+  if (absolute) setting.input -= actuator.curve->atmosphere_kPa;
+  return setting;
+}
+
+double ratio_of(const Actuator& actuator, const CurveSetting& setting) {
+  const std::string name = "actuator '" + actuator.name + "': ";
+  double ratio = 0;
+  try {
+    ratio = ratio_by_curve(actuator, setting.input, setting.branch);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(name + error.what());
+  }
+  if (!(ratio >= actuator.low && ratio <= actuator.high))
+    throw InvalidInput(name + input_text(*actuator.curve, setting.input) + " is a ratio of " + number(ratio) +
+                       " by curve " + actuator.curve->file + ", outside " + range_text(actuator));
+  return ratio;
+}
+
+std::string curve_hint(const Actuator& actuator) {
+  if (actuator.control != Control::ratio || actuator.kind == ActuatorKind::cable) return "";
+  const bool dea = actuator.kind == ActuatorKind::dea;
+  if (!actuator.curve)
+    return std::string(" (a ") + (dea ? "voltage" : "pressure") + " needs a curve in the scene: softkin calibrate " +
+           (dea ? "dea" : "pressure") + ")";
+  return dea ? "; or a voltage by its curve, such as 2.5kV" +
+                   std::string(actuator.curve->unloading ? " or 2.5kV:unloading" : "")
+             : "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs" +
+                   std::string(actuator.curve->unloading ? " or 50kPa:unloading" : "");
+}
+
+std::vector<std::string> curve_units(const Actuator& actuator) {
+  if (!actuator.curve) return {};
+  if (actuator.curve->input == CurveInput::voltage) return {"kV"};
+  return {"kPa", "kPa_abs"};
+}
+
+std::string curve_remarks(const Model& model, const std::vector<std::string>& settings) {
+  std::string text;
+  for (const std::string& setting : settings)
+    for (const Actuator& actuator : model.actuators) {
+      if (!setting.starts_with(actuator.name + "=")) continue;
+      const auto asked = parse_curve_setting(actuator, setting.substr(actuator.name.size() + 1));
+      if (!asked) continue;
+      const std::optional<double> spread = spread_by_curve(actuator, asked->input, asked->branch);
+      text += actuator.name + ": " + input_text(*actuator.curve, asked->input) + ", " + branch_name(asked->branch) +
+              " branch of " + actuator.curve->file + ": ratio " + number(ratio_of(actuator, *asked)) +
+              (spread ? " +- " + number(*spread, 2) : "") + " [-]\n";
+    }
+  return text;
+}
+
+const char* curve_key(const ActuatorCurve& curve) {
+  return curve.input == CurveInput::pressure ? "curve_pressure_kPa" : "curve_voltage_kV";
+}
+
+std::string curve_text(const Actuator& actuator) {
+  if (!actuator.curve) return "";
+  const std::vector<double>& inputs = actuator.curve->branch(actuator.branch).ratio.x();
+  return "; curve " + actuator.curve->file + ": " + number(inputs.front()) + " to " +
+         input_text(*actuator.curve, inputs.back()) + ", " + branch_name(actuator.branch) + " branch";
+}
+
+}  // namespace softkin::cli

@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <softkin/calibration/sweeps.hpp>
+#include <softkin/calibration/syringe.hpp>
+#include <softkin/core/error.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double rest_share = 0.02;                   // of the syringe's way
+constexpr double least_ratio = 0.2, most_ratio = 20;  // of a chamber that anybody builds
+constexpr double rounding = 1e-9;
+
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+const char* scale_name(PressureScale scale) {
+  return scale == PressureScale::absolute ? "absolute" : "gauge";
+}
+
+PressureScale other(PressureScale scale) {
+  return scale == PressureScale::absolute ? PressureScale::gauge : PressureScale::absolute;
+}
+
+double absolute(const SyringeSetup& setup, PressureScale scale, double pressure) {
+  return scale == PressureScale::absolute ? pressure : pressure + setup.atmosphere_kPa;
+}
+
+/// How a run may have been written down instead.
+struct Reading {
+  PressureScale scale;
+  double volume_factor = 1;
+};
+
+std::vector<double> drive_of(const SyringeRun& run) {
+  std::vector<double> drive;
+  for (const SyringeRow& row : run.rows) drive.push_back(row.syringe_mm3);
+  return drive;
+}
+
+/// All ratios plausible, and those of the lowest and highest pressure in order.
+bool makes_sense(const SyringeSetup& setup, const SyringeRun& run, const Reading& reading) {
+  const auto ratio = [&](const SyringeRow& row) {
+    return chamber_ratio(setup, absolute(setup, reading.scale, row.pressure_kPa),
+                         reading.volume_factor * row.syringe_mm3);
+  };
+  for (const SyringeRow& row : run.rows)
+    if (absolute(setup, reading.scale, row.pressure_kPa) <= 0 ||
+        reading.volume_factor * row.syringe_mm3 > setup.syringe_mm3 || !(ratio(row) > least_ratio) ||
+        !(ratio(row) < most_ratio))
+      return false;
+  const auto [low, high] =
+      std::minmax_element(run.rows.begin(), run.rows.end(),
+                          [](const SyringeRow& a, const SyringeRow& b) { return a.pressure_kPa < b.pressure_kPa; });
+  return low->pressure_kPa == high->pressure_kPa || ratio(*high) > ratio(*low);
+}
+
+[[noreturn]] void refuse_scale(const SyringeRun& run, const std::string& why) {
+  const PressureScale right = other(run.scale);
+  throw InvalidInput({run.file}, run.name + ": " + why + ": these are " + scale_name(right) + " pressures, given as " +
+                                     scale_name(run.scale) + " ones (column " +
+                                     (right == PressureScale::gauge ? "p_gauge_kpa" : "p_abs_kpa") +
+                                     ", or --pressure " + scale_name(right) + ")");
+}
+
+/// Pressures at rest as the run has them; none where it has no row at rest.
+std::optional<double> given_at_rest(const SyringeRun& run) {
+  double way = 0, sum = 0, count = 0;
+  for (const SyringeRow& row : run.rows) way = std::max(way, std::abs(row.syringe_mm3));
+  for (const SyringeRow& row : run.rows) {
+    if (std::abs(row.syringe_mm3) > rest_share * way) continue;
+    sum += row.pressure_kPa;
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+void check_scale(const SyringeSetup& setup, const SyringeRun& run) {
+  const std::optional<double> rest = given_at_rest(run);
+  const bool is_absolute = run.scale == PressureScale::absolute;
+  const double expected = is_absolute ? setup.atmosphere_kPa : 0, swapped = setup.atmosphere_kPa - expected;
+  if (rest && std::abs(*rest - swapped) < std::abs(*rest - expected))
+    refuse_scale(run, "with the syringe at rest its pressure is " + text_of(*rest) + " kPa, and " +
+                          scale_name(run.scale) + " pressures are " + text_of(expected) + " kPa there");
+  if (!rest && !makes_sense(setup, run, {run.scale}) && makes_sense(setup, run, {other(run.scale)}))
+    refuse_scale(run, "its volume ratios make no sense, but they would on the other scale");
+}
+
+/// What would make sense of a run that makes none.
+std::string hint(const SyringeSetup& setup, const SyringeRun& run) {
+  if (makes_sense(setup, run, {run.scale, 1000})) return "; are its volumes in mL (column dv_sy_ml)?";
+  if (makes_sense(setup, run, {run.scale, 0.001})) return "; are its volumes in mm^3 (column dv_sy_mm3)?";
+  if (makes_sense(setup, run, {run.scale, -1}))
+    return "; Delta V_sy is the air pushed out of the syringe, positive when pressure rises: is its sign turned round?";
+  return "; check the volumes of chamber, tube and syringe";
+}
+
+[[noreturn]] void refuse_row(const SyringeRun& run, const SyringeRow& row, const std::string& why) {
+  throw InvalidInput({run.file, row.line}, run.name + ": " + why);
+}
+
+double checked_ratio(const SyringeSetup& setup, const SyringeRun& run, const SyringeRow& row) {
+  const double pressure = absolute(setup, run.scale, row.pressure_kPa);
+  if (!(pressure > 0)) refuse_row(run, row, "an absolute pressure is above 0, not " + text_of(pressure) + " kPa");
+  if (row.syringe_mm3 > setup.syringe_mm3 * (1 + rounding))
+    refuse_row(run, row,
+               "the syringe cannot give " + text_of(row.syringe_mm3) + " mm^3, it holds " + text_of(setup.syringe_mm3) +
+                   " mm^3" + hint(setup, run));
+  const double ratio = chamber_ratio(setup, pressure, row.syringe_mm3);
+  if (!(ratio > least_ratio && ratio < most_ratio))
+    refuse_row(run, row, "the volume ratio of the chamber would be " + text_of(ratio) + hint(setup, run));
+  return ratio;
+}
+
+void check_setup(const SyringeSetup& setup) {
+  const auto check = [](bool right, const char* what) {
+    if (!right) throw InvalidInput(std::string("syringe test: ") + what);
+  };
+  check(setup.chamber_mm3 > 0 && std::isfinite(setup.chamber_mm3), "the chamber's volume must be above 0");
+  check(setup.syringe_mm3 > 0 && std::isfinite(setup.syringe_mm3), "the syringe's volume must be above 0");
+  check(setup.tube_mm3 >= 0 && std::isfinite(setup.tube_mm3), "the tube's volume must be 0 or more");
+  check(setup.atmosphere_kPa > 0 && std::isfinite(setup.atmosphere_kPa), "the atmosphere must be above 0 kPa");
+}
+
+}  // namespace
+
+double chamber_ratio(const SyringeSetup& setup, double absolute_kPa, double syringe_mm3) {
+  const double atmosphere = setup.atmosphere_kPa;
+  return (atmosphere * setup.chamber_mm3 + absolute_kPa * syringe_mm3 -
+          (absolute_kPa - atmosphere) * (setup.syringe_mm3 + setup.tube_mm3)) /
+         (absolute_kPa * setup.chamber_mm3);
+}
+
+double syringe_volume(const SyringeSetup& setup, double absolute_kPa, double ratio) {
+  const double rest = setup.syringe_mm3 + setup.tube_mm3;
+  return ratio * setup.chamber_mm3 + rest - setup.atmosphere_kPa * (setup.chamber_mm3 + rest) / absolute_kPa;
+}
+
+std::optional<double> rest_pressure(const SyringeSetup& setup, const SyringeRun& run) {
+  const std::optional<double> given = given_at_rest(run);
+  return given ? std::optional(absolute(setup, run.scale, *given)) : std::nullopt;
+}
+
+std::vector<SyringeSample> chamber_ratios(const SyringeSetup& setup, const std::vector<SyringeRun>& runs) {
+  check_setup(setup);
+  std::vector<SyringeSample> samples;
+  std::size_t repeat = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const SyringeRun& run = runs[r];
+    check_scale(setup, run);
+    const std::vector<Sweep> sweeps = sweeps_of(drive_of(run));
+    if (sweeps.empty()) throw InvalidInput({run.file}, run.name + ": the syringe does not move");
+    for (const Sweep& sweep : sweeps) {
+      for (std::size_t i = sweep.begin; i < sweep.end; ++i) {
+        const double gauge = absolute(setup, run.scale, run.rows[i].pressure_kPa) - setup.atmosphere_kPa;
+        samples.push_back({{gauge, checked_ratio(setup, run, run.rows[i]), sweep.branch, repeat}, r, run.rows[i].line});
+      }
+      ++repeat;
+    }
+  }
+  if (samples.empty()) throw InvalidInput("syringe test: no run");
+  return samples;
+}
+
+}  // namespace softkin

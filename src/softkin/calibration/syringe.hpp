@@ -1,0 +1,43 @@
+#pragma once
+
+#include <softkin/calibration/curve_fit.hpp>
+#include <softkin/model/syringe_run.hpp>
+
+namespace softkin {
+
+/// Volumes of the closed air of a syringe test at its start, under atmospheric pressure.
+struct SyringeSetup {
+  double chamber_mm3 = 0;       // V_c^0, > 0
+  double tube_mm3 = 0;          // V_t, >= 0
+  double syringe_mm3 = 0;       // V_sy^0, > 0
+  double atmosphere_kPa = 100;  // absolute, > 0; the paper's value for one atmosphere
+};
+
+/// alpha = V_c / V_c^0 of the chamber of a syringe test [-].
+///
+/// absolute_kPa  > 0
+/// source        Fang et al. 2020, Eq. (19)
+[[nodiscard]] double chamber_ratio(const SyringeSetup& setup, double absolute_kPa, double syringe_mm3);
+
+/// Delta V_sy [mm^3] that brings the chamber to a ratio under a pressure: Eq. (18) the other way round.
+[[nodiscard]] double syringe_volume(const SyringeSetup& setup, double absolute_kPa, double ratio);
+
+/// A row of a test after Eq. (19).
+struct SyringeSample {
+  CurveSample sample;   // gauge pressure [kPa]
+  std::size_t run = 0;  // of the runs given
+  std::size_t line = 0;
+};
+
+/// Volume ratios of all runs, cut into loading and unloading where the syringe turns.
+///
+/// throws  InvalidInput naming file, and run or line: a setup out of range; a run on the wrong pressure scale, which
+///         its pressures at rest tell, or ratios that only make sense on the other scale; a syringe that gives more
+///         than it holds; ratios outside 0.2 to 20, with what would mend them if a factor of 1000 or a sign would
+[[nodiscard]] std::vector<SyringeSample> chamber_ratios(const SyringeSetup& setup, const std::vector<SyringeRun>& runs);
+
+/// Mean pressure [kPa absolute] of the rows of a run in which the syringe has not moved by more than a fiftieth of its
+/// way; none where there is no such row.
+[[nodiscard]] std::optional<double> rest_pressure(const SyringeSetup& setup, const SyringeRun& run);
+
+}  // namespace softkin
