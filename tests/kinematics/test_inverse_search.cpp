@@ -144,6 +144,42 @@ TEST(InverseSearch, NearestPointOfACurveFarAway) {
   }
 }
 
+/// Poses that are known to 2e-6 mm only; their slopes are exact.
+class Coarse : public Function {
+ public:
+  static constexpr double grain = 4e-6;
+
+  Pose rounded(const Vector& shares) const {
+    Pose pose = at(shares);
+    pose.terms = (pose.terms / grain).array().round() * grain;
+    return pose;
+  }
+  Outcome go(const Vector& shares, const Pose&, Pose& to) override {
+    ++asked;
+    to = rounded(shares);
+    return Outcome::arrived;
+  }
+};
+
+/// Far from its target a tip that is off by a micrometre is hardly farther away than the nearest one.
+TEST(InverseSearch, EndsWhereNothingMeasurableIsLeftToGain) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> any(0, 2 * std::numbers::pi);
+  for (int i = 0; i < 60; ++i) {
+    const double angle = any(engine);
+    const Eigen::Vector2d target = 200 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    Coarse response;
+    response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
+    const Pose start = response.rounded(point({0.45, 0.6, 0.4}));
+    SearchSettings settings = settings_for(start.shares);
+    settings.accuracy_mm = Coarse::grain;
+    const SearchResult found = search_inverse(response, start, settings);
+    EXPECT_EQ(found.end, SearchEnd::stationary) << target.transpose();
+    EXPECT_LT(found.slope, 1e-2) << target.transpose();
+    EXPECT_LT(response.asked, 60) << target.transpose();
+  }
+}
+
 /// Three joints for two coordinates: scan the first, solve for the others, and take the nearest to the preferred.
 double least_distance(const Eigen::Vector2d& target, const Vector& preferred) {
   double least = HUGE_VAL;
@@ -244,13 +280,19 @@ TEST(InverseSearch, CablesDoNotPush) {
         }
       }
     ASSERT_GT(least, 0.5) << target.transpose();
-    const Vector start = nearest.array().max(0.15).min(0.85).matrix();
-    const SearchResult found = search_inverse(response, response.pose(start), settings_for(start));
-    ASSERT_EQ(found.end, SearchEnd::stationary) << target.transpose();
-    EXPECT_LE(found.pose.terms.norm(), least + 1e-8) << target.transpose();
-    EXPECT_GE(found.pose.terms.norm(), least - 0.05) << target.transpose();
-    EXPECT_GE(found.pose.tensions[0], 0);
-    EXPECT_LT(response.asked, 40);
+    const Vector inside = nearest.array().max(0.15).min(0.85).matrix();
+    for (const double pulled : {0.05, 1e-8, 0.0}) {  // also from where the cable all but hangs through
+      Vector start = inside;
+      start[1] = Cables::path(start) - pulled;
+      response.asked = 0;
+      const SearchResult found = search_inverse(response, response.pose(start), settings_for(start));
+      ASSERT_EQ(found.end, SearchEnd::stationary) << target.transpose() << ", " << pulled;
+      EXPECT_LE(found.pose.terms.norm(), least + 1e-4) << target.transpose() << ", " << pulled;
+      EXPECT_GE(found.pose.terms.norm(), least - 0.05) << target.transpose() << ", " << pulled;
+      EXPECT_LT(found.slope, 1e-3) << target.transpose() << ", " << pulled;
+      EXPECT_GE(found.pose.tensions[0], 0);
+      EXPECT_LT(response.asked, 40) << target.transpose() << ", " << pulled;
+    }
   }
 }
 

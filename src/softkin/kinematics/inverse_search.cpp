@@ -9,6 +9,8 @@ namespace softkin {
 namespace {
 
 constexpr double first_radius = 0.5, least_radius = 1e-8;
+constexpr double most_of = 0.9;  // a radius: a step that is longer is limited by it
+constexpr int most_level = 5;
 constexpr double enough = 1e-4, good = 0.75, poor = 0.25;  // actual reduction over that predicted
 /// Slopes are updated instead of computed where the norm of the terms has become so much smaller.
 constexpr double quick = 0.1;
@@ -79,9 +81,7 @@ class Search {
   bool nothing_helps() {
     const double slope = fresh_ ? result_.slope : projected_slope(pose(), result_.slopes);
     const double known = settings_.accuracy_mm / pose().terms.norm();
-    return slope <= std::max(relative_slope, known) * result_.slopes.terms.norm() ||
-           (step_.move.cwiseAbs().maxCoeff() <= least_radius &&
-            step_.predicted_norm > (1 - poor * meets) * pose().terms.norm());
+    return slope <= std::max(relative_slope, known) * result_.slopes.terms.norm();
   }
 
   void advance() {
@@ -98,15 +98,26 @@ class Search {
     choose_model(move, actual);
     if (!(actual > 0) || !(actual >= enough * predicted)) {
       if (leads_on(trial)) return take(std::move(trial), move);
-      return fresh_ ? shorten() : look_again();
+      if (!fresh_) return look_again();
+      if (!unmeasurable()) return shorten();
+      // the slopes can still tell where the error, as far as it is known, is level
+      if (level_++ < most_level && trial.terms.norm() <= pose().terms.norm() + settings_.accuracy_mm)
+        return take(std::move(trial), move);
+      return finish(SearchEnd::stationary);
     }
     const double length = move.cwiseAbs().maxCoeff();
     if (outcome == Response::Outcome::halfway || actual < poor * predicted) {
       limits_.radius = std::max(0.5 * length, 10 * least_radius);
-    } else if (actual > good * predicted && length > 0.9 * limits_.radius) {
+    } else if (actual > good * predicted && length > most_of * limits_.radius) {
       limits_.radius = std::min(1.0, 2 * limits_.radius);
     }
     take(std::move(trial), move);
+  }
+
+  /// Would the whole step gain less than what poses are known to?
+  [[nodiscard]] bool unmeasurable() const {
+    return step_.predicted < settings_.accuracy_mm * result_.pose.terms.norm() &&
+           step_.move.cwiseAbs().maxCoeff() < most_of * limits_.radius;
   }
 
   /// Where actuators move the goals unequally far, the way to them is a narrow bend: a step that was to meet them and
@@ -204,6 +215,7 @@ class Search {
   Pose best_;  // reaches the goals, nearest to the preferred actuation so far
   Slopes best_slopes_;
   double best_distance_ = 0;
+  int level_ = 0;          // steps so far that gained less than can be measured
   double most_bend_ = 10;  // longest step that may increase the errors, all shares together
   bool fresh_ = false, best_fresh_ = false, use_secant_ = false, finished_ = false;
 };

@@ -8,8 +8,10 @@ namespace softkin {
 
 namespace {
 
-/// A range's end, or a tension of zero, that is nearer than this share of the ranges is reached.
+/// What is nearer than this to a range's end, in shares of the ranges, is there.
 constexpr double at_the_end = 1e-9;
+/// A gradient that leads over an end of a range, or a tension of zero, nearer than this leads nowhere.
+constexpr double held_back = 1e-6;
 
 /// Moves that stay in the ranges and the radius and slacken no cable: rows move >= bounds.
 struct Region {
@@ -115,7 +117,7 @@ double projected_slope(const Pose& pose, const Slopes& slopes) {
   if (!(norm > 0)) return 0;
   Region region(pose, slopes, 1);
   for (Eigen::Index i = 0; i < region.bounds.size(); ++i)
-    region.bounds[i] = region.bounds[i] > -at_the_end ? 0 : -HUGE_VAL;
+    region.bounds[i] = region.bounds[i] > -held_back ? 0 : -HUGE_VAL;
   const Eigen::Index free = pose.shares.size();
   const Eigen::VectorXd gradient = slopes.terms.transpose() * pose.terms / norm;
   return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds).norm();
