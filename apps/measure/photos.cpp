@@ -78,7 +78,7 @@ std::vector<Stretch> stretches_of(const std::vector<Photo>& photos) {
 NumberTable specimen_table(const std::vector<Photo>& photos) {
   NumberTable table;
   table.comments.push_back("at rest: " + photos[0].file);
-  table.columns = {"L_mm", "L1_mm", "dL_mm", "dL1_mm"};
+  table.columns = {"l_mm", "l1_mm", "dl_mm", "dl1_mm"};
   const std::vector<Stretch> stretches = stretches_of(photos);
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     table.comments.push_back("row " + std::to_string(i + 1) + ": " + photos[i + 1].file);
@@ -87,7 +87,7 @@ NumberTable specimen_table(const std::vector<Photo>& photos) {
         {stretch.rest.length(), stretch.rest.interface_length(), stretch.elongation(), stretch.shift()});
   }
   if (!stretches.empty()) return table;
-  table.columns = {"L_mm", "L1_mm"};
+  table.columns = {"l_mm", "l1_mm"};
   table.rows = {{photos[0].seen.specimen->length(), photos[0].seen.specimen->interface_length()}};
   return table;
 }
@@ -122,9 +122,9 @@ std::vector<std::string> specimen_lines(const std::vector<Photo>& photos) {
 // ---- JSON ----
 
 Json specimen_json(const SpecimenView& view) {
-  return {{"L_mm", view.length()},
+  return {{"l_mm", view.length()},
           {"L_error_mm", view.length_error()},
-          {"L1_mm", view.interface_length()},
+          {"l1_mm", view.interface_length()},
           {"L1_error_mm", view.interface_error()},
           {"interface_deg", view.interface.slant},
           {"interface_error_deg", view.interface.slant_error},
@@ -151,9 +151,9 @@ Json report(const std::vector<Photo>& photos, const Measurer& measurer) {
   if (!photos[0].seen.specimen) return json;
   json["stretches"] = Json::array();
   for (const Stretch& s : stretches_of(photos)) {
-    Json each{{"dL_mm", s.elongation()},
+    Json each{{"dl_mm", s.elongation()},
               {"dL_error_mm", s.elongation_error()},
-              {"dL1_mm", s.shift()},
+              {"dl1_mm", s.shift()},
               {"dL1_error_mm", s.shift_error()}};
     each["E_A_by_E_B"] = has_ratio(s) ? Json(s.elasticity_ratio()) : Json();
     each["E_A_by_E_B_error"] = has_ratio(s) ? Json(s.elasticity_ratio_error()) : Json();

@@ -115,7 +115,7 @@ TEST_F(Measure, SpecimenGivesTheElasticityRatio) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("E_A / E_B by Eq. (16)"), std::string::npos) << result.output;
   const CsvTable read = read_csv(table);
-  EXPECT_EQ(read.columns, (std::vector<std::string>{"L_mm", "L1_mm", "dL_mm", "dL1_mm"}));
+  EXPECT_EQ(read.columns, (std::vector<std::string>{"l_mm", "l1_mm", "dl_mm", "dl1_mm"}));
   const std::array<double, 4> truth{50, 20, 10.5, 1.5};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(read.rows.at(0)[i], truth[i], 0.15 / scale) << read.columns[i];
   const json ratio = json::parse(measure(to_json).output)["stretches"][0];
