@@ -53,7 +53,8 @@ Settings read_settings(const Model& model, const std::vector<std::string>& setti
     if (!a) refuse(unknown_actuator(model, name));
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
     double value = 0;
-    if (!parse_command(actuator, text, value)) refuse(expected_command(actuator) + ", not " + excerpt(text));
+    if (!parse_command(actuator, text, value))
+      refuse(expected_command(actuator) + ", not " + excerpt(text) + missing_curve(actuator, text));
     if (!in_range(actuator, value))
       refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator));
     if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");

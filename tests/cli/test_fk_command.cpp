@@ -389,7 +389,7 @@ TEST(FkHelp, NamesEveryOptionInALine) {
 }
 
 TEST(FkHelp, WithoutACommandOneLineHelps) {
-  EXPECT_EQ(run_program({}).errors, "softkin: a command (fk, compare, mesh) is required (softkin --help tells more)\n");
+  EXPECT_EQ(run_program({}).errors, "softkin: a command (fk, compare, calibrate, mesh) is required (softkin --help tells more)\n");
   EXPECT_EQ(run_program({}).exit_code, 2);
 }
 
