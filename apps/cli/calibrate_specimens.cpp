@@ -39,6 +39,9 @@ class SpecimenRun {
     if (any_force && options_.modulus_b)
       throw InvalidInput("--modulus-b is for specimens without a force, but " + options_.specimens +
                          " has a column of it: leave out one of the two");
+    if (options_.formulation == "physical" && !options_.fragment.empty() && !any_force && !options_.modulus_b)
+      throw InvalidInput("--output " + options_.fragment + ": materials of the physical formulation need a modulus; " +
+                         options_.specimens + " has no column force_n: add it, or give --modulus-b");
   }
 
   /// A force belongs to an area; that of the file and that of the simulation should be one.

@@ -197,7 +197,8 @@ std::string specimens_fragment(const SpecimenResults& results, const MaterialOpt
     }
   }
   if (!results.target && !remark.empty()) return "# no materials without a modulus\n" + remark;
-  return "materials:   # softkin calibrate material " + options.specimens + "\n" + a + "}\n" + b + "}\n" + remark;
+  return "materials:   # softkin calibrate material " + printable(options.specimens) + "\n" + a + "}\n" + b + "}\n" +
+         remark;
 }
 
 }  // namespace softkin::cli

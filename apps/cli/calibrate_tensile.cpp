@@ -97,8 +97,8 @@ class TensileRun {
   }
 
   [[nodiscard]] std::string fragment() const {
-    std::string text =
-        "materials:   # softkin calibrate material --tensile " + options_.tensile + "\n  " + entry(chosen_) + "\n";
+    std::string text = "materials:   # softkin calibrate material --tensile " + printable(options_.tensile) + "\n  " +
+                       entry(chosen_) + "\n";
     for (const std::string name : {"linear", "neo-hookean", "mooney-rivlin", "yeoh"})
       if (name != chosen_) text += "  # " + name + ": " + entry(name) + "\n";
     return text;
