@@ -56,15 +56,21 @@ double ratio_of(const Actuator& actuator, const CurveSetting& setting) {
 }
 
 std::string curve_hint(const Actuator& actuator) {
-  if (actuator.control != Control::ratio || actuator.kind == ActuatorKind::cable) return "";
+  if (!actuator.curve) return "";
   const bool dea = actuator.kind == ActuatorKind::dea;
-  if (!actuator.curve)
-    return std::string(" (a ") + (dea ? "voltage" : "pressure") + " needs a curve in the scene: softkin calibrate " +
-           (dea ? "dea" : "pressure") + ")";
   return dea ? "; or a voltage by its curve, such as 2.5kV" +
                    std::string(actuator.curve->unloading ? " or 2.5kV:unloading" : "")
              : "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs" +
                    std::string(actuator.curve->unloading ? " or 50kPa:unloading" : "");
+}
+
+std::string missing_curve(const Actuator& actuator, const std::string& text) {
+  if (actuator.curve || actuator.control != Control::ratio) return "";
+  if (actuator.kind == ActuatorKind::pneumatic && (text.ends_with("kPa") || text.ends_with("kPa_abs")))
+    return "; a pressure needs a curve in the scene (softkin calibrate pressure)";
+  if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
+    return "; a voltage needs a curve in the scene (softkin calibrate dea)";
+  return "";
 }
 
 std::vector<std::string> curve_units(const Actuator& actuator) {

@@ -21,9 +21,11 @@ struct CurveSetting {
 /// outside the actuator's range.
 [[nodiscard]] double ratio_of(const Actuator& actuator, const CurveSetting& setting);
 
-/// "; or a gauge pressure by its curve, such as 50kPa, 150kPa_abs or 50kPa:unloading"; for a ratio without a curve that
-/// text gives as a pressure or voltage, where to get one; else "".
+/// "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs or 50kPa:unloading"; "" without a curve.
 [[nodiscard]] std::string curve_hint(const Actuator& actuator);
+
+/// Where to get a curve, for a pressure or voltage given to an actuator that has none; else "".
+[[nodiscard]] std::string missing_curve(const Actuator& actuator, const std::string& text);
 
 /// Ends of the names of a path's columns that hold inputs: "kPa" and "kPa_abs", or "kV"; none without a curve.
 [[nodiscard]] std::vector<std::string> curve_units(const Actuator& actuator);
