@@ -10,6 +10,8 @@ namespace softkin::cli {
 
 namespace {
 
+constexpr double tolerance_of_gradient_mm = 0.2;  // the paper's lambda
+
 void add_path(CLI::App& command, FollowOptions& options) {
   add_scene(command, options);
   command
@@ -40,10 +42,16 @@ void add_search(CLI::App& command, FollowOptions& options) {
       ->type_name("NAME")
       ->check(one_of({"newton", "gradient"}));
   command
-      .add_option("--tolerance", options.reach_mm,
-                  "Distance from a waypoint at which it is reached [mm]\n(default: 0.001)")
+      .add_option("--tolerance", options.tolerance_asked_mm,
+                  "Distance from a waypoint at which it is reached [mm] (default:\n0.001; gradient: 0.2)")
       ->type_name("MM")
       ->check(positive_length());
+  command
+      .add_option("--descents", options.descents,
+                  "gradient: iterations of Algorithm 2 for a waypoint, i_max\n(default: " +
+                      std::to_string(InverseOptions().max_iterations) + ")")
+      ->type_name("N")
+      ->check(integer_from(1, 1'000'000'000));
 }
 
 }  // namespace
@@ -58,8 +66,12 @@ std::vector<Output> FollowOptions::outputs(std::size_t waypoints) const {
 
 TrajectoryOptions FollowOptions::trajectory() const {
   TrajectoryOptions result;
-  result.inverse.method = method == "gradient" ? InverseMethod::gradient : InverseMethod::newton;
-  result.inverse.tolerance_mm = reach_mm;
+  if (method == "gradient") {
+    result.inverse.method = InverseMethod::gradient;
+    result.inverse.tolerance_mm = tolerance_of_gradient_mm;
+  }
+  result.inverse.tolerance_mm = tolerance_asked_mm.value_or(result.inverse.tolerance_mm);
+  result.inverse.max_iterations = descents.value_or(result.inverse.max_iterations);
   result.inverse.statics = statics();
   return result;
 }
@@ -82,6 +94,8 @@ void check_usage(const FollowOptions& options) {
   if (options.folder.empty()) throw InvalidInput("--output: the name of the folder is empty");
   if (!options.plot_file.empty() && lower_extension(options.plot_file) != ".svg")
     throw InvalidInput("--plot " + options.plot_file + ": must end in .svg");
+  if (options.descents && options.method != "gradient")
+    throw InvalidInput("--descents are iterations of Algorithm 2: it needs --method gradient");
   check_solver(options);
 }
 

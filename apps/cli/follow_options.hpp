@@ -2,6 +2,7 @@
 
 #include <CLI/App.hpp>
 #include <filesystem>
+#include <optional>
 #include <softkin/kinematics/trajectory.hpp>
 #include <string>
 #include <vector>
@@ -15,8 +16,9 @@ namespace softkin::cli {
 struct FollowOptions : SolveOptions {
   std::string path, folder, marker, workspace, plot_file;
   std::string method = "newton";
-  double reach_mm = InverseOptions().tolerance_mm;
-  double max_step_mm = 0;  // 0: as given
+  std::optional<double> tolerance_asked_mm;  // of a waypoint
+  std::optional<int> descents;               // i_max of Algorithm 2
+  double max_step_mm = 0;                    // 0: as given
   bool json = false, resume = false;
 
   // In the folder:
@@ -29,6 +31,8 @@ struct FollowOptions : SolveOptions {
   }
   [[nodiscard]] std::vector<Output> outputs(std::size_t waypoints) const;
   [[nodiscard]] TrajectoryOptions trajectory() const;
+  /// At which a waypoint is reached.
+  [[nodiscard]] double reach_mm() const { return trajectory().inverse.tolerance_mm; }
 
  private:
   [[nodiscard]] std::filesystem::path file(const char* name) const { return std::filesystem::path(folder) / name; }

@@ -85,7 +85,9 @@ class FollowReport {
 }  // namespace
 
 Json follow_json(const FollowOptions& options) {
-  return {{"method", options.method}, {"tolerance_mm", options.reach_mm}};
+  return {{"method", options.method},
+          {"tolerance_mm", options.reach_mm()},
+          {"max_iterations", options.trajectory().inverse.max_iterations}};
 }
 
 FollowedBefore take_waypoints(const Model& model, const FollowOptions& options, const MarkerPath& path,

@@ -48,7 +48,7 @@ class FollowRun {
         return stopped();
       }
     finish();
-    say(summary_of(done_, options_.reach_mm));
+    say(summary_of(done_, options_.reach_mm()));
     say("commands: " + options_.commands().string() + "; plot: " + options_.plot().string() +
         "; shapes: " + options_.shapes().string() + " (open it in ParaView)");
     return judge();
@@ -115,7 +115,7 @@ class FollowRun {
       const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
       const std::string title =
           name(options_.path) + " by " + name(options_.scene) + ": " + formulation_name(model_.formulation);
-      write_svg(options_.plot(), plot_of_path(model_, path_, done_, options_.reach_mm, title));
+      write_svg(options_.plot(), plot_of_path(model_, path_, done_, options_.reach_mm(), title));
     }
     if (options_.json) print(report_.text());
   }

@@ -389,7 +389,8 @@ TEST(FkHelp, NamesEveryOptionInALine) {
 }
 
 TEST(FkHelp, WithoutACommandOneLineHelps) {
-  EXPECT_EQ(run_program({}).errors, "softkin: a command (fk, ik, follow, workspace, compare, mesh) is required (softkin --help tells more)\n");
+  EXPECT_EQ(run_program({}).errors,
+            "softkin: a command (fk, ik, follow, workspace, compare, mesh) is required (softkin --help tells more)\n");
   EXPECT_EQ(run_program({}).exit_code, 2);
 }
 

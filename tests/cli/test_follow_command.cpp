@@ -145,6 +145,28 @@ TEST(Follow, InsertsWaypointsAndWritesThePlotElsewhere) {
   EXPECT_FALSE(fs::exists(folder.out + "/path.svg"));
 }
 
+TEST(Follow, LeadsSeveralMarkers) {
+  const FollowFolder folder;
+  const json made = json::parse(read_text(folder / "made.json"));
+  std::string csv = "corner_z_mm,tip_x_mm\n";
+  for (const json& step : made["steps"])
+    csv += std::to_string(step["markers"]["corner"][2].get<double>()) + "," +
+           std::to_string(step["markers"]["tip"][0].get<double>()) + "\n";
+  folder.write("path.csv", csv);
+  const ProgramResult result = folder.follow();
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const Rows errors = read_rows(folder.out + "/errors.csv"), commands = read_rows(folder.out + "/commands.csv");
+  EXPECT_EQ(commands[0], (std::vector<std::string>{"air", "tendon"}));  // no times
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double corner = std::abs(cell(errors, i, "corner_z_mm") - cell(errors, i, "corner_target_z_mm"));
+    const double tip = std::abs(cell(errors, i, "tip_x_mm") - cell(errors, i, "tip_target_x_mm"));
+    EXPECT_NEAR(cell(errors, i, "error_mm"), std::max(corner, tip), 1e-9);
+    EXPECT_LE(cell(errors, i, "error_mm"), 1e-3);
+    EXPECT_NEAR(cell(commands, i, "air"), made["steps"][i]["actuation"]["air"].get<double>(), 0.01);
+  }
+  EXPECT_NE(read_text(folder.out + "/path.svg").find(">tip: reached<"), std::string::npos);
+}
+
 TEST(Follow, LoadsHaveTheirUnitsInTheCommands) {
   FollowFolder folder;
   ASSERT_EQ(folder.follow().exit_code, 0);
@@ -160,7 +182,7 @@ TEST(Follow, LoadsHaveTheirUnitsInTheCommands) {
 
 TEST(Follow, AlgorithmTwoIsAsAccurateAsItIsAsked) {
   const FollowFolder folder;
-  ASSERT_EQ(folder.follow({"--method", "gradient", "--tolerance", "0.2"}).exit_code, 0);
+  ASSERT_EQ(folder.follow({"--method", "gradient"}).exit_code, 0);
   const Rows errors = read_rows(folder.out + "/errors.csv");
   for (std::size_t i = 0; i < 5; ++i) EXPECT_LE(cell(errors, i, "error_mm"), 0.2);
 }
@@ -199,6 +221,7 @@ TEST(Follow, RefusesBadPathsWithLineAndColumn) {
   folder.expect_refused({"--marker", "tip", "--max-step", "1e-9", "--tolerance", "-1"}, "--tolerance");
   folder.expect_refused({"--marker", "tip", "--plot", "a.png"}, "must end in .svg");
   folder.expect_refused({"--marker", "tip", "--solver", "local-global"}, "target-shape");
+  folder.expect_refused({"--marker", "tip", "--descents", "9"}, "--method gradient");
   folder.write("out", "a file");
   folder.expect_refused({"--marker", "tip"}, "its folder cannot be made");
 }

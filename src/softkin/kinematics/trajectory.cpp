@@ -141,6 +141,7 @@ ProgressCallback PathFollower::told(const ProgressCallback& progress) const {
 bool PathFollower::first(InverseResult& spent, const ProgressCallback& progress) {
   Equilibrium found = statics_.solve(options_.start, state_, options_.inverse.statics, told(progress));
   ++spent.equilibria;
+  spent.seconds += found.report.seconds;
   if (found.report.status == Status::interrupted) return false;
   if (found.report.status == Status::converged) state_ = std::move(found.state);
   return true;
