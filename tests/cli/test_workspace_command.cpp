@@ -138,30 +138,30 @@ TEST(WorkspaceCommand, SeedsTellRandomSamplesApart) {
 
 /// SIGKILL at random instants, and each time another number of threads: nothing is lost and nothing stands twice.
 TEST(WorkspaceCommand, KilledAndResumedGivesTheUndisturbedFile) {
+  const std::vector<std::string> many{"--samples", "400", "--sampling", "sobol", "--threads", "1"};
   const ReachFolder undisturbed, folder;
-  ASSERT_EQ(undisturbed.run(small).exit_code, 0);
+  ASSERT_EQ(undisturbed.run(many).exit_code, 0);
   std::mt19937 generator(7);
-  std::uniform_int_distribution<int> wait_ms(1, 60);
+  std::uniform_int_distribution<std::size_t> more_rows(1, 25);
+  std::uniform_int_distribution<int> wait_us(0, 3000);
   int kills = 0;
-  std::size_t before = 0;
-  for (int run = 0; run < 100; ++run) {
-    std::vector<std::string> options = joined(small, {"--resume"});
-    options[5] = run % 2 == 0 ? "1" : "2";
+  for (std::size_t before = 0; kills < 12 && before < 330;) {
+    std::vector<std::string> options = joined(many, {"--resume"});
+    options[5] = kills % 2 == 0 ? "1" : "2";
+    const std::size_t until = before + more_rows(generator);
     StartedProgram program(folder, folder.arguments(options));
-    // past the start, where nothing is done yet
-    ASSERT_TRUE(program.wait_until([&] { return fs::exists(folder.output) && row_count(folder.text()) > before; }));
-    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms(generator)));
+    ASSERT_TRUE(program.wait_until([&] { return fs::exists(folder.output) && row_count(folder.text()) >= until; }));
+    std::this_thread::sleep_for(std::chrono::microseconds(wait_us(generator)));
     program.send(SIGKILL);
-    const ProgramResult result = program.wait();
-    const std::size_t now = row_count(folder.text());
-    EXPECT_GE(now, before);
-    before = now;
-    if (result.exit_code == 128 + SIGKILL) ++kills;
-    if (now >= 110) break;
+    ASSERT_EQ(program.wait().exit_code, 128 + SIGKILL);
+    ++kills;
+    EXPECT_GE(row_count(folder.text()), until);
+    before = row_count(folder.text());
   }
-  EXPECT_GE(kills, 3);
-  const ProgramResult last = folder.run(joined(small, {"--resume"}));
+  EXPECT_GE(kills, 4);
+  const ProgramResult last = folder.run(joined(many, {"--resume"}));
   EXPECT_EQ(last.exit_code, 0) << last.errors;
+  EXPECT_EQ(row_count(folder.text()), 400u);
   EXPECT_EQ(folder.text(), undisturbed.text());
 }
 

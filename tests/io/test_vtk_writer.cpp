@@ -141,7 +141,10 @@ TEST(VtkWriter, RefusesBadContent) {
       {"cell field 'region' stands twice", [](VtuContent& c) { c.cell_fields[0].name = "region"; }},
       {"tetrahedron 1 has the vertex 8, outside 0 to 7", [](VtuContent& c) { c.tetrahedra[1][2] = 8; }},
       {"prism 0 has the vertex -1", [](VtuContent& c) { c.prisms[0][5] = -1; }},
-      {"triangle 1 has the vertex 8, outside 0 to 7", [](VtuContent& c) { c.triangles = {{0, 1, 2}, {0, 1, 8}}; }},
+      {"triangle 1 has the vertex 8, outside 0 to 7",
+       [](VtuContent& c) {
+         c.triangles = {{0, 1, 2}, {0, 1, 8}};
+       }},
       {"'volume ratio' has 3 values instead of 11 x 1", [](VtuContent& c) { c.cloud = true; }},
       {"2 cell regions for 3 cells", [](VtuContent& c) { c.cell_regions.pop_back(); }},
       {"cell 1 is of region 2, but there are 2", [](VtuContent& c) { c.cell_regions[1] = 2; }},
