@@ -3,6 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/plain_text.hpp>
 
+#include "curve_settings.hpp"
 #include "fk_units.hpp"
 
 namespace softkin::cli {
@@ -32,7 +33,8 @@ Settings read_settings(const Model& model, const std::string& option, const std:
     if (!a) refuse(unknown_actuator(model, name));
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
     double value = 0;
-    if (!parse_command(actuator, text, value)) refuse(expected_command(actuator) + ", not " + excerpt(text));
+    if (!parse_command(actuator, text, value))
+      refuse(expected_command(actuator) + ", not " + excerpt(text) + missing_curve(actuator, text));
     if (!(value >= actuator.low && value <= actuator.high))
       refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator));
     if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");
