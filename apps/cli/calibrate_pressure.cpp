@@ -30,7 +30,7 @@ class Robot {
  public:
   Robot(const PressureOptions& options, std::vector<fs::path>& inputs) {
     if (options.scene.empty()) return;
-    FkOptions robot;
+    SolveOptions robot;
     robot.scene = options.scene;
     inputs.emplace_back(options.scene);
     spec_ = asked_spec(robot, inputs);
