@@ -267,7 +267,9 @@ class Checker {
     }
   }
 
-  [[nodiscard]] std::size_t runs() const { return clone_.runs(); }
+  [[nodiscard]] std::size_t runs() const {
+    return clone_.runs();
+  }
 
  private:
   /// Runs or checks one command; what it prints.
