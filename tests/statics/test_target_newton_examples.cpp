@@ -16,7 +16,8 @@ std::vector<fs::path> scenes() {
   for (const auto& folder : fs::directory_iterator(fs::path(SOFTKIN_SOURCE_DIR) / "examples")) {
     if (!folder.is_directory()) continue;
     for (const auto& file : fs::directory_iterator(folder))
-      if (file.path().extension() == ".yaml") found.push_back(file.path());
+      if (file.path().extension() == ".yaml" && file.path().stem().extension() != ".hardware")
+        found.push_back(file.path());
   }
   std::sort(found.begin(), found.end());
   return found;
