@@ -2,25 +2,12 @@
 
 #include <utility>
 
+#include "ik_report.hpp"
 #include "mesh_text.hpp"
 
 namespace softkin::cli {
 
 namespace {
-
-const char* name_of(InverseStatus status) {
-  switch (status) {
-    case InverseStatus::reached:
-      return "reached";
-    case InverseStatus::unreachable:
-      return "not reached";
-    case InverseStatus::interrupted:
-      return "interrupted";
-    case InverseStatus::not_converged:
-      break;
-  }
-  return "not converged";
-}
 
 const std::string& marker_name(const Model& model, const MarkerPath& path, std::size_t m) {
   return model.markers[static_cast<std::size_t>(path.markers[m])].name;

@@ -1,28 +1,21 @@
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cstdio>
-#include <filesystem>
-#include <new>
-#include <softkin/core/error.hpp>
 #include <string>
 
 #include "command.hpp"
+#include "outcome.hpp"
 
 namespace {
 
 using namespace softkin;
 
-/// Help and version are printed; anything else is bad usage, told in one line.
-int answer(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-  std::string command = "softkin", message = error.what();
+/// "softkin follow": as far as the user got.
+std::string chosen_command(const CLI::App& app) {
+  std::string command = "softkin";
   for (const CLI::App* each = &app; !each->get_subcommands().empty();) {
     each = each->get_subcommands().front();
     command += " " + each->get_name();
   }
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  std::fprintf(stderr, "softkin: %s (%s --help tells more)\n", message.c_str(), command.c_str());
-  return cli::bad_input;
+  return command;
 }
 
 }  // namespace
@@ -48,18 +41,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return answer(app, error);
+    return cli::answer_usage(app, error, chosen_command(app));
   }
-  try {
-    return run();
-  } catch (const InvalidInput& error) {
-    std::fprintf(stderr, "softkin: %s\n", error.what());
-  } catch (const std::filesystem::filesystem_error& error) {
-    std::fprintf(stderr, "softkin: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "softkin: out of memory\n");
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "softkin: internal error, please report it: %s\n", error.what());
-  }
-  return cli::bad_input;
+  return cli::outcome_of(run);
 }

@@ -1,13 +1,11 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <new>
 #include <softkin/core/error.hpp>
 #include <softkin/io/text_mesh_tools.hpp>
 #include <softkin/vision/pictures.hpp>
 
 #include "cli/command.hpp"
+#include "cli/outcome.hpp"
 #include "commands.hpp"
 
 namespace {
@@ -155,14 +153,6 @@ void add_board(CLI::App& app, Run& run) {
   });
 }
 
-int answer(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-  std::string message = error.what();
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  std::fprintf(stderr, "softkin: %s (softkin measure --help tells more)\n", message.c_str());
-  return bad_input;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -176,18 +166,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return answer(app, error);
+    return answer_usage(app, error, "softkin measure");
   }
-  try {
-    return run();
-  } catch (const InvalidInput& error) {
-    std::fprintf(stderr, "softkin: %s\n", error.what());
-  } catch (const std::filesystem::filesystem_error& error) {
-    std::fprintf(stderr, "softkin: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "softkin: out of memory\n");
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "softkin: internal error, please report it: %s\n", error.what());
-  }
-  return bad_input;
+  return outcome_of(run);
 }
