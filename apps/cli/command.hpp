@@ -19,6 +19,7 @@ void add_follow(CLI::App& app, Run& run);
 void add_ik(CLI::App& app, Run& run);
 void add_mesh(CLI::App& app, Run& run);
 void add_measure(CLI::App& app, Run& run);
+void add_walk(CLI::App& app, Run& run);
 void add_workspace(CLI::App& app, Run& run);
 
 }  // namespace softkin::cli

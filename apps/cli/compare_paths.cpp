@@ -1,7 +1,6 @@
 #include "compare_paths.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <softkin/io/file.hpp>
 #include <softkin/io/svg_plot.hpp>
 
@@ -17,11 +16,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* axis_names[] = {"x", "y", "z"};
-
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 Resampling resampling_of(const PathCompareOptions& options, const Track& reference, const Track& other) {
   if (options.by.empty()) return natural_resampling(reference, other);

@@ -1,20 +1,13 @@
 #include "follow_files.hpp"
 
-#include <charconv>
-
 #include "fk_units.hpp"
+#include "terminal.hpp"
 
 namespace softkin::cli {
 
 namespace {
 
 constexpr const char* axis_names[] = {"x", "y", "z"};
-
-/// The shortest text that reads back as the number.
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 bool has_times(const MarkerPath& path) {
   return path.waypoints.front().time.has_value();

@@ -9,49 +9,25 @@
 
 namespace softkin::cli {
 
-namespace {
-
-constexpr int value_decimals = 4;
-constexpr std::size_t longest_name = 16;
-
-std::string right(const std::string& text, std::size_t width) {
-  const std::size_t length = characters(text);
-  return length < width ? std::string(width - length, ' ') + text : text;
-}
-
-}  // namespace
-
 FollowTable::FollowTable(const Model& model, const MarkerPath& path) {
-  const auto add = [this](const std::string& header, std::size_t width) {
-    headers_.push_back(header);
-    widths_.push_back(std::max(width, characters(header)));
-  };
-  add("waypoint", std::to_string(path.waypoints.size()).size());
-  for (const Actuator& actuator : model.actuators) {
-    const std::string name = characters(actuator.name) > longest_name ? "command" : actuator.name;
-    add(name + " " + bracketed_unit(actuator),
-        std::max(decimal(actuator.high, value_decimals).size(), decimal(actuator.low, value_decimals).size()));
-  }
-  add("error [mm]", 10);
-  add("equilibria", 10);
-  add("time [s]", 8);
+  columns_.add("waypoint", std::to_string(path.waypoints.size()).size());
+  for (const Actuator& actuator : model.actuators) columns_.add_command(actuator);
+  columns_.add("error [mm]", 10);
+  columns_.add("equilibria", 10);
+  columns_.add("time [s]", 8);
 }
 
 std::string FollowTable::header() const {
-  std::string line;
-  for (std::size_t i = 0; i < headers_.size(); ++i) line += right(headers_[i], widths_[i]) + "  ";
-  return line + "status";
+  return columns_.header() + "status";
 }
 
 std::string FollowTable::row(std::size_t waypoint, const DoneWaypoint& done) const {
   std::vector<std::string> cells{std::to_string(waypoint)};
-  for (const double value : done.actuation) cells.push_back(decimal(value, value_decimals));
+  for (const double value : done.actuation) cells.push_back(Columns::command(value));
   cells.push_back(number(done.error_mm, 2));
   cells.push_back(std::to_string(done.equilibria));
   cells.push_back(decimal(done.seconds, 2));
-  std::string line;
-  for (std::size_t i = 0; i < cells.size(); ++i) line += right(cells[i], widths_[i]) + "  ";
-  return line + done.status;
+  return columns_.row(cells) + done.status;
 }
 
 FollowProgress::FollowProgress(std::size_t first, std::size_t waypoints)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "columns.hpp"
 #include "follow_waypoint.hpp"
 #include "terminal.hpp"
 
@@ -18,8 +19,7 @@ class FollowTable {
   [[nodiscard]] std::string row(std::size_t waypoint, const DoneWaypoint& done) const;
 
  private:
-  std::vector<std::string> headers_;
-  std::vector<std::size_t> widths_;
+  Columns columns_;
 };
 
 /// Waypoints done, time and time left, on the terminal.

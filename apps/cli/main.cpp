@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
   app.callback([&app] {
     if (app.get_subcommands().empty())
-      throw CLI::RequiredError("a command (fk, ik, follow, workspace, compare, calibrate, measure, drive, mesh)");
+      throw CLI::RequiredError("a command (fk, ik, follow, workspace, walk, compare, calibrate, measure, drive, mesh)");
   });
   cli::Run run;
   cli::add_fk(app, run);
@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   cli::add_mesh(app, run);
   cli::add_calibrate(app, run);
   cli::add_measure(app, run);
+  cli::add_walk(app, run);
   cli::add_workspace(app, run);
   try {
     app.parse(argc, argv);

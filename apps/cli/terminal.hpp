@@ -36,6 +36,9 @@ class ProgressLine {
 /// The shortest decimal text of a number at so many significant digits.
 [[nodiscard]] std::string number(double value, int digits = 6);
 
+/// The shortest decimal text that reads back as the number.
+[[nodiscard]] std::string exact(double value);
+
 /// A number with so many digits behind the point.
 [[nodiscard]] std::string decimal(double value, int decimals);
 

@@ -249,6 +249,18 @@ TEST(Scene, EveryUnitOfLength) {
   EXPECT_EQ(position(parse_body("markers: [{name: p, point: [1, .5, 1e2]}]").markers.at(0).at), Vec3(1, 0.5, 100));
 }
 
+TEST(Scene, Feet) {
+  const RobotSpec spec = parse_body(
+      "feet:\n  - {marker: heel, forward: 0.01, backward: 0.05}\n  - {marker: toe, forward: 0, backward: 1e-3}\n");
+  ASSERT_EQ(spec.feet.size(), 2u);
+  EXPECT_EQ(spec.feet[0].marker, "heel");
+  EXPECT_EQ(spec.feet[0].forward, 0.01);
+  EXPECT_EQ(spec.feet[0].backward, 0.05);
+  EXPECT_EQ(spec.feet[1].marker, "toe");
+  EXPECT_EQ(spec.feet[1].forward, 0);
+  EXPECT_EQ(spec.feet[1].backward, 1e-3);
+}
+
 TEST(Scene, LeastSceneHasDefaults) {
   const RobotSpec spec = parse("\xEF\xBB\xBF# a comment\r\nsoftkin: 1\r\nmesh: {file: a.msh}\r\n");
   EXPECT_EQ(spec.mesh.tetrahedra.size(), 2u);

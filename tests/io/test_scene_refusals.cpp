@@ -278,6 +278,11 @@ TEST(SceneRefusals, ActuatorsAndMarkers) {
       {"markers: [{name: '', point: [0, 0, 0]}]\n", "'name' is empty", 1},
       {"markers:\n  - name: m\n    name: n\n    point: [0, 0, 0]\n", "key 'name' appears twice", 3},
       {"units: {length: m}\nmarkers: [{name: m, point: [1e308, 0, 0]}]\n", "is too large: 1e308", 2},
+      {"feet: [{marker: a, forward: 1, backward: 1}]\n", "'feet' must be a list of 2, not of 1", 1},
+      {"feet:\n  - {marker: a, forward: 1, backward: 1}\n  - {marker: b, forward: -1, backward: 1}\n",
+       "'forward' must be 0 N or more, not -1", 3},
+      {"feet: [{marker: a, forward: 1}, {marker: b, forward: 1, backward: 1}]\n", "needs key 'backward'", 1},
+      {"feet: [{marker: a, forwards: 1}, {marker: b}]\n", "did you mean 'forward'?", 1},
   });
 }
 

@@ -101,6 +101,17 @@ ForceSpec read_force(const Context& context, const Node& node, Names& names) {
   return {names.add_label(map.at("name")), read_point_or_region(context, map), read_vector(map.at("force"))};
 }
 
+FootSpec read_foot(const Node& node) {
+  const Map map(node, {"marker", "forward", "backward"});
+  const auto friction = [&map](const char* key) {
+    const Node& value = map.at(key);
+    const double newtons = number(value);
+    if (newtons < 0) fail(value, value.name + " must be 0 N or more, not " + value.text);
+    return newtons;
+  };
+  return {text(map.at("marker")), friction("forward"), friction("backward"), node.origin};
+}
+
 void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   if (const Node* node = map.find("materials"))
@@ -122,6 +133,8 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
     Names names;
     for (const auto& item : list(*node)) spec.markers.push_back(read_marker(context, *item, names));
   }
+  if (const Node* node = map.find("feet"))
+    for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
 }
 
 }  // namespace
@@ -132,7 +145,7 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
   const auto root = scene::parse_yaml(yaml_text, file_name);
   scene::check_version(*root);
   const scene::Map map(*root, {"softkin", "units", "mesh", "formulation", "regions", "materials", "void", "fixed",
-                               "rigid", "actuators", "gravity", "forces", "markers"});
+                               "rigid", "actuators", "gravity", "forces", "markers", "feet"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   RobotSpec spec;

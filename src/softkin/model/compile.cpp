@@ -106,6 +106,7 @@ Model compile(const RobotSpec& spec) {
   compile_actuator_points(c);
   compile_supports(c);
   compile_markers(c);
+  compile_feet(c);
   compile_loads(c);
   check_anchoring(c.model, c.origin);
   return std::move(c.model);

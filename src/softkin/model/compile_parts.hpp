@@ -59,6 +59,8 @@ void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
 void compile_supports(Compilation& c);
 
 void compile_markers(Compilation& c);
+/// After the markers.
+void compile_feet(Compilation& c);
 
 /// Physical: the weight of the elements and the forces, lumped on the vertices [N].
 void compile_loads(Compilation& c);

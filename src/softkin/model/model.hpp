@@ -58,6 +58,12 @@ struct Marker {
   EmbeddedPoint point;
 };
 
+/// Stands on the floor and slides where friction lets it.
+struct Foot {
+  Index marker = -1;
+  double forward = 0, backward = 0;  // friction that slides it in the direction of travel and against it [N]
+};
+
 struct RigidRegion {
   std::string name;
   std::vector<Index> vertices;
@@ -85,6 +91,7 @@ struct Model {
   std::vector<Material> materials;
   std::vector<Actuator> actuators;
   std::vector<Marker> markers;
+  std::vector<Foot> feet;                  // none, or the rear one and the front one
   std::vector<RigidRegion> rigid;          // disjoint
   std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
   Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
@@ -103,7 +110,7 @@ struct Model {
 ///         actuators, values outside their ranges, a robot with a part that can still move rigidly, DEA regions with
 ///         tetrahedra, pneumatic regions with prisms, cables of zero length, duplicate names, elements without volume;
 ///         physical: materials without elastic constants, chambers that do not touch the body, gravity without a
-///         density; target-shape: load control
+///         density; target-shape: load control; feet that are not two different markers
 [[nodiscard]] Model compile(const RobotSpec& spec);
 
 }  // namespace softkin

@@ -107,6 +107,14 @@ struct MarkerSpec {
   PointRef at;
 };
 
+/// A foot that stands on the floor: a marker, and the friction that it takes to slide it towards the front foot's side
+/// (forward) and the other way.
+struct FootSpec {
+  std::string marker;
+  double forward = 0, backward = 0;  // [N], >= 0
+  Origin origin;
+};
+
 struct RigidSpec {
   RegionRef where;
   std::string name;
@@ -134,6 +142,7 @@ struct RobotSpec {
   std::vector<RigidSpec> rigid;
   std::vector<ActuatorSpec> actuators;
   std::vector<MarkerSpec> markers;
+  std::vector<FootSpec> feet;  // none, or the rear one and the front one
 };
 
 }  // namespace softkin

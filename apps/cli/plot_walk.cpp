@@ -1,0 +1,58 @@
+#include "plot_walk.hpp"
+
+#include <utility>
+
+#include "fk_units.hpp"
+#include "plot_steps.hpp"
+
+namespace softkin::cli {
+
+namespace {
+
+/// Drawn along the steps in a panel of its own.
+PlotPanel panel_of(const StepAxis& along, const std::string& label) {
+  PlotPanel panel;
+  panel.x = along.axis;
+  panel.y.label = label;
+  return panel;
+}
+
+PlotSeries series_of(const StepAxis& along, const std::string& label, const std::vector<WalkedStep>& steps,
+                     double WalkStep::*value) {
+  PlotSeries series;
+  series.label = label;
+  series.x = along.values;
+  for (const WalkedStep& step : steps) series.y.push_back(step.walk.*value);
+  return series;
+}
+
+}  // namespace
+
+Plot plot_of_walk(const Model& model, const std::vector<WalkedStep>& steps, const std::string& title) {
+  std::vector<std::optional<double>> times;
+  for (const WalkedStep& step : steps) times.push_back(step.gait.asked.time);
+  const StepAxis along = step_axis(times, {});
+  const auto foot = [&](std::size_t i) { return model.markers[static_cast<std::size_t>(model.feet[i].marker)].name; };
+
+  PlotPanel feet = panel_of(along, "place [mm]");
+  feet.series = {series_of(along, foot(0), steps, &WalkStep::rear_mm),
+                 series_of(along, foot(1), steps, &WalkStep::front_mm)};
+  std::vector<StepCurve> commands;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const std::string unit = command_unit(model.actuators[a]);
+    commands.push_back({model.actuators[a].name, unit.empty() ? "-" : unit, {}});
+    for (const WalkedStep& step : steps)
+      commands.back().values.push_back(step.gait.asked.actuation[static_cast<Index>(a)]);
+  }
+  Plot plot;
+  plot.title = title;
+  plot.rows = {{std::move(feet)}, curve_panels(along, commands, "command")};
+  if (model.formulation == Formulation::physical) {
+    PlotPanel friction = panel_of(along, "friction [N]");
+    friction.series = {series_of(along, "", steps, &WalkStep::friction_N)};
+    plot.rows.push_back({std::move(friction)});
+  }
+  return plot;
+}
+
+}  // namespace softkin::cli
