@@ -11,6 +11,7 @@
 
 #include "actuator_settings.hpp"
 #include "command.hpp"
+#include "curve_settings.hpp"
 #include "fk_files.hpp"
 #include "fk_robot.hpp"
 #include "fk_table.hpp"
@@ -145,7 +146,10 @@ int run_ik(const IkOptions& options) {
   const OutputFolders folders(options.outputs());
   for (const std::string& doubt : doubts_about(model, search.asked))
     std::fprintf(stderr, "softkin: warning: %s\n", doubt.c_str());
-  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+  if (!options.json) {
+    print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+    for (const auto* settings : {&options.start, &options.prefer, &options.fix}) print(curve_remarks(model, *settings));
+  }
   return IkRun(model, statics, options, search).run();
 }
 

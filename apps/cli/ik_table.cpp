@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "curve_settings.hpp"
 #include "fk_units.hpp"
 #include "ik_report.hpp"
 #include "mesh_text.hpp"
@@ -20,6 +21,14 @@ std::string load_text(const Actuator& actuator, const Report::Json& values) {
   if (values.value("slack", false)) return "slack";
   if (values.at(key).is_null()) return "unknown";
   return decimal(values.at(key).get<double>(), value_decimals) + (actuator.kind == ActuatorKind::cable ? " N" : " kPa");
+}
+
+/// "50.0000 kPa": what the actuator's curve gives for the command.
+std::string curve_input_text(const Actuator& actuator, const Report::Json& values) {
+  if (!actuator.curve) return "-";
+  const auto& input = values.at(curve_key(*actuator.curve));
+  return input.is_null() ? "outside"
+                         : decimal(input.get<double>(), value_decimals) + unit_of_input(actuator.curve->input);
 }
 
 std::string coordinates_text(const Vec3& point, int decimals) {
@@ -64,7 +73,10 @@ std::string ends_text(const Model& model, const InverseResult& found) {
 
 std::string ik_table(const Model& model, const std::vector<AskedGoal>& goals, const InverseResult& found,
                      const Report::Json& step) {
+  const bool curves = std::any_of(model.actuators.begin(), model.actuators.end(),
+                                  [](const Actuator& actuator) { return actuator.curve.has_value(); });
   std::vector<std::vector<std::string>> rows{{"actuator", "command", "", "range", "achieved [-]", "load"}};
+  if (curves) rows[0].emplace_back("by curve");
   for (const Actuator& actuator : model.actuators) {
     const auto& values = step.at("actuators").at(actuator.name);
     const auto& achieved = values.at("achieved");
@@ -72,8 +84,9 @@ std::string ik_table(const Model& model, const std::vector<AskedGoal>& goals, co
                     bracketed_unit(actuator), number(actuator.low) + " to " + number(actuator.high),
                     achieved.is_null() ? "unknown" : decimal(achieved.get<double>(), value_decimals),
                     load_text(actuator, values)});
+    if (curves) rows.back().push_back(curve_input_text(actuator, values));
   }
-  std::vector<std::string> lines = aligned(rows, "lrlrrr");
+  std::vector<std::string> lines = aligned(rows, curves ? "lrlrrrr" : "lrlrrr");
   rows = {{"marker", "asked", "found", "error [mm]"}};
   for (std::size_t i = 0; i < goals.size(); ++i)
     rows.push_back({goals[i].name, asked_text(goals[i].goal),
