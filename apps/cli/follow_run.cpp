@@ -10,7 +10,6 @@
 
 #include "command.hpp"
 #include "fk_files.hpp"
-#include "fk_resume.hpp"
 #include "fk_table.hpp"
 #include "fk_units.hpp"
 #include "follow_files.hpp"
@@ -18,6 +17,7 @@
 #include "follow_table.hpp"
 #include "mesh_text.hpp"
 #include "plot_follow.hpp"
+#include "stored_report.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {

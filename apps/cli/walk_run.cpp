@@ -9,11 +9,11 @@
 
 #include "command.hpp"
 #include "fk_files.hpp"
-#include "fk_resume.hpp"
 #include "fk_table.hpp"
 #include "fk_units.hpp"
 #include "mesh_text.hpp"
 #include "plot_walk.hpp"
+#include "stored_report.hpp"
 #include "terminal.hpp"
 #include "walk_resume.hpp"
 
@@ -26,10 +26,9 @@ class WalkRun {
   WalkRun(const Model& model, Walker& walker, const WalkOptions& options, const std::vector<GaitStep>& steps)
       : model_(model), walker_(walker), options_(options), steps_(steps), report_(model, options), table_(model) {
     const Vec3& along = walker.direction();
-    report_.note("walk", {{"gait", options.gait},
-                          {"cycles", options.cycles},
-                          {"direction", {along[0], along[1], along[2]}},
-                          {"feet", feet_json(model)}});
+    report_.note("walk",
+                 {{"gait", options.gait}, {"cycles", options.cycles}, {"direction", {along[0], along[1], along[2]}}});
+    report_.note("feet", feet_json(model));
   }
 
   int run() {
