@@ -3,7 +3,9 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <softkin/io/svg_plot.hpp>
 #include <softkin/io/text_mesh_tools.hpp>
 
@@ -20,12 +22,13 @@ namespace {
 struct CompareOptions {
   std::vector<std::string> reports, turn, sum;
   std::string marker, plot, by, plane, output;
-  std::vector<double> poses;  // [degrees]
+  std::vector<double> poses;    // [degrees]
+  std::optional<double> start;  // [s]
   bool align = false, json = false;
 
   /// Reports of the same steps side by side, or paths of markers?
   [[nodiscard]] bool of_paths() const {
-    const bool asked = align || !sum.empty() || !by.empty() || !plane.empty() || !output.empty();
+    const bool asked = align || !sum.empty() || !by.empty() || !plane.empty() || !output.empty() || start;
     return asked || std::any_of(reports.begin(), reports.end(),
                                 [](const std::string& file) { return lower_extension(file) != ".json"; });
   }
@@ -33,7 +36,7 @@ struct CompareOptions {
 
 int compare_paths_of(const CompareOptions& options) {
   return compare_tracks({options.reports, options.sum, options.marker, options.by, options.plane, options.output,
-                         options.plot, options.align, options.json});
+                         options.plot, options.start, options.align, options.json});
 }
 
 int compare(const CompareOptions& options) {
@@ -61,6 +64,9 @@ void check(const CompareOptions& options) {
     throw CLI::ValidationError("REPORTS", "give two reports or more");
   if (options.of_paths() && (!options.turn.empty() || !options.poses.empty()))
     throw CLI::ValidationError("--turn", "compares reports of the same steps, not paths");
+  if (options.start && !std::isfinite(*options.start)) throw CLI::ValidationError("--start", "must be a time in s");
+  if (options.start && !options.by.empty() && options.by != "time")
+    throw CLI::ValidationError("--start", "is a time, and --by " + options.by + " compares by something else");
   if (!options.output.empty() && lower_extension(options.output) != ".csv")
     throw CLI::ValidationError("--output", "must end in .csv");
   if (!options.plot.empty() && lower_extension(options.plot) != ".svg")
@@ -76,6 +82,11 @@ void add_path_options(CLI::App& command, CompareOptions& options) {
                   "column or actuator that ascends (default: time where both have it, else waypoint where both have "
                   "as many, else arc)")
       ->type_name("NAME");
+  command
+      .add_option("--start", options.start,
+                  "Paths by time: when the first file's clock begins, in that of the tables after it [s], such as the "
+                  "time in a film at which the robot sets off (default: 0)")
+      ->type_name("S");
   command.add_flag(
       "--align", options.align,
       "Paths: first turn and move each onto the first, to the least squares (no mirroring); predictions among each "

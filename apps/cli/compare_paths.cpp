@@ -61,8 +61,11 @@ class PathReport {
                       std::to_string(each.waypoints[each.worst].waypoint), decimal(each.mean_mm, 3),
                       decimal(each.rms_mm, 3)});
     }
-    return text + joined(aligned(waypoint_rows(), std::string(waypoint_rows().front().size(), 'r')), "") + "\n" +
-           joined(aligned(rows, "rrrrr"), "");
+    const std::vector<std::vector<std::string>> waypoints = waypoint_rows();
+    text += joined(aligned(waypoints, std::string(waypoints.front().size(), 'r')), "");
+    if (const std::size_t all = tracks_[0].points.size(); waypoints.size() - 1 < all)
+      text += std::to_string(waypoints.size() - 1) + " of " + counted(all, "waypoint") + " shown; all: -o F.csv\n";
+    return text + "\n" + joined(aligned(rows, "rrrrr"), "");
   }
 
   [[nodiscard]] Json json() const {
@@ -165,7 +168,9 @@ class PathReport {
 
   static std::string alignment_text(const PathComparison& each) {
     const double angle = std::acos(std::clamp((each.rotation.trace() - 1) / 2, -1.0, 1.0)) * 57.29577951308232;
-    return "turned by " + number(angle, 4) + " degrees, then moved by " + point_text(each.translation) +
+    std::string moved;  // to a micrometre, as all lengths here
+    for (const double x : each.translation) moved += (moved.empty() ? "" : ", ") + decimal(x, 3);
+    return "turned by " + number(angle, 4) + " degrees, then moved by (" + moved + ") mm" +
            (each.unique ? "" : " (the points lie on a line: other rotations fit as well)");
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <softkin/calibration/path_comparison.hpp>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ struct PathCompareOptions {
   std::vector<std::string> files;  // the first is the reference; "F.csv@marker"
   std::vector<std::string> sum;    // reports of single actuators
   std::string marker, by, plane, output, plot;
+  std::optional<double> start;  // of the first file's clock, in that of the tables after it [s]
   bool align = false, json = false;
 
   [[nodiscard]] std::vector<Output> outputs() const;

@@ -88,6 +88,19 @@ bool is_report(const std::string& file) {
   return lower_extension(file) == ".json";
 }
 
+/// Sets the clocks of all tables but the first file back by the start.
+void set_clocks(std::vector<Track>& tracks, double start) {
+  bool any = false;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    Track& track = tracks[t];
+    if (track.parameter.empty()) throw InvalidInput({track.name}, "it has no times, so --start means nothing to it");
+    if (t == 0 || track.robot_frame) continue;
+    for (double& time : track.parameter) time -= start;
+    any = true;
+  }
+  if (!any) throw InvalidInput("--start is of the clock of a measured track: give one (.csv) after the first file");
+}
+
 /// A report in which one actuator moves, as a sweep of it.
 class Single {
  public:
@@ -189,6 +202,7 @@ std::vector<Track> tracks_of(const PathCompareOptions& options) {
     tracks.push_back(track_of(path, source.marker, options.by));
     if (!commanded) commanded = path;
   }
+  if (options.start) set_clocks(tracks, *options.start);
   if (options.sum.empty()) return tracks;
   if (!commanded)
     throw InvalidInput("--sum needs a report among the files, whose commands it adds up single predictions for");

@@ -159,6 +159,38 @@ TEST_F(Compare, APathIsComparedWithACameraTrackByTime) {
     EXPECT_NE(aligned.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << aligned.output;
 }
 
+TEST_F(Compare, AClockThatBeganEarlierIsSetBack) {
+  const std::string robot = folder_.write("robot.csv", "t_s,x_mm,y_mm\n0,0,0\n1,10,0\n2,10,10\n");
+  const std::string film = folder_.write("film.csv", "t_s,x_mm,y_mm\n0,0,0\n3.25,0,0\n4.25,10,0\n5.25,10,10\n");
+  const auto track = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"compare", robot, film, "--json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return json::parse(run_program(arguments).output)["tracks"][0];
+  };
+  EXPECT_NEAR(track({})["largest_mm"].get<double>(), std::hypot(10, 10), 1e-9);
+  EXPECT_NEAR(track({"--start", "3.25"})["largest_mm"].get<double>(), 0, 1e-9);
+  EXPECT_NEAR(track({"--start", "3.15"})["largest_mm"].get<double>(), 1, 1e-9) << "0.1 s at 10 mm/s";
+  EXPECT_EQ(track({"--start", "3.75"})["left_out"], 1) << "the film ends before";
+  const std::string timeless = folder_.write("timeless.csv", "x_mm,y_mm\n0,0\n10,0\n10,10\n");
+  expect_refused({"compare", robot, timeless, "--start", "1"}, {"timeless.csv", "no times", "--start"});
+  expect_refused({"compare", timeless, film, "--start", "1"}, {"timeless.csv", "no times", "--start"});
+  expect_refused({"compare", robot, film, "--start", "1", "--by", "arc"}, {"--start", "arc"});
+  expect_refused({"compare", robot, film, "--start", "nan"}, {"--start"});
+  const std::string report = write("robot.json", linear(both_move));
+  expect_refused({"compare", report, report, "--start", "1"}, {"--start", "measured track"});
+}
+
+TEST_F(Compare, ALongTableSaysThatItIsCut) {
+  for (const int count : {20, 21}) {
+    std::string text = "x_mm,y_mm\n";
+    for (int i = 0; i < count; ++i) text += std::to_string(i) + ",0\n";
+    const std::string track = folder_.write("track.csv", text);
+    const std::string output = run_program({"compare", track, track}).output;
+    EXPECT_EQ(output.find("20 of 21 waypoints shown; all: -o F.csv\n") != std::string::npos, count == 21) << output;
+    EXPECT_EQ(output.find("shown") != std::string::npos, count == 21) << output;
+  }
+}
+
 TEST_F(Compare, PlanesMarkersAndParametersAreThoseAskedFor) {
   const std::string solid = folder_.write("solid.csv",
                                           "alpha,tip_x_mm,tip_y_mm,tip_z_mm,base_x_mm,base_y_mm\n"

@@ -141,6 +141,9 @@ ProgramResult run_line(const std::string& command) {
   return testing::run_shell("{ " + command + "\n} </dev/null 2>&1");
 }
 
+/// Options that are followed by a file that is written.
+const std::set<std::string> outputs{"-o", "--output", "--report", "--image", "--plot", "--gcode", "--schedule"};
+
 /// Names of the Makefile's commands.
 std::set<std::string> make_targets() {
   std::istringstream stream(testing::read_text(source / "Makefile"));
@@ -215,9 +218,9 @@ bool number_in(const std::string& word, double& value, double& tolerance) {
   return end == digits.c_str() + digits.size();
 }
 
-/// Where the iterations and the seconds of a row of `fk` stand, before its status; the number of words where none do.
+/// Where iterations and seconds of a row of `fk` or `follow` stand, before its status; the number of words if none do.
 std::size_t place_of_effort(const std::vector<std::string>& words) {
-  const bool is_row = words.size() > 3 && words.back() == "converged";
+  const bool is_row = words.size() > 3 && (words.back() == "converged" || words.back() == "reached");
   const bool counts = is_row && words[words.size() - 3].find_first_not_of("0123456789") == std::string::npos;
   return counts ? words.size() - 3 : words.size();
 }
@@ -277,7 +280,7 @@ class Checker {
     const std::vector<std::string> words = words_of(command);
     const std::string& program = words.at(0);
     const std::string at = block.at(line) + command + ": ";
-    if (program == "build/softkin") return run(at, command, expected);
+    if (program == "build/softkin" || program == "awk") return run(at, command, expected);
     if (program == "make") return make(at, words);
     if (program == "cmake") {
       check_cmake(at, words);
@@ -295,10 +298,11 @@ class Checker {
 
   std::string run(const std::string& at, const std::string& command, int expected) {
     std::vector<std::string> words = words_of(command);
-    for (std::size_t i = 0; i + 1 < words.size(); ++i)
-      if (words[i] == "-o" || words[i] == "--output" || words[i] == "--report" || words[i] == "--image") {
-        EXPECT_TRUE(words[i + 1].starts_with("out/")) << at << "writes outside out/";
-      }
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const bool names_output = outputs.contains(words[i]) && i + 1 < words.size();
+      const std::string file = names_output ? words[i + 1] : words[i].starts_with(">") ? words[i].substr(1) : "out/";
+      EXPECT_TRUE(file.starts_with("out/")) << at << "writes outside out/";
+    }
     const ProgramResult& result = clone_.run(command);
     EXPECT_EQ(result.exit_code, expected) << at << "\n" << result.output;
     return result.output;
