@@ -22,9 +22,18 @@ if(SOFTKIN_SANITIZE)
   target_link_options(softkin_settings INTERFACE -fsanitize=${SOFTKIN_SANITIZE})
 endif()
 
+# softkin_precompile(TARGET [headers...]): what nearly every file of the target reads, read once
+function(softkin_precompile target)
+  if(SOFTKIN_PCH)
+    target_precompile_headers(${target} PRIVATE <Eigen/Core> <algorithm> <cmath> <filesystem> <functional> <map> <memory>
+                              <optional> <string> <vector> ${ARGN})
+  endif()
+endfunction()
+
 # softkin_room(NAME [rooms and libraries it uses...]): every .cpp of the folder
 function(softkin_room name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   add_library(softkin_${name} STATIC ${sources})
   target_link_libraries(softkin_${name} PUBLIC softkin_settings ${ARGN})
+  softkin_precompile(softkin_${name})
 endfunction()
