@@ -4,6 +4,8 @@ SETUP ?= scripts/setup.sh
 CLANG_FORMAT ?= $(or $(shell command -v clang-format-14),clang-format)
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+# or it takes no file with a precompiled header
+export CCACHE_SLOPPINESS ?= pch_defines,time_macros
 endif
 export CTEST_OUTPUT_ON_FAILURE = 1
 
