@@ -32,11 +32,10 @@ Plot plot_of_walk(const Model& model, const std::vector<WalkedStep>& steps, cons
   std::vector<std::optional<double>> times;
   for (const WalkedStep& step : steps) times.push_back(step.gait.asked.time);
   const StepAxis along = step_axis(times, {});
-  const auto foot = [&](std::size_t i) { return model.markers[static_cast<std::size_t>(model.feet[i].marker)].name; };
 
   PlotPanel feet = panel_of(along, "place [mm]");
-  feet.series = {series_of(along, foot(0), steps, &WalkStep::rear_mm),
-                 series_of(along, foot(1), steps, &WalkStep::front_mm)};
+  feet.series = {series_of(along, foot_name(model, 0), steps, &WalkStep::rear_mm),
+                 series_of(along, foot_name(model, 1), steps, &WalkStep::front_mm)};
   std::vector<StepCurve> commands;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const std::string unit = command_unit(model.actuators[a]);

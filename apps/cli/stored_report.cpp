@@ -64,11 +64,12 @@ void StoredReport::check_head(const Json& json, const Json& head, const std::vec
   };
   if (!same("softkin")) refuse("softkin " + json.at("softkin").get<std::string>() + " wrote it");
   if (!same("robot_fingerprint")) refuse("it is of another robot, or the scene or its mesh has changed");
-  std::vector<std::string> all{"solver"};
-  all.insert(all.end(), keys.begin(), keys.end());
-  for (const std::string& key : all)
+  const auto check = [&](const std::string& key, const std::string& what) {
     if (!same(key))
-      refuse("it was made with other options: " + json.at(key).dump() + " instead of " + head.at(key).dump());
+      refuse("it was made with other " + what + ": " + json.at(key).dump() + " instead of " + head.at(key).dump());
+  };
+  check("solver", "solver options");
+  for (const std::string& key : keys) check(key, "options");
 }
 
 Finished StoredReport::take(Report& report, const std::vector<std::string>& keys,

@@ -22,10 +22,10 @@ bool is_asked(const Model& model, const Json& step, const Step& asked) {
 
 Json feet_json(const Model& model) {
   Json feet = Json::array();
-  for (const Foot& foot : model.feet)
-    feet.push_back({{"marker", model.markers[static_cast<std::size_t>(foot.marker)].name},
-                    {"forward_N", foot.forward},
-                    {"backward_N", foot.backward}});
+  for (std::size_t i = 0; i < model.feet.size(); ++i)
+    feet.push_back({{"marker", foot_name(model, i)},
+                    {"forward_N", model.feet[i].forward},
+                    {"backward_N", model.feet[i].backward}});
   return feet;
 }
 

@@ -15,10 +15,6 @@ const std::string sliding_names[] = {"none", "rear", "front", "both"};  // of Sl
 constexpr double same_stride_mm = 1e-4;
 constexpr int length_decimals = 4, force_decimals = 6;
 
-const std::string& foot_name(const Model& model, std::size_t foot) {
-  return model.markers[static_cast<std::size_t>(model.feet[foot].marker)].name;
-}
-
 bool has_friction(const Model& model) {
   return model.formulation == Formulation::physical;
 }
@@ -49,6 +45,10 @@ std::vector<GaitStep> repeated(const Model& model, const std::string& file, cons
       if (timed) *steps.back().asked.time += static_cast<double>(cycle - 1) * period;
     }
   return steps;
+}
+
+const std::string& foot_name(const Model& model, std::size_t foot) {
+  return model.markers[static_cast<std::size_t>(model.feet[foot].marker)].name;
 }
 
 std::string sliding_text(const Model& model, Sliding sliding) {

@@ -26,6 +26,9 @@ struct WalkedStep {
   WalkStep walk;  // without positions
 };
 
+/// The marker that shows where it is. foot: 0 the rear one, 1 the front one.
+[[nodiscard]] const std::string& foot_name(const Model& model, std::size_t foot);
+
 /// "foot1", "foot1 and foot2" or "-".
 [[nodiscard]] std::string sliding_text(const Model& model, Sliding sliding);
 

@@ -379,7 +379,7 @@ TEST(FkPhysical, ResumeRefusesAnotherRobot) {
   refused(replaced(scene, "length, range: [0.5, 1.2]", "tension, range: [0, 1]"), {}, other);
   refused(replaced(scene, "force: [0, 0, 0]", "force: [0, 0, 1e-6]"), {}, other);
   refused(scene, {"--force", "payload=0,0,1e-6"}, other);
-  refused(scene, {"--max-iterations", "40"}, "other options");
+  refused(scene, {"--max-iterations", "40"}, "other solver options");
   folder.write("block.yaml", scene);
   std::vector<std::string> again = options;
   again.emplace_back("--resume");

@@ -227,7 +227,7 @@ TEST(FkResume, RefusesAnotherTask) {
   folder.write("path.csv", "t_s,air\n0,1\n0.6,1.013\n1,1.026\n");
   expect_refused(folder, {"step 1 has another time than ", "path.csv:3"});
   folder.write("path.csv", path_text(3));
-  expect_refused(folder, {"other options", "max_iterations"}, {"--resume", "--max-iterations", "7"});
+  expect_refused(folder, {"other solver options", "max_iterations"}, {"--resume", "--max-iterations", "7"});
 
   std::string scene = block_scene();
   scene.replace(scene.find("shape_ratio: 1.0"), 16, "shape_ratio: 0.9");

@@ -8,9 +8,9 @@ namespace softkin {
 
 namespace {
 
-constexpr double default_tolerance = 8e-8;  // of the diagonal: StaticsOptions::step_tolerance_mm
-constexpr double straight = 1e-6;           // feet may leave their line by so much of their distance
-constexpr int most_trials = 60;             // for the friction of feet that stand
+constexpr double stands = 4;       // feet that change their distance by so many of the solver's tolerances, or less
+constexpr double straight = 1e-6;  // feet may leave their line by so much of their distance
+constexpr int most_trials = 60;    // for the friction of feet that stand
 
 struct FootForces {
   double shortening = 0, lengthening = 0;  // friction at which a foot slides as the body does [N]
@@ -104,9 +104,6 @@ struct Walker::Parts {
         options(solver),
         actuators(static_cast<Index>(robot.actuators.size())),
         state(statics.rest()) {
-    const double step =
-        options.step_tolerance_mm > 0 ? options.step_tolerance_mm : default_tolerance * robot.diagonal_mm;
-    tolerance_mm = 4 * step;
     origin = direction.dot(point_of(robot, robot.feet[0]).at(robot.rest));
   }
 
@@ -139,6 +136,9 @@ struct Walker::Parts {
     return result;
   }
 
+  /// Change of the feet's distance up to which they stand [mm].
+  [[nodiscard]] static double tolerance_mm(const Trial& trial) { return stands * trial.found.report.tolerance_mm; }
+
   [[nodiscard]] static bool good(const Trial& trial) { return trial.found.report.status == Status::converged; }
 
   /// The shape with the feet's distance at which they stood, or the one in which a foot slides.
@@ -146,11 +146,12 @@ struct Walker::Parts {
     Trial first = trial(actuation, friction, state, progress, count);
     if (!placed || !good(first)) return first;
     const double miss = first.distance - distance;
-    if (std::abs(miss) <= tolerance_mm) return first;
+    if (std::abs(miss) <= tolerance_mm(first)) return first;
     const double limit = !physical ? 0 : miss > 0 ? -forces.lengthening : forces.shortening;
     if (first.friction == limit) return first;
     Trial last = trial(actuation, limit, first.found.state, progress, count);
-    const bool slides = miss > 0 ? last.distance > distance - tolerance_mm : last.distance < distance + tolerance_mm;
+    const bool slides =
+        miss > 0 ? last.distance > distance - tolerance_mm(last) : last.distance < distance + tolerance_mm(last);
     if (!good(last) || slides) return last;
     return standing(actuation, std::move(first), std::move(last), progress, count);
   }
@@ -164,7 +165,7 @@ struct Walker::Parts {
       const double next = b.friction - miss_b * (b.friction - a.friction) / (miss_b - miss_a);
       Trial c = trial(actuation, next, b.found.state, progress, count);
       const double miss = c.distance - distance;
-      if (!good(c) || std::abs(miss) <= tolerance_mm) return c;
+      if (!good(c) || std::abs(miss) <= tolerance_mm(c)) return c;
       if ((miss > 0) != (miss_b > 0)) {
         a = std::move(b);
         miss_a = miss_b;
@@ -190,7 +191,7 @@ struct Walker::Parts {
       middle = distance / 2;
       return Sliding::none;
     }
-    if (std::abs(change) <= tolerance_mm) return Sliding::none;
+    if (std::abs(change) <= tolerance_mm(found)) return Sliding::none;
     const Sliding sliding = change < 0 ? forces.when_shortening : forces.when_lengthening;
     const double share = sliding == Sliding::rear ? 1 : sliding == Sliding::front ? 0 : 0.5;
     rear -= share * change;
@@ -237,7 +238,7 @@ struct Walker::Parts {
   Statics statics;
   StaticsOptions options;
   Index actuators;
-  double origin = 0, tolerance_mm = 0;
+  double origin = 0;    // where the rear foot stands at rest, along the direction of travel [mm]
   State state;          // of the body where the scene holds it
   bool placed = false;  // does it stand on the floor
   double friction = 0;  // that stretches it [N]
