@@ -10,8 +10,6 @@ namespace softkin::cli {
 
 namespace {
 
-constexpr double tolerance_of_gradient_mm = 0.2;  // the paper's lambda
-
 void add_path(CLI::App& command, FollowOptions& options) {
   add_scene(command, options);
   command
@@ -36,16 +34,7 @@ void add_path(CLI::App& command, FollowOptions& options) {
 }
 
 void add_search(CLI::App& command, FollowOptions& options) {
-  command
-      .add_option("--method", options.method,
-                  "newton (default), or gradient: Algorithm 2 of Fang et al. 2020\nwith central differences")
-      ->type_name("NAME")
-      ->check(one_of({"newton", "gradient"}));
-  command
-      .add_option("--tolerance", options.tolerance_asked_mm,
-                  "Distance from a waypoint at which it is reached [mm] (default:\n0.001; gradient: 0.2)")
-      ->type_name("MM")
-      ->check(positive_length());
+  add_method(command, options, "Distance from a waypoint at which it is reached");
   command
       .add_option("--descents", options.descents,
                   "gradient: iterations of Algorithm 2 for a waypoint, i_max\n(default: " +
@@ -66,12 +55,7 @@ std::vector<Output> FollowOptions::outputs(std::size_t waypoints) const {
 
 TrajectoryOptions FollowOptions::trajectory() const {
   TrajectoryOptions result;
-  if (method == "gradient") {
-    result.inverse.method = InverseMethod::gradient;
-    result.inverse.tolerance_mm = tolerance_of_gradient_mm;
-  }
-  result.inverse.tolerance_mm = tolerance_asked_mm.value_or(result.inverse.tolerance_mm);
-  result.inverse.max_iterations = descents.value_or(result.inverse.max_iterations);
+  result.inverse = by_method();
   result.inverse.statics = statics();
   return result;
 }
@@ -94,8 +78,7 @@ void check_usage(const FollowOptions& options) {
   if (options.folder.empty()) throw InvalidInput("--output: the name of the folder is empty");
   if (!options.plot_file.empty() && lower_extension(options.plot_file) != ".svg")
     throw InvalidInput("--plot " + options.plot_file + ": must end in .svg");
-  if (options.descents && options.method != "gradient")
-    throw InvalidInput("--descents are iterations of Algorithm 2: it needs --method gradient");
+  check_method(options);
   check_solver(options);
 }
 

@@ -7,18 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "method_options.hpp"
 #include "output_files.hpp"
 #include "solve_options.hpp"
 
 namespace softkin::cli {
 
 /// What the user asks of `softkin follow`. An empty file name: not given.
-struct FollowOptions : SolveOptions {
+struct FollowOptions : SolveOptions, MethodOptions {
   std::string path, folder, marker, workspace, plot_file;
-  std::string method = "newton";
-  std::optional<double> tolerance_asked_mm;  // of a waypoint
-  std::optional<int> descents;               // i_max of Algorithm 2
-  double max_step_mm = 0;                    // 0: as given
+  double max_step_mm = 0;  // 0: as given
   bool json = false, resume = false;
 
   // In the folder:

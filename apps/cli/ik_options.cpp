@@ -13,7 +13,6 @@ namespace {
 
 constexpr int most = 1'000'000;
 /// Of the paper's experiments.
-constexpr double tolerance_of_gradient_mm = 0.2;
 
 CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                           const std::string& help, const std::string& type) {
@@ -57,16 +56,7 @@ void add_start(CLI::App& command, IkOptions& options) {
 
 void add_search(CLI::App& command, IkOptions& options) {
   const InverseOptions defaults;
-  command
-      .add_option("--method", options.method,
-                  "newton (default), or gradient: Algorithm 2 of Fang et al. 2020\nwith central differences")
-      ->type_name("NAME")
-      ->check(one_of({"newton", "gradient"}));
-  command
-      .add_option("--tolerance", options.reach_mm,
-                  "Error of every goal at which they are reached [mm] (default:\n0.001; gradient: 0.2)")
-      ->type_name("MM")
-      ->check(positive_length());
+  add_method(command, options, "Error of every goal at which they are reached");
   command
       .add_option("--max-equilibria", options.max_equilibria,
                   "newton: give up after so many (default: " + std::to_string(defaults.max_equilibria) + ")")
@@ -120,14 +110,8 @@ std::vector<Output> IkOptions::outputs() const {
 }
 
 InverseOptions IkOptions::inverse() const {
-  InverseOptions result;
-  if (method == "gradient") {
-    result.method = InverseMethod::gradient;
-    result.tolerance_mm = tolerance_of_gradient_mm;
-  }
-  result.tolerance_mm = reach_mm.value_or(result.tolerance_mm);
+  InverseOptions result = by_method();
   result.max_equilibria = max_equilibria;
-  result.max_iterations = descents.value_or(result.max_iterations);
   result.other_starts = other_starts;
   result.statics = statics();
   return result;
@@ -149,8 +133,7 @@ void check_usage(const IkOptions& options) {
     throw InvalidInput("nothing to reach: ik needs a --target MARKER=X,Y,Z, a --plane or a --direction");
   if (!options.workspace.empty() && !options.start.empty())
     throw InvalidInput("--workspace chooses the start: it does not go with --start");
-  if (options.descents && options.method != "gradient")
-    throw InvalidInput("--descents are iterations of Algorithm 2: it needs --method gradient");
+  check_method(options);
   if (options.lever_mm && options.directions.empty())
     throw InvalidInput("--lever is the lever of a direction: it needs --direction");
   check_file("--output", options.output, ".vtu");

@@ -6,25 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "method_options.hpp"
 #include "output_files.hpp"
 #include "solve_options.hpp"
 
 namespace softkin::cli {
 
 /// What the user asks of `softkin ik`. An empty file name: not given.
-struct IkOptions : SolveOptions {
+struct IkOptions : SolveOptions, MethodOptions {
   std::vector<std::string> targets;     // MARKER=X,Y,Z
   std::vector<std::string> planes;      // MARKER=PX,PY,PZ/NX,NY,NZ
   std::vector<std::string> directions;  // FROM:TO=X,Y,Z
   std::vector<std::string> weights;     // GOAL=W
   std::vector<std::string> start, prefer, fix;
   std::string workspace;
-  std::string method = "newton";
-  std::optional<double> reach_mm;  // none: the method's
   std::optional<double> lever_mm;  // none: the distance of a direction's markers at rest
   int max_equilibria = InverseOptions().max_equilibria;
   int other_starts = InverseOptions().other_starts;
-  std::optional<int> descents;  // i_max of Algorithm 2
   std::string output, report, image, plot;
   std::vector<double> view;  // from the robot to the eye; empty: the picture's default
   bool json = false;

@@ -8,10 +8,22 @@
 #include <optional>
 #include <random>
 #include <softkin/calibration/camera.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/io/rgb_image.hpp>
+#include <string>
 #include <vector>
 
 namespace softkin::testing {
+
+/// What an action is refused with.
+inline std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
 
 /// Colour of the plane at a place [mm], 0 to 255.
 using Paint = std::function<Eigen::Vector3d(const Vec2& place)>;

@@ -29,15 +29,6 @@ const Camera lens{.width = 640,
                   .reprojection_error = 0.08,
                   .pictures = 9};
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(Camera, DistortionIsTakenOutAgain) {
   for (int x = 0; x < 640; x += 71)
     for (int y = 0; y < 480; y += 59) {

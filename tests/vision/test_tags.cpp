@@ -22,15 +22,6 @@ const Camera lens{.width = 640,
                   .p1 = 0.0006,
                   .p2 = -0.0005};
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 /// Largest error of the view over the board and around it, by its size [-].
 double scale_error(const Photograph& photo, const PlaneView& view, const BoardSpec& board) {
   double worst = 0;
