@@ -14,6 +14,7 @@
 namespace {
 
 using namespace softkin;
+using namespace softkin::physical;
 using namespace softkin::bench;
 
 struct Options {

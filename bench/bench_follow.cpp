@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <softkin/io/marker_path.hpp>
+#include <softkin/io/table/marker_path.hpp>
 #include <softkin/kinematics/trajectory.hpp>
 
 #include "command_line.hpp"

@@ -5,7 +5,7 @@
 #include <ctime>
 #include <numbers>
 #include <random>
-#include <softkin/io/scene.hpp>
+#include <softkin/io/scene/scene.hpp>
 #include <softkin/kinematics/inverse.hpp>
 
 #include "command_line.hpp"
@@ -83,7 +83,7 @@ struct Tally {
     most_equilibria = std::max(most_equilibria, result.equilibria);
     iterations += result.iterations;
     seconds += result.seconds;
-    for (const InverseRecord& record : result.history)
+    for (const InverseTrial& record : result.history)
       for (std::size_t a = 0; a < model.actuators.size(); ++a)
         inside = inside && record.actuation[static_cast<Index>(a)] >= model.actuators[a].low &&
                  record.actuation[static_cast<Index>(a)] <= model.actuators[a].high;

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <softkin/statics/global_step.hpp>
 #include <softkin/statics/statics.hpp>
-#include <softkin/statics/target_shape_system.hpp>
+#include <softkin/statics/supports/global_step.hpp>
+#include <softkin/statics/target_shape/system.hpp>
 
 #include "machine.hpp"
 #include "model/block_mesh.hpp"
@@ -14,6 +14,8 @@
 namespace {
 
 using namespace softkin;
+using namespace softkin::supports;
+using namespace softkin::target_shape;
 using bench::growth;
 using bench::now;
 
@@ -37,9 +39,9 @@ RobotSpec finger(int across) {
 /// Milliseconds of the local step (rotations, target shapes, assembly) and of the global one (triangular solves), on
 /// one thread: the least of several.
 std::pair<double, double> parts(const Model& model) {
-  const TargetShapeSystem system(model);
+  const target_shape::System system(model);
   const GlobalStep global(model, system.global_matrix());
-  TargetShapeSystem::Scratch scratch = system.make_scratch();
+  target_shape::System::Scratch scratch = system.make_scratch();
   Points positions = model.rest;
   std::vector<Pose> poses = global.project(positions);
   const Actuation actuation = Actuation::Constant(1, 1.5);

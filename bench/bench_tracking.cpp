@@ -11,6 +11,7 @@
 namespace {
 
 using namespace softkin;
+using namespace softkin::physical;
 using namespace softkin::bench;
 
 struct Options {

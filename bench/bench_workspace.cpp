@@ -3,7 +3,7 @@
 #include <time.h>
 
 #include <cmath>
-#include <softkin/io/scene.hpp>
+#include <softkin/io/scene/scene.hpp>
 #include <softkin/kinematics/workspace.hpp>
 
 #include "command_line.hpp"

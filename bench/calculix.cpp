@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
-#include <softkin/model/boundary.hpp>
+#include <softkin/model/mesh/boundary.hpp>
 #include <sstream>
 
 namespace softkin::bench {

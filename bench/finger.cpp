@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <softkin/model/boundary.hpp>
-#include <softkin/model/box_tree.hpp>
+#include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/box_tree.hpp>
 
 namespace softkin::bench {
 

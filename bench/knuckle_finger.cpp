@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <softkin/io/scene.hpp>
+#include <softkin/io/scene/scene.hpp>
 
 #include "model/block_mesh.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/statics/local_global.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/statics/statics.hpp>
+#include <softkin/statics/target_shape/local_global.hpp>
 
 #include "bend.hpp"
 #include "calculix.hpp"
@@ -22,7 +22,7 @@ Vec3 vector_of(const double (&values)[3]) {
   return {values[0], values[1], values[2]};
 }
 
-void store(const Vec3& vector, double (&values)[3]) {
+void target_shape::store(const Vec3& vector, double (&values)[3]) {
   std::copy(vector.begin(), vector.end(), values);
 }
 
@@ -47,7 +47,7 @@ Answers answer(const FingerSource& source, FingerKind kind, const std::vector<do
     target.degrees = shape.degrees;
     target.ratio = shape.ratio;
     target.pressure_kpa = shape.pressure;
-    store(shape.tip, target.tip);
+    target_shape::store(shape.tip, target.tip);
     answers.farthest_degrees = shape.degrees;
   }
   const EmbeddedPoint& marker = model.markers[0].point;
@@ -56,7 +56,7 @@ Answers answer(const FingerSource& source, FingerKind kind, const std::vector<do
     answers.marker_vertex[i] = marker.vertices[i];
     answers.marker_weight[i] = marker.weights[i];
   }
-  store(marker.at(model.rest), answers.marker_rest);
+  target_shape::store(marker.at(model.rest), answers.marker_rest);
   answers.seconds = now() - begin;
   return answers;
 }
@@ -93,7 +93,7 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
   const RobotSpec spec = source.robot(FingerKind::target_shape);
   const double begin = now();
   const Model model = compile(spec);
-  const TargetShapeSystem system(model);
+  const target_shape::System system(model);
   const GlobalStep global(model, system.global_matrix());
   Team team(options.threads);
   Run run;
@@ -102,8 +102,8 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
   const Actuation actuation = Actuation::Constant(1, target.ratio);
   const Vec3 tip = vector_of(target.tip);
   Points positions = model.rest;
-  LocalGlobal iteration(system, global, anderson, positions);
-  TargetShapeSystem::Scratch scratch = system.make_scratch();
+  target_shape::LocalGlobal iteration(system, global, anderson, positions);
+  target_shape::System::Scratch scratch = system.make_scratch();
   for (int count = 1;; ++count) {
     IterationRecord record;
     if (!iteration.iterate(actuation, scratch, team, record)) break;

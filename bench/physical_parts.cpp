@@ -37,7 +37,7 @@ PhysicalParts::PhysicalParts(const Model& model, const Actuation& actuation, con
 
 /// As at_ is; projected where that is not stable. returns negative eigenvalues of the exact stiffness
 int PhysicalParts::factorise() {
-  using Stiffness = PhysicalSystem::Stiffness;
+  using Stiffness = physical::System::Stiffness;
   system_.evaluate(at_, demand_, active_, work_, balance_, team_);
   (void)system_.factorise(at_, demand_, active_, Stiffness::exact, 0, work_, team_);
   const int negative = work_.factor.factorise(work_.values, 0, team_).negative;
@@ -49,7 +49,7 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   Times times;
   times.force = seconds_of(repeat, [&] { system_.evaluate(at_, demand_, active_, work_, balance_, team_); });
   const double whole = seconds_of(repeat, [&] {
-    (void)system_.factorise(at_, demand_, active_, PhysicalSystem::Stiffness::exact, 0, work_, team_);
+    (void)system_.factorise(at_, demand_, active_, physical::System::Stiffness::exact, 0, work_, team_);
   });
   times.factor = seconds_of(repeat, [&] { (void)work_.factor.factorise(work_.values, 0, team_); });
   Eigen::VectorXd step, change;
@@ -65,10 +65,10 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
     system_.advance(step, 1, work_, moved, team_);
   });
 
-  ElasticSystem elastic(model_);
+  physical::Body elastic(model_);
   Cliques cliques;
   elastic.add_cliques(cliques);
-  ElasticSystem::Scratch scratch = elastic.make_scratch();
+  physical::Body::Scratch scratch = elastic.make_scratch();
   LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()));
   Points gradient;
   (void)elastic.force(demand_.actuation, at_.positions, scratch, gradient, team_);

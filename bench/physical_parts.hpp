@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/model/equilibrium.hpp>
-#include <softkin/statics/physical_system.hpp>
+#include <softkin/statics/physical/system.hpp>
 
 namespace softkin::bench {
 
@@ -41,12 +41,12 @@ class PhysicalParts {
 
   const Model& model_;
   Team team_;
-  PhysicalSystem system_;
-  PhysicalSystem::Workspace work_;
-  PhysicalSystem::Balance balance_;
-  Demand demand_;
+  physical::System system_;
+  physical::System::Workspace work_;
+  physical::System::Balance balance_;
+  physical::Demand demand_;
   std::vector<bool> active_;
-  Iterate at_;
+  physical::Iterate at_;
   bool projected_ = false;
 };
 

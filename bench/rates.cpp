@@ -1,7 +1,7 @@
 #include "rates.hpp"
 
 #include <algorithm>
-#include <softkin/statics/front_kernel.hpp>
+#include <softkin/linear/front_kernel.hpp>
 
 #include "machine.hpp"
 
@@ -30,15 +30,15 @@ double dgemm_rate(Team& team) {
 }
 
 double front_rate(Team& team) {
-  constexpr Index size = 4000, stride = front_stride(size);
+  constexpr Index size = 4000, stride = linear::front_stride(size);
   std::vector<double> front(static_cast<std::size_t>(size) * stride), diagonal(size);
-  FrontWork work;
+  linear::FrontWork work;
   double best = 0;
   for (int run = 0; run < 3; ++run) {
     std::fill(front.begin(), front.end(), 0.01);
     for (Index i = 0; i < size; ++i) front[static_cast<std::size_t>(i) * stride + i] = size;
     const double begin = now();
-    (void)factor_front(front.data(), size, size, 1e-9, diagonal.data(), work, team);
+    (void)linear::factor_front(front.data(), size, size, 1e-9, diagonal.data(), work, team);
     best = std::max(best, 1.0 / 3 * size * size * size / (now() - begin));
   }
   return best;

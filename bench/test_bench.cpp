@@ -9,8 +9,8 @@
 #include <map>
 #include <numbers>
 #include <softkin/core/error.hpp>
-#include <softkin/model/boundary.hpp>
-#include <softkin/model/mesh_check.hpp>
+#include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/mesh_check.hpp>
 #include <thread>
 
 #include "bend.hpp"

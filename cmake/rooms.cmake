@@ -30,9 +30,9 @@ function(softkin_precompile target)
   endif()
 endfunction()
 
-# softkin_room(NAME [rooms and libraries it uses...]): every .cpp of the folder
+# softkin_room(NAME [rooms and libraries it uses...]): every .cpp of the folder and of those in it
 function(softkin_room name)
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   add_library(softkin_${name} STATIC ${sources})
   target_link_libraries(softkin_${name} PUBLIC softkin_settings ${ARGN})
   softkin_precompile(softkin_${name})

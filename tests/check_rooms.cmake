@@ -2,14 +2,17 @@ cmake_minimum_required(VERSION 3.22)
 
 # Fails when a file of a room includes a room that it may not see (docs/architecture.md).
 set(core_sees core)
+set(linear_sees core linear)
 set(model_sees core model)
 set(io_sees core model io)
 set(energy_sees core energy)
-set(statics_sees core model energy statics)
+set(statics_sees core linear model energy statics)
 set(kinematics_sees core model statics kinematics)
 set(drive_sees core model drive)
 set(calibration_sees core model io statics kinematics calibration)
 set(vision_sees core io calibration vision)
+
+set(runs_sees core model io statics kinematics runs)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)

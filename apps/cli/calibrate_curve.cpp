@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/error.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/scanner.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
 
 #include "terminal.hpp"
 
@@ -98,7 +98,7 @@ std::string table_text(const std::vector<std::vector<std::string>>& rows) {
   return joined(aligned(rows, std::string(rows.front().size(), 'r')), "");
 }
 
-std::string branch_quality(const char* name, const CurveBranch& branch, const BranchQuality& quality,
+std::string branch_quality(const char* name, const CurveBranch& branch, const calibration::BranchQuality& quality,
                            const ActuatorCurve& curve) {
   const std::vector<double>&x = branch.ratio.x(), &y = branch.ratio.y();
   std::string text = std::string(name) + ": " + counted(quality.repeats, "sweep") + ", " +
@@ -129,7 +129,7 @@ PlotSeries sample_series(const FittedCurve& fitted, Branch branch, const std::st
   series.line = false;
   series.style = style;
   series.mark_radius = 2;
-  for (const CurveSample& sample : fitted.samples) {
+  for (const calibration::CurveSample& sample : fitted.samples) {
     if (sample.branch != branch) continue;
     series.x.push_back(sample.input);
     series.y.push_back(sample.ratio);
@@ -137,7 +137,7 @@ PlotSeries sample_series(const FittedCurve& fitted, Branch branch, const std::st
   return series;
 }
 
-Json branch_json(const CurveBranch& branch, const BranchQuality& quality, const std::string& key) {
+Json branch_json(const CurveBranch& branch, const calibration::BranchQuality& quality, const std::string& key) {
   Json json{{key, branch.ratio.x()}, {"ratio", branch.ratio.y()}};
   if (!branch.spread.empty()) json["spread"] = branch.spread;
   if (quality.samples == 0) return json;

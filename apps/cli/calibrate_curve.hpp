@@ -3,7 +3,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
 #include <softkin/calibration/curve_fit.hpp>
-#include <softkin/io/svg_plot.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <string>
 #include <vector>
 
@@ -14,8 +14,8 @@ namespace softkin::cli {
 /// A curve with what it was fitted to. samples and quality are empty for a computed curve.
 struct FittedCurve {
   ActuatorCurve curve;
-  BranchQuality loading, unloading;
-  std::vector<CurveSample> samples;
+  calibration::BranchQuality loading, unloading;
+  std::vector<calibration::CurveSample> samples;
 };
 
 /// "loading: 3 sweeps, 120 rows, 15 points, ...", a line for each branch.

@@ -6,13 +6,13 @@
 #include <softkin/calibration/dielectric.hpp>
 #include <softkin/calibration/voltage.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/actuator_curve_file.hpp>
-#include <softkin/io/actuator_tests.hpp>
 #include <softkin/io/file.hpp>
+#include <softkin/io/table/actuator_curve_file.hpp>
+#include <softkin/io/table/actuator_tests.hpp>
 
+#include <softkin/io/output_files.hpp>
 #include "calibrate_command.hpp"
 #include "calibrate_curve.hpp"
-#include "output_files.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -59,12 +59,12 @@ DeaResult measured(const DeaOptions& options) {
     head += file + ": " + counted(more.size(), "run") + ", " + counted(rows, "row") + "\n";
     runs.insert(runs.end(), more.begin(), more.end());
   }
-  VoltageSamples samples = voltage_samples(runs);
+  calibration::VoltageSamples samples = calibration::voltage_samples(runs);
   for (std::size_t r = 0; r < runs.size(); ++r)
     if (std::abs(samples.rest_ratios[r] - 1) > rest_remark)
       head += runs[r].file + ", " + runs[r].name + ": area ratio without voltage " + number(samples.rest_ratios[r], 5) +
               "; the others are taken over it\n";
-  CurveFit fit = fit_curve(samples.samples);
+  calibration::CurveFit fit = calibration::fit_curve(samples.samples);
   DeaResult result{curve_of(options, std::move(fit.loading)), head, "", {{"tests", options.tests}}};
   result.fitted.curve.unloading = std::move(fit.unloading);
   result.fitted.loading = fit.loading_quality;
@@ -74,9 +74,9 @@ DeaResult measured(const DeaOptions& options) {
   return result;
 }
 
-Dielectric elastomer_of(const DeaOptions& options) {
-  Dielectric d;
-  d.law = options.law == "gent" ? DielectricLaw::gent : DielectricLaw::neo_hookean;
+calibration::Dielectric elastomer_of(const DeaOptions& options) {
+  calibration::Dielectric d;
+  d.law = options.law == "gent" ? calibration::DielectricLaw::gent : calibration::DielectricLaw::neo_hookean;
   const auto need = [&](const std::optional<double>& value, const char* option) {
     if (!value) throw InvalidInput("--law " + options.law + " needs " + option);
     return *value;
@@ -85,20 +85,20 @@ Dielectric elastomer_of(const DeaOptions& options) {
   d.relative_permittivity = need(options.permittivity, "--permittivity");
   d.thickness_mm = need(options.thickness_mm, "--thickness");
   d.prestretch = options.prestretch.value_or(1);
-  if (d.law == DielectricLaw::gent) d.stretch_limit = need(options.stretch_limit, "--stretch-limit");
+  if (d.law == calibration::DielectricLaw::gent) d.stretch_limit = need(options.stretch_limit, "--stretch-limit");
   return d;
 }
 
-std::string elastomer_text(const DeaOptions& options, const Dielectric& d) {
+std::string elastomer_text(const DeaOptions& options, const calibration::Dielectric& d) {
   std::string text = options.law + " elastomer in equal-biaxial tension: shear modulus " + number(d.shear_modulus_MPa) +
                      " MPa, relative permittivity " + number(d.relative_permittivity) + ", " + number(d.thickness_mm) +
                      " mm thick before any stretch, prestretch " + number(d.prestretch) +
                      (options.prestretch ? "" : " (default)");
-  if (d.law == DielectricLaw::gent) text += ", J_lim " + number(d.stretch_limit);
+  if (d.law == calibration::DielectricLaw::gent) text += ", J_lim " + number(d.stretch_limit);
   return text + "; constant forces at its edge\n";
 }
 
-std::string pull_in_text(const Dielectric& d, const PullIn& pull_in) {
+std::string pull_in_text(const calibration::Dielectric& d, const calibration::PullIn& pull_in) {
   return "pull-in at " + number(pull_in.voltage_kV, 5) + " kV: stretch " + number(pull_in.stretch, 5) +
          " (area ratio " + number(std::pow(pull_in.stretch / d.prestretch, 2), 5) +
          " to that without voltage), field " + number(pull_in.field_kV_mm, 4) +
@@ -106,8 +106,9 @@ std::string pull_in_text(const Dielectric& d, const PullIn& pull_in) {
 }
 
 DeaResult computed(const DeaOptions& options) {
-  const Dielectric d = elastomer_of(options);
-  const DielectricCurve curve = dielectric_curve(d, curve_points, options.breakdown_kV_mm.value_or(0));
+  const calibration::Dielectric d = elastomer_of(options);
+  const calibration::DielectricCurve curve =
+      calibration::dielectric_curve(d, curve_points, options.breakdown_kV_mm.value_or(0));
   DeaResult result{curve_of(options, {MonotoneCurve(curve.voltages, curve.area_ratios), {}}),
                    elastomer_text(options, d), "", Json::object()};
   result.fitted.curve.end = curve.broken_down ? "breakdown" : curve.pull_in ? "pull-in" : "the limit of the chains";

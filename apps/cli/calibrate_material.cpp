@@ -4,8 +4,8 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <memory>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/scanner.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
 
 #include "calibrate_command.hpp"
 #include "terminal.hpp"
@@ -61,7 +61,7 @@ void add_outputs(CLI::App& command, MaterialOptions& options) {
 }
 
 void add_set_up(CLI::App& command, MaterialOptions& options) {
-  SpecimenOptions& s = options.specimen;
+  calibration::SpecimenOptions& s = options.specimen;
   command
       .add_option("--formulation", options.formulation,
                   "physical: E_A / E_B; target-shape: R_omega (Fang et al. 2020);\ndefault: both")
@@ -182,7 +182,7 @@ void check(MaterialOptions& options) {
   if (options.formulation == "physical")
     check_belonging(options, {"--stiffer", "--try"}, "is of target shapes: it does not go with --formulation physical");
   if (options.regions[0] == options.regions[1]) throw CLI::ValidationError("--regions", "the two are one");
-  options.specimen.grip = options.grip == "sliding" ? Grip::sliding : Grip::clamped;
+  options.specimen.grip = options.grip == "sliding" ? calibration::Grip::sliding : calibration::Grip::clamped;
   options.specimen.law = law_of(options.law);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "output_files.hpp"
+#include <softkin/io/output_files.hpp>
 
 namespace softkin::cli {
 
@@ -18,7 +18,7 @@ struct MaterialOptions {
   std::string grip = "clamped";
   std::vector<std::string> regions{"A", "B"};
   std::string region = "body";  // tensile
-  SpecimenOptions specimen;
+  calibration::SpecimenOptions specimen;
   std::optional<double> modulus_b;  // [MPa]
   std::vector<double> tried;        // R_omega A / R_omega B to look at beside the one found
   double tolerance_percent = 5;     // of the linear range

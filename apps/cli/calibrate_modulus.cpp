@@ -67,7 +67,7 @@ class Report {
                   const std::vector<std::optional<double>>& pressures) {
     const Pairs pairs(of.ratio, ratios, pressures);
     if (pairs.measured.size() < 2) return;
-    const ModulusCheck check = check_modulus(pairs.measured, pairs.predicted);
+    const calibration::ModulusCheck check = calibration::check_modulus(pairs.measured, pairs.predicted);
     factors_.push_back(check.factor);
     report_.text += std::string(branch_name(branch)) + ": measured = " + number(check.factor, 4) +
                     " x predicted; they differ by " + percent(check.misfit_before) + " rms, with the factor by " +
@@ -130,7 +130,7 @@ ModulusReport compare_with_physics(RobotSpec spec, const std::string& actuator, 
   std::vector<double> ratios;
   for (int i = 1; i <= compared; ++i) ratios.push_back(i == compared ? high : low + (high - low) * i / compared);
   const auto pressures =
-      predicted_pressures(model, chamber, ratios, threads, [](const Progress&) { return !interrupted(); });
+      calibration::predicted_pressures(model, chamber, ratios, threads, [](const Progress&) { return !interrupted(); });
   ModulusReport report;
   report.json = Json::object();
   report.text =

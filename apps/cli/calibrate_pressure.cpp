@@ -4,16 +4,16 @@
 #include <cmath>
 #include <cstdio>
 #include <softkin/core/error.hpp>
-#include <softkin/io/actuator_curve_file.hpp>
-#include <softkin/io/actuator_tests.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
+#include <softkin/io/table/actuator_curve_file.hpp>
+#include <softkin/io/table/actuator_tests.hpp>
 
 #include "calibrate_curve.hpp"
 #include "calibrate_modulus.hpp"
 #include "command.hpp"
-#include "fk_robot.hpp"
+#include "solve_options.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -75,7 +75,7 @@ class PressureRun {
     check_outputs(options.outputs(), inputs_);
     read_setup();
     read_runs();
-    samples_ = chamber_ratios(setup_, runs_);
+    samples_ = calibration::chamber_ratios(setup_, runs_);
     fit();
   }
 
@@ -137,9 +137,9 @@ class PressureRun {
   }
 
   void fit() {
-    std::vector<CurveSample> samples;
-    for (const SyringeSample& each : samples_) samples.push_back(each.sample);
-    CurveFit fit = fit_curve(samples);
+    std::vector<calibration::CurveSample> samples;
+    for (const calibration::SyringeSample& each : samples_) samples.push_back(each.sample);
+    calibration::CurveFit fit = calibration::fit_curve(samples);
     const std::string name = options_.output.empty() ? "of the test" : options_.output;
     fitted_ = FittedCurve{
         {name, CurveInput::pressure, setup_.atmosphere_kPa, "", std::move(fit.loading), std::move(fit.unloading)},
@@ -151,7 +151,7 @@ class PressureRun {
 
   /// By Eq. (19) the ratio is 1 at rest only where the sensor then reads the atmosphere.
   void remark_on_rest(const SyringeRun& run) {
-    const std::optional<double> rest = rest_pressure(setup_, run);
+    const std::optional<double> rest = calibration::rest_pressure(setup_, run);
     if (rest && std::abs(*rest - setup_.atmosphere_kPa) > rest_tolerance * setup_.atmosphere_kPa)
       say("note: " + run.file + ", " + run.name + ": the sensor reads " + number(*rest, 5) +
           " kPa absolute with the syringe at rest, and the atmosphere counts as " + number(setup_.atmosphere_kPa, 5) +
@@ -183,7 +183,7 @@ class PressureRun {
 
   [[nodiscard]] std::string rows_csv() const {
     std::string text = "p_gauge_kpa,p_abs_kpa,ratio,unloading,sweep,run,line\n";
-    for (const SyringeSample& each : samples_)
+    for (const calibration::SyringeSample& each : samples_)
       text += number(each.sample.input, 10) + "," + number(each.sample.input + setup_.atmosphere_kPa, 10) + "," +
               number(each.sample.ratio, 10) + "," + (each.sample.branch == Branch::unloading ? "1" : "0") + "," +
               std::to_string(each.sample.repeat) + "," + std::to_string(each.run) + "," + std::to_string(each.line) +
@@ -202,9 +202,9 @@ class PressureRun {
   const PressureOptions& options_;
   std::vector<fs::path> inputs_;
   Robot robot_;
-  SyringeSetup setup_;
+  calibration::SyringeSetup setup_;
   std::vector<SyringeRun> runs_;
-  std::vector<SyringeSample> samples_;
+  std::vector<calibration::SyringeSample> samples_;
   std::optional<FittedCurve> fitted_;
   std::string head_;
 };

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "output_files.hpp"
+#include <softkin/io/output_files.hpp>
 
 namespace softkin::cli {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/io/svg_plot.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 
 #include "calibrate_material.hpp"
 #include "mesh_text.hpp"
@@ -10,17 +10,17 @@ namespace softkin::cli {
 /// A ratio of R_omega that the user asked to look at.
 struct TriedRatio {
   double ratio = 1;
-  std::vector<SpecimenResponse> stretched, twisted;
+  std::vector<calibration::SpecimenResponse> stretched, twisted;
 };
 
 /// What came out of specimens of two materials.
 struct SpecimenResults {
   std::vector<StretchedSpecimen> specimens;
   std::vector<TwistedSpecimen> twists;
-  RatioEstimate rod;  // Eq. (16)
-  std::optional<Moduli> rod_moduli;
-  std::optional<RatioFit> physical, target;
-  std::vector<SpecimenResponse> physical_twists, target_twists;
+  calibration::RatioEstimate rod;  // Eq. (16)
+  std::optional<calibration::Moduli> rod_moduli;
+  std::optional<calibration::RatioFit> physical, target;
+  std::vector<calibration::SpecimenResponse> physical_twists, target_twists;
   std::vector<TriedRatio> tried;
 
   /// Of the first simulation that is not converged; empty: all are.

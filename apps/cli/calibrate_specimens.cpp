@@ -1,7 +1,7 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/material_tables.hpp>
+#include <softkin/io/table/material_tables.hpp>
 
 #include "calibrate_results.hpp"
 #include "command.hpp"
@@ -58,35 +58,38 @@ class SpecimenRun {
       }
   }
 
-  [[nodiscard]] ShareDone shown(const std::string& what) {
+  [[nodiscard]] calibration::ShareDone shown(const std::string& what) {
     return [this, what](double share) { progress_.show(share, what); };
   }
 
   void solve() {
     std::vector<double> logs, weights;
     for (const StretchedSpecimen& s : results_.specimens) {
-      logs.push_back(std::log(elasticity_ratio(s)));
-      weights.push_back(rod_sensitivity_mm(s));
+      logs.push_back(std::log(calibration::elasticity_ratio(s)));
+      weights.push_back(calibration::rod_sensitivity_mm(s));
     }
-    results_.rod = combined_ratio(logs, weights);
-    results_.rod_moduli = rod_moduli(results_.specimens, options_.specimen.width_mm * options_.specimen.height_mm);
+    results_.rod = calibration::combined_ratio(logs, weights);
+    results_.rod_moduli =
+        calibration::rod_moduli(results_.specimens, options_.specimen.width_mm * options_.specimen.height_mm);
     if (options_.formulation != "target-shape") fit(Formulation::physical, results_.physical, results_.physical_twists);
     if (options_.formulation == "physical") return;
     fit(Formulation::target_shape, results_.target, results_.target_twists);
     for (const double ratio : options_.tried) look_at(ratio);
   }
 
-  void fit(Formulation formulation, std::optional<RatioFit>& found, std::vector<SpecimenResponse>& twisted) {
+  void fit(Formulation formulation, std::optional<calibration::RatioFit>& found,
+           std::vector<calibration::SpecimenResponse>& twisted) {
     const std::string name = formulation == Formulation::physical ? "physical" : "target-shape";
-    found = fit_ratio(results_.specimens, options_.specimen, formulation, shown(name + " tensile tests"));
+    found = calibration::fit_ratio(results_.specimens, options_.specimen, formulation, shown(name + " tensile tests"));
     if (found->estimate.specimens > 0)
-      twisted = predict(results_.twists, options_.specimen, formulation, std::log(found->estimate.ratio),
-                        shown(name + " twist tests"));
+      twisted = calibration::predict(results_.twists, options_.specimen, formulation, std::log(found->estimate.ratio),
+                                     shown(name + " twist tests"));
   }
 
   void look_at(double ratio) {
     const auto predicted = [&](const auto& specimens) {
-      return predict(specimens, options_.specimen, Formulation::target_shape, std::log(ratio), shown("ratios to try"));
+      return calibration::predict(specimens, options_.specimen, Formulation::target_shape, std::log(ratio),
+                                  shown("ratios to try"));
     };
     results_.tried.push_back({ratio, predicted(results_.specimens), predicted(results_.twists)});
   }
@@ -137,7 +140,7 @@ std::string SpecimenResults::failure(const MaterialOptions& options) const {
     for (std::size_t i = 0; i < specimens.size(); ++i)
       look(options.specimens, specimens[i].line, name + " tensile", (*fit)->specimens[i].status,
            (*fit)->specimens[i].remark);
-    const std::vector<SpecimenResponse>& twisted = fit == &physical ? physical_twists : target_twists;
+    const std::vector<calibration::SpecimenResponse>& twisted = fit == &physical ? physical_twists : target_twists;
     for (std::size_t i = 0; i < twisted.size(); ++i)
       look(options.twist, twists[i].line, name + " twist", twisted[i].status, twisted[i].remark);
   }

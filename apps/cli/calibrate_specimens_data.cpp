@@ -11,7 +11,7 @@ const char* status_name(Status status) {
   return status == Status::converged ? "converged" : status == Status::limit ? "limit" : "not converged";
 }
 
-Json estimate_json(const RatioEstimate& estimate) {
+Json estimate_json(const calibration::RatioEstimate& estimate) {
   Json json{{"ratio", estimate.ratio}, {"specimens", estimate.specimens}};
   json["relative_spread"] = estimate.specimens > 1 ? Json(estimate.spread) : Json();
   json["least"] = estimate.least;
@@ -19,7 +19,7 @@ Json estimate_json(const RatioEstimate& estimate) {
   return json;
 }
 
-Json moduli_json(const std::optional<Moduli>& moduli) {
+Json moduli_json(const std::optional<calibration::Moduli>& moduli) {
   if (!moduli) return {};
   return {{"a_MPa", moduli->a_mpa},
           {"b_MPa", moduli->b_mpa},
@@ -28,15 +28,15 @@ Json moduli_json(const std::optional<Moduli>& moduli) {
 }
 
 Json shape_json(double log_ratio, double stiffer) {
-  const ShapeRatios shape = shape_ratios(log_ratio, stiffer);
+  const calibration::ShapeRatios shape = calibration::shape_ratios(log_ratio, stiffer);
   return {{"a", shape.a}, {"b", shape.b}};
 }
 
-Json fit_json(const RatioFit& fit) {
+Json fit_json(const calibration::RatioFit& fit) {
   Json json{{"status", status_name(fit.status)}};
   json["ratio"] = fit.estimate.specimens > 0 ? estimate_json(fit.estimate) : Json();
   Json& rows = json["specimens"] = Json::array();
-  for (const SpecimenFit& each : fit.specimens) {
+  for (const calibration::SpecimenFit& each : fit.specimens) {
     Json row{{"status", status_name(each.status)}, {"simulations", each.simulations}};
     if (!each.remark.empty()) row["remark"] = each.remark;
     if (each.status == Status::converged) {
@@ -48,9 +48,9 @@ Json fit_json(const RatioFit& fit) {
   return json;
 }
 
-Json turns_json(const std::vector<SpecimenResponse>& responses) {
+Json turns_json(const std::vector<calibration::SpecimenResponse>& responses) {
   Json turns = Json::array();
-  for (const SpecimenResponse& each : responses)
+  for (const calibration::SpecimenResponse& each : responses)
     turns.push_back(each.status == Status::converged ? Json(each.turned_deg) : Json());
   return turns;
 }
@@ -63,7 +63,7 @@ Json measured_json(const SpecimenResults& results) {
              {"l1_mm", s.interface_mm},
              {"dl_mm", s.stretch_mm},
              {"dl1_mm", s.interface_moved_mm},
-             {"eq16", elasticity_ratio(s)}};
+             {"eq16", calibration::elasticity_ratio(s)}};
     if (s.force_n) row["force_N"] = *s.force_n;
     if (s.area_mm2) row["area_mm2"] = *s.area_mm2;
     rows.push_back(row);
@@ -79,7 +79,7 @@ Json twists_json(const SpecimenResults& results) {
                     {"l1_mm", t.interface_mm},
                     {"twist_deg", t.twist_deg},
                     {"interface_deg", t.interface_deg ? Json(*t.interface_deg) : Json()},
-                    {"rod_deg", t.twist_deg * rod_share(results.rod.ratio, t.length_mm, t.interface_mm)}});
+                    {"rod_deg", t.twist_deg * calibration::rod_share(results.rod.ratio, t.length_mm, t.interface_mm)}});
   return rows;
 }
 
@@ -102,7 +102,7 @@ PlotSeries rod_curve(double ratio) {
   series.marks = false;
   for (int i = 0; i <= 100; ++i) {
     series.x.push_back(0.01 * i);
-    series.y.push_back(i == 100 ? 1 : rod_share(ratio, 1, 0.01 * i));
+    series.y.push_back(i == 100 ? 1 : calibration::rod_share(ratio, 1, 0.01 * i));
   }
   return series;
 }
@@ -119,7 +119,7 @@ PlotPanel stretch_panel(const SpecimenResults& results) {
     for (const auto& row : rows) all.push_back(response(row).moved_mm);
     return all;
   };
-  const auto of_fit = [](const SpecimenFit& fit) { return fit.response; };
+  const auto of_fit = [](const calibration::SpecimenFit& fit) { return fit.response; };
   panel.series = {rod_curve(results.rod.ratio), shares("measured", results.specimens, measured)};
   if (results.physical)
     panel.series.push_back(shares("physical", results.specimens, moved(results.physical->specimens, of_fit)));
@@ -127,7 +127,7 @@ PlotPanel stretch_panel(const SpecimenResults& results) {
     panel.series.push_back(shares("target-shape", results.specimens, moved(results.target->specimens, of_fit)));
   for (const TriedRatio& each : results.tried)
     panel.series.push_back(shares("R_A / R_B " + number(each.ratio), results.specimens,
-                                  moved(each.stretched, [](const SpecimenResponse& r) { return r; })));
+                                  moved(each.stretched, [](const calibration::SpecimenResponse& r) { return r; })));
   return panel;
 }
 
@@ -146,7 +146,8 @@ PlotPanel twist_panel(const SpecimenResults& results) {
       measured.y.push_back(*t.interface_deg);
     }
   if (!measured.x.empty()) panel.series.push_back(measured);
-  const auto add = [&](const std::string& label, const std::vector<SpecimenResponse>& responses, int style) {
+  const auto add = [&](const std::string& label, const std::vector<calibration::SpecimenResponse>& responses,
+                       int style) {
     if (responses.empty()) return;
     PlotSeries series;
     series.label = label;
@@ -168,7 +169,7 @@ PlotPanel twist_panel(const SpecimenResults& results) {
 }  // namespace
 
 Json specimens_json(const SpecimenResults& results, const MaterialOptions& options) {
-  const SpecimenOptions& s = options.specimen;
+  const calibration::SpecimenOptions& s = options.specimen;
   Json json{{"softkin", SOFTKIN_VERSION}, {"specimens_file", options.specimens}};
   json["set_up"] = set_up_lines(options);
   json["specimens"] = measured_json(results);
@@ -181,12 +182,12 @@ Json specimens_json(const SpecimenResults& results, const MaterialOptions& optio
     Json& target = json["target_shape"] = fit_json(*results.target);
     if (results.target->estimate.specimens > 0)
       target["shape_ratios"] = shape_json(std::log(results.target->estimate.ratio), s.stiffer_shape_ratio);
-    const double closed = closed_form_log_ratio(results.rod.ratio, s.stiffer_shape_ratio);
+    const double closed = calibration::closed_form_log_ratio(results.rod.ratio, s.stiffer_shape_ratio);
     target["closed_form"] = {{"ratio", std::exp(closed)}, {"shape_ratios", shape_json(closed, s.stiffer_shape_ratio)}};
   }
   for (const TriedRatio& each : results.tried) {
     Json moved = Json::array();
-    for (const SpecimenResponse& r : each.stretched)
+    for (const calibration::SpecimenResponse& r : each.stretched)
       moved.push_back(r.status == Status::converged ? Json(r.moved_mm) : Json());
     json["tried"].push_back({{"ratio", each.ratio}, {"dl1_mm", moved}, {"interface_deg", turns_json(each.twisted)}});
   }

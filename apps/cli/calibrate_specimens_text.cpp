@@ -28,13 +28,13 @@ std::string table_text(const Rows& rows) {
 }
 
 /// Columns of a fit: the specimen's own ratio, and its interface at the ratio of all.
-void append_fit(Rows& rows, const std::optional<RatioFit>& fit, const std::string& name, const std::string& ratio,
-                const std::vector<StretchedSpecimen>& specimens) {
+void append_fit(Rows& rows, const std::optional<calibration::RatioFit>& fit, const std::string& name,
+                const std::string& ratio, const std::vector<StretchedSpecimen>& specimens) {
   if (!fit) return;
   for (const std::string& title : {name + ": " + ratio, std::string("dL1 [mm]"), std::string("off [%]")})
     rows[0].push_back(title);
   for (std::size_t i = 0; i < specimens.size(); ++i) {
-    const SpecimenFit& each = fit->specimens[i];
+    const calibration::SpecimenFit& each = fit->specimens[i];
     const bool found = each.status == Status::converged;
     rows[i + 1].push_back(found ? decimal(std::exp(each.own_log_ratio), 3) : "-");
     rows[i + 1].push_back(found ? decimal(each.response.moved_mm, 4) : "-");
@@ -46,7 +46,7 @@ std::string specimen_table(const SpecimenResults& results) {
   Rows rows{{"line", "L [mm]", "L1 [mm]", "dL [mm]", "dL1 [mm]", "Eq. (16)"}};
   for (const StretchedSpecimen& s : results.specimens)
     rows.push_back({std::to_string(s.line), number(s.length_mm), number(s.interface_mm), number(s.stretch_mm),
-                    number(s.interface_moved_mm), decimal(elasticity_ratio(s), 3)});
+                    number(s.interface_moved_mm), decimal(calibration::elasticity_ratio(s), 3)});
   append_fit(rows, results.physical, "physical", "E_A/E_B", results.specimens);
   append_fit(rows, results.target, "target-shape", "R_A/R_B", results.specimens);
   for (const TriedRatio& each : results.tried) {
@@ -60,7 +60,7 @@ std::string specimen_table(const SpecimenResults& results) {
   return table_text(rows);
 }
 
-void append_turns(Rows& rows, const std::string& name, const std::vector<SpecimenResponse>& responses,
+void append_turns(Rows& rows, const std::string& name, const std::vector<calibration::SpecimenResponse>& responses,
                   const std::vector<TwistedSpecimen>& twists) {
   if (responses.empty()) return;
   rows[0].push_back(name + " [deg]");
@@ -77,7 +77,7 @@ std::string twist_table(const SpecimenResults& results) {
   for (const TwistedSpecimen& t : results.twists)
     rows.push_back({std::to_string(t.line), number(t.length_mm), number(t.interface_mm), number(t.twist_deg),
                     t.interface_deg ? number(*t.interface_deg) : "-",
-                    decimal(t.twist_deg * rod_share(results.rod.ratio, t.length_mm, t.interface_mm), 3)});
+                    decimal(t.twist_deg * calibration::rod_share(results.rod.ratio, t.length_mm, t.interface_mm), 3)});
   append_turns(rows, "physical", results.physical_twists, results.twists);
   append_turns(rows, "target-shape", results.target_twists, results.twists);
   for (const TriedRatio& each : results.tried)
@@ -85,19 +85,20 @@ std::string twist_table(const SpecimenResults& results) {
   return "Turn of the interface where the free end is twisted:\n" + table_text(rows);
 }
 
-std::string spread_text(const RatioEstimate& estimate) {
+std::string spread_text(const calibration::RatioEstimate& estimate) {
   if (estimate.specimens < 2) return "; one specimen: no spread";
   return "; spread " + percent(100 * estimate.spread) + " %, " + decimal(estimate.least, 3) + " to " +
          decimal(estimate.greatest, 3);
 }
 
-std::string shape_text(const ShapeRatios& shape) {
-  const double nu_a = poisson_ratio_of_shape_ratio(shape.a), nu_b = poisson_ratio_of_shape_ratio(shape.b);
+std::string shape_text(const calibration::ShapeRatios& shape) {
+  const double nu_a = calibration::poisson_ratio_of_shape_ratio(shape.a),
+               nu_b = calibration::poisson_ratio_of_shape_ratio(shape.b);
   return "R_omega " + number(shape.a, 4) + " and " + number(shape.b, 4) + ", which stand for Poisson's ratios of " +
          decimal(nu_a, 2) + " and " + decimal(nu_b, 2);
 }
 
-std::string moduli_text(const Moduli& moduli) {
+std::string moduli_text(const calibration::Moduli& moduli) {
   std::string text = "E_A " + number(moduli.a_mpa, 5) + " MPa, E_B " + number(moduli.b_mpa, 5) + " MPa";
   if (moduli.specimens > 1) text += "; spread " + percent(100 * moduli.spread) + " %";
   return text;
@@ -108,26 +109,26 @@ void append_ratios(Rows& rows, const SpecimenResults& results, const MaterialOpt
   rows.push_back({"E_A / E_B of a rod, Eq. (16):", decimal(results.rod.ratio, 3) + spread_text(results.rod)});
   if (results.rod_moduli) rows.push_back({"moduli of a rod:", moduli_text(*results.rod_moduli)});
   if (results.physical && results.physical->estimate.specimens > 0) {
-    const RatioEstimate& found = results.physical->estimate;
+    const calibration::RatioEstimate& found = results.physical->estimate;
     rows.push_back({"E_A / E_B, physical simulation:", decimal(found.ratio, 3) + spread_text(found)});
     if (results.physical->moduli)
       rows.push_back({"moduli, physical simulation:", moduli_text(*results.physical->moduli)});
   }
   if (!results.target || results.target->estimate.specimens == 0) return;
-  const RatioEstimate& found = results.target->estimate;
+  const calibration::RatioEstimate& found = results.target->estimate;
   rows.push_back({"R_A / R_B, target-shape simulation:", decimal(found.ratio, 3) + spread_text(found)});
-  rows.push_back({"", shape_text(shape_ratios(std::log(found.ratio), stiffer))});
-  const double closed = closed_form_log_ratio(results.rod.ratio, stiffer);
+  rows.push_back({"", shape_text(calibration::shape_ratios(std::log(found.ratio), stiffer))});
+  const double closed = calibration::closed_form_log_ratio(results.rod.ratio, stiffer);
   rows.push_back({"R_A / R_B, closed form of Eq. (16):", decimal(std::exp(closed), 3)});
-  rows.push_back({"", shape_text(shape_ratios(closed, stiffer))});
+  rows.push_back({"", shape_text(calibration::shape_ratios(closed, stiffer))});
 }
 
 std::string shear_note(const SpecimenResults& results, const MaterialOptions& options) {
-  const SpecimenOptions& s = options.specimen;
-  const double nu = poisson_ratio_of_shape_ratio(s.stiffer_shape_ratio);
+  const calibration::SpecimenOptions& s = options.specimen;
+  const double nu = calibration::poisson_ratio_of_shape_ratio(s.stiffer_shape_ratio);
   constexpr double most = 0.1;
   if (!results.target || std::abs(nu - s.poisson_ratio) < most) return "";
-  const double right = shape_ratio_of_poisson_ratio(s.poisson_ratio);
+  const double right = calibration::shape_ratio_of_poisson_ratio(s.poisson_ratio);
   std::string text = "note: R_omega " + number(s.stiffer_shape_ratio, 4) +
                      " of the stiffer material stands for a Poisson's ratio of " + decimal(nu, 2) + ", not " +
                      number(s.poisson_ratio) + ": tension agrees, twist does not";
@@ -138,7 +139,7 @@ std::string shear_note(const SpecimenResults& results, const MaterialOptions& op
 }  // namespace
 
 std::vector<std::string> set_up_lines(const MaterialOptions& options) {
-  const SpecimenOptions& s = options.specimen;
+  const calibration::SpecimenOptions& s = options.specimen;
   const bool own_size = options.given.contains("--width") && options.given.contains("--height");
   std::vector<std::string> lines{"cross-section " + number(s.width_mm) + " x " + number(s.height_mm) + " mm" +
                                      (own_size ? "" : options.unless_given("--width")),
@@ -147,11 +148,11 @@ std::vector<std::string> set_up_lines(const MaterialOptions& options) {
   if (options.formulation != "target-shape")
     lines.push_back("physical: law " + law_name(s.law) + options.unless_given("--law") + ", Poisson's ratio " +
                     number(s.poisson_ratio) + options.unless_given("--poisson-ratio") + ", " +
-                    std::to_string(cells_across(s, Formulation::physical)) + cells);
+                    std::to_string(calibration::cells_across(s, Formulation::physical)) + cells);
   if (options.formulation != "physical")
     lines.push_back("target-shape: R_omega " + number(s.stiffer_shape_ratio, 4) + " of the stiffer material" +
                     options.unless_given("--stiffer") + ", " +
-                    std::to_string(cells_across(s, Formulation::target_shape)) + cells);
+                    std::to_string(calibration::cells_across(s, Formulation::target_shape)) + cells);
   return lines;
 }
 
@@ -174,18 +175,19 @@ std::string specimens_text(const SpecimenResults& results, const MaterialOptions
 }
 
 std::string specimens_fragment(const SpecimenResults& results, const MaterialOptions& options) {
-  const SpecimenOptions& s = options.specimen;
+  const calibration::SpecimenOptions& s = options.specimen;
   std::string a = "  - {region: " + options.regions[0], b = "  - {region: " + options.regions[1];
   std::string remark;
   if (results.target) {
-    const ShapeRatios shape = shape_ratios(std::log(results.target->estimate.ratio), s.stiffer_shape_ratio);
+    const calibration::ShapeRatios shape =
+        calibration::shape_ratios(std::log(results.target->estimate.ratio), s.stiffer_shape_ratio);
     a += ", shape_ratio: " + number(shape.a, 5);
     b += ", shape_ratio: " + number(shape.b, 5);
   }
   if (results.physical) {
     const double ratio = results.physical->estimate.ratio;
-    std::optional<Moduli> moduli = results.physical->moduli;
-    if (!moduli && options.modulus_b) moduli = Moduli{ratio * *options.modulus_b, *options.modulus_b};
+    std::optional<calibration::Moduli> moduli = results.physical->moduli;
+    if (!moduli && options.modulus_b) moduli = calibration::Moduli{ratio * *options.modulus_b, *options.modulus_b};
     if (moduli) {
       const std::string rest = ", poisson_ratio: " + number(s.poisson_ratio) +
                                (s.law == Law::neo_hookean ? "" : ", law: " + law_name(s.law));

@@ -3,8 +3,8 @@
 #include <softkin/calibration/tensile_fit.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/material_tables.hpp>
-#include <softkin/io/svg_plot.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
+#include <softkin/io/table/material_tables.hpp>
 
 #include "calibrate_material.hpp"
 #include "command.hpp"
@@ -18,9 +18,9 @@ namespace {
 /// A law fitted, and as the scene has it.
 struct FittedLaw {
   std::string name;
-  LawFit fit;
+  calibration::LawFit fit;
   ElasticSpec scene;
-  FitQuality scene_quality;
+  calibration::FitQuality scene_quality;
 
   [[nodiscard]] std::size_t constants() const {
     return fit.law.law == Law::yeoh ? 3 : fit.law.law == Law::mooney_rivlin ? 2 : 1;
@@ -41,7 +41,7 @@ class TensileRun {
       : options_(options), curve_(read_tensile_curve(options.tensile)), nu_(options.specimen.poisson_ratio) {
     check_outputs(options.outputs(), options.inputs());
     try {
-      linear_ = linear_range(curve_, options.tolerance_percent / 100);
+      linear_ = calibration::linear_range(curve_, options.tolerance_percent / 100);
       for (const auto& [law, name] : {std::pair(Law::neo_hookean, "neo-hookean"),
                                       std::pair(Law::mooney_rivlin, "mooney-rivlin"), std::pair(Law::yeoh, "yeoh")})
         add(law, name);
@@ -67,9 +67,9 @@ class TensileRun {
   void add(Law law, const std::string& name) {
     FittedLaw& each = laws_.emplace_back();
     each.name = name;
-    each.fit = fit_law(curve_, law, options_.most_strain);
-    each.scene = scene_constants(each.fit.law, nu_);
-    each.scene_quality = scene_quality(curve_, each.scene, options_.most_strain);
+    each.fit = calibration::fit_law(curve_, law, options_.most_strain);
+    each.scene = calibration::scene_constants(each.fit.law, nu_);
+    each.scene_quality = calibration::scene_quality(curve_, each.scene, options_.most_strain);
   }
 
   [[nodiscard]] double largest_stress() const {
@@ -104,7 +104,7 @@ class TensileRun {
     return text;
   }
 
-  [[nodiscard]] std::string constants_text(const IncompressibleLaw& law) const {
+  [[nodiscard]] std::string constants_text(const calibration::IncompressibleLaw& law) const {
     std::string text = "c10 " + number(law.c10, 5);
     if (law.law == Law::mooney_rivlin) text += ", c01 " + number(law.c01, 5);
     if (law.law == Law::yeoh) text += ", c20 " + number(law.c20, 5) + ", c30 " + number(law.c30, 5);
@@ -155,7 +155,7 @@ class TensileRun {
     return text;
   }
 
-  static Json quality_json(const FitQuality& quality) {
+  static Json quality_json(const calibration::FitQuality& quality) {
     return {{"r_squared", quality.r_squared}, {"rms_MPa", quality.rms_mpa}, {"largest_MPa", quality.largest_mpa}};
   }
 
@@ -170,7 +170,7 @@ class TensileRun {
                       {"offset_MPa", linear_.offset_mpa},
                       {"quality", quality_json(linear_.quality)}};
     for (const FittedLaw& each : laws_) {
-      const IncompressibleLaw& law = each.fit.law;
+      const calibration::IncompressibleLaw& law = each.fit.law;
       Json& out = json["laws"][each.name];
       out = {{"c10_MPa", law.c10},
              {"c01_MPa", law.c01},
@@ -190,7 +190,7 @@ class TensileRun {
 
   [[nodiscard]] std::vector<double> stresses(const FittedLaw& law, const std::vector<double>& strains) const {
     std::vector<double> all;
-    for (const double strain : strains) all.push_back(uniaxial_stress(law.fit.law, strain));
+    for (const double strain : strains) all.push_back(calibration::uniaxial_stress(law.fit.law, strain));
     return all;
   }
 
@@ -234,7 +234,8 @@ class TensileRun {
       const double strain = curve_.strain[i], stress = curve_.stress[i];
       text += std::to_string(curve_.lines[i]) + "," + number(strain, 10) + "," + number(stress, 10) + "," +
               number(linear_.modulus_mpa * strain - stress, 10);
-      for (const FittedLaw& law : laws_) text += "," + number(uniaxial_stress(law.fit.law, strain) - stress, 10);
+      for (const FittedLaw& law : laws_)
+        text += "," + number(calibration::uniaxial_stress(law.fit.law, strain) - stress, 10);
       text += "\n";
     }
     return text;
@@ -243,7 +244,7 @@ class TensileRun {
   const MaterialOptions& options_;
   TensileCurve curve_;
   double nu_;
-  LinearRange linear_;
+  calibration::LinearRange linear_;
   std::vector<FittedLaw> laws_;
   std::string chosen_;
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fk_units.hpp"
+#include <softkin/model/names.hpp>
 #include "mesh_text.hpp"
 #include "terminal.hpp"
 

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <softkin/io/svg_plot.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 
+#include <softkin/io/output_files.hpp>
 #include "command.hpp"
 #include "compare_paths.hpp"
 #include "compare_table.hpp"
 #include "mesh_text.hpp"
-#include "output_files.hpp"
 
 namespace softkin::cli {
 

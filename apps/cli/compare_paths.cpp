@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <softkin/io/file.hpp>
-#include <softkin/io/svg_plot.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 
+#include <softkin/io/plot/curves.hpp>
 #include "command.hpp"
 #include "mesh_text.hpp"
-#include "plot_steps.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -15,25 +15,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* axis_names[] = {"x", "y", "z"};
-
-Resampling resampling_of(const PathCompareOptions& options, const Track& reference, const Track& other) {
-  if (options.by.empty()) return natural_resampling(reference, other);
-  if (options.by == "waypoint") return Resampling::waypoint;
-  return options.by == "arc" ? Resampling::arc : Resampling::parameter;
+calibration::Resampling resampling_of(const PathCompareOptions& options, const Track& reference, const Track& other) {
+  if (options.by.empty()) return calibration::natural_resampling(reference, other);
+  if (options.by == "waypoint") return calibration::Resampling::waypoint;
+  return options.by == "arc" ? calibration::Resampling::arc : calibration::Resampling::parameter;
 }
 
 bool is_named(const std::string& by) {
   return !by.empty() && by != "waypoint" && by != "time" && by != "arc";
 }
 
-std::string place_name(const PathCompareOptions& options, Resampling by) {
-  if (by == Resampling::waypoint) return "waypoint";
-  if (by == Resampling::arc) return "share of length [-]";
+std::string place_name(const PathCompareOptions& options, calibration::Resampling by) {
+  if (by == calibration::Resampling::waypoint) return "waypoint";
+  if (by == calibration::Resampling::arc) return "share of length [-]";
   return is_named(options.by) ? options.by : "time [s]";
 }
 
-std::string axes_text(const PathComparison& comparison) {
+std::string axes_text(const calibration::PathComparison& comparison) {
   std::string text;
   for (std::size_t a = 0; a < 3; ++a)
     if (comparison.axes[a]) text += axis_names[a];
@@ -46,8 +44,8 @@ class PathReport {
       : options_(options), tracks_(std::move(tracks)) {
     for (std::size_t t = 1; t < tracks_.size(); ++t) {
       const bool same_frame = tracks_[0].robot_frame && tracks_[t].robot_frame;  // nothing to align
-      const Resampling by = resampling_of(options, tracks_[0], tracks_[t]);
-      comparisons_.push_back(compare_paths(tracks_[0], tracks_[t], by, options.align && !same_frame));
+      const calibration::Resampling by = resampling_of(options, tracks_[0], tracks_[t]);
+      comparisons_.push_back(calibration::compare_paths(tracks_[0], tracks_[t], by, options.align && !same_frame));
     }
   }
 
@@ -56,7 +54,7 @@ class PathReport {
     for (std::size_t c = 0; c < comparisons_.size(); ++c) text += head(c);
     std::vector<std::vector<std::string>> rows{{"", "largest [mm]", "at waypoint", "mean [mm]", "rms [mm]"}};
     for (std::size_t c = 0; c < comparisons_.size(); ++c) {
-      const PathComparison& each = comparisons_[c];
+      const calibration::PathComparison& each = comparisons_[c];
       rows.push_back({std::to_string(c + 2), decimal(each.largest_mm, 3),
                       std::to_string(each.waypoints[each.worst].waypoint), decimal(each.mean_mm, 3),
                       decimal(each.rms_mm, 3)});
@@ -71,7 +69,7 @@ class PathReport {
   [[nodiscard]] Json json() const {
     Json json{{"reference", tracks_[0].name}, {"tracks", Json::array()}};
     for (std::size_t c = 0; c < comparisons_.size(); ++c) {
-      const PathComparison& each = comparisons_[c];
+      const calibration::PathComparison& each = comparisons_[c];
       Json track{{"file", tracks_[c + 1].name},
                  {"by", by_name(each.by)},
                  {"axes", axes_text(each)},
@@ -83,7 +81,7 @@ class PathReport {
                  {"rms_mm", each.rms_mm},
                  {"waypoint", Json::array()},
                  {"error_mm", Json::array()}};
-      for (const WaypointError& waypoint : each.waypoints) {
+      for (const calibration::WaypointError& waypoint : each.waypoints) {
         track["waypoint"].push_back(waypoint.waypoint);
         track["error_mm"].push_back(waypoint.error_mm);
       }
@@ -99,7 +97,7 @@ class PathReport {
       for (const char* axis : axis_names) text += std::string(",") + of + "_" + axis + "_mm";
     text += ",error_mm\n";
     for (std::size_t c = 0; c < comparisons_.size(); ++c)
-      for (const WaypointError& each : comparisons_[c].waypoints) {
+      for (const calibration::WaypointError& each : comparisons_[c].waypoints) {
         text += std::to_string(c + 2) + "," + std::to_string(each.waypoint) + "," + exact(each.place);
         for (const Vec3& point : {each.reference, each.other})
           for (const double x : point) text += "," + exact(x);
@@ -120,13 +118,13 @@ class PathReport {
       PlotSeries series;
       series.label = std::to_string(c + 2) + ": " + tracks_[c + 1].name;
       series.style = static_cast<int>(c) + 1;
-      for (const WaypointError& each : comparisons_[c].waypoints) {
+      for (const calibration::WaypointError& each : comparisons_[c].waypoints) {
         series.x.push_back(each.place);
         series.y.push_back(each.error_mm);
       }
       errors.series.push_back(series);
       ways.push_back({series.label, {}, true, true});
-      for (const WaypointError& each : comparisons_[c].waypoints) ways.back().points.push_back(each.other);
+      for (const calibration::WaypointError& each : comparisons_[c].waypoints) ways.back().points.push_back(each.other);
     }
     if (comparisons_.front().largest_mm == 0) errors.y.high = 1;
     plot.rows = {{errors}, views(ways)};
@@ -134,14 +132,16 @@ class PathReport {
   }
 
  private:
-  static const char* by_name(Resampling by) {
-    return by == Resampling::waypoint ? "waypoint" : by == Resampling::arc ? "arc" : "parameter";
+  static const char* by_name(calibration::Resampling by) {
+    return by == calibration::Resampling::waypoint ? "waypoint"
+           : by == calibration::Resampling::arc    ? "arc"
+                                                   : "parameter";
   }
 
   /// All three views, or the only one that two axes have.
   [[nodiscard]] std::vector<PlotPanel> views(const std::vector<SpaceCurve>& ways) const {
     std::array<bool, 3> axes{true, true, true};
-    for (const PathComparison& each : comparisons_)
+    for (const calibration::PathComparison& each : comparisons_)
       for (std::size_t a = 0; a < 3; ++a) axes[a] = axes[a] && each.axes[a];
     std::vector<PlotPanel> panels = projections(ways);
     if (axes[0] && axes[1] && axes[2]) return panels;
@@ -152,12 +152,12 @@ class PathReport {
   }
 
   [[nodiscard]] std::string head(std::size_t c) const {
-    const PathComparison& each = comparisons_[c];
+    const calibration::PathComparison& each = comparisons_[c];
     std::string text = std::to_string(c + 2) + ": " + tracks_[c + 1].name + ", " +
                        counted(tracks_[c + 1].points.size(), "point") + "; compared by ";
-    if (each.by == Resampling::waypoint) text += "waypoint (row by row)";
-    if (each.by == Resampling::arc) text += "arc length (equal shares of each track's length)";
-    if (each.by == Resampling::parameter)
+    if (each.by == calibration::Resampling::waypoint) text += "waypoint (row by row)";
+    if (each.by == calibration::Resampling::arc) text += "arc length (equal shares of each track's length)";
+    if (each.by == calibration::Resampling::parameter)
       text += (is_named(options_.by) ? options_.by : "time") + std::string(", straight between its points");
     text += ", along " + axes_text(each);
     if (each.left_out > 0)
@@ -166,7 +166,7 @@ class PathReport {
     return text + "\n";
   }
 
-  static std::string alignment_text(const PathComparison& each) {
+  static std::string alignment_text(const calibration::PathComparison& each) {
     const double angle = std::acos(std::clamp((each.rotation.trace() - 1) / 2, -1.0, 1.0)) * 57.29577951308232;
     std::string moved;  // to a micrometre, as all lengths here
     for (const double x : each.translation) moved += (moved.empty() ? "" : ", ") + decimal(x, 3);
@@ -174,7 +174,7 @@ class PathReport {
            (each.unique ? "" : " (the points lie on a line: other rotations fit as well)");
   }
 
-  static void add_alignment(const PathComparison& each, Json& track) {
+  static void add_alignment(const calibration::PathComparison& each, Json& track) {
     track["rotation"] = Json::array();
     for (Index row = 0; row < 3; ++row)
       track["rotation"].push_back({each.rotation(row, 0), each.rotation(row, 1), each.rotation(row, 2)});
@@ -195,9 +195,9 @@ class PathReport {
       for (std::size_t a = 0; a < 3; ++a)
         place += (a > 0 ? " " : "") + (tracks_[0].axes[a] ? decimal(p[static_cast<Index>(a)], 3) : std::string("-"));
       rows.push_back({std::to_string(w), place});
-      for (const PathComparison& each : comparisons_) {
+      for (const calibration::PathComparison& each : comparisons_) {
         const auto found = std::find_if(each.waypoints.begin(), each.waypoints.end(),
-                                        [&](const WaypointError& e) { return e.waypoint == w; });
+                                        [&](const calibration::WaypointError& e) { return e.waypoint == w; });
         rows.back().push_back(found == each.waypoints.end() ? "-" : decimal(found->error_mm, 3));
       }
     }
@@ -206,7 +206,7 @@ class PathReport {
 
   const PathCompareOptions& options_;
   std::vector<Track> tracks_;
-  std::vector<PathComparison> comparisons_;
+  std::vector<calibration::PathComparison> comparisons_;
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
+#include <softkin/io/plot/curves.hpp>
 #include "compare_table.hpp"
-#include "plot_steps.hpp"
 
 namespace softkin::cli {
 

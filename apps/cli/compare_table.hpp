@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <softkin/io/svg_plot.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 
 #include "compare_reports.hpp"
 #include "mesh_text.hpp"

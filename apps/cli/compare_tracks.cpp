@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <optional>
 #include <softkin/core/error.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/plain_text.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
-#include <softkin/io/track_file.hpp>
+#include <softkin/io/table/track_file.hpp>
 
 #include "compare_paths.hpp"
 #include "compare_reports.hpp"
@@ -121,14 +121,14 @@ class Single {
   }
 
   [[nodiscard]] const std::string& actuator() const { return actuator_; }
-  [[nodiscard]] const SingleSweep& sweep() const { return sweep_; }
+  [[nodiscard]] const calibration::SingleSweep& sweep() const { return sweep_; }
   [[nodiscard]] const ReportedStep& start() const { return path_.steps.front(); }
   [[nodiscard]] const ReportedPath& path() const { return path_; }
 
  private:
   ReportedPath path_;
   std::string actuator_;
-  SingleSweep sweep_;
+  calibration::SingleSweep sweep_;
 };
 
 /// Every actuator that the sum does not move stays at the start.
@@ -155,13 +155,13 @@ Track sum_track(const PathCompareOptions& options, const ReportedPath& path) {
         throw InvalidInput({file}, "'" + singles.back().actuator() + "' moves in " + singles[s].path().file + " too");
   }
   check_others(path, singles);
-  std::vector<SingleSweep> sweeps;
+  std::vector<calibration::SingleSweep> sweeps;
   for (const Single& single : singles) sweeps.push_back(single.sweep());
   Track track{"sum of single actuators", {}, {true, true, true}, parameter_of(path, options.by), true};
   for (const ReportedStep& step : path.steps) {
     std::vector<double> commands;
     for (const Single& single : singles) commands.push_back(command_of(path, step, single.actuator()));
-    track.points.push_back(superposed(sweeps, commands));
+    track.points.push_back(calibration::superposed(sweeps, commands));
   }
   return track;
 }

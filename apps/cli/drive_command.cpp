@@ -7,15 +7,15 @@
 #include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/hardware.hpp>
+#include <softkin/io/scene/hardware.hpp>
 
 #include "command.hpp"
 #include "drive_commands.hpp"
 #include "drive_options.hpp"
 #include "drive_stream.hpp"
 #include "drive_text.hpp"
-#include "fk_robot.hpp"
 #include "mesh_text.hpp"
+#include "solve_options.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -33,11 +33,11 @@ DrivePlan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs) {
     throw InvalidInput({hardware.string()},
                        "no such file; describe motors and regulators there (docs/drive.md), or name the file with "
                        "--hardware");
-  plan.machine = assemble(model, read_hardware(hardware), plan.commands);
-  plan.schedule = plan_pressures(plan.machine, plan.commands);
+  plan.machine = drive::assemble(model, read_hardware(hardware), plan.commands);
+  plan.schedule = drive::plan_pressures(plan.machine, plan.commands);
   if (!plan.machine.tendons.empty()) {
-    plan.motion = plan_motion(plan.machine, plan.commands, options.return_home);
-    plan.program = make_gcode(plan.machine, plan.motion);
+    plan.motion = drive::plan_motion(plan.machine, plan.commands, options.return_home);
+    plan.program = drive::make_gcode(plan.machine, plan.motion);
   }
   return plan;
 }
@@ -51,14 +51,14 @@ void check_asked(const DriveOptions& options, const DrivePlan& plan) {
 }
 
 void write_files(const DriveOptions& options, const DrivePlan& plan) {
-  if (!options.gcode.empty()) write_file(options.gcode, gcode_text(plan.machine, plan.program));
-  if (!options.schedule.empty()) write_file(options.schedule, schedule_csv(plan.schedule));
+  if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
+  if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
 }
 
 std::string dry_text(const DrivePlan& plan) {
   std::string text;
-  if (!plan.machine.tendons.empty()) text += "\n" + gcode_text(plan.machine, plan.program);
-  if (!plan.machine.chambers.empty()) text += "\n" + schedule_csv(plan.schedule);
+  if (!plan.machine.tendons.empty()) text += "\n" + drive::gcode_text(plan.machine, plan.program);
+  if (!plan.machine.chambers.empty()) text += "\n" + drive::schedule_csv(plan.schedule);
   return text;
 }
 
@@ -73,19 +73,19 @@ int run_drive(const DriveOptions& options) {
   check_asked(options, plan);
   check_outputs(options.outputs(), inputs);
   const OutputFolders folders(options.outputs());
-  std::optional<SerialPort> port;  // before anything is written
+  std::optional<drive::SerialPort> port;  // before anything is written
   if (!options.port.empty()) port.emplace(options.port, options.baud);
   if (!options.json) print(plan_text(plan) + (options.dry_run ? dry_text(plan) : ""));
   write_files(options, plan);
   Json json = {{"softkin", SOFTKIN_VERSION}, {"scene", options.robot.scene}, {"commands", options.commands}};
   json.update(plan_json(plan));
-  if (options.dry_run && !plan.machine.tendons.empty()) json["gcode"] = gcode_text(plan.machine, plan.program);
-  if (options.dry_run && !plan.machine.chambers.empty()) json["schedule"] = schedule_csv(plan.schedule);
+  if (options.dry_run && !plan.machine.tendons.empty()) json["gcode"] = drive::gcode_text(plan.machine, plan.program);
+  if (options.dry_run && !plan.machine.chambers.empty()) json["schedule"] = drive::schedule_csv(plan.schedule);
   int code = done;
   if (port) {
-    const StreamReport report = send_to_board(*port, options, plan.program);
+    const drive::StreamReport report = send_to_board(*port, options, plan.program);
     const std::string text = stream_text(options, plan.program, report);
-    code = report.end == StreamEnd::finished ? done : not_converged;
+    code = report.end == drive::StreamEnd::finished ? done : not_converged;
     json["stream"] = stream_json(plan.program, report);
     if (code != done)
       std::fprintf(stderr, "softkin: %s\n", text.c_str());

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/error.hpp>
-#include <softkin/io/csv.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/table/csv.hpp>
 
-#include "fk_steps.hpp"
-#include "fk_units.hpp"
+#include <softkin/io/table/actuation_path.hpp>
+#include <softkin/model/names.hpp>
 #include "mesh_text.hpp"
 #include "terminal.hpp"
 
@@ -30,11 +30,12 @@ class Reader {
     commands_.pressure_known.assign(model.actuators.size(), false);
   }
 
-  Commands read(const std::string& report) {
+  drive::Commands read(const std::string& report) {
     take_pressures();
     for (const std::string& column : table_.columns)
       if (const auto a = actuator_of_column(model_, column)) commands_.commanded[static_cast<std::size_t>(*a)] = true;
-    const std::vector<Step> steps = path_steps(model_, commands_.file, table_);
+    const std::vector<ActuationStep> steps =
+        actuation_path(model_, commands_.file, table_, Settings(model_.actuators.size()));
     for (std::size_t row = 0; row < steps.size(); ++row) {
       const Eigen::VectorXd pressures =
           pressures_.empty() ? Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size())) : pressures_[row];
@@ -96,7 +97,7 @@ class Reader {
 
   void take_step(const std::string& file, const Json& step, std::size_t index,
                  const std::vector<std::size_t>& chambers) {
-    CommandRow& row = commands_.rows[index];
+    drive::CommandRow& row = commands_.rows[index];
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
       const double asked = step.at("actuation").at(model_.actuators[a].name).get<double>();
       const double here = row.actuation[static_cast<Index>(a)];
@@ -116,13 +117,13 @@ class Reader {
 
   const Model& model_;
   CsvTable table_;
-  Commands commands_;
+  drive::Commands commands_;
   std::vector<Eigen::VectorXd> pressures_;  // per row
 };
 
 }  // namespace
 
-Commands read_commands(const Model& model, const std::string& file, const std::string& report) {
+drive::Commands read_commands(const Model& model, const std::string& file, const std::string& report) {
   return Reader(model, file).read(report);
 }
 

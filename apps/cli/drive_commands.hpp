@@ -11,6 +11,6 @@ namespace softkin::cli {
 ///
 /// throws  InvalidInput naming file and line: what fk --path refuses; pressures of other actuators or given twice; a
 ///         report of other commands
-[[nodiscard]] Commands read_commands(const Model& model, const std::string& file, const std::string& report);
+[[nodiscard]] drive::Commands read_commands(const Model& model, const std::string& file, const std::string& report);
 
 }  // namespace softkin::cli

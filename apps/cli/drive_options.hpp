@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "fk_options.hpp"
-#include "output_files.hpp"
+#include <softkin/io/output_files.hpp>
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
 /// What the user asks of `softkin drive`. An empty file name: not given.
 struct DriveOptions {
-  FkOptions robot;  // scene alone
+  SolveOptions robot;  // scene alone
   std::string commands, hardware, pressures;
   std::string gcode, schedule, log;  // to write
   std::string port;

@@ -39,10 +39,10 @@ void catch_signals() {
   sigaction(SIGTSTP, &action, nullptr);
 }
 
-Order order_of_user() {
-  if (stop_count > 1) return Order::quick_stop;
-  if (stop_count > 0) return Order::stop;
-  return pause_asked ? Order::pause : Order::go;
+drive::Order order_of_user() {
+  if (stop_count > 1) return drive::Order::quick_stop;
+  if (stop_count > 0) return drive::Order::stop;
+  return pause_asked ? drive::Order::pause : drive::Order::go;
 }
 
 /// Every line with the time of day (UTC) and the seconds since the beginning; written at once.
@@ -78,23 +78,23 @@ class LogFile {
   bool warned_ = false;
 };
 
-const char* name_of(StreamEnd end) {
+const char* name_of(drive::StreamEnd end) {
   switch (end) {
-    case StreamEnd::finished:
+    case drive::StreamEnd::finished:
       return "finished";
-    case StreamEnd::stopped:
+    case drive::StreamEnd::stopped:
       return "stopped";
-    case StreamEnd::quick_stopped:
+    case drive::StreamEnd::quick_stopped:
       return "quick stopped";
-    case StreamEnd::rebooted:
+    case drive::StreamEnd::rebooted:
       return "rebooted";
-    case StreamEnd::halted:
+    case drive::StreamEnd::halted:
       return "halted";
-    case StreamEnd::wrong_position:
+    case drive::StreamEnd::wrong_position:
       return "wrong position";
-    case StreamEnd::port_lost:
+    case drive::StreamEnd::port_lost:
       return "port lost";
-    case StreamEnd::no_answer:
+    case drive::StreamEnd::no_answer:
       break;
   }
   return "no answer";
@@ -102,17 +102,18 @@ const char* name_of(StreamEnd end) {
 
 }  // namespace
 
-StreamReport send_to_board(SerialPort& port, const DriveOptions& options, const GcodeProgram& program) {
+drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& options,
+                                  const drive::GcodeProgram& program) {
   std::unique_ptr<LogFile> log;
   if (!options.log.empty()) log = std::make_unique<LogFile>(options.log);
   catch_signals();
   ProgressLine line;
   const double begin = seconds_now();
   bool was_paused = false;
-  LinkHooks hooks;
+  drive::LinkHooks hooks;
   hooks.order = [&] {
-    const Order order = order_of_user();
-    if ((order == Order::pause) != was_paused) {
+    const drive::Order order = order_of_user();
+    if ((order == drive::Order::pause) != was_paused) {
       was_paused = !was_paused;
       line.clear();
       std::fprintf(stderr, was_paused ? "softkin: paused: Ctrl-Z goes on, Ctrl-C stops\n" : "softkin: goes on\n");
@@ -125,18 +126,19 @@ StreamReport send_to_board(SerialPort& port, const DriveOptions& options, const 
               std::to_string(lines) + "/" + std::to_string(program.lines.size()) + " lines, " +
                   duration(seconds_now() - begin) + "; Ctrl-C stops, Ctrl-Z pauses");
   };
-  LinkOptions link;
+  drive::LinkOptions link;
   link.boot_s = options.boot_wait_s;
-  return stream(port, program, link, hooks);
+  return drive::stream(port, program, link, hooks);
 }
 
-std::string stream_text(const DriveOptions& options, const GcodeProgram& program, const StreamReport& report) {
+std::string stream_text(const DriveOptions& options, const drive::GcodeProgram& program,
+                        const drive::StreamReport& report) {
   std::string text = report.message;
   const auto row_of = [&](std::size_t line) {
     const std::size_t row = program.lines[line - 1].row;
     return row > 0 ? " (" + options.commands + ":" + std::to_string(row) + ")" : "";
   };
-  if (report.end != StreamEnd::finished) {
+  if (report.end != drive::StreamEnd::finished) {
     text += "; the board accepted " + (report.acknowledged > 0 ? "lines up to " + std::to_string(report.acknowledged) +
                                                                      row_of(report.acknowledged)
                                                                : std::string("no line"));
@@ -154,7 +156,7 @@ std::string stream_text(const DriveOptions& options, const GcodeProgram& program
   return text;
 }
 
-nlohmann::ordered_json stream_json(const GcodeProgram& program, const StreamReport& report) {
+nlohmann::ordered_json stream_json(const drive::GcodeProgram& program, const drive::StreamReport& report) {
   nlohmann::ordered_json json = {{"end", name_of(report.end)},  {"message", report.message},
                                  {"lines", report.lines},       {"acknowledged", report.acknowledged},
                                  {"sent", report.sent},         {"resends", report.resends},

@@ -12,11 +12,12 @@ namespace softkin::cli {
 /// a third one ends the program; Ctrl-Z pauses and goes on.
 ///
 /// throws  InvalidInput where the log cannot be opened
-[[nodiscard]] StreamReport send_to_board(SerialPort& port, const DriveOptions& options, const GcodeProgram& program);
+[[nodiscard]] drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& options,
+                                                const drive::GcodeProgram& program);
 
 /// How a stream ended, in full sentences: which lines were executed, and is the position known.
-[[nodiscard]] std::string stream_text(const DriveOptions& options, const GcodeProgram& program,
-                                      const StreamReport& report);
-[[nodiscard]] nlohmann::ordered_json stream_json(const GcodeProgram& program, const StreamReport& report);
+[[nodiscard]] std::string stream_text(const DriveOptions& options, const drive::GcodeProgram& program,
+                                      const drive::StreamReport& report);
+[[nodiscard]] nlohmann::ordered_json stream_json(const drive::GcodeProgram& program, const drive::StreamReport& report);
 
 }  // namespace softkin::cli

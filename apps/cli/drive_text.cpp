@@ -18,17 +18,17 @@ struct TendonUse {
 };
 
 TendonUse use_of(const DrivePlan& plan, std::size_t index) {
-  const Tendon& tendon = plan.machine.tendons[index];
+  const drive::Tendon& tendon = plan.machine.tendons[index];
   TendonUse use;
   use.shortest_mm = tendon.longest_mm;
-  for (const CommandRow& row : plan.commands.rows) {
+  for (const drive::CommandRow& row : plan.commands.rows) {
     const double length = row.actuation[tendon.actuator] * tendon.rest_length_mm;
     use.shortest_mm = std::min(use.shortest_mm, length);
     use.longest_mm = std::max(use.longest_mm, length);
   }
   std::int64_t here = 0;
   for (const auto* moves : {&plan.motion.approach, &plan.motion.moves, &plan.motion.back})
-    for (const Move& move : *moves) {
+    for (const drive::Move& move : *moves) {
       const double cable = static_cast<double>(std::abs(move.target[index] - here)) /
                            (tendon.steps_per_mm * tendon.axis_mm_per_cable_mm);
       use.fastest_mm_per_s = std::max(use.fastest_mm_per_s, cable / move.seconds);
@@ -40,7 +40,7 @@ TendonUse use_of(const DrivePlan& plan, std::size_t index) {
 }
 
 /// The drum's turns from home, at the end farther from it; "-" without a drum.
-std::string turns(const Tendon& tendon, const TendonUse& use) {
+std::string turns(const drive::Tendon& tendon, const TendonUse& use) {
   if (!tendon.drum_radius_mm) return "-";
   const double cable = static_cast<double>(std::max(std::abs(use.lowest), std::abs(use.highest))) /
                        (tendon.steps_per_mm * tendon.axis_mm_per_cable_mm);
@@ -51,7 +51,7 @@ std::string tendon_table(const DrivePlan& plan) {
   std::vector<std::vector<std::string>> rows{{"tendon", "axis", "length [mm]", "limits [mm]", "steps from home",
                                               "drum turns", "speed [mm/s]", "limit [mm/s]"}};
   for (std::size_t i = 0; i < plan.machine.tendons.size(); ++i) {
-    const Tendon& tendon = plan.machine.tendons[i];
+    const drive::Tendon& tendon = plan.machine.tendons[i];
     const TendonUse use = use_of(plan, i);
     rows.push_back({printable(tendon.name), std::string(1, tendon.axis),
                     decimal(use.shortest_mm, 2) + " to " + decimal(use.longest_mm, 2),
@@ -62,7 +62,7 @@ std::string tendon_table(const DrivePlan& plan) {
   return joined(aligned(rows, "llrrrrrr"), "");
 }
 
-std::pair<double, double> pressure_range(const PressureSchedule& schedule, std::size_t channel) {
+std::pair<double, double> pressure_range(const drive::PressureSchedule& schedule, std::size_t channel) {
   const auto [low, high] =
       std::minmax_element(schedule.rows.begin(), schedule.rows.end(),
                           [channel](const auto& a, const auto& b) { return a.kpa[channel] < b.kpa[channel]; });
@@ -72,7 +72,7 @@ std::pair<double, double> pressure_range(const PressureSchedule& schedule, std::
 std::string chamber_table(const DrivePlan& plan) {
   std::vector<std::vector<std::string>> rows{{"chamber", "channel", "pressure [kPa]", "limits [kPa]"}};
   for (std::size_t i = 0; i < plan.machine.chambers.size(); ++i) {
-    const Chamber& chamber = plan.machine.chambers[i];
+    const drive::Chamber& chamber = plan.machine.chambers[i];
     const auto [low, high] = pressure_range(plan.schedule, i);
     rows.push_back({printable(chamber.name), printable(chamber.channel), decimal(low, 2) + " to " + decimal(high, 2),
                     decimal(chamber.low_kpa, 2) + " to " + decimal(chamber.high_kpa, 2)});
@@ -80,9 +80,9 @@ std::string chamber_table(const DrivePlan& plan) {
   return joined(aligned(rows, "llrr"), "");
 }
 
-double seconds_of(const std::vector<Move>& moves) {
+double seconds_of(const std::vector<drive::Move>& moves) {
   double seconds = 0;
-  for (const Move& move : moves) seconds += move.seconds;
+  for (const drive::Move& move : moves) seconds += move.seconds;
   return seconds;
 }
 
@@ -112,7 +112,7 @@ std::string plan_text(const DrivePlan& plan) {
 nlohmann::ordered_json plan_json(const DrivePlan& plan) {
   nlohmann::ordered_json json = {{"hardware", plan.machine.file}, {"defaults", plan.machine.defaults}};
   for (std::size_t i = 0; i < plan.machine.tendons.size(); ++i) {
-    const Tendon& tendon = plan.machine.tendons[i];
+    const drive::Tendon& tendon = plan.machine.tendons[i];
     const TendonUse use = use_of(plan, i);
     json["tendons"][tendon.name] = {{"axis", std::string(1, tendon.axis)},
                                     {"rest_length_mm", tendon.rest_length_mm},
@@ -126,7 +126,7 @@ nlohmann::ordered_json plan_json(const DrivePlan& plan) {
                                     {"backlash_mm", tendon.backlash_mm}};
   }
   for (std::size_t i = 0; i < plan.machine.chambers.size(); ++i) {
-    const Chamber& chamber = plan.machine.chambers[i];
+    const drive::Chamber& chamber = plan.machine.chambers[i];
     const auto [low, high] = pressure_range(plan.schedule, i);
     json["chambers"][chamber.name] = {{"channel", chamber.channel},
                                       {"pressure_kPa", {low, high}},

@@ -9,11 +9,11 @@ namespace softkin::cli {
 
 /// What drive has planned.
 struct DrivePlan {
-  Commands commands;
-  Machine machine;
-  Motion motion;
-  GcodeProgram program;  // no lines where there is no tendon
-  PressureSchedule schedule;
+  drive::Commands commands;
+  drive::Machine machine;
+  drive::Motion motion;
+  drive::GcodeProgram program;  // no lines where there is no tendon
+  drive::PressureSchedule schedule;
 };
 
 /// Tables of tendons and chambers with what is asked of them and their limits, the defaults, how long it takes.

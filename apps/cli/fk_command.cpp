@@ -1,26 +1,223 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <filesystem>
+#include <cmath>
+#include <cstdio>
 #include <memory>
-#include <softkin/statics/statics.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/jobs.hpp>
+#include <softkin/runs/plots.hpp>
+#include <softkin/runs/report_head.hpp>
+#include <softkin/runs/shape_files.hpp>
 
 #include "command.hpp"
-#include "curve_settings.hpp"
-#include "fk_options.hpp"
-#include "fk_robot.hpp"
-#include "fk_run.hpp"
-#include "fk_steps.hpp"
-#include "fk_table.hpp"
 #include "mesh_text.hpp"
-#include "output_files.hpp"
+#include "run_text.hpp"
+#include "solve_options.hpp"
+#include "step_text.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
 
 namespace fs = std::filesystem;
+using runs::StepRecord;
 
 namespace {
+
+/// What the user asks of `softkin fk`. An empty file name: not given.
+struct FkOptions : SolveOptions, RunOptions {
+  std::string path;
+  std::string output, report;
+  ShowOptions show;
+  std::vector<std::string> settings;  // ACTUATOR=VALUE
+
+  [[nodiscard]] bool series() const { return lower_extension(output) == ".pvd"; }
+  /// The files to write; a path has so many steps.
+  [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const {
+    std::vector<Output> outputs = asked_outputs({{"--output", output}});
+    if (series()) outputs.back().shapes = steps;
+    for (Output& each : asked_outputs({{"--report", report}, {"--image", show.image}, {"--plot", show.plot}}))
+      outputs.push_back(std::move(each));
+    return outputs;
+  }
+};
+
+void add_options(CLI::App& command, FkOptions& options) {
+  add_scene(command, options);
+  command
+      .add_option(
+          "--path", options.path,
+          "A column per actuator (air; with a load's unit if you like:\nair_kPa), a row per step, each step solved "
+          "from the last; with a curve\nof the actuator also air_kPa (gauge), air_kPa_abs, skin_kV; a\ncolumn t_s is "
+          "the time in the series [s]")
+      ->type_name("F.csv");
+  command.add_option("-o,--output", options.output, "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...")
+      ->type_name("F");
+  command.add_option("--report", options.report, "All numbers of all steps, with their strain histograms")
+      ->type_name("F.json");
+  command.add_option("--image", options.show.image, "Picture of the last shape")->type_name("F.png");
+  command
+      .add_option("--plot", options.show.plot,
+                  "With --path: commands, markers, pressures and tensions over\nthe steps, and the markers' ways")
+      ->type_name("F.svg");
+  command
+      .add_option("--set", options.settings,
+                  "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
+                  "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
+                  "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest")
+      ->type_name("A=V")
+      ->expected(1)
+      ->take_all();
+  add_force(command, options);
+  add_view(command, options.show);
+  add_solver(command, options, "--tolerance");
+  add_run(command, options, "Go on where the same command was interrupted; needs --path,\n--report and -o F.pvd",
+          "Print the report instead of the table");
+}
+
+void check_usage(const FkOptions& options) {
+  check_extension("--output", options.output, {{".vtu", "the last shape"}, {".pvd", "every step"}});
+  check_extension("--image", options.show.image, {{".png", ""}});
+  check_extension("--plot", options.show.plot, {{".svg", ""}});
+  if (!options.show.plot.empty() && options.path.empty())
+    throw InvalidInput("--plot draws the steps of a path: it needs --path F.csv");
+  check_view(options.show);
+  check_solver(options);
+  if (options.resume && (options.path.empty() || !options.series() || options.report.empty()))
+    throw InvalidInput("--resume needs the --path, --report and --output F.pvd of the run that was interrupted");
+}
+
+class FkRun {
+ public:
+  FkRun(const Model& model, const Statics& statics, const FkOptions& options, const std::vector<ActuationStep>& steps)
+      : model_(model),
+        options_(options),
+        job_(model, statics, steps, options.path, options.statics()),
+        run_(model, job_, {options.report, options.series() ? options.output : ""},
+             runs::report_head(model, options.scene, options.statics()), {}),
+        table_(model, steps.size()) {}
+
+  int run() {
+    if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
+    const std::size_t first = run_.done();
+    if (!run_.is_complete()) say(table_.header());
+    RunProgress line(first, run_.size(), "step");
+    const bool complete = advance(line);
+    finish();
+    if (!complete) return stopped();
+    if (run_.done() > first) say_findings();
+    return judge();
+  }
+
+ private:
+  void say(const std::string& line) const {
+    if (!options_.json) print(line + "\n");
+  }
+
+  /// False where the user has interrupted it.
+  bool advance(RunProgress& line) {
+    while (!run_.is_complete()) {
+      EquilibriumProgress step;
+      line.begin(run_.done());
+      const auto go_on = [&](const Progress& p) {
+        line.show(EquilibriumProgress::text(p), step.share(p));
+        return !interrupted();
+      };
+      if (interrupted() || run_.advance(go_on) != runs::Advance::made) return false;
+      line.clear();
+      say(table_.row(run_.done() - 1, run_.last()));
+    }
+    return true;
+  }
+
+  /// The files that show the last finished step, and the report.
+  void finish() {
+    run_.finish();
+    if (run_.done() > 0) {
+      const bool converged = run_.last().status == Status::converged;
+      const Points& positions = run_.last_positions();
+      if (!options_.output.empty() && !options_.series())
+        runs::write_shape(options_.output, model_, positions, deformation_of(model_, positions), converged);
+      if (!options_.show.image.empty())
+        runs::write_image(options_.show.image, model_, positions, options_.show.view, image_title());
+      if (!options_.show.plot.empty()) write_plot();
+    }
+    if (options_.json) show_report(run_);
+  }
+
+  void write_plot() {
+    std::vector<StepRecord> steps;
+    run_.log().each([&](std::size_t, const StepRecord& step) { steps.push_back(step); });
+    const std::string title = fs::path(options_.scene).filename().string() + ": " +
+                              formulation_name(model_.formulation) + ", " + options_.solver_name;
+    write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
+  }
+
+  [[nodiscard]] std::string image_title() const {
+    std::string title;
+    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+      const Actuator& actuator = model_.actuators[a];
+      title += (title.empty() ? "" : ", ") + actuator.name + " = " +
+               command_text(actuator, run_.last().actuation[static_cast<Index>(a)], 4) +
+               (actuator.control == Control::ratio ? " [-]" : "");
+    }
+    const std::string status = name_of(run_.last().status);
+    if (run_.last().status == Status::converged) return title;
+    return title + (title.empty() ? status : ": " + status);
+  }
+
+  void say_findings() {
+    say(findings_text(model_, run_.last()));
+    if (!options_.output.empty()) say("shapes: " + options_.output + " (open it in ParaView)");
+    if (!options_.show.image.empty()) say("picture: " + options_.show.image);
+    if (!options_.show.plot.empty()) say("plot: " + options_.show.plot);
+    if (!options_.report.empty()) say("report: " + options_.report);
+  }
+
+  [[nodiscard]] int stopped() const {
+    const bool files = !options_.outputs(run_.size()).empty();
+    const bool resumable = options_.series() && !options_.report.empty() && !options_.path.empty();
+    return tell_stopped(run_.done(), run_.size(), "step", files ? "the files that were asked for" : "", resumable);
+  }
+
+  [[nodiscard]] int judge() {
+    int code = done;
+    for (const Status status : {Status::not_converged, Status::limit}) {
+      std::vector<std::size_t> numbers;
+      StepRecord last;
+      run_.log().each([&](std::size_t number, const StepRecord& step) {
+        if (step.status != status) return;
+        numbers.push_back(number);
+        last = step;
+      });
+      if (numbers.empty()) continue;
+      code = not_converged;
+      complain(status, numbers, last);
+    }
+    return code;
+  }
+
+  /// Tells which steps ended so, and of the last of them how.
+  void complain(Status status, const std::vector<std::size_t>& numbers, const StepRecord& last) const {
+    std::string text = name_of(status);
+    if (run_.size() > 1) text += (numbers.size() == 1 ? " in step " : " in steps ") + list_text(numbers);
+    text += numbers.size() > 1 ? "; in the last of them " : ": ";
+    std::fprintf(stderr, "softkin: %s%s\n", text.c_str(), shortfall_text(model_, last).c_str());
+  }
+
+  const Model& model_;
+  const FkOptions& options_;
+  runs::PathJob job_;
+  runs::Run<StepRecord> run_;
+  StepTable table_;
+};
+
+std::vector<ActuationStep> asked_steps(const Model& model, const FkOptions& options) {
+  const Settings settings = read_settings(model, "--set", options.settings);
+  if (!options.path.empty()) return read_actuation_path(model, options.path, settings);
+  return {{with_settings(model.rest_actuation(), settings)}};
+}
 
 int run_fk(const FkOptions& options) {
   check_usage(options);
@@ -29,7 +226,7 @@ int run_fk(const FkOptions& options) {
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
-  const std::vector<Step> steps = asked_steps(model, options);
+  const std::vector<ActuationStep> steps = asked_steps(model, options);
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
   line.show(-1, "assembling");
@@ -39,7 +236,7 @@ int run_fk(const FkOptions& options) {
   const OutputFolders folders(outputs);
   if (!options.json)
     print(options.scene + ": " + summary(model, options.solver_name) + "\n" + curve_remarks(model, options.settings));
-  return run_steps(model, statics, options, steps);
+  return FkRun(model, statics, options, steps).run();
 }
 
 }  // namespace

@@ -1,25 +1,245 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <softkin/io/marker_path.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/io/table/marker_path.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/jobs.hpp>
+#include <softkin/runs/plots.hpp>
+#include <softkin/runs/report_head.hpp>
+#include <softkin/runs/run_tables.hpp>
 
+#include "columns.hpp"
 #include "command.hpp"
-#include "fk_robot.hpp"
-#include "fk_table.hpp"
-#include "follow_options.hpp"
-#include "follow_run.hpp"
 #include "mesh_text.hpp"
+#include "method_options.hpp"
+#include "run_text.hpp"
+#include "solve_options.hpp"
+#include "step_text.hpp"
 #include "terminal.hpp"
 #include "workspace_start.hpp"
 
 namespace softkin::cli {
 
 namespace fs = std::filesystem;
+using runs::WaypointRecord;
 
 namespace {
+
+/// What the user asks of `softkin follow`. An empty file name: not given.
+struct FollowOptions : SolveOptions, MethodOptions, RunOptions {
+  std::string path, folder, marker, workspace, plot_file;
+  double max_step_mm = 0;  // 0: as given
+
+  // In the folder:
+  [[nodiscard]] fs::path file(const char* name) const { return fs::path(folder) / name; }
+  [[nodiscard]] fs::path plot() const { return plot_file.empty() ? file("path.svg") : fs::path(plot_file); }
+  [[nodiscard]] std::vector<Output> outputs(std::size_t waypoints) const {
+    std::vector<Output> outputs;
+    for (const char* name : {"commands.csv", "errors.csv", "report.json"}) outputs.push_back({"--output", file(name)});
+    outputs.push_back({"--output", file("path.pvd"), waypoints});
+    outputs.push_back({plot_file.empty() ? "--output" : "--plot", plot()});
+    return outputs;
+  }
+  [[nodiscard]] TrajectoryOptions trajectory() const {
+    TrajectoryOptions result;
+    result.inverse = by_method();
+    result.inverse.statics = statics();
+    return result;
+  }
+};
+
+void add_options(CLI::App& command, FollowOptions& options) {
+  add_scene(command, options);
+  command
+      .add_option("PATH", options.path,
+                  "Where a marker is to go: columns x_mm, y_mm, z_mm, or\ntip_x_mm, tip_y_mm, ... of several markers, "
+                  "and t_s; a coordinate\nwithout a column does not count")
+      ->type_name("F.csv")
+      ->required();
+  command
+      .add_option("-o,--output", options.folder,
+                  "Folder for commands.csv (for fk --path), errors.csv, path.pvd\nwith the shapes, path.svg and "
+                  "report.json")
+      ->type_name("DIR")
+      ->required();
+  command.add_option("--marker", options.marker, "Whose x_mm, y_mm, z_mm are (default: the scene's only one)")
+      ->type_name("NAME");
+  command
+      .add_option("--max-step", options.max_step_mm,
+                  "Insert waypoints on the straight lines between those given,\nso that no step is longer [mm]")
+      ->type_name("MM")
+      ->check(positive_length());
+  add_method(command, options, "Distance from a waypoint at which it is reached");
+  command
+      .add_option("--descents", options.descents,
+                  "gradient: iterations of Algorithm 2 for a waypoint, i_max\n(default: " +
+                      std::to_string(InverseOptions().max_iterations) + ")")
+      ->type_name("N")
+      ->check(integer_from(1, 1'000'000'000));
+  command
+      .add_option("--workspace", options.workspace,
+                  "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)")
+      ->type_name("F.csv");
+  command.add_option("--plot", options.plot_file, "The plot, instead of path.svg in the folder")->type_name("F.svg");
+  add_force(command, options);
+  add_solver(command, options, "--solver-tolerance");
+  add_run(command, options, "Go on where the same command was interrupted", "Print the report instead of the table");
+}
+
+void check_usage(const FollowOptions& options) {
+  if (options.folder.empty()) throw InvalidInput("--output: the name of the folder is empty");
+  check_extension("--plot", options.plot_file, {{".svg", ""}});
+  check_method(options);
+  check_solver(options);
+}
+
+/// The waypoints on the terminal, a row each as they come.
+class FollowTable {
+ public:
+  FollowTable(const Model& model, std::size_t waypoints) {
+    columns_.add("waypoint", std::to_string(waypoints).size());
+    for (const Actuator& actuator : model.actuators) columns_.add_command(actuator);
+    columns_.add("error [mm]", 10);
+    columns_.add("equilibria", 10);
+    columns_.add("time [s]", 8);
+  }
+  [[nodiscard]] std::string header() const { return columns_.header() + "status"; }
+  [[nodiscard]] std::string row(std::size_t waypoint, const WaypointRecord& done) const {
+    std::vector<std::string> cells{std::to_string(waypoint)};
+    for (const double value : done.actuation) cells.push_back(Columns::command(value));
+    cells.push_back(number(done.error_mm, 2));
+    cells.push_back(std::to_string(done.equilibria));
+    cells.push_back(decimal(done.seconds, 2));
+    return columns_.row(cells) + name_of(done.end);
+  }
+
+ private:
+  Columns columns_;
+};
+
+/// "55 waypoints, 55 reached to 0.001 mm: error at most 3.2e-04 mm, ...".
+std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm) {
+  double worst = 0, errors = 0, equilibria = 0, seconds = 0;
+  std::size_t reached = 0;
+  for (const WaypointRecord& each : done) {
+    equilibria += each.equilibria;
+    seconds += each.seconds;
+    if (!each.is_reached()) continue;
+    ++reached;
+    worst = std::max(worst, each.error_mm);
+    errors += each.error_mm;
+  }
+  std::string text =
+      counted(done.size(), "waypoint") + ", " + std::to_string(reached) + " reached to " + number(tolerance_mm) + " mm";
+  if (reached > 0)
+    text += ": error at most " + number(worst, 2) + " mm, " + number(errors / static_cast<double>(reached), 2) +
+            " mm in the mean";
+  return text + "; " + decimal(equilibria / static_cast<double>(done.size()), 2) + " equilibria per waypoint, " +
+         decimal(seconds, 2) + " s";
+}
+
+/// Which waypoints were not reached, and by how much at worst; empty where all were.
+std::string missed_text(const std::vector<WaypointRecord>& done) {
+  std::vector<std::size_t> missed, lost;
+  double worst = 0;
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (done[i].is_reached()) continue;
+    (done[i].end == InverseStatus::not_converged ? lost : missed).push_back(i);
+    worst = std::max(worst, done[i].error_mm);
+  }
+  std::string text;
+  const auto tell = [&text](const std::vector<std::size_t>& numbers, const std::string& what) {
+    if (numbers.empty()) return;
+    text += (text.empty() ? "" : "; ") + std::string(numbers.size() == 1 ? "waypoint " : "waypoints ") +
+            list_text(numbers) + (numbers.size() == 1 ? " was " : " were ") + what;
+  };
+  tell(missed, "not reached: the marker stands at the nearest point that the ranges allow");
+  tell(lost, "not reached, and the search for a nearer point did not converge");
+  if (!text.empty()) text += "; at most " + number(worst, 3) + " mm off";
+  return text;
+}
+
+class FollowRun {
+ public:
+  FollowRun(const Model& model, const Statics& statics, const FollowOptions& options, const MarkerPath& path,
+            const TrajectoryOptions& trajectory)
+      : model_(model),
+        options_(options),
+        path_(path),
+        reach_mm_(trajectory.inverse.tolerance_mm),
+        job_(model, statics, path, options.path, trajectory),
+        run_(model, job_, {options.file("report.json"), options.file("path.pvd")},
+             runs::follow_head(model, options.scene, trajectory), {"follow"}),
+        table_(model, path.waypoints.size()) {}
+
+  int run() {
+    if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "waypoint", options_.json);
+    if (!run_.is_complete()) say(table_.header());
+    const bool complete = advance();
+    const std::vector<WaypointRecord> done = finish();
+    if (!complete) return tell_stopped(run_.done(), run_.size(), "waypoint", options_.folder, true);
+    say(summary_of(done, reach_mm_));
+    say("commands: " + options_.file("commands.csv").string() + "; plot: " + options_.plot().string() +
+        "; shapes: " + options_.file("path.pvd").string() + " (open it in ParaView)");
+    const std::string missed = missed_text(done);
+    if (missed.empty()) return cli::done;
+    std::fprintf(stderr, "softkin: %s\n", missed.c_str());
+    return not_converged;
+  }
+
+ private:
+  void say(const std::string& line) const {
+    if (!options_.json) print(line + "\n");
+  }
+
+  /// False where the user has interrupted it.
+  bool advance() {
+    RunProgress line(run_.done(), run_.size(), "waypoint");
+    while (!run_.is_complete()) {
+      line.begin(run_.done());
+      const auto go_on = [&](const Progress& p) {
+        std::string text = counted(static_cast<std::size_t>(std::max(0, p.iteration)), "equilibrium", "equilibria");
+        if (std::isfinite(p.step_mm)) text += ", " + number(p.step_mm, 2) + " mm off";
+        line.show(text);
+        return !interrupted();
+      };
+      if (interrupted() || run_.advance(go_on) != runs::Advance::made) return false;
+      line.clear();
+      say(table_.row(run_.done() - 1, run_.last()));
+    }
+    return true;
+  }
+
+  std::vector<WaypointRecord> finish() {
+    std::vector<WaypointRecord> done;
+    run_.log().each([&](std::size_t, const WaypointRecord& record) { done.push_back(record); });
+    run_.finish();
+    if (!done.empty()) {
+      write_file(options_.file("commands.csv"), runs::commands_table(model_, path_, done).csv());
+      write_file(options_.file("errors.csv"), runs::errors_table(model_, path_, done).csv());
+      const auto name = [](const std::string& file) { return fs::path(file).filename().string(); };
+      const std::string title =
+          name(options_.path) + " by " + name(options_.scene) + ": " + formulation_name(model_.formulation);
+      write_svg(options_.plot(), runs::plot_of_path(model_, path_, done, reach_mm_, title));
+    }
+    if (options_.json) show_report(run_);
+    return done;
+  }
+
+  const Model& model_;
+  const FollowOptions& options_;
+  const MarkerPath& path_;
+  double reach_mm_;
+  runs::FollowJob job_;
+  runs::Run<WaypointRecord> run_;
+  FollowTable table_;
+};
 
 int run_follow(const FollowOptions& options) {
   check_usage(options);
@@ -44,7 +264,7 @@ int run_follow(const FollowOptions& options) {
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
   if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
-  return run_path(model, statics, options, path, trajectory);
+  return FollowRun(model, statics, options, path, trajectory).run();
 }
 
 }  // namespace

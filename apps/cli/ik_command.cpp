@@ -9,18 +9,17 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
 
-#include "actuator_settings.hpp"
+#include <softkin/io/table/settings.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/inverse_report.hpp>
+#include <softkin/runs/shape_files.hpp>
 #include "command.hpp"
-#include "curve_settings.hpp"
-#include "fk_files.hpp"
-#include "fk_robot.hpp"
-#include "fk_table.hpp"
-#include "fk_units.hpp"
 #include "ik_goals.hpp"
 #include "ik_options.hpp"
-#include "ik_report.hpp"
 #include "ik_table.hpp"
 #include "mesh_text.hpp"
+#include "solve_options.hpp"
+#include "step_text.hpp"
 #include "terminal.hpp"
 #include "workspace_start.hpp"
 
@@ -32,7 +31,7 @@ namespace {
 
 /// Where the search begins, and what it may change.
 struct Search {
-  std::vector<AskedGoal> asked;
+  std::vector<runs::NamedGoal> asked;
   std::vector<Goal> goals;
   Actuation start;
   InverseOptions inverse;
@@ -41,7 +40,7 @@ struct Search {
 Search asked_search(const Model& model, const IkOptions& options) {
   Search search;
   search.asked = asked_goals(model, options);
-  for (const AskedGoal& goal : search.asked) search.goals.push_back(goal.goal);
+  for (const runs::NamedGoal& goal : search.asked) search.goals.push_back(goal.goal);
   const Settings start = read_settings(model, "--start", options.start);
   const Settings prefer = read_settings(model, "--prefer", options.prefer);
   const Settings fix = read_settings(model, "--fix", options.fix);
@@ -100,25 +99,25 @@ class IkRun {
   void write() const {
     const Points& positions = found_.equilibrium.state.positions;
     const ElementDeformation deformation = deformation_of(model_, positions);
-    Report::Json step = step_json(model_, found_.equilibrium, deformation);
-    step["seconds"] = found_.seconds;
-    step["error_mm"] = found_.errors_mm.maxCoeff();
+    const runs::InverseRecord record = runs::inverse_record(model_, found_, deformation);
     const std::string title = fs::path(options_.scene).filename().string() + ": " + name_of(found_.status) + ", " +
-                              number(found_.errors_mm.maxCoeff(), 2) + " mm off";
-    if (!options_.output.empty()) write_shape(options_.output, model_, positions, deformation, true);
-    if (!options_.image.empty()) write_image(options_.image, model_, positions, options_.view, title);
-    if (!options_.plot.empty()) write_svg(options_.plot, ik_plot(found_, search_.inverse.tolerance_mm, title));
-    Report report(model_, options_);
-    report.note("ik", ik_json(model_, options_, search_.asked, found_));
+                              number(record.error_mm, 2) + " mm off";
+    if (!options_.output.empty()) runs::write_shape(options_.output, model_, positions, deformation, true);
+    if (!options_.show.image.empty())
+      runs::write_image(options_.show.image, model_, positions, options_.show.view, title);
+    if (!options_.show.plot.empty())
+      write_svg(options_.show.plot, ik_plot(found_, search_.inverse.tolerance_mm, title));
     if (!options_.json) {
-      print(ik_table(model_, search_.asked, found_, step));
-      const std::string found = findings(model_, step);
+      const std::string found = findings_text(model_, record);
+      print(ik_table(model_, search_.asked, found_, record));
       print((found.empty() ? "" : found + "\n") + std::string(name_of(found_.status)) + ": " + ik_summary(found_) +
             "\n");
     }
-    report.add(std::move(step));
-    if (!options_.report.empty()) write_file(options_.report, report.text());
-    if (options_.json) print(report.text());
+    runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report, options_.inverse(),
+                                                  search_.asked, found_, record);
+    report.finish();
+    if (options_.json) report.report(print_piece);
+    print(std::string());
     for (const Output& output : options_.outputs())
       if (!options_.json) print(output.option.substr(2) + ": " + output.file.string() + "\n");
   }

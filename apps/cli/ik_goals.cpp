@@ -83,7 +83,7 @@ class Argument {
   std::string option_, text_, form_, name_, value_;
 };
 
-AskedGoal target_of(const Model& model, const std::string& text) {
+runs::NamedGoal target_of(const Model& model, const std::string& text) {
   const Argument argument(model, "--target", text, "MARKER=X,Y,Z in mm, for example tip=100,0,50 or tip=,,50");
   PositionGoal goal;
   goal.marker = argument.marker(argument.name());
@@ -91,10 +91,10 @@ AskedGoal target_of(const Model& model, const std::string& text) {
   goal.target = point_of(coordinates);
   for (std::size_t axis = 0; axis < 3; ++axis) goal.axes[axis] = coordinates[axis].has_value();
   if (goal.axes == std::array<bool, 3>{}) argument.refuse("no coordinate of it is given");
-  return {"--target", argument.name(), {goal}};
+  return {argument.name(), {goal}};
 }
 
-AskedGoal plane_of(const Model& model, const std::string& text) {
+runs::NamedGoal plane_of(const Model& model, const std::string& text) {
   const Argument argument(model, "--plane", text, "MARKER=PX,PY,PZ/NX,NY,NZ, for example tip=0,0,50/0,0,1");
   const std::size_t slash = argument.value().find('/');
   if (slash == std::string::npos)
@@ -103,10 +103,10 @@ AskedGoal plane_of(const Model& model, const std::string& text) {
   goal.marker = argument.marker(argument.name());
   goal.point = point_of(argument.coordinates(argument.value().substr(0, slash)));
   goal.normal = argument.direction(argument.value().substr(slash + 1));
-  return {"--plane", argument.name(), {goal}};
+  return {argument.name(), {goal}};
 }
 
-AskedGoal direction_of(const Model& model, const std::string& text, std::optional<double> lever_mm) {
+runs::NamedGoal direction_of(const Model& model, const std::string& text, std::optional<double> lever_mm) {
   const Argument argument(model, "--direction", text, "FROM:TO=X,Y,Z, for example base:tip=0,0,1");
   const std::size_t colon = argument.name().find(':');
   if (colon == std::string::npos) argument.refuse("expected two markers, FROM:TO=X,Y,Z");
@@ -117,17 +117,17 @@ AskedGoal direction_of(const Model& model, const std::string& text, std::optiona
   const double apart = (at_rest(model, goal.to) - at_rest(model, goal.from)).norm();
   if (!(apart > 0)) argument.refuse("these markers are in one place at rest");
   goal.lever_mm = lever_mm.value_or(apart);
-  return {"--direction", argument.name(), {goal}};
+  return {argument.name(), {goal}};
 }
 
-void set_weight(const Model& model, const std::string& text, std::vector<AskedGoal>& goals) {
+void set_weight(const Model& model, const std::string& text, std::vector<runs::NamedGoal>& goals) {
   const Argument argument(model, "--weight", text, "GOAL=WEIGHT, for example tip=2 or base:tip=0.5");
   double weight = 0;
   if (!parse_real(argument.value(), weight) || !(weight > 0))
     argument.refuse("the weight must be a finite number > 0, not " + excerpt(argument.value()));
   bool any = false;
   std::vector<std::string> names;
-  for (AskedGoal& goal : goals) {
+  for (runs::NamedGoal& goal : goals) {
     names.push_back(goal.name);
     if (goal.name != argument.name()) continue;
     goal.goal.weight = weight;
@@ -148,22 +148,22 @@ double distance_from_rest(const Model& model, const PositionGoal& goal, double u
 
 }  // namespace
 
-std::vector<AskedGoal> asked_goals(const Model& model, const IkOptions& options) {
-  std::vector<AskedGoal> goals;
+std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options) {
+  std::vector<runs::NamedGoal> goals;
   for (const std::string& text : options.targets) goals.push_back(target_of(model, text));
   for (const std::string& text : options.planes) goals.push_back(plane_of(model, text));
   for (const std::string& text : options.directions) goals.push_back(direction_of(model, text, options.lever_mm));
   for (const std::string& text : options.weights) set_weight(model, text, goals);
   std::vector<Goal> plain;
-  for (const AskedGoal& goal : goals) plain.push_back(goal.goal);
+  for (const runs::NamedGoal& goal : goals) plain.push_back(goal.goal);
   check_goals(model, plain);
   return goals;
 }
 
-std::vector<std::string> doubts_about(const Model& model, const std::vector<AskedGoal>& goals) {
+std::vector<std::string> doubts_about(const Model& model, const std::vector<runs::NamedGoal>& goals) {
   constexpr double large = 100, metre = 1000;
   std::vector<std::string> doubts;
-  for (const AskedGoal& asked : goals) {
+  for (const runs::NamedGoal& asked : goals) {
     const auto* goal = std::get_if<PositionGoal>(&asked.goal.what);
     if (goal == nullptr) continue;
     const double given = distance_from_rest(model, *goal, 1), metres = distance_from_rest(model, *goal, metre);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/kinematics/goal.hpp>
+#include <softkin/runs/inverse_report.hpp>
 #include <string>
 #include <vector>
 
@@ -8,17 +8,11 @@
 
 namespace softkin::cli {
 
-/// A goal and what the user calls it.
-struct AskedGoal {
-  std::string option, name;  // "--target", "tip"; "--direction", "base:tip"
-  Goal goal;
-};
-
 /// Throws InvalidInput naming the option: unknown markers, numbers that are none or not finite, a weight for nothing.
-[[nodiscard]] std::vector<AskedGoal> asked_goals(const Model& model, const IkOptions& options);
+[[nodiscard]] std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options);
 
 /// What looks wrong about the points beside this robot, a sentence each: 100 times its size away, or near it if they
 /// were in metres.
-[[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const std::vector<AskedGoal>& goals);
+[[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const std::vector<runs::NamedGoal>& goals);
 
 }  // namespace softkin::cli

@@ -2,17 +2,15 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cmath>
 #include <softkin/core/error.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/scanner.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
 
 namespace softkin::cli {
 
 namespace {
 
 constexpr int most = 1'000'000;
-/// Of the paper's experiments.
 
 CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                           const std::string& help, const std::string& type) {
@@ -80,33 +78,15 @@ void add_files(CLI::App& command, IkOptions& options) {
   command.add_option("-o,--output", options.output, "The shape")->type_name("F.vtu");
   command.add_option("--report", options.report, "All numbers, with the Jacobian and the strain histogram")
       ->type_name("F.json");
-  command.add_option("--image", options.image, "Picture of the shape")->type_name("F.png");
-  command
-      .add_option("--view", options.view,
-                  "Picture: direction X Y Z from the robot to the eye (default:\n-0.5 -1 0.45); 0 0 1 looks from above")
-      ->type_name("NUMBER")
-      ->expected(3)
-      ->check(finite_number(true));
-  command.add_option("--plot", options.plot, "The error over the equilibria of the search")->type_name("F.svg");
-}
-
-void check_file(const std::string& option, const std::string& file, const std::string& ending) {
-  if (!file.empty() && lower_extension(file) != ending)
-    throw InvalidInput(option + " " + file + ": must end in " + ending);
+  command.add_option("--image", options.show.image, "Picture of the shape")->type_name("F.png");
+  add_view(command, options.show);
+  command.add_option("--plot", options.show.plot, "The error over the equilibria of the search")->type_name("F.svg");
 }
 
 }  // namespace
 
 std::vector<Output> IkOptions::outputs() const {
-  std::vector<Output> outputs;
-  const auto add = [&](const char* option, const std::string& file) {
-    if (!file.empty()) outputs.push_back({option, file});
-  };
-  add("--output", output);
-  add("--report", report);
-  add("--image", image);
-  add("--plot", plot);
-  return outputs;
+  return asked_outputs({{"--output", output}, {"--report", report}, {"--image", show.image}, {"--plot", show.plot}});
 }
 
 InverseOptions IkOptions::inverse() const {
@@ -136,13 +116,10 @@ void check_usage(const IkOptions& options) {
   check_method(options);
   if (options.lever_mm && options.directions.empty())
     throw InvalidInput("--lever is the lever of a direction: it needs --direction");
-  check_file("--output", options.output, ".vtu");
-  check_file("--image", options.image, ".png");
-  check_file("--plot", options.plot, ".svg");
-  if (!options.view.empty() && options.image.empty())
-    throw InvalidInput("--view is the view of the picture: it needs --image F.png");
-  if (!options.view.empty() && std::hypot(options.view[0], options.view[1], options.view[2]) == 0)
-    throw InvalidInput("--view 0 0 0: must be a direction, so not zero");
+  check_extension("--output", options.output, {{".vtu", ""}});
+  check_extension("--image", options.show.image, {{".png", ""}});
+  check_extension("--plot", options.show.plot, {{".svg", ""}});
+  check_view(options.show);
   check_solver(options);
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <softkin/io/output_files.hpp>
 #include "method_options.hpp"
-#include "output_files.hpp"
 #include "solve_options.hpp"
 
 namespace softkin::cli {
@@ -23,8 +23,8 @@ struct IkOptions : SolveOptions, MethodOptions {
   std::optional<double> lever_mm;  // none: the distance of a direction's markers at rest
   int max_equilibria = InverseOptions().max_equilibria;
   int other_starts = InverseOptions().other_starts;
-  std::string output, report, image, plot;
-  std::vector<double> view;  // from the robot to the eye; empty: the picture's default
+  std::string output, report;
+  ShowOptions show;
   bool json = false;
 
   [[nodiscard]] std::vector<Output> outputs() const;

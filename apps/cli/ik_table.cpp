@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "curve_settings.hpp"
-#include "fk_units.hpp"
-#include "ik_report.hpp"
+#include <softkin/io/table/settings.hpp>
+#include <softkin/model/names.hpp>
 #include "mesh_text.hpp"
 #include "terminal.hpp"
 
@@ -15,20 +14,17 @@ namespace {
 
 constexpr int value_decimals = 4, length_decimals = 3, direction_decimals = 5;
 
-std::string load_text(const Actuator& actuator, const Report::Json& values) {
-  const std::string key = multiplier_key(actuator);
-  if (key.empty() || !values.contains(key)) return "-";
-  if (values.value("slack", false)) return "slack";
-  if (values.at(key).is_null()) return "unknown";
-  return decimal(values.at(key).get<double>(), value_decimals) + (actuator.kind == ActuatorKind::cable ? " N" : " kPa");
+std::string load_text(const Model& model, const Actuator& actuator, const runs::ActuatorRecord& record) {
+  if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return "-";
+  if (record.slack) return "slack";
+  if (!std::isfinite(record.multiplier)) return "unknown";
+  return decimal(record.multiplier, value_decimals) + (actuator.kind == ActuatorKind::cable ? " N" : " kPa");
 }
 
 /// "50.0000 kPa": what the actuator's curve gives for the command.
-std::string curve_input_text(const Actuator& actuator, const Report::Json& values) {
+std::string curve_input_text(const Actuator& actuator, const runs::ActuatorRecord& record) {
   if (!actuator.curve) return "-";
-  const auto& input = values.at(curve_key(*actuator.curve));
-  return input.is_null() ? "outside"
-                         : decimal(input.get<double>(), value_decimals) + unit_of_input(actuator.curve->input);
+  return record.by_curve ? decimal(*record.by_curve, value_decimals) + unit_of_input(actuator.curve->input) : "outside";
 }
 
 std::string coordinates_text(const Vec3& point, int decimals) {
@@ -52,7 +48,7 @@ std::string asked_text(const Goal& goal) {
 }
 
 std::string found_text(const Model& model, const Goal& goal, const Points& positions) {
-  const Vec3 place = place_of(model, goal, positions);
+  const Vec3 place = runs::place_of(model, goal, positions);
   if (std::holds_alternative<DirectionGoal>(goal.what)) return coordinates_text(place, direction_decimals);
   return coordinates_text(place, length_decimals) + " mm";
 }
@@ -71,20 +67,20 @@ std::string ends_text(const Model& model, const InverseResult& found) {
 
 }  // namespace
 
-std::string ik_table(const Model& model, const std::vector<AskedGoal>& goals, const InverseResult& found,
-                     const Report::Json& step) {
+std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goals, const InverseResult& found,
+                     const runs::StepRecord& step) {
   const bool curves = std::any_of(model.actuators.begin(), model.actuators.end(),
                                   [](const Actuator& actuator) { return actuator.curve.has_value(); });
   std::vector<std::vector<std::string>> rows{{"actuator", "command", "", "range", "achieved [-]", "load"}};
   if (curves) rows[0].emplace_back("by curve");
-  for (const Actuator& actuator : model.actuators) {
-    const auto& values = step.at("actuators").at(actuator.name);
-    const auto& achieved = values.at("achieved");
-    rows.push_back({actuator.name, decimal(values.at("requested").get<double>(), value_decimals),
-                    bracketed_unit(actuator), number(actuator.low) + " to " + number(actuator.high),
-                    achieved.is_null() ? "unknown" : decimal(achieved.get<double>(), value_decimals),
-                    load_text(actuator, values)});
-    if (curves) rows.back().push_back(curve_input_text(actuator, values));
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const runs::ActuatorRecord& record = step.actuators[a];
+    rows.push_back({actuator.name, decimal(record.requested, value_decimals), bracketed_unit(actuator),
+                    number(actuator.low) + " to " + number(actuator.high),
+                    std::isfinite(record.achieved) ? decimal(record.achieved, value_decimals) : "unknown",
+                    load_text(model, actuator, record)});
+    if (curves) rows.back().push_back(curve_input_text(actuator, record));
   }
   std::vector<std::string> lines = aligned(rows, curves ? "lrlrrrr" : "lrlrrr");
   rows = {{"marker", "asked", "found", "error [mm]"}};

@@ -1,18 +1,17 @@
 #pragma once
 
-#include <softkin/io/svg_plot.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/kinematics/inverse.hpp>
 #include <string>
 #include <vector>
 
-#include "fk_report.hpp"
 #include "ik_goals.hpp"
 
 namespace softkin::cli {
 
-/// The actuators, then the goals, a line each. step: of step_json.
-[[nodiscard]] std::string ik_table(const Model& model, const std::vector<AskedGoal>& goals, const InverseResult& found,
-                                   const Report::Json& step);
+/// The actuators, then the goals, a line each.
+[[nodiscard]] std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goals,
+                                   const InverseResult& found, const runs::StepRecord& step);
 
 /// "error at most 3.2e-05 mm; 5 iterations, 6 equilibria, 0.21 s".
 [[nodiscard]] std::string ik_summary(const InverseResult& found);

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <optional>
-#include <softkin/io/scene.hpp>
+#include <softkin/io/scene/scene.hpp>
 #include <softkin/model/model.hpp>
 #include <utility>
 

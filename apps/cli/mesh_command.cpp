@@ -5,9 +5,9 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <memory>
-#include <softkin/io/length_unit.hpp>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
+#include <softkin/io/mesh/length_unit.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 
 #include "command.hpp"
 

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <softkin/io/gmsh.hpp>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/io/stl.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
+#include <softkin/io/mesh/gmsh.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 
 #include "command.hpp"
 #include "mesh_command.hpp"

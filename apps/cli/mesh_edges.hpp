@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <softkin/model/mesh.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 #include <vector>
 
 namespace softkin::cli {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <softkin/model/mesh.hpp>
-#include <softkin/model/mesh_check.hpp>
+#include <softkin/model/mesh/mesh.hpp>
+#include <softkin/model/mesh/mesh_check.hpp>
 #include <vector>
 
 namespace softkin::cli {

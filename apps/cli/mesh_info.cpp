@@ -1,4 +1,4 @@
-#include <softkin/io/mesh_io.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 
 #include "command.hpp"
 #include "mesh_command.hpp"

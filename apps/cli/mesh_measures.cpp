@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <softkin/io/element_order.hpp>
-#include <softkin/model/boundary.hpp>
+#include <softkin/io/mesh/element_order.hpp>
+#include <softkin/model/mesh/boundary.hpp>
 #include <utility>
 
 #include "mesh_text.hpp"

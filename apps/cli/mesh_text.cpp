@@ -10,15 +10,6 @@
 
 namespace softkin::cli {
 
-std::size_t characters(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
-}
-
 std::string point_text(const Vec3& point) {
   const double rounding = 1e-12 * point.cwiseAbs().maxCoeff();
   std::string text;
@@ -64,6 +55,11 @@ std::string joined(const std::vector<std::string>& lines, const std::string& ind
   std::string text;
   for (const std::string& line : lines) text += indent + line + "\n";
   return text;
+}
+
+void print_piece(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+    throw InvalidInput("standard output cannot be written");
 }
 
 void print(const std::string& text) {

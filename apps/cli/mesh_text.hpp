@@ -2,19 +2,15 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/core/types.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace softkin::cli {
 
 using Json = nlohmann::ordered_json;
-
-/// Characters, not bytes: those that continue a UTF-8 character do not count.
-[[nodiscard]] std::size_t characters(const std::string& text);
-
-/// "1 prism", "2 prisms"; many: where the plural is not one + "s".
-[[nodiscard]] std::string counted(std::size_t count, const std::string& one, const std::string& many = "");
 
 /// "(x, y, z) mm"; what is 1e-12 of the largest coordinate or less counts as 0.
 [[nodiscard]] std::string point_text(const Vec3& point);
@@ -34,6 +30,7 @@ using Json = nlohmann::ordered_json;
 
 // Throw InvalidInput where standard output cannot be written.
 void print(const std::string& text);
+void print_piece(std::string_view text);  // without a flush
 void print(const Json& json);
 
 }  // namespace softkin::cli

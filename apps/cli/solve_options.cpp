@@ -3,6 +3,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
+#include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/io/scanner.hpp>
 
@@ -75,7 +76,7 @@ void add_force(CLI::App& command, SolveOptions& options) {
       ->take_all();
 }
 
-void add_solver(CLI::App& command, SolveOptions& options, const std::string& tolerance) {
+void add_solver(CLI::App& command, SolveOptions& options, const std::string& tolerance, const std::string& threads) {
   const StaticsOptions defaults;
   command
       .add_option("--formulation", options.formulation,
@@ -108,14 +109,64 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& tol
                       std::to_string(defaults.anderson) + ")")
       ->type_name("N")
       ->check(integer_from(0, 20));
-  command.add_option("--threads", options.threads, "0: as many as the machine has (default)")
-      ->type_name("N")
-      ->check(integer_from(0, most_threads));
+  command.add_option("--threads", options.threads, threads)->type_name("N")->check(integer_from(0, most_threads));
+}
+
+void add_run(CLI::App& command, RunOptions& options, const std::string& resume, const std::string& json) {
+  command.add_flag("--resume", options.resume, resume);
+  command.add_flag("--json", options.json, json);
+}
+
+void add_view(CLI::App& command, ShowOptions& options) {
+  command
+      .add_option("--view", options.view,
+                  "Picture: direction X Y Z from the robot to the eye (default:\n-0.5 -1 0.45); 0 0 1 looks from above")
+      ->type_name("NUMBER")
+      ->expected(3)
+      ->check(finite_number(true));
+}
+
+void check_extension(const std::string& option, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& endings) {
+  if (file.empty()) return;
+  std::string known;
+  for (const auto& [ending, what] : endings) {
+    if (lower_extension(file) == ending) return;
+    known += (known.empty() ? "" : " or ") + ending + (what.empty() ? "" : " (" + what + ")");
+  }
+  throw InvalidInput(option + " " + file + ": must end in " + known);
+}
+
+std::vector<Output> asked_outputs(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::vector<Output> outputs;
+  for (const auto& [option, file] : files)
+    if (!file.empty()) outputs.push_back({option, file});
+  return outputs;
+}
+
+void check_view(const ShowOptions& options) {
+  if (options.view.empty()) return;
+  if (options.image.empty()) throw InvalidInput("--view is the view of the picture: it needs --image F.png");
+  if (std::hypot(options.view[0], options.view[1], options.view[2]) == 0)
+    throw InvalidInput("--view 0 0 0: must be a direction, so not zero");
 }
 
 void check_solver(const SolveOptions& options) {
   if (options.anderson && options.solver() != Solver::local_global)
     throw InvalidInput("--anderson accelerates Algorithm 1: it needs --solver local-global");
+}
+
+RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
+  RobotSpec spec = read_asked_scene(options, inputs);
+  if (spec.formulation == Formulation::physical && options.solver() == Solver::local_global)
+    throw InvalidInput(
+        "--solver local-global is for the target-shape formulation, and this robot is physical: leave it out, or add "
+        "--formulation target-shape");
+  return spec;
+}
+
+Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
+  return compile(asked_spec(options, inputs));
 }
 
 }  // namespace softkin::cli

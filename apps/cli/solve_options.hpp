@@ -3,18 +3,21 @@
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/output_files.hpp>
+#include <softkin/io/scene/asked_scene.hpp>
+#include <softkin/model/model.hpp>
 #include <softkin/statics/statics.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace softkin::cli {
 
 /// Which robot, and how its equilibria are solved: what every command that solves is asked.
-struct SolveOptions {
-  std::string scene;
-  std::string formulation;          // empty: the scene's
-  std::vector<std::string> forces;  // NAME=FX,FY,FZ
+struct SolveOptions : AskedScene {
   std::string solver_name = "newton";
   double tolerance_mm = StaticsOptions().step_tolerance_mm;
   int max_iterations = StaticsOptions().max_iterations;
@@ -25,13 +28,44 @@ struct SolveOptions {
   [[nodiscard]] StaticsOptions statics() const;
 };
 
+/// Whether a run goes on where it was interrupted, and whether it prints its report.
+struct RunOptions {
+  bool json = false, resume = false;
+};
+
+/// Pictures of what was found. An empty file name: not given.
+struct ShowOptions {
+  std::string image, plot;
+  std::vector<double> view{};  // from the robot to the eye; empty: the picture's default
+};
+
 void add_scene(CLI::App& command, SolveOptions& options);
 void add_force(CLI::App& command, SolveOptions& options);
 /// tolerance: the name of the option for the solver's tolerance.
-void add_solver(CLI::App& command, SolveOptions& options, const std::string& tolerance);
+void add_solver(CLI::App& command, SolveOptions& options, const std::string& tolerance,
+                const std::string& threads = "0: as many as the machine has (default)");
+
+void add_run(CLI::App& command, RunOptions& options, const std::string& resume, const std::string& json);
+void add_view(CLI::App& command, ShowOptions& options);
+
+/// A file ends in one of these, each with what it then holds ("" where that is clear), or is not given. Throws
+/// InvalidInput naming the option.
+void check_extension(const std::string& option, const std::string& file,
+                     const std::vector<std::pair<std::string, std::string>>& endings);
+/// Those of them that are given.
+[[nodiscard]] std::vector<Output> asked_outputs(const std::vector<std::pair<std::string, std::string>>& files);
+/// Throws InvalidInput where there is a view without a picture, or it is no direction.
+void check_view(const ShowOptions& options);
 
 /// Throws InvalidInput where the options contradict each other.
 void check_solver(const SolveOptions& options);
+
+/// The robot of the scene as it was asked for, as it is written and compiled.
+///
+/// inputs  the files that the scene names are added
+/// throws  InvalidInput naming option, or file and line
+[[nodiscard]] RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
+[[nodiscard]] Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
 
 // What CLI11 says of a number in words of its own.
 [[nodiscard]] CLI::Validator integer_from(std::int64_t low, std::int64_t high);

@@ -5,9 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 
 namespace softkin::cli {
@@ -73,32 +71,6 @@ void ProgressLine::clear() {
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::string duration(double seconds) {
-  const auto whole = static_cast<long long>(std::ceil(std::clamp(seconds, 0.0, 1e15)));
-  if (whole < 60) return std::to_string(whole) + " s";
-  const long long minutes = whole / 60;
-  if (minutes < 60) return std::to_string(minutes) + " min " + std::to_string(whole % 60) + " s";
-  return std::to_string(minutes / 60) + " h " + std::to_string(minutes % 60) + " min";
-}
-
-std::string number(double value, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, value == 0 ? 0.0 : value);  // never "-0"
-  return text;
-}
-
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-std::string decimal(double value, int decimals) {
-  char text[400];
-  const bool zero = std::abs(value) < 0.5 * std::pow(10, -decimals);  // never "-0.000"
-  std::snprintf(text, sizeof text, "%.*f", decimals, zero ? 0.0 : value);
-  return text;
 }
 
 }  // namespace softkin::cli

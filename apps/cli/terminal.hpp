@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/core/text.hpp>
 #include <string>
 
 namespace softkin::cli {
@@ -29,17 +30,5 @@ class ProgressLine {
 
 /// Of a clock that never jumps.
 [[nodiscard]] double seconds_now();
-
-/// "45 s", "3 min 20 s", "2 h 5 min".
-[[nodiscard]] std::string duration(double seconds);
-
-/// The shortest decimal text of a number at so many significant digits.
-[[nodiscard]] std::string number(double value, int digits = 6);
-
-/// The shortest decimal text that reads back as the number.
-[[nodiscard]] std::string exact(double value);
-
-/// A number with so many digits behind the point.
-[[nodiscard]] std::string decimal(double value, int decimals);
 
 }  // namespace softkin::cli

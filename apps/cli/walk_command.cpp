@@ -1,31 +1,207 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <filesystem>
+#include <cmath>
+#include <cstdio>
 #include <memory>
-#include <softkin/io/csv.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/jobs.hpp>
+#include <softkin/runs/plots.hpp>
+#include <softkin/runs/report_head.hpp>
+#include <softkin/runs/run_tables.hpp>
 
+#include "columns.hpp"
 #include "command.hpp"
-#include "fk_robot.hpp"
-#include "fk_table.hpp"
 #include "mesh_text.hpp"
-#include "output_files.hpp"
+#include "run_text.hpp"
+#include "solve_options.hpp"
+#include "step_text.hpp"
 #include "terminal.hpp"
-#include "walk_options.hpp"
-#include "walk_run.hpp"
 
 namespace softkin::cli {
 
+namespace fs = std::filesystem;
+using runs::WalkRecord;
+
 namespace {
+
+constexpr double same_stride_mm = 1e-4;
+constexpr int length_decimals = 4, force_decimals = 6;
+
+/// What the user asks of `softkin walk`.
+struct WalkOptions : SolveOptions, RunOptions {
+  std::string gait, folder;
+  std::size_t cycles = 3;
+
+  // In the folder:
+  [[nodiscard]] fs::path file(const char* name) const { return fs::path(folder) / name; }
+  [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const {
+    std::vector<Output> outputs;
+    for (const char* name : {"walk.csv", "walk.svg", "report.json"}) outputs.push_back({"--output", file(name)});
+    outputs.push_back({"--output", file("walk.pvd"), steps});
+    return outputs;
+  }
+};
+
+void add_options(CLI::App& command, WalkOptions& options) {
+  add_scene(command, options);
+  command
+      .add_option("GAIT", options.gait,
+                  "One cycle of commands, a column for each actuator that\nchanges, and t_s; the last row is the first "
+                  "one again")
+      ->type_name("F.csv")
+      ->required();
+  command
+      .add_option("-o,--output", options.folder,
+                  "Folder for walk.csv, walk.pvd with the shapes, walk.svg and\nreport.json")
+      ->type_name("DIR")
+      ->required();
+  command
+      .add_option("--cycles", options.cycles,
+                  "How often the gait is walked (default: " + std::to_string(WalkOptions().cycles) + ")")
+      ->type_name("N")
+      ->check(integer_from(1, 100'000));
+  add_force(command, options);
+  add_solver(command, options, "--tolerance");
+  add_run(command, options, "Go on where the same command was interrupted, or with more\n--cycles",
+          "Print the report instead of the table");
+}
+
+void check_usage(const WalkOptions& options) {
+  if (options.folder.empty()) throw InvalidInput("--output: the name of the folder is empty");
+  check_solver(options);
+}
+
+/// The steps on the terminal, a row each as they come.
+class WalkTable {
+ public:
+  explicit WalkTable(const Model& model) : model_(model) {
+    columns_.add("cycle", 5);
+    columns_.add("t [s]", 7);
+    for (const Actuator& actuator : model.actuators) columns_.add_command(actuator);
+    for (std::size_t foot = 0; foot < 2; ++foot) columns_.add(foot_name(model, foot) + " [mm]", 10);
+    columns_.add("travel [mm]", 10);
+    if (has_friction()) columns_.add("friction [N]", 12);
+  }
+  [[nodiscard]] std::string header() const { return columns_.header() + "slides"; }
+  [[nodiscard]] std::string row(const WalkRecord& step) const {
+    const WalkStep& walk = step.walk;
+    std::vector<std::string> cells{std::to_string(step.cycle)};
+    cells.push_back(step.time_s ? number(*step.time_s) : "-");
+    for (const double value : step.actuation) cells.push_back(Columns::command(value));
+    for (const double place : {walk.rear_mm, walk.front_mm, walk.travel_mm})
+      cells.push_back(decimal(place, length_decimals));
+    if (has_friction()) cells.push_back(decimal(walk.friction_N, force_decimals));
+    return columns_.row(cells) + runs::sliding_text(model_, walk.sliding);
+  }
+
+ private:
+  [[nodiscard]] bool has_friction() const { return model_.formulation == Formulation::physical; }
+
+  const Model& model_;
+  Columns columns_;
+};
+
+/// "stride: 5.12 mm per cycle from cycle 2 on".
+std::string stride_text(const std::vector<double>& strides) {
+  const double last = strides.back();
+  std::size_t settled = strides.size();  // cycles before this one have another stride
+  while (settled > 0 && std::abs(strides[settled - 1] - last) <= same_stride_mm) --settled;
+  std::string text = "stride: " + decimal(last, length_decimals) + " mm per cycle";
+  if (settled + 1 >= strides.size()) {
+    if (strides.size() > 1) text += " in the last one, which is not that of the one before: walk more --cycles";
+  } else if (settled > 0) {
+    text += " from cycle " + std::to_string(settled + 1) + " on";
+  }
+  return text;
+}
+
+class WalkRun {
+ public:
+  WalkRun(const Model& model, Walker& walker, const WalkOptions& options, const std::vector<runs::GaitStep>& steps)
+      : model_(model),
+        options_(options),
+        job_(model, walker, steps, options.gait),
+        run_(model, job_, {options.file("report.json"), options.file("walk.pvd")},
+             runs::walk_head(model, options.scene, options.statics(), options.gait, options.cycles, walker.direction()),
+             {"feet"}),
+        table_(model) {}
+
+  int run() {
+    if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
+    if (!run_.is_complete()) say(table_.header());
+    const runs::Advance end = advance();
+    const std::vector<double> strides = finish();
+    if (end == runs::Advance::interrupted) return tell_stopped(run_.done(), run_.size(), "step", options_.folder, true);
+    if (end == runs::Advance::lost) return lost();
+    say(stride_text(strides));
+    say("steps: " + options_.file("walk.csv").string() + "; plot: " + options_.file("walk.svg").string() +
+        "; shapes: " + options_.file("walk.pvd").string() + " (open it in ParaView)");
+    return done;
+  }
+
+ private:
+  void say(const std::string& line) const {
+    if (!options_.json) print(line + "\n");
+  }
+
+  runs::Advance advance() {
+    RunProgress line(run_.done(), run_.size(), "step");
+    while (!run_.is_complete()) {
+      line.begin(run_.done());
+      const auto go_on = [&](const Progress& p) {
+        line.show("iteration " + std::to_string(p.iteration));
+        return !interrupted();
+      };
+      const runs::Advance end = interrupted() ? runs::Advance::interrupted : run_.advance(go_on);
+      if (end != runs::Advance::made) return end;
+      line.clear();
+      say(table_.row(run_.last()));
+    }
+    return runs::Advance::made;
+  }
+
+  /// Returns the strides.
+  std::vector<double> finish() {
+    std::vector<WalkRecord> steps;
+    run_.log().each([&](std::size_t, const WalkRecord& record) { steps.push_back(record); });
+    const std::vector<double> strides = runs::strides(steps, options_.cycles);
+    if (!steps.empty()) {
+      run_.log().note("stride_mm", strides);
+      run_.finish();
+      write_file(options_.file("walk.csv"), runs::walk_table(model_, steps).csv());
+      const auto name = [](const std::string& file) { return fs::path(file).filename().string(); };
+      const std::string title =
+          name(options_.gait) + " by " + name(options_.scene) + ": " + formulation_name(model_.formulation);
+      write_svg(options_.file("walk.svg"), runs::plot_of_walk(model_, steps, title));
+    }
+    if (options_.json) show_report(run_);
+    return strides;
+  }
+
+  [[nodiscard]] int lost() const {
+    std::fprintf(stderr, "softkin: the walk ends before step %zu of %zu: %s\n", run_.done(), run_.size() - 1,
+                 shortfall_text(model_, run_.last()).c_str());
+    return not_converged;
+  }
+
+  const Model& model_;
+  const WalkOptions& options_;
+  runs::WalkJob job_;
+  runs::Run<WalkRecord> run_;
+  WalkTable table_;
+};
 
 int run_walk(const WalkOptions& options) {
   check_usage(options);
-  std::vector<std::filesystem::path> inputs{options.scene, options.gait};
+  std::vector<fs::path> inputs{options.scene, options.gait};
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
-  const std::vector<GaitStep> steps =
-      repeated(model, options.gait, path_steps(model, options.gait, read_csv(options.gait)), options.cycles);
+  const std::vector<runs::GaitStep> steps = runs::repeated(
+      model, options.gait, read_actuation_path(model, options.gait, Settings(model.actuators.size())), options.cycles);
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
   line.show(-1, "assembling");
@@ -34,7 +210,7 @@ int run_walk(const WalkOptions& options) {
   catch_interrupt();
   const OutputFolders folders(outputs);
   if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
-  return walk_steps(model, walker, options, steps);
+  return WalkRun(model, walker, options, steps).run();
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "workspace_columns.hpp"
 
-#include "fk_fingerprint.hpp"
-#include "fk_units.hpp"
+#include <softkin/model/fingerprint.hpp>
+#include <softkin/model/names.hpp>
 #include "terminal.hpp"
 
 namespace softkin::cli {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/io/workspace_table.hpp>
+#include <softkin/io/table/workspace_table.hpp>
 #include <softkin/kinematics/sampling.hpp>
 #include <softkin/model/model.hpp>
 

@@ -8,11 +8,11 @@
 #include <softkin/kinematics/workspace.hpp>
 #include <thread>
 
+#include <softkin/io/output_files.hpp>
 #include "command.hpp"
-#include "fk_robot.hpp"
-#include "fk_table.hpp"
 #include "mesh_text.hpp"
-#include "output_files.hpp"
+#include "solve_options.hpp"
+#include "step_text.hpp"
 #include "terminal.hpp"
 #include "workspace_columns.hpp"
 #include "workspace_file.hpp"
@@ -88,15 +88,15 @@ struct Job {
 
 Job read_job(const WorkspaceOptions& options) {
   Job job;
-  job.inputs = {options.robot.scene};
-  job.model = asked_robot(options.robot, job.inputs);
+  job.inputs = {options.scene};
+  job.model = asked_robot(options, job.inputs);
   (void)shown_marker(job.model, options.marker);
   job.sampling = {options.kind(), options.samples, options.seed.value_or(0)};
   if (job.sampling.kind == Sampling::grid)
     job.sampling.samples = static_cast<Index>(std::llround(
         std::pow(nearest_grid(job.model, options.samples), static_cast<double>(varied_actuators(job.model).size()))));
   job.plan = plan_workspace(job.model, job.sampling);
-  job.head = workspace_head(job.model, job.sampling, options.robot.solver_name);
+  job.head = workspace_head(job.model, job.sampling, options.solver_name);
   return job;
 }
 
@@ -113,16 +113,16 @@ class WorkspaceRun {
   void begin() {
     check_outputs(options_.outputs(), job_.inputs);
     folders_.emplace(options_.outputs());
-    file_.emplace(options_.output, job_.head, columns_, job_.plan, options_.robot.resume);
-    if (options_.robot.resume) remove_torn_files(options_.outputs());
-    say(options_.robot.scene + ": " + summary(job_.model, options_.robot.solver_name));
+    file_.emplace(options_.output, job_.head, columns_, job_.plan, options_.resume);
+    if (options_.resume) remove_torn_files(options_.outputs());
+    say(options_.scene + ": " + summary(job_.model, options_.solver_name));
     std::string text = counted(static_cast<std::size_t>(job_.sampling.samples), "sample") + ", " +
                        sampling_text(job_.model, job_.sampling);
     if (job_.sampling.samples != options_.samples)
       text += "; the full grid nearest to " + std::to_string(options_.samples);
     say(text);
     if (ranks_.size() > 1) say(std::to_string(ranks_.size()) + " ranks");
-    if (options_.robot.resume) say_resumed();
+    if (options_.resume) say_resumed();
   }
 
   int run() {
@@ -139,7 +139,7 @@ class WorkspaceRun {
 
  private:
   void say(const std::string& line) const {
-    if (!options_.robot.json) print(line + "\n");
+    if (!options_.json) print(line + "\n");
   }
 
   void say_resumed() const {
@@ -156,8 +156,8 @@ class WorkspaceRun {
     const auto work = [&](GroupDesk& groups) {
       if (ranks_.size() == 1 && file_->complete()) return;
       const Statics assembled(job_.model);
-      solve_groups(job_.model, assembled, job_.plan, options_.robot.statics(), thread_count(options_.robot.threads),
-                   groups, [](const Progress&) { return !interrupted(); });
+      solve_groups(job_.model, assembled, job_.plan, options_.statics(), thread_count(options_.threads), groups,
+                   [](const Progress&) { return !interrupted(); });
     };
     ranks_.share(job_.model, job_.plan, desk ? &*desk : nullptr, work);
     if (desk) desk->end_progress();
@@ -165,10 +165,10 @@ class WorkspaceRun {
 
   void tell(const WorkspaceReach& reach, double seconds) const {
     const Index converged = file_->count(Status::converged), limit = file_->count(Status::limit);
-    if (options_.robot.json) {
+    if (options_.json) {
       nlohmann::ordered_json json;
       json["softkin"] = SOFTKIN_VERSION;
-      json["scene"] = options_.robot.scene;
+      json["scene"] = options_.scene;
       for (const auto& [key, value] : job_.head)
         if (key == "robot" || key == "solver" || key == "sampling") json[key] = value;
       json["samples"] = job_.plan.samples();

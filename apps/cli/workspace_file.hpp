@@ -2,7 +2,7 @@
 
 #include <filesystem>
 #include <optional>
-#include <softkin/io/workspace_table.hpp>
+#include <softkin/io/table/workspace_table.hpp>
 #include <softkin/kinematics/workspace.hpp>
 
 namespace softkin::cli {

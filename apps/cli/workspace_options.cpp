@@ -4,26 +4,17 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/scanner.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
 
 namespace softkin::cli {
 
 namespace {
 
-constexpr std::int64_t most_samples = 100'000'000, most_threads = 512;
-
-CLI::Validator whole_number(std::int64_t low, std::int64_t high) {
-  const auto check = [low, high](const std::string& text) -> std::string {
-    std::int64_t value = 0;
-    if (parse_integer(text, value) && value >= low && value <= high) return "";
-    return "must be an integer from " + std::to_string(low) + " to " + std::to_string(high) + ", not " + text;
-  };
-  return CLI::Validator(check, "");
-}
+constexpr std::int64_t most_samples = 100'000'000;
 
 void add_files(CLI::App& command, WorkspaceOptions& options) {
-  command.add_option("SCENE", options.robot.scene, "Scene, YAML (docs/scene.md)")->type_name("")->required();
+  add_scene(command, options);
   command
       .add_option("-o,--output", options.output,
                   "A row per sample: actuation, markers [mm], tensions [N] and\npressures [kPa], status; grows while "
@@ -48,7 +39,7 @@ void add_sampling(CLI::App& command, WorkspaceOptions& options) {
                   "fills it")
       ->type_name("N")
       ->required()
-      ->check(whole_number(1, most_samples));
+      ->check(integer_from(1, most_samples));
   command
       .add_option("--sampling", options.sampling,
                   "grid (default): as many values for every actuator, ends\nincluded; sobol: a low-discrepancy "
@@ -57,60 +48,13 @@ void add_sampling(CLI::App& command, WorkspaceOptions& options) {
       ->check(CLI::IsMember({"grid", "sobol", "random"}).description(""));
   command.add_option("--seed", options.seed, "Of --sampling random (default: 0)")
       ->type_name("S")
-      ->check(whole_number(0, std::numeric_limits<std::int64_t>::max()));
-}
-
-void add_robot(CLI::App& command, FkOptions& robot) {
-  command
-      .add_option("--formulation", robot.formulation,
-                  "physical: elastic laws, pressures, tensions and forces;\ntarget-shape: Fang et al. 2020; default: "
-                  "the scene's")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"physical", "target-shape"}).description(""));
-  command
-      .add_option("--solver", robot.solver_name,
-                  "newton (default), or local-global: Algorithm 1 of Fang et al.\n2020, target-shape only")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"newton", "local-global"}).description(""));
-  command
-      .add_option("--force", robot.forces,
-                  "NAME=FX,FY,FZ: another size and direction for the scene's\nforce of that name [N]; physical; "
-                  "repeatable")
-      ->type_name("N=F")
-      ->expected(1)
-      ->take_all();
-  command
-      .add_option("--threads", robot.threads,
-                  "Samples solved at once, each on one thread; 0: as many as the\nmachine has (default); under mpirun: "
-                  "of each rank")
-      ->type_name("N")
-      ->check(whole_number(0, most_threads));
-  command.add_flag("--resume", robot.resume, "Go on where the same command was interrupted or killed");
-  command.add_flag("--json", robot.json, "Print a summary as JSON");
-}
-
-void check_extension(const char* option, const std::string& file, const std::vector<std::string>& extensions) {
-  if (file.empty()) return;
-  std::string known;
-  for (const std::string& extension : extensions) {
-    if (lower_extension(file) == extension) return;
-    known += (known.empty() ? "" : " or ") + extension;
-  }
-  throw InvalidInput(std::string(option) + " " + file + ": must end in " + known);
+      ->check(integer_from(0, std::numeric_limits<std::int64_t>::max()));
 }
 
 }  // namespace
 
 std::vector<Output> WorkspaceOptions::outputs() const {
-  std::vector<Output> outputs;
-  const auto add = [&](const char* option, const std::string& file) {
-    if (!file.empty()) outputs.push_back({option, file, 0});
-  };
-  add("--output", output);
-  add("--cloud", cloud);
-  add("--hull", hull);
-  add("--plot", plot);
-  return outputs;
+  return asked_outputs({{"--output", output}, {"--cloud", cloud}, {"--hull", hull}, {"--plot", plot}});
 }
 
 Sampling WorkspaceOptions::kind() const {
@@ -120,14 +64,19 @@ Sampling WorkspaceOptions::kind() const {
 void add_options(CLI::App& command, WorkspaceOptions& options) {
   add_files(command, options);
   add_sampling(command, options);
-  add_robot(command, options.robot);
+  add_force(command, options);
+  add_solver(command, options, "--tolerance",
+             "Samples solved at once, each on one thread; 0: as many as the\nmachine has (default); under mpirun: "
+             "of each rank");
+  add_run(command, options, "Go on where the same command was interrupted or killed", "Print a summary as JSON");
 }
 
 void check_usage(const WorkspaceOptions& options) {
-  check_extension("--output", options.output, {".csv"});
-  check_extension("--cloud", options.cloud, {".vtu"});
-  check_extension("--hull", options.hull, {".vtu", ".stl"});
-  check_extension("--plot", options.plot, {".svg"});
+  check_solver(options);
+  check_extension("--output", options.output, {{".csv", ""}});
+  check_extension("--cloud", options.cloud, {{".vtu", ""}});
+  check_extension("--hull", options.hull, {{".vtu", ""}, {".stl", ""}});
+  check_extension("--plot", options.plot, {{".svg", ""}});
   if (options.seed && options.kind() != Sampling::random)
     throw InvalidInput("--seed is the seed of random samples: it needs --sampling random");
 }

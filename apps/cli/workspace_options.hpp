@@ -3,13 +3,12 @@
 #include <CLI/App.hpp>
 #include <softkin/kinematics/sampling.hpp>
 
-#include "fk_options.hpp"
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
 /// What the user asks of `softkin workspace`. An empty file name: not given.
-struct WorkspaceOptions {
-  FkOptions robot;  // scene, formulation, solver, forces, threads, json, resume
+struct WorkspaceOptions : SolveOptions, RunOptions {
   std::string output, cloud, hull, plot;
   std::string marker;  // that cloud, hull and plot show; empty: the first
   Index samples = 0;

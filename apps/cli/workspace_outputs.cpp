@@ -4,12 +4,12 @@
 #include <array>
 #include <numeric>
 #include <softkin/core/error.hpp>
+#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/plain_text.hpp>
-#include <softkin/io/stl.hpp>
-#include <softkin/io/svg_plot.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
-#include <softkin/io/vtk.hpp>
-#include <softkin/io/workspace_table.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
+#include <softkin/io/table/workspace_table.hpp>
 
 #include "mesh_text.hpp"
 #include "terminal.hpp"
@@ -18,8 +18,6 @@
 namespace softkin::cli {
 
 namespace {
-
-constexpr const char* axis_names = "xyz";
 
 /// What a hull is called, and its measure.
 std::string hull_text(const Hull& hull) {
@@ -126,8 +124,8 @@ void WorkspaceReach::write_plot() const {
   std::vector<PlotPanel> row;
   for (const auto& [across, up] : views_of(positions_)) {
     PlotPanel panel;
-    panel.x.label = std::string(1, axis_names[across]) + " [mm]";
-    panel.y.label = std::string(1, axis_names[up]) + " [mm]";
+    panel.x.label = std::string(axis_names[across]) + " [mm]";
+    panel.y.label = std::string(axis_names[up]) + " [mm]";
     panel.equal = true;
     PlotSeries series;
     series.line = false;
@@ -168,8 +166,8 @@ void WorkspaceReach::add_to(nlohmann::ordered_json& json) const {
   json["marker"] = marker_;
   if (samples_.empty()) return;
   for (int axis = 0; axis < 3; ++axis)
-    json["reach_mm"][std::string(1, axis_names[axis])] = {positions_.col(axis).minCoeff(),
-                                                          positions_.col(axis).maxCoeff()};
+    json["reach_mm"][std::string(axis_names[axis])] = {positions_.col(axis).minCoeff(),
+                                                       positions_.col(axis).maxCoeff()};
   if (options_.hull.empty()) return;
   json["hull"] = {{"shape", hull_name(hull_.shape)},
                   {"volume_mm3", hull_.volume},

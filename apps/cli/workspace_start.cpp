@@ -6,7 +6,7 @@
 #include <softkin/statics/statics.hpp>
 #include <utility>
 
-#include "fk_fingerprint.hpp"
+#include <softkin/model/fingerprint.hpp>
 #include "workspace_columns.hpp"
 
 namespace softkin::cli {

@@ -2,13 +2,13 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/png.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/picture/png.hpp>
 #include <softkin/vision/tags.hpp>
 
+#include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
 #include "cli/mesh_text.hpp"
-#include "cli/output_files.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"
 

@@ -5,9 +5,9 @@
 #include <softkin/vision/pictures.hpp>
 #include <softkin/vision/tags.hpp>
 
+#include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
 #include "cli/mesh_text.hpp"
-#include "cli/output_files.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"
 

@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <softkin/core/error.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/vision/pictures.hpp>
 
 #include "cli/command.hpp"

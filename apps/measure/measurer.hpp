@@ -2,7 +2,7 @@
 
 #include <functional>
 #include <softkin/calibration/specimen.hpp>
-#include <softkin/io/rgb_image.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 
 #include "requests.hpp"
 

@@ -1,9 +1,9 @@
 #include <softkin/io/file.hpp>
 #include <softkin/vision/pictures.hpp>
 
+#include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
 #include "cli/mesh_text.hpp"
-#include "cli/output_files.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"
 #include "measurer.hpp"

@@ -9,7 +9,7 @@
 #include <random>
 #include <softkin/calibration/camera.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/rgb_image.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 #include <string>
 #include <vector>
 

@@ -8,20 +8,20 @@
 namespace softkin {
 namespace {
 
-Dielectric acrylic() {
-  return {DielectricLaw::neo_hookean, 0.07, 4.4, 0.5, 1, 0};
+calibration::Dielectric acrylic() {
+  return {calibration::DielectricLaw::neo_hookean, 0.07, 4.4, 0.5, 1, 0};
 }
 
 /// Strain energy per rest volume [MPa] at equal-biaxial stretch.
-double energy(const Dielectric& d, double l) {
+double energy(const calibration::Dielectric& d, double l) {
   const double invariant = 2 * l * l + std::pow(l, -4) - 3;
-  if (d.law == DielectricLaw::neo_hookean) return d.shear_modulus_MPa / 2 * invariant;
+  if (d.law == calibration::DielectricLaw::neo_hookean) return d.shear_modulus_MPa / 2 * invariant;
   return -d.shear_modulus_MPa * d.stretch_limit / 2 * std::log(1 - invariant / d.stretch_limit);
 }
 
 /// The voltage that makes the stretch stationary in the free energy W - eps E^2/2 (with the work of the voltage) and of
 /// the edge forces, by finite differences of W: 2 s l is their work per rest volume.
-double stationary_voltage(const Dielectric& d, double l) {
+double stationary_voltage(const calibration::Dielectric& d, double l) {
   const double h = 1e-5, eps = d.relative_permittivity * 8.8541878128e-12 * 1e6;  // MPa per (kV/mm)^2
   const auto slope = [&](double at) { return (energy(d, at + h) - energy(d, at - h)) / (2 * h); };
   const double force = slope(d.prestretch);                          // dW/dl at rest, which the forces balance
@@ -30,8 +30,8 @@ double stationary_voltage(const Dielectric& d, double l) {
 }
 
 TEST(Dielectric, PullInOfANeoHookeanElastomerIsTheAnalyticOne) {
-  const Dielectric d = acrylic();
-  const std::optional<PullIn> found = pull_in(d);
+  const calibration::Dielectric d = acrylic();
+  const std::optional<calibration::PullIn> found = calibration::pull_in(d);
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->stretch, std::cbrt(2.0), 1e-9);
   const double root = std::sqrt(0.07e6 / (4.4 * 8.8541878128e-12)) * 1e-6;  // sqrt(mu / eps) [kV/mm]
@@ -42,32 +42,33 @@ TEST(Dielectric, PullInOfANeoHookeanElastomerIsTheAnalyticOne) {
 }
 
 TEST(Dielectric, VoltageIsStationaryInTheFreeEnergy) {
-  Dielectric d = acrylic();
+  calibration::Dielectric d = acrylic();
   for (const double prestretch : {1.0, 1.5, 3.0})
-    for (const DielectricLaw law : {DielectricLaw::neo_hookean, DielectricLaw::gent}) {
+    for (const calibration::DielectricLaw law :
+         {calibration::DielectricLaw::neo_hookean, calibration::DielectricLaw::gent}) {
       d.law = law;
       d.prestretch = prestretch;
       d.stretch_limit = 60;
       for (const double more : {1.02, 1.1, 1.3}) {
         const double expected = stationary_voltage(d, more * prestretch);
-        EXPECT_NEAR(voltage_of(d, more * prestretch), expected, 1e-5 * expected);
+        EXPECT_NEAR(calibration::voltage_of(d, more * prestretch), expected, 1e-5 * expected);
       }
-      EXPECT_NEAR(voltage_of(d, prestretch), 0, 1e-6);
+      EXPECT_NEAR(calibration::voltage_of(d, prestretch), 0, 1e-6);
     }
 }
 
 TEST(Dielectric, PullInIsTheFirstMaximumThatAFineTableHas) {
   for (const double prestretch : {1.0, 1.2, 2.0})
     for (const double limit : {0.0, 20.0, 100.0}) {
-      Dielectric d = acrylic();
+      calibration::Dielectric d = acrylic();
       d.prestretch = prestretch;
-      if (limit > 0) d.law = DielectricLaw::gent;
+      if (limit > 0) d.law = calibration::DielectricLaw::gent;
       d.stretch_limit = limit;
-      const std::optional<PullIn> found = pull_in(d);
+      const std::optional<calibration::PullIn> found = calibration::pull_in(d);
       double highest = 0, at = 0;
       const double step = 1e-5 * prestretch, end = limit > 0 ? std::sqrt(0.95 * limit / 2 + 1.4) : 6 * prestretch;
       for (double l = prestretch; l < end; l += step) {
-        const double voltage = voltage_of(d, l);
+        const double voltage = calibration::voltage_of(d, l);
         if (voltage < highest) break;
         highest = voltage;
         at = l;
@@ -83,52 +84,53 @@ TEST(Dielectric, PullInIsTheFirstMaximumThatAFineTableHas) {
 }
 
 TEST(Dielectric, PrestretchRemovesThePullInOfAGentElastomer) {
-  Dielectric d = acrylic();
-  d.law = DielectricLaw::gent;
+  calibration::Dielectric d = acrylic();
+  d.law = calibration::DielectricLaw::gent;
   d.stretch_limit = 100;
-  EXPECT_TRUE(pull_in(d).has_value());
+  EXPECT_TRUE(calibration::pull_in(d).has_value());
   d.prestretch = 5;
-  EXPECT_FALSE(pull_in(d).has_value());
-  const DielectricCurve curve = dielectric_curve(d, 40);
+  EXPECT_FALSE(calibration::pull_in(d).has_value());
+  const calibration::DielectricCurve curve = calibration::dielectric_curve(d, 40);
   EXPECT_FALSE(curve.pull_in.has_value());
   for (std::size_t i = 1; i < curve.voltages.size(); ++i) EXPECT_GT(curve.voltages[i], curve.voltages[i - 1]);
 }
 
 TEST(Dielectric, CurveEndsAtPullInOrAtBreakdown) {
-  const Dielectric d = acrylic();
-  const DielectricCurve curve = dielectric_curve(d, 65);
+  const calibration::Dielectric d = acrylic();
+  const calibration::DielectricCurve curve = calibration::dielectric_curve(d, 65);
   EXPECT_NEAR(curve.area_ratios.back(), std::pow(2, 2.0 / 3), 1e-6);
   const MonotoneCurve ratio(curve.voltages, curve.area_ratios);
   for (double share = 0.05; share < 0.995; share += 0.01) {  // between its points against the equation itself
     const double voltage = share * curve.voltages.back(), stretch = std::sqrt(ratio.value(voltage));
-    EXPECT_NEAR(voltage_of(d, stretch), voltage, 2e-4 * curve.voltages.back());
+    EXPECT_NEAR(calibration::voltage_of(d, stretch), voltage, 2e-4 * curve.voltages.back());
   }
   const double half = 0.5 * curve.end_field_kV_mm;
-  const DielectricCurve broken = dielectric_curve(d, 65, half);
+  const calibration::DielectricCurve broken = calibration::dielectric_curve(d, 65, half);
   EXPECT_TRUE(broken.broken_down);
   EXPECT_NEAR(broken.end_field_kV_mm, half, 1e-6 * half);
-  EXPECT_FALSE(dielectric_curve(d, 65, 2 * curve.end_field_kV_mm).broken_down);
+  EXPECT_FALSE(calibration::dielectric_curve(d, 65, 2 * curve.end_field_kV_mm).broken_down);
 }
 
 TEST(Dielectric, RefusesWhatIsNoElastomer) {
-  for (const auto& spoil :
-       {+[](Dielectric& d) { d.shear_modulus_MPa = 0; }, +[](Dielectric& d) { d.thickness_mm = -1; },
-        +[](Dielectric& d) { d.prestretch = 0.9; }, +[](Dielectric& d) { d.relative_permittivity = NAN; },
-        +[](Dielectric& d) {
-          d.law = DielectricLaw::gent;
-          d.stretch_limit = 0;
-        },
-        +[](Dielectric& d) {
-          d.law = DielectricLaw::gent;
-          d.stretch_limit = 20;
-          d.prestretch = 4;
-        }}) {
-    Dielectric d = acrylic();
+  for (const auto& spoil : {+[](calibration::Dielectric& d) { d.shear_modulus_MPa = 0; },
+                            +[](calibration::Dielectric& d) { d.thickness_mm = -1; },
+                            +[](calibration::Dielectric& d) { d.prestretch = 0.9; },
+                            +[](calibration::Dielectric& d) { d.relative_permittivity = NAN; },
+                            +[](calibration::Dielectric& d) {
+                              d.law = calibration::DielectricLaw::gent;
+                              d.stretch_limit = 0;
+                            },
+                            +[](calibration::Dielectric& d) {
+                              d.law = calibration::DielectricLaw::gent;
+                              d.stretch_limit = 20;
+                              d.prestretch = 4;
+                            }}) {
+    calibration::Dielectric d = acrylic();
     spoil(d);
-    EXPECT_THROW((void)pull_in(d), InvalidInput);
+    EXPECT_THROW((void)calibration::pull_in(d), InvalidInput);
   }
-  EXPECT_THROW((void)dielectric_curve(acrylic(), 2), InvalidInput);
-  EXPECT_THROW((void)dielectric_curve(acrylic(), 9, -1), InvalidInput);
+  EXPECT_THROW((void)calibration::dielectric_curve(acrylic(), 2), InvalidInput);
+  EXPECT_THROW((void)calibration::dielectric_curve(acrylic(), 9, -1), InvalidInput);
 }
 
 TEST(Voltage, AreasAreOverThatWithoutVoltageAndBranchesApart) {
@@ -137,14 +139,14 @@ TEST(Voltage, AreasAreOverThatWithoutVoltageAndBranchesApart) {
     const double kV = 0.5 * (i <= 8 ? i : 16 - i), s = kV / 4;
     run.rows.push_back({kV, 0.7 * (1 + 0.3 * s * s + (i > 8 ? 0.1 * s * (1 - s) : 0)), 0});
   }
-  const VoltageSamples samples = voltage_samples({run});
+  const calibration::VoltageSamples samples = calibration::voltage_samples({run});
   EXPECT_NEAR(samples.rest_ratios.at(0), 0.7, 1e-12);
-  const CurveFit fit = fit_curve(samples.samples);
+  const calibration::CurveFit fit = calibration::fit_curve(samples.samples);
   ASSERT_TRUE(fit.unloading.has_value());
   EXPECT_NEAR(fit.loading.ratio.value(2), 1.075, 1e-12);
   EXPECT_NEAR(fit.unloading->ratio.value(2), 1.1, 1e-12);
   run.rows.erase(run.rows.begin());
-  EXPECT_THROW((void)voltage_samples({run}), InvalidInput);
+  EXPECT_THROW((void)calibration::voltage_samples({run}), InvalidInput);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <softkin/calibration/ratio_fit.hpp>
 #include <softkin/calibration/specimen_mesh.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/scene.hpp>
-#include <softkin/model/boundary.hpp>
+#include <softkin/io/scene/scene.hpp>
+#include <softkin/model/mesh/boundary.hpp>
 
 namespace softkin {
 namespace {
@@ -23,12 +23,13 @@ StretchedSpecimen stretched(double interface_mm, double stretch_mm, double moved
 }
 
 /// Specimens whose interface moves as simulated at a known ratio.
-std::vector<StretchedSpecimen> synthetic(const SpecimenOptions& options, Formulation formulation, double log_ratio,
-                                         const std::vector<double>& interfaces, double modulus_b = 0) {
+std::vector<StretchedSpecimen> synthetic(const calibration::SpecimenOptions& options, Formulation formulation,
+                                         double log_ratio, const std::vector<double>& interfaces,
+                                         double modulus_b = 0) {
   std::vector<StretchedSpecimen> specimens;
   for (const double interface_mm : interfaces) {
     StretchedSpecimen s = stretched(interface_mm, 2, 1);
-    const SpecimenResponse response = SpecimenTest(options, formulation, s).at(log_ratio);
+    const calibration::SpecimenResponse response = calibration::SpecimenTest(options, formulation, s).at(log_ratio);
     EXPECT_EQ(response.status, Status::converged);
     s.interface_moved_mm = response.moved_mm;
     if (modulus_b > 0) s.force_n = modulus_b * response.force_n;
@@ -54,7 +55,7 @@ double area_of(const Mesh& mesh, const std::string& name) {
 
 TEST(BarMesh, FillsTheBarConformingly) {
   for (const int cells : {1, 2, 3}) {
-    const Mesh mesh = bar_mesh({100, 30, 20, 10, cells});
+    const Mesh mesh = calibration::bar_mesh({100, 30, 20, 10, cells});
     double before = 0, beyond = 0;
     for (const Region& region : mesh.regions)
       for (const Index t : region.tetrahedra) {
@@ -81,11 +82,11 @@ TEST(BarMesh, FillsTheBarConformingly) {
 }
 
 TEST(BarMesh, RefusesWhatIsNoBar) {
-  EXPECT_THROW((void)bar_mesh({100, 0, 20, 10, 2}), InvalidInput);
-  EXPECT_THROW((void)bar_mesh({100, 100, 20, 10, 2}), InvalidInput);
-  EXPECT_THROW((void)bar_mesh({100, 50, -1, 10, 2}), InvalidInput);
-  EXPECT_THROW((void)bar_mesh({100, 50, 20, 10, 0}), InvalidInput);
-  EXPECT_THROW((void)bar_mesh({1e9, 50, 20, 10, 2}), InvalidInput);
+  EXPECT_THROW((void)calibration::bar_mesh({100, 0, 20, 10, 2}), InvalidInput);
+  EXPECT_THROW((void)calibration::bar_mesh({100, 100, 20, 10, 2}), InvalidInput);
+  EXPECT_THROW((void)calibration::bar_mesh({100, 50, -1, 10, 2}), InvalidInput);
+  EXPECT_THROW((void)calibration::bar_mesh({100, 50, 20, 10, 0}), InvalidInput);
+  EXPECT_THROW((void)calibration::bar_mesh({1e9, 50, 20, 10, 2}), InvalidInput);
 }
 
 TEST(ElasticityRatio, IsThatOfSpringsInSeries) {
@@ -94,31 +95,32 @@ TEST(ElasticityRatio, IsThatOfSpringsInSeries) {
     for (const double interface_mm : {20.0, 70.0}) {
       const double soft_a = interface_mm / ratio, soft_b = bar_length - interface_mm;
       const StretchedSpecimen s = stretched(interface_mm, 3, 3 * soft_a / (soft_a + soft_b));
-      EXPECT_NEAR(elasticity_ratio(s), ratio, 1e-12 * ratio);
-      EXPECT_NEAR(rod_share(ratio, bar_length, interface_mm), s.interface_moved_mm / 3, 1e-14);
+      EXPECT_NEAR(calibration::elasticity_ratio(s), ratio, 1e-12 * ratio);
+      EXPECT_NEAR(calibration::rod_share(ratio, bar_length, interface_mm), s.interface_moved_mm / 3, 1e-14);
       StretchedSpecimen other = s;
-      other.interface_moved_mm = 3 * rod_share(ratio * std::exp(1e-6), bar_length, interface_mm);
-      EXPECT_NEAR(rod_sensitivity_mm(s), (s.interface_moved_mm - other.interface_moved_mm) / 1e-6, 1e-5);
+      other.interface_moved_mm = 3 * calibration::rod_share(ratio * std::exp(1e-6), bar_length, interface_mm);
+      EXPECT_NEAR(calibration::rod_sensitivity_mm(s), (s.interface_moved_mm - other.interface_moved_mm) / 1e-6, 1e-5);
     }
-  EXPECT_THROW((void)elasticity_ratio(stretched(50, 1, 1)), InvalidInput);
-  EXPECT_THROW((void)elasticity_ratio(stretched(50, 1, std::nan(""))), InvalidInput);
+  EXPECT_THROW((void)calibration::elasticity_ratio(stretched(50, 1, 1)), InvalidInput);
+  EXPECT_THROW((void)calibration::elasticity_ratio(stretched(50, 1, std::nan(""))), InvalidInput);
 }
 
 TEST(ElasticityRatio, SeveralSpecimensMinimiseTheErrorOfTheInterface) {
   std::vector<StretchedSpecimen> specimens;
   std::vector<double> logs, weights;
   for (const auto& [interface_mm, error] : {std::pair(20.0, 0.002), std::pair(45.0, -0.001), std::pair(80.0, 0.003)}) {
-    specimens.push_back(stretched(interface_mm, 2, 2 * rod_share(3.75, bar_length, interface_mm) + error));
-    logs.push_back(std::log(elasticity_ratio(specimens.back())));
-    weights.push_back(rod_sensitivity_mm(specimens.back()));
+    specimens.push_back(stretched(interface_mm, 2, 2 * calibration::rod_share(3.75, bar_length, interface_mm) + error));
+    logs.push_back(std::log(calibration::elasticity_ratio(specimens.back())));
+    weights.push_back(calibration::rod_sensitivity_mm(specimens.back()));
   }
   const auto squares = [&](double ratio) {
     double sum = 0;
     for (const StretchedSpecimen& s : specimens)
-      sum += std::pow(s.stretch_mm * rod_share(ratio, s.length_mm, s.interface_mm) - s.interface_moved_mm, 2);
+      sum +=
+          std::pow(s.stretch_mm * calibration::rod_share(ratio, s.length_mm, s.interface_mm) - s.interface_moved_mm, 2);
     return sum;
   };
-  const RatioEstimate found = combined_ratio(logs, weights);
+  const calibration::RatioEstimate found = calibration::combined_ratio(logs, weights);
   double best = 3.5;
   for (double ratio = 3.5; ratio < 4; ratio += 1e-4)
     if (squares(ratio) < squares(best)) best = ratio;
@@ -126,41 +128,43 @@ TEST(ElasticityRatio, SeveralSpecimensMinimiseTheErrorOfTheInterface) {
   EXPECT_GT(found.spread, 0);
   EXPECT_LE(found.least, found.ratio);
   EXPECT_GE(found.greatest, found.ratio);
-  EXPECT_EQ(combined_ratio({std::log(2.0)}, {0.3}).spread, 0);
-  EXPECT_THROW((void)combined_ratio({}, {}), InvalidInput);
+  EXPECT_EQ(calibration::combined_ratio({std::log(2.0)}, {0.3}).spread, 0);
+  EXPECT_THROW((void)calibration::combined_ratio({}, {}), InvalidInput);
 }
 
 TEST(ElasticityRatio, ClosedFormOfShapeRatios) {
-  EXPECT_NEAR(std::exp(closed_form_log_ratio(3.75, 1)), 5.125, 1e-9);
-  EXPECT_NEAR(std::exp(closed_form_log_ratio(5.68, 1)), 8.02, 1e-9);
+  EXPECT_NEAR(std::exp(calibration::closed_form_log_ratio(3.75, 1)), 5.125, 1e-9);
+  EXPECT_NEAR(std::exp(calibration::closed_form_log_ratio(5.68, 1)), 8.02, 1e-9);
   for (const double ratio : {0.1, 1.0, 7.0})
     for (const double stiffer : {1.0, 0.3}) {
-      const ShapeRatios shape = shape_ratios(closed_form_log_ratio(ratio, stiffer), stiffer);
-      EXPECT_NEAR(stiffness_of_shape_ratio(shape.a) / stiffness_of_shape_ratio(shape.b), ratio, 1e-12 * ratio);
+      const calibration::ShapeRatios shape =
+          calibration::shape_ratios(calibration::closed_form_log_ratio(ratio, stiffer), stiffer);
+      EXPECT_NEAR(calibration::stiffness_of_shape_ratio(shape.a) / calibration::stiffness_of_shape_ratio(shape.b),
+                  ratio, 1e-12 * ratio);
       EXPECT_NEAR(std::max(shape.a, shape.b), stiffer, 1e-15);
     }
   for (const double nu : {0.0, 0.3, 0.45})
-    EXPECT_NEAR(poisson_ratio_of_shape_ratio(shape_ratio_of_poisson_ratio(nu)), nu, 1e-15);
+    EXPECT_NEAR(calibration::poisson_ratio_of_shape_ratio(calibration::shape_ratio_of_poisson_ratio(nu)), nu, 1e-15);
 }
 
 TEST(SpecimenTest, OneMaterialMovesEvenlyAndPullsAsARod) {
-  SpecimenOptions options;
+  calibration::SpecimenOptions options;
   options.cells = 2;
-  options.grip = Grip::sliding;
+  options.grip = calibration::Grip::sliding;
   options.law = Law::corotational;  // linear in the strain along a bar
-  SpecimenTest test(options, Formulation::physical, stretched(35, 2, 1));
-  const SpecimenResponse response = test.at(0);
+  calibration::SpecimenTest test(options, Formulation::physical, stretched(35, 2, 1));
+  const calibration::SpecimenResponse response = test.at(0);
   ASSERT_EQ(response.status, Status::converged);
   EXPECT_NEAR(response.moved_mm, 2 * 0.35, 1e-9);
   EXPECT_NEAR(response.force_n, 0.02 * 200, 1e-9);
 
-  options.grip = Grip::clamped;
+  options.grip = calibration::Grip::clamped;
   TwistedSpecimen twisted;
   twisted.length_mm = bar_length;
   twisted.interface_mm = 50;
   twisted.twist_deg = 30;
   for (const Formulation formulation : {Formulation::physical, Formulation::target_shape}) {
-    const SpecimenResponse turned = SpecimenTest(options, formulation, twisted).at(0);
+    const calibration::SpecimenResponse turned = calibration::SpecimenTest(options, formulation, twisted).at(0);
     ASSERT_EQ(turned.status, Status::converged);
     EXPECT_NEAR(turned.turned_deg, 15, 0.15);  // the cells are mirrored, not symmetric
   }
@@ -179,18 +183,19 @@ TEST(SpecimenTest, AgreesWithTheExample) {
     ASSERT_EQ(found.report.status, Status::converged);
     const double moved = model.markers[0].point.at(found.state.positions)[0] - 50;
     const double log_ratio = std::log(physical ? 3.75 : 1 / 0.195);
-    const SpecimenResponse here = SpecimenTest({}, formulation, stretched(50, 2, 1)).at(log_ratio);
+    const calibration::SpecimenResponse here =
+        calibration::SpecimenTest({}, formulation, stretched(50, 2, 1)).at(log_ratio);
     ASSERT_EQ(here.status, Status::converged);
     EXPECT_NEAR(here.moved_mm / moved, 1, physical ? 0.005 : 0.015);
   }
 }
 
 TEST(RatioFit, RecoversAPhysicalRatioAndItsModuli) {
-  SpecimenOptions options;
+  calibration::SpecimenOptions options;
   options.cells = 2;
   for (const double ratio : {3.75, 0.4}) {
     const auto specimens = synthetic(options, Formulation::physical, std::log(ratio), {30, 60}, 12);
-    const RatioFit fit = fit_ratio(specimens, options, Formulation::physical);
+    const calibration::RatioFit fit = calibration::fit_ratio(specimens, options, Formulation::physical);
     ASSERT_EQ(fit.status, Status::converged);
     EXPECT_NEAR(fit.estimate.ratio, ratio, 1e-4 * ratio);
     EXPECT_LT(fit.estimate.spread, 1e-4);
@@ -199,46 +204,47 @@ TEST(RatioFit, RecoversAPhysicalRatioAndItsModuli) {
     EXPECT_NEAR(fit.moduli->a_mpa, 12 * ratio, 0.002 * ratio);
     for (std::size_t i = 0; i < specimens.size(); ++i)
       EXPECT_NEAR(fit.specimens[i].response.moved_mm / specimens[i].interface_moved_mm, 1, 1e-4);
-    const auto rod = rod_moduli(specimens, 200);
+    const auto rod = calibration::rod_moduli(specimens, 200);
     ASSERT_TRUE(rod);
     EXPECT_NEAR(rod->b_mpa, 12, 0.6);  // the rod knows neither jaws nor large strain
   }
 }
 
 TEST(RatioFit, RecoversShapeRatiosWhicheverPartIsStiffer) {
-  SpecimenOptions options;
+  calibration::SpecimenOptions options;
   options.cells = 2;
   for (const double stiffer : {1.0, 0.3})
     for (const double ratio : {5.1, 1.0, 0.125}) {
       options.stiffer_shape_ratio = stiffer;
       const auto specimens = synthetic(options, Formulation::target_shape, std::log(ratio), {25, 50, 75});
-      const RatioFit fit = fit_ratio(specimens, options, Formulation::target_shape);
+      const calibration::RatioFit fit = calibration::fit_ratio(specimens, options, Formulation::target_shape);
       ASSERT_EQ(fit.status, Status::converged) << stiffer << " " << ratio;
       EXPECT_NEAR(fit.estimate.ratio, ratio, 1e-4 * ratio) << stiffer;
       EXPECT_FALSE(fit.moduli);
-      for (const SpecimenFit& each : fit.specimens) EXPECT_LE(each.simulations, 8);
+      for (const calibration::SpecimenFit& each : fit.specimens) EXPECT_LE(each.simulations, 8);
     }
 }
 
 TEST(RatioFit, SaysThatNoRatioFits) {
-  SpecimenOptions options;
+  calibration::SpecimenOptions options;
   options.cells = 1;
-  const RatioFit fit = fit_ratio({stretched(50, 1, 1e-6), stretched(50, 1, 0.2)}, options, Formulation::target_shape);
+  const calibration::RatioFit fit =
+      calibration::fit_ratio({stretched(50, 1, 1e-6), stretched(50, 1, 0.2)}, options, Formulation::target_shape);
   EXPECT_EQ(fit.status, Status::limit);
   EXPECT_EQ(fit.specimens[0].status, Status::limit);
   EXPECT_FALSE(fit.specimens[0].remark.empty());
   EXPECT_EQ(fit.specimens[1].status, Status::converged);
   EXPECT_EQ(fit.estimate.specimens, 1u);
-  EXPECT_THROW((void)fit_ratio({}, options, Formulation::physical), InvalidInput);
+  EXPECT_THROW((void)calibration::fit_ratio({}, options, Formulation::physical), InvalidInput);
 }
 
 /// A solver that may not finish is told as such, and nothing is made of its shape.
 TEST(RatioFit, AUnfinishedSimulationIsAStatus) {
-  SpecimenOptions options;
+  calibration::SpecimenOptions options;
   options.cells = 1;
   options.statics.solver = Solver::local_global;
   options.statics.max_iterations = 2;
-  const RatioFit fit = fit_ratio({stretched(50, 1, 0.2)}, options, Formulation::target_shape);
+  const calibration::RatioFit fit = calibration::fit_ratio({stretched(50, 1, 0.2)}, options, Formulation::target_shape);
   EXPECT_EQ(fit.status, Status::not_converged);
   EXPECT_EQ(fit.estimate.specimens, 0u);
 }

@@ -55,19 +55,19 @@ TEST(MaterialReference, RecoversTheBarOfTwoMaterials) {
   for (const Bar& bar : {Bar{"Rm3p75_nu45", 3.75, 0.45}, Bar{"Rm5p68_nu30", 5.68, 0.30}}) {
     const testing::ReferenceTable stretch(table_of(bar, "clamped")), twist(table_of(bar, "twist"));
     const std::vector<StretchedSpecimen> specimens{stretched_by(stretch, 1), stretched_by(stretch, 10)};
-    SpecimenOptions options;
+    calibration::SpecimenOptions options;
     options.law = Law::st_venant_kirchhoff;
     options.poisson_ratio = bar.poisson_ratio;
     options.cells = 2;
-    const RatioFit fit = fit_ratio(specimens, options, Formulation::physical);
+    const calibration::RatioFit fit = calibration::fit_ratio(specimens, options, Formulation::physical);
     ASSERT_EQ(fit.status, Status::converged);
     const TwistedSpecimen turned = twist_of(twist, 20);
-    const SpecimenResponse response =
-        predict(std::vector{turned}, options, Formulation::physical, std::log(fit.estimate.ratio)).front();
+    const calibration::SpecimenResponse response =
+        calibration::predict(std::vector{turned}, options, Formulation::physical, std::log(fit.estimate.ratio)).front();
     ASSERT_EQ(response.status, Status::converged);
     std::printf("  %s: E_A / E_B %.4f (Eq. (16): %.3f and %.3f), twist %.4f of %.4f degrees\n", bar.name,
-                fit.estimate.ratio, elasticity_ratio(specimens[0]), elasticity_ratio(specimens[1]), response.turned_deg,
-                *turned.interface_deg);
+                fit.estimate.ratio, calibration::elasticity_ratio(specimens[0]),
+                calibration::elasticity_ratio(specimens[1]), response.turned_deg, *turned.interface_deg);
     EXPECT_NEAR(fit.estimate.ratio / bar.ratio, 1, 0.005);
     for (std::size_t i = 0; i < specimens.size(); ++i)
       EXPECT_NEAR(fit.specimens[i].response.moved_mm / specimens[i].interface_moved_mm, 1, 0.003);
@@ -89,23 +89,23 @@ TEST(MaterialReference, TargetShapesTwistAsTheReferenceWithThePoissonRatioOfTheS
     const testing::ReferenceTable stretch(table_of(c.bar, "clamped")), twist(table_of(c.bar, "twist"));
     const std::vector<StretchedSpecimen> specimens{stretched_by(stretch, 1)};
     const std::vector<TwistedSpecimen> twisted{twist_of(twist, 20)};
-    SpecimenOptions options;
+    calibration::SpecimenOptions options;
     const auto off = [&](double ratio) {
-      const auto found = predict(twisted, options, Formulation::target_shape, std::log(ratio));
+      const auto found = calibration::predict(twisted, options, Formulation::target_shape, std::log(ratio));
       return found.front().turned_deg / *twisted[0].interface_deg - 1;
     };
-    const RatioFit stiff = fit_ratio(specimens, options, Formulation::target_shape);
+    const calibration::RatioFit stiff = calibration::fit_ratio(specimens, options, Formulation::target_shape);
     ASSERT_EQ(stiff.status, Status::converged);
     const double converged = off(stiff.estimate.ratio), printed = off(c.printed);
-    options.stiffer_shape_ratio = shape_ratio_of_poisson_ratio(0.45);
-    const RatioFit right = fit_ratio(specimens, options, Formulation::target_shape);
+    options.stiffer_shape_ratio = calibration::shape_ratio_of_poisson_ratio(0.45);
+    const calibration::RatioFit right = calibration::fit_ratio(specimens, options, Formulation::target_shape);
     ASSERT_EQ(right.status, Status::converged);
     const double with_poisson = off(right.estimate.ratio);
     std::printf("  R_A / R_B %.3f: twist off by %.1f %%; %.2f: %.1f %%; %.3f with R_A %.3f: %.1f %%\n",
                 stiff.estimate.ratio, 100 * converged, c.printed, 100 * printed, right.estimate.ratio,
                 options.stiffer_shape_ratio, 100 * with_poisson);
     EXPECT_NEAR(stiff.estimate.ratio, c.found, 0.02);
-    for (const RatioFit& fit : {stiff, right})
+    for (const calibration::RatioFit& fit : {stiff, right})
       EXPECT_NEAR(fit.specimens[0].response.moved_mm / specimens[0].interface_moved_mm, 1, 1e-4);
     EXPECT_LT(std::abs(with_poisson), c.with_poisson_off);
     EXPECT_NEAR(converged, c.found_off, 0.01);

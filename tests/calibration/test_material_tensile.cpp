@@ -4,8 +4,8 @@
 #include <random>
 #include <softkin/calibration/tensile_fit.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/model/compile_parts.hpp>
-#include <softkin/statics/elastic_system.hpp>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "model/block_mesh.hpp"
@@ -27,7 +27,7 @@ TensileCurve curve_of(double end, int points, const Stress& stress, double noise
 }
 
 /// Energy of an incompressible law under tension [MPa].
-double energy(const IncompressibleLaw& law, double strain) {
+double energy(const calibration::IncompressibleLaw& law, double strain) {
   const double s = 1 + strain, e1 = s * s + 2 / s - 3, e2 = 2 * s + 1 / (s * s) - 3;
   return law.c10 * e1 + law.c01 * e2 + law.c20 * e1 * e1 + law.c30 * e1 * e1 * e1;
 }
@@ -53,7 +53,7 @@ double stretched_block(const ElasticSpec& elastic, double strain) {
   const Statics statics(model);
   const Equilibrium found = statics.solve(Actuation(0), statics.rest());
   EXPECT_EQ(found.report.status, Status::converged);
-  const ElasticSystem body(model);
+  const physical::Body body(model);
   auto scratch = body.make_scratch();
   Points gradient(model.rest.rows(), 3);
   Team alone(1);
@@ -67,71 +67,76 @@ double stretched_block(const ElasticSpec& elastic, double strain) {
 }  // namespace
 
 TEST(Uniaxial, StressIsTheSlopeOfTheEnergy) {
-  for (const IncompressibleLaw& law :
-       {IncompressibleLaw{Law::neo_hookean, 2, 0, 0, 0}, IncompressibleLaw{Law::mooney_rivlin, 1, 0.7, 0, 0},
-        IncompressibleLaw{Law::yeoh, 2, 0, -0.3, 0.05}})
+  for (const calibration::IncompressibleLaw& law : {calibration::IncompressibleLaw{Law::neo_hookean, 2, 0, 0, 0},
+                                                    calibration::IncompressibleLaw{Law::mooney_rivlin, 1, 0.7, 0, 0},
+                                                    calibration::IncompressibleLaw{Law::yeoh, 2, 0, -0.3, 0.05}})
     for (const double strain : {-0.4, 0.1, 0.8, 2.0}) {
       const double h = 1e-5;
-      EXPECT_NEAR(uniaxial_stress(law, strain), (energy(law, strain + h) - energy(law, strain - h)) / (2 * h), 1e-6);
-      EXPECT_NEAR(uniaxial_stress(law, 1e-7) / 1e-7, law.youngs_modulus(), 1e-5);
+      EXPECT_NEAR(calibration::uniaxial_stress(law, strain),
+                  (energy(law, strain + h) - energy(law, strain - h)) / (2 * h), 1e-6);
+      EXPECT_NEAR(calibration::uniaxial_stress(law, 1e-7) / 1e-7, law.youngs_modulus(), 1e-5);
     }
 }
 
 TEST(Uniaxial, LawsOfScenesStretchAsTheirBodies) {
-  for (const IncompressibleLaw& law :
-       {IncompressibleLaw{Law::neo_hookean, 2, 0, 0, 0}, IncompressibleLaw{Law::mooney_rivlin, 1, 0.7, 0, 0},
-        IncompressibleLaw{Law::yeoh, 2, 0, -0.3, 0.05}})
+  for (const calibration::IncompressibleLaw& law : {calibration::IncompressibleLaw{Law::neo_hookean, 2, 0, 0, 0},
+                                                    calibration::IncompressibleLaw{Law::mooney_rivlin, 1, 0.7, 0, 0},
+                                                    calibration::IncompressibleLaw{Law::yeoh, 2, 0, -0.3, 0.05}})
     for (const double nu : {0.3, 0.45})
       for (const double strain : {1e-3, 0.3, 0.8}) {
-        const ElasticSpec spec = scene_constants(law, nu);
-        const double stress = uniaxial_stress(elastic_law(spec, "block", {}), strain);
+        const ElasticSpec spec = calibration::scene_constants(law, nu);
+        const double stress = calibration::uniaxial_stress(elastic_law(spec, "block", {}), strain);
         EXPECT_NEAR(stretched_block(spec, strain) / stress, 1, 1e-6) << nu << " " << strain;
         if (strain < 0.01) {
           EXPECT_NEAR(stress / strain / law.youngs_modulus(), 1, 0.01);
         }
       }
-  EXPECT_THROW((void)uniaxial_stress(ElasticLaw{}, -0.1), InvalidInput);
-  EXPECT_THROW((void)uniaxial_stress(ElasticLaw{Law::corotational, 1, 1}, 0.1), InvalidInput);
+  EXPECT_THROW((void)calibration::uniaxial_stress(ElasticLaw{}, -0.1), InvalidInput);
+  EXPECT_THROW((void)calibration::uniaxial_stress(ElasticLaw{Law::corotational, 1, 1}, 0.1), InvalidInput);
 }
 
 /// Near incompressibility the scene's law is the incompressible one.
 TEST(Uniaxial, GoesOverIntoTheIncompressibleLaw) {
-  const IncompressibleLaw law{Law::yeoh, 2, 0, -0.3, 0.05};
-  const ElasticLaw scene = elastic_law(scene_constants(law, 0.49999), "material", {});
+  const calibration::IncompressibleLaw law{Law::yeoh, 2, 0, -0.3, 0.05};
+  const ElasticLaw scene = elastic_law(calibration::scene_constants(law, 0.49999), "material", {});
   for (const double strain : {0.1, 0.5, 1.5})
-    EXPECT_NEAR(uniaxial_stress(scene, strain) / uniaxial_stress(law, strain), 1, 2e-4);
+    EXPECT_NEAR(calibration::uniaxial_stress(scene, strain) / calibration::uniaxial_stress(law, strain), 1, 2e-4);
 }
 
 TEST(TensileFit, RecoversConstants) {
-  const IncompressibleLaw yeoh{Law::yeoh, 2, 0, -0.25, 0.03}, mooney{Law::mooney_rivlin, 0.4, 0.9, 0, 0};
-  const LawFit a = fit_law(curve_of(1.5, 31, [&](double e) { return uniaxial_stress(yeoh, e); }), Law::yeoh);
+  const calibration::IncompressibleLaw yeoh{Law::yeoh, 2, 0, -0.25, 0.03}, mooney{Law::mooney_rivlin, 0.4, 0.9, 0, 0};
+  const calibration::LawFit a = calibration::fit_law(
+      curve_of(1.5, 31, [&](double e) { return calibration::uniaxial_stress(yeoh, e); }), Law::yeoh);
   EXPECT_NEAR(a.law.c10, 2, 1e-9);
   EXPECT_NEAR(a.law.c20, -0.25, 1e-9);
   EXPECT_NEAR(a.law.c30, 0.03, 1e-9);
   EXPECT_LT(a.quality.rms_mpa, 1e-12);
   EXPECT_NEAR(a.quality.r_squared, 1, 1e-12);
-  const LawFit b = fit_law(curve_of(1.5, 31, [&](double e) { return uniaxial_stress(mooney, e); }), Law::mooney_rivlin);
+  const calibration::LawFit b = calibration::fit_law(
+      curve_of(1.5, 31, [&](double e) { return calibration::uniaxial_stress(mooney, e); }), Law::mooney_rivlin);
   EXPECT_NEAR(b.law.c10, 0.4, 1e-9);
   EXPECT_NEAR(b.law.c01, 0.9, 1e-9);
   const TensileCurve noisy = curve_of(
-      1.5, 200, [&](double e) { return uniaxial_stress(yeoh, e); }, 0.05);
-  const LawFit c = fit_law(noisy, Law::yeoh);
+      1.5, 200, [&](double e) { return calibration::uniaxial_stress(yeoh, e); }, 0.05);
+  const calibration::LawFit c = calibration::fit_law(noisy, Law::yeoh);
   EXPECT_NEAR(c.law.c10, 2, 0.03);
   EXPECT_NEAR(c.quality.rms_mpa, 0.05, 0.01);
-  EXPECT_EQ(fit_law(noisy, Law::neo_hookean, 0.5).points, 67u);
+  EXPECT_EQ(calibration::fit_law(noisy, Law::neo_hookean, 0.5).points, 67u);
 }
 
 /// The constrained optimum against brute force over c10 + c01 = bound and beyond.
 TEST(TensileFit, HoldsTheInitialModulusAboveZero) {
   const TensileCurve curve = curve_of(1.0, 21, [](double e) { return e * e * e; });
-  const LawFit fit = fit_law(curve, Law::mooney_rivlin);
+  const calibration::LawFit fit = calibration::fit_law(curve, Law::mooney_rivlin);
   EXPECT_TRUE(fit.at_bound);
   EXPECT_GT(fit.law.c10 + fit.law.c01, 0);
   const auto squares = [&](double c10, double c01) {
     double sum = 0;
     for (std::size_t i = 0; i < curve.strain.size(); ++i)
-      sum += std::pow(
-          uniaxial_stress(IncompressibleLaw{Law::mooney_rivlin, c10, c01, 0, 0}, curve.strain[i]) - curve.stress[i], 2);
+      sum += std::pow(calibration::uniaxial_stress(calibration::IncompressibleLaw{Law::mooney_rivlin, c10, c01, 0, 0},
+                                                   curve.strain[i]) -
+                          curve.stress[i],
+                      2);
     return sum;
   };
   const double bound = fit.law.c10 + fit.law.c01, found = squares(fit.law.c10, fit.law.c01);
@@ -140,30 +145,33 @@ TEST(TensileFit, HoldsTheInitialModulusAboveZero) {
       const double c10 = fit.law.c10 + 0.01 * i;
       EXPECT_GE(squares(c10, bound + more - c10), found - 1e-12);
     }
-  EXPECT_FALSE(fit_law(curve_of(1, 21, [](double e) { return 3 * e; }), Law::mooney_rivlin).at_bound);
+  EXPECT_FALSE(calibration::fit_law(curve_of(1, 21, [](double e) { return 3 * e; }), Law::mooney_rivlin).at_bound);
 }
 
 TEST(TensileFit, SaysWhereAMaterialBecomesUnstable) {
-  const IncompressibleLaw soft{Law::yeoh, 2, 0, -0.9, 0};  // its stress has a maximum
+  const calibration::IncompressibleLaw soft{Law::yeoh, 2, 0, -0.9, 0};  // its stress has a maximum
   double pulled = 0, pressed = 0;
-  while (uniaxial_stress(soft, pulled + 1e-4) > uniaxial_stress(soft, pulled)) pulled += 1e-4;
-  while (uniaxial_stress(soft, pressed - 1e-4) < uniaxial_stress(soft, pressed)) pressed -= 1e-4;
-  const LawFit fit = fit_law(curve_of(2.0, 41, [&](double e) { return uniaxial_stress(soft, e); }), Law::yeoh);
+  while (calibration::uniaxial_stress(soft, pulled + 1e-4) > calibration::uniaxial_stress(soft, pulled)) pulled += 1e-4;
+  while (calibration::uniaxial_stress(soft, pressed - 1e-4) < calibration::uniaxial_stress(soft, pressed))
+    pressed -= 1e-4;
+  const calibration::LawFit fit = calibration::fit_law(
+      curve_of(2.0, 41, [&](double e) { return calibration::uniaxial_stress(soft, e); }), Law::yeoh);
   ASSERT_TRUE(fit.falls_at);
   EXPECT_NEAR(*fit.falls_at, pulled < -pressed ? pulled : pressed, 0.01);
-  const IncompressibleLaw firm{Law::neo_hookean, 2, 0, 0, 0};
-  EXPECT_FALSE(
-      fit_law(curve_of(2.0, 41, [&](double e) { return uniaxial_stress(firm, e); }), Law::neo_hookean).falls_at);
+  const calibration::IncompressibleLaw firm{Law::neo_hookean, 2, 0, 0, 0};
+  EXPECT_FALSE(calibration::fit_law(curve_of(2.0, 41, [&](double e) { return calibration::uniaxial_stress(firm, e); }),
+                                    Law::neo_hookean)
+                   .falls_at);
 }
 
 TEST(LinearRange, EndsWhereTheCurveLeavesTheLine) {
   const auto knee = [](double e) { return e <= 0.2 ? 45 * e : 9 + 10 * (e - 0.2); };
   const TensileCurve curve = curve_of(0.5, 501, knee);
-  const LinearRange found = linear_range(curve, 0.02);
+  const calibration::LinearRange found = calibration::linear_range(curve, 0.02);
   EXPECT_NEAR(found.modulus_mpa, 45, 0.6);
   EXPECT_NEAR(found.end_strain, 0.2, 0.01);
   EXPECT_FALSE(found.whole);
-  const LinearRange line = linear_range(curve_of(0.2, 50, [](double e) { return 7 * e; }));
+  const calibration::LinearRange line = calibration::linear_range(curve_of(0.2, 50, [](double e) { return 7 * e; }));
   EXPECT_NEAR(line.modulus_mpa, 7, 1e-12);
   EXPECT_TRUE(line.whole);
   EXPECT_NEAR(line.quality.r_squared, 1, 1e-12);
@@ -180,18 +188,22 @@ TEST(LinearRange, EndsWhereTheCurveLeavesTheLine) {
 }
 
 TEST(LinearRange, RefusesWhatHasNone) {
-  EXPECT_THROW((void)linear_range(curve_of(0.2, 4, [](double e) { return e; })), InvalidInput);
-  EXPECT_THROW((void)linear_range(curve_of(0.2, 20, [](double e) { return 1 + e; })), InvalidInput);  // not zeroed
-  EXPECT_THROW((void)linear_range(curve_of(0.2, 20, [](double e) { return -e; })), InvalidInput);
-  const LinearRange offset = linear_range(curve_of(0.2, 20, [](double e) { return 0.3 + 10 * e; }), 0.2);
+  EXPECT_THROW((void)calibration::linear_range(curve_of(0.2, 4, [](double e) { return e; })), InvalidInput);
+  EXPECT_THROW((void)calibration::linear_range(curve_of(0.2, 20, [](double e) { return 1 + e; })),
+               InvalidInput);  // not zeroed
+  EXPECT_THROW((void)calibration::linear_range(curve_of(0.2, 20, [](double e) { return -e; })), InvalidInput);
+  const calibration::LinearRange offset =
+      calibration::linear_range(curve_of(0.2, 20, [](double e) { return 0.3 + 10 * e; }), 0.2);
   EXPECT_NEAR(offset.offset_mpa, 0.3, 1e-9);
 }
 
 TEST(TensileFit, RefusesWhatCannotBeFitted) {
-  EXPECT_THROW((void)fit_law(curve_of(1, 20, [](double e) { return -e; }), Law::neo_hookean), InvalidInput);
-  EXPECT_THROW((void)fit_law(curve_of(1, 20, [](double e) { return e; }), Law::corotational), InvalidInput);
-  EXPECT_THROW((void)fit_law({{0.0, 0.5}, {0.0, 1.0}, {}}, Law::yeoh), InvalidInput);
-  EXPECT_THROW((void)fit_law({{0.0, 0.5, 0.5}, {0.0, 1.0, 1.0}, {}}, Law::mooney_rivlin), InvalidInput);
+  EXPECT_THROW((void)calibration::fit_law(curve_of(1, 20, [](double e) { return -e; }), Law::neo_hookean),
+               InvalidInput);
+  EXPECT_THROW((void)calibration::fit_law(curve_of(1, 20, [](double e) { return e; }), Law::corotational),
+               InvalidInput);
+  EXPECT_THROW((void)calibration::fit_law({{0.0, 0.5}, {0.0, 1.0}, {}}, Law::yeoh), InvalidInput);
+  EXPECT_THROW((void)calibration::fit_law({{0.0, 0.5, 0.5}, {0.0, 1.0, 1.0}, {}}, Law::mooney_rivlin), InvalidInput);
 }
 
 }  // namespace softkin

@@ -12,7 +12,7 @@
 namespace softkin {
 namespace {
 
-constexpr SyringeSetup setup{20000, 1500, 60000, 100};
+constexpr calibration::SyringeSetup setup{20000, 1500, 60000, 100};
 
 /// The chamber's true ratio: a hysteresis between two stiffening curves that meet at rest and at 140 kPa.
 double loading(double gauge) {
@@ -26,7 +26,7 @@ double unloading(double gauge) {
 }
 
 /// Delta V_sy [mm^3] by the gas law of Eq. (18), found by bisection over it: independent of Eq. (19).
-double gas_law_volume(const SyringeSetup& s, double absolute, double ratio) {
+double gas_law_volume(const calibration::SyringeSetup& s, double absolute, double ratio) {
   const double closed = s.atmosphere_kPa * (s.chamber_mm3 + s.syringe_mm3 + s.tube_mm3);
   double low = -1e7, high = 1e7;
   for (int i = 0; i < 200; ++i) {
@@ -56,9 +56,10 @@ SyringeRun cycle(PressureScale scale, int rows, const Noise& noise, unsigned see
   return run;
 }
 
-std::vector<CurveSample> samples_of(const std::vector<SyringeRun>& runs) {
-  std::vector<CurveSample> samples;
-  for (const SyringeSample& each : chamber_ratios(setup, runs)) samples.push_back(each.sample);
+std::vector<calibration::CurveSample> samples_of(const std::vector<SyringeRun>& runs) {
+  std::vector<calibration::CurveSample> samples;
+  for (const calibration::SyringeSample& each : calibration::chamber_ratios(setup, runs))
+    samples.push_back(each.sample);
   return samples;
 }
 
@@ -81,10 +82,10 @@ TEST(Syringe, Equation19IsTheGasLawBothWays) {
   for (const double absolute : {60.0, 100.0, 131.0, 240.0})
     for (const double ratio : {0.7, 1.0, 1.3, 2.2}) {
       const double volume = gas_law_volume(setup, absolute, ratio);
-      EXPECT_NEAR(chamber_ratio(setup, absolute, volume), ratio, 1e-9);
-      EXPECT_NEAR(syringe_volume(setup, absolute, ratio), volume, 1e-5);
+      EXPECT_NEAR(calibration::chamber_ratio(setup, absolute, volume), ratio, 1e-9);
+      EXPECT_NEAR(calibration::syringe_volume(setup, absolute, ratio), volume, 1e-5);
     }
-  EXPECT_DOUBLE_EQ(chamber_ratio(setup, 100, 0), 1);
+  EXPECT_DOUBLE_EQ(calibration::chamber_ratio(setup, 100, 0), 1);
 }
 
 TEST(Syringe, NoisyRunsGiveTheRatioWithinHalfAPercentAndKeepTheHysteresis) {
@@ -92,7 +93,7 @@ TEST(Syringe, NoisyRunsGiveTheRatioWithinHalfAPercentAndKeepTheHysteresis) {
   std::vector<SyringeRun> runs;
   for (unsigned seed = 1; seed <= 5; ++seed)
     runs.push_back(cycle(seed % 2 == 0 ? PressureScale::gauge : PressureScale::absolute, 40, {0.15, 60}, seed));
-  const CurveFit fit = fit_curve(samples_of(runs));
+  const calibration::CurveFit fit = calibration::fit_curve(samples_of(runs));
   ASSERT_TRUE(fit.unloading.has_value());
   EXPECT_EQ(fit.loading_quality.repeats, 5U);
   EXPECT_EQ(fit.unloading_quality.repeats, 5U);
@@ -101,7 +102,8 @@ TEST(Syringe, NoisyRunsGiveTheRatioWithinHalfAPercentAndKeepTheHysteresis) {
     for (int i = 0; i <= 40; ++i) {
       const auto& row = run.rows[static_cast<std::size_t>(i)];
       const double absolute = run.scale == PressureScale::gauge ? row.pressure_kPa + 100 : row.pressure_kPa;
-      scatter = std::max(scatter, std::abs(chamber_ratio(setup, absolute, row.syringe_mm3) / loading(3.5 * i) - 1));
+      scatter = std::max(scatter,
+                         std::abs(calibration::chamber_ratio(setup, absolute, row.syringe_mm3) / loading(3.5 * i) - 1));
     }
   for (double gauge = 1; gauge <= 139; gauge += 0.5) {
     worst = std::max(worst, std::abs(fit.loading.ratio.value(gauge) / loading(gauge) - 1));
@@ -120,12 +122,12 @@ TEST(Syringe, NoisyRunsGiveTheRatioWithinHalfAPercentAndKeepTheHysteresis) {
 }
 
 TEST(Syringe, SpreadIsThatBetweenRunsAndPointsWithoutNoiseAreKept) {
-  std::vector<CurveSample> samples;
+  std::vector<calibration::CurveSample> samples;
   const double offsets[] = {-0.01, 0, 0.01};  // standard deviation 0.01
   for (std::size_t run = 0; run < 3; ++run)
     for (int i = 0; i <= 10; ++i)
       samples.push_back({10.0 * i, 1 + 0.02 * i + (i > 0 ? offsets[run] : 0), Branch::loading, run});
-  const CurveFit fit = fit_curve(samples);
+  const calibration::CurveFit fit = calibration::fit_curve(samples);
   ASSERT_EQ(fit.loading.ratio.x().size(), 11U);
   for (std::size_t i = 3; i <= 10; ++i) {
     EXPECT_NEAR(fit.loading.ratio.y()[i], 1 + 0.02 * static_cast<double>(i), 1e-12);
@@ -136,15 +138,15 @@ TEST(Syringe, SpreadIsThatBetweenRunsAndPointsWithoutNoiseAreKept) {
 }
 
 TEST(Syringe, AFallingStretchIsPooledAndTheCurveStillAscends) {
-  std::vector<CurveSample> samples;
+  std::vector<calibration::CurveSample> samples;
   const double ratios[] = {1, 1.1, 1.3, 1.25, 1.2, 1.4, 1.5};
   for (int i = 0; i < 7; ++i) samples.push_back({10.0 * i, ratios[i], Branch::loading, 0});
-  const CurveFit fit = fit_curve(samples);
+  const calibration::CurveFit fit = calibration::fit_curve(samples);
   EXPECT_EQ(fit.loading_quality.pooled, 2U);
   EXPECT_NEAR(fit.loading.ratio.value(30), 1.25, 1e-12);
   EXPECT_FALSE(fit.loading_quality.mean_error.has_value());
   samples = {{0, 1, Branch::loading, 0}, {10, 0.9, Branch::loading, 0}, {20, 0.8, Branch::loading, 0}};
-  expect_words(refusal([&] { (void)fit_curve(samples); }), {"loading", "does not rise"});
+  expect_words(refusal([&] { (void)calibration::fit_curve(samples); }), {"loading", "does not rise"});
 }
 
 TEST(Syringe, SweepsAreCutWhereTheDriveTurnsAndNotByNoise) {
@@ -153,7 +155,7 @@ TEST(Syringe, SweepsAreCutWhereTheDriveTurnsAndNotByNoise) {
     for (int i = 0; i < 20; ++i) drive.push_back(i + (i % 2 == 0 ? 0.4 : -0.4));
     for (int i = 20; i > 0; --i) drive.push_back(i + (i % 2 == 0 ? 0.4 : -0.4));
   }
-  const std::vector<Sweep> sweeps = sweeps_of(drive);
+  const std::vector<calibration::Sweep> sweeps = calibration::sweeps_of(drive);
   ASSERT_EQ(sweeps.size(), 4U);
   for (std::size_t s = 0; s < 4; ++s) {
     EXPECT_EQ(sweeps[s].branch, s % 2 == 0 ? Branch::loading : Branch::unloading);
@@ -162,19 +164,19 @@ TEST(Syringe, SweepsAreCutWhereTheDriveTurnsAndNotByNoise) {
     }
   }
   EXPECT_EQ(sweeps.back().end, drive.size());
-  EXPECT_TRUE(sweeps_of({3, 3, 3}).empty());
-  EXPECT_EQ(sweeps_of({5, 3, 1}).at(0).branch, Branch::unloading);
+  EXPECT_TRUE(calibration::sweeps_of({3, 3, 3}).empty());
+  EXPECT_EQ(calibration::sweeps_of({5, 3, 1}).at(0).branch, Branch::unloading);
 }
 
 TEST(Syringe, ARunOnTheWrongScaleIsNamed) {
   std::vector<SyringeRun> runs{cycle(PressureScale::absolute, 30, {0.2, 50}, 1),
                                cycle(PressureScale::gauge, 30, {0.2, 50}, 2)};
   runs[1].scale = PressureScale::absolute;
-  expect_words(refusal([&] { (void)chamber_ratios(setup, runs); }),
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, runs); }),
                {"test.csv", "run 2", "gauge pressures, given as absolute", "p_gauge_kpa"});
   runs[1] = cycle(PressureScale::absolute, 30, {0.2, 50}, 2);
   runs[1].scale = PressureScale::gauge;
-  expect_words(refusal([&] { (void)chamber_ratios(setup, runs); }),
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, runs); }),
                {"run 2", "absolute pressures, given as gauge", "p_abs_kpa"});
 }
 
@@ -183,9 +185,9 @@ TEST(Syringe, TheWrongScaleIsNoticedWithoutARowAtRest) {
     SyringeRun run = cycle(right, 30, {}, 4);
     run.rows.erase(run.rows.begin(), run.rows.begin() + 8);
     run.rows.erase(run.rows.end() - 8, run.rows.end());
-    EXPECT_EQ(refusal([&] { (void)chamber_ratios(setup, {run}); }), "");
+    EXPECT_EQ(refusal([&] { (void)calibration::chamber_ratios(setup, {run}); }), "");
     run.scale = right == PressureScale::absolute ? PressureScale::gauge : PressureScale::absolute;
-    expect_words(refusal([&] { (void)chamber_ratios(setup, {run}); }), {"run 4", "other scale"});
+    expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, {run}); }), {"run 4", "other scale"});
   }
 }
 
@@ -193,31 +195,32 @@ TEST(Syringe, WrongUnitsAndImpossibleRowsAreRefusedByLine) {
   const SyringeRun right = cycle(PressureScale::absolute, 30, {}, 1);
   SyringeRun run = right;
   for (SyringeRow& row : run.rows) row.syringe_mm3 /= 1000;
-  expect_words(refusal([&] { (void)chamber_ratios(setup, {run}); }), {"test.csv:", "dv_sy_ml"});
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, {run}); }), {"test.csv:", "dv_sy_ml"});
   run = right;
   for (SyringeRow& row : run.rows) row.syringe_mm3 *= 1000;
-  expect_words(refusal([&] { (void)chamber_ratios(setup, {run}); }), {"test.csv:", "cannot give", "dv_sy_mm3"});
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, {run}); }),
+               {"test.csv:", "cannot give", "dv_sy_mm3"});
   run = right;
   for (SyringeRow& row : run.rows) row.syringe_mm3 *= -1;
-  expect_words(refusal([&] { (void)chamber_ratios(setup, {run}); }), {"test.csv:", "sign"});
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, {run}); }), {"test.csv:", "sign"});
   run = right;
   run.rows[7].pressure_kPa = -3;
-  expect_words(refusal([&] { (void)chamber_ratios(setup, {run}); }), {"test.csv:9", "above 0"});
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, {run}); }), {"test.csv:9", "above 0"});
   run = right;
   for (SyringeRow& row : run.rows) row.syringe_mm3 = 0;
-  expect_words(refusal([&] { (void)chamber_ratios(setup, {run}); }), {"does not move"});
-  SyringeSetup bad = setup;
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(setup, {run}); }), {"does not move"});
+  calibration::SyringeSetup bad = setup;
   bad.chamber_mm3 = 0;
-  expect_words(refusal([&] { (void)chamber_ratios(bad, {right}); }), {"chamber"});
+  expect_words(refusal([&] { (void)calibration::chamber_ratios(bad, {right}); }), {"chamber"});
 }
 
 TEST(Syringe, ModulusFactorIsThatOfProportionalPressures) {
-  const ModulusCheck check = check_modulus({8, 16, 24.4}, {10, 20, 30.5});
+  const calibration::ModulusCheck check = calibration::check_modulus({8, 16, 24.4}, {10, 20, 30.5});
   EXPECT_NEAR(check.factor, 0.8, 1e-12);
   EXPECT_NEAR(check.misfit_after, 0, 1e-12);
   EXPECT_NEAR(check.misfit_before, 0.25, 1e-12);
-  EXPECT_THROW((void)check_modulus({1, 2}, {0, 0}), InvalidInput);
-  EXPECT_THROW((void)check_modulus({1}, {1, 2}), InvalidInput);
+  EXPECT_THROW((void)calibration::check_modulus({1, 2}, {0, 0}), InvalidInput);
+  EXPECT_THROW((void)calibration::check_modulus({1}, {1, 2}), InvalidInput);
 }
 
 }  // namespace

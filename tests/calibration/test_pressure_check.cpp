@@ -30,8 +30,9 @@ TEST(PressureCheck, PressuresOfAnotherProgramGiveAFactorOfOne) {
     measured.push_back(1000 * table.at(row, "pressure_MPa"));
   }
   ASSERT_GE(ratios.size(), 3U);
-  for (const auto& pressure : predicted_pressures(finger(), 0, ratios, 1)) predicted.push_back(pressure.value());
-  const ModulusCheck check = check_modulus(measured, predicted);
+  for (const auto& pressure : calibration::predicted_pressures(finger(), 0, ratios, 1))
+    predicted.push_back(pressure.value());
+  const calibration::ModulusCheck check = calibration::check_modulus(measured, predicted);
   std::printf("factor %.5f, misfit %.4f %%\n", check.factor, 100 * check.misfit_after);
   EXPECT_NEAR(check.factor, 1, 1e-3);
   EXPECT_LT(check.misfit_after, 1e-3);

@@ -5,8 +5,8 @@
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <softkin/io/csv.hpp>
-#include <softkin/io/scene.hpp>
+#include <softkin/io/scene/scene.hpp>
+#include <softkin/io/table/csv.hpp>
 #include <tuple>
 
 #include "run_program.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <softkin/io/vtk.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 #include <sstream>
 
 #include "fk_samples.hpp"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/io/vtk.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 #include <sstream>
 
 #include "fk_samples.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <softkin/io/mesh_io.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <stdexcept>
 
 #include "fk_samples.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
-#include <softkin/io/vtk.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 #include <thread>
 
 #include "fk_samples.hpp"

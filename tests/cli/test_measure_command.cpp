@@ -2,8 +2,8 @@
 
 #include <calibration/rendering.hpp>
 #include <nlohmann/json.hpp>
-#include <softkin/io/csv.hpp>
-#include <softkin/io/png.hpp>
+#include <softkin/io/picture/png.hpp>
+#include <softkin/io/table/csv.hpp>
 
 #include "run_program.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/io/stl.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/stl.hpp>
 #include <utility>
 
 #include "mesh_samples.hpp"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
-#include <softkin/io/csv.hpp>
+#include <softkin/io/table/csv.hpp>
 
 #include "run_program.hpp"
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <softkin/io/stl.hpp>
-#include <softkin/io/vtk.hpp>
+#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 #include <sstream>
 #include <thread>
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <softkin/core/error.hpp>
-#include <softkin/io/gmsh_read.hpp>
+#include <softkin/io/mesh/gmsh_read.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string>

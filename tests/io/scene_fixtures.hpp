@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/io/scene.hpp>
+#include <softkin/io/scene/scene.hpp>
 #include <string>
 
 /// Loaders in the place of files. Meshes: five vertices and two tetrahedra; "square.msh": five and five; "huge.msh":

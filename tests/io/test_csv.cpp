@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <softkin/core/error.hpp>
-#include <softkin/io/csv.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/table/csv.hpp>
 
 namespace softkin {
 namespace {

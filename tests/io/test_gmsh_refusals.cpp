@@ -1,7 +1,7 @@
 #include <functional>
 #include <limits>
 #include <random>
-#include <softkin/io/gmsh.hpp>
+#include <softkin/io/mesh/gmsh.hpp>
 
 #include "gmsh_samples.hpp"
 

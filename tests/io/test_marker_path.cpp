@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <softkin/core/error.hpp>
-#include <softkin/io/marker_path.hpp>
+#include <softkin/io/table/marker_path.hpp>
 
 #include "model/block_mesh.hpp"
 

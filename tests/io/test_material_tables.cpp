@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <softkin/core/error.hpp>
-#include <softkin/io/material_tables.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/table/material_tables.hpp>
 
 namespace softkin {
 namespace {

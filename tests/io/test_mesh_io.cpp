@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/io/stl.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/stl.hpp>
 #include <string>
 
 #include "text_mesh_files.hpp"

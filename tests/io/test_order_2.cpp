@@ -1,8 +1,8 @@
-#include <softkin/io/gmsh.hpp>
-#include <softkin/io/mesh_io.hpp>
-#include <softkin/io/stl.hpp>
-#include <softkin/io/text_meshes.hpp>
-#include <softkin/io/vtk.hpp>
+#include <softkin/io/mesh/gmsh.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 
 #include "gmsh_samples.hpp"
 #include "text_mesh_files.hpp"

@@ -12,10 +12,10 @@
 #include <limits>
 #include <set>
 #include <softkin/core/error.hpp>
-#include <softkin/io/bitmap_font.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/picture.hpp>
-#include <softkin/io/picture_legend.hpp>
+#include <softkin/io/picture/bitmap_font.hpp>
+#include <softkin/io/picture/picture.hpp>
+#include <softkin/io/picture/picture_legend.hpp>
 
 namespace softkin {
 namespace {

@@ -6,8 +6,8 @@
 #include <pugixml.hpp>
 #include <set>
 #include <softkin/core/error.hpp>
-#include <softkin/io/svg_axis.hpp>
-#include <softkin/io/svg_plot.hpp>
+#include <softkin/io/plot/svg_axis.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <sstream>
 
 namespace softkin {

@@ -1,4 +1,4 @@
-#include <softkin/io/vtk.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 
 #include "io/vtk_files.hpp"
 

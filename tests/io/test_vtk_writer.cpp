@@ -1,7 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <softkin/io/vtk.hpp>
+#include <softkin/io/mesh/vtk.hpp>
 
 #include "io/vtk_files.hpp"
 

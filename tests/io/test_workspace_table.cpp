@@ -4,7 +4,7 @@
 #include <random>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/workspace_table.hpp>
+#include <softkin/io/table/workspace_table.hpp>
 
 #include "gmsh_samples.hpp"
 

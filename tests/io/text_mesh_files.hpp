@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <softkin/model/mesh.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 #include <string>
 
 namespace softkin::text_mesh_tests {

@@ -13,7 +13,7 @@
 #include <initializer_list>
 #include <iterator>
 #include <softkin/core/error.hpp>
-#include <softkin/model/mesh.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>

@@ -38,7 +38,7 @@ TEST(Goal, ErrorsAreDistances) {
 TEST(Goal, TermsAreWeightedErrors) {
   const Model model = marked_block();
   const std::vector<Goal> goals{{PositionGoal{1, {10, 3, 4}, {false, true, true}}, 4}, {PlaneGoal{2, {0, 0, 4}}, 0.25}};
-  const Eigen::VectorXd terms = goal_terms(model, goals, model.rest);
+  const Eigen::VectorXd terms = inverse::goal_terms(model, goals, model.rest);
   ASSERT_EQ(terms.size(), 3);
   EXPECT_NEAR(terms[0], -6, 1e-12);
   EXPECT_NEAR(terms[1], -8, 1e-12);
@@ -53,14 +53,15 @@ TEST(Goal, SlopesEqualDifferences) {
   const Points at = model.rest + noise(model.rest.rows(), 1, 1);
   Sensitivity along;
   for (const unsigned seed : {2u, 3u}) along.positions.push_back(noise(model.rest.rows(), 1, seed));
-  const Eigen::MatrixXd slopes = goal_slopes(model, goals, at, along);
+  const Eigen::MatrixXd slopes = inverse::goal_slopes(model, goals, at, along);
   ASSERT_EQ(slopes.rows(), 7);
   ASSERT_EQ(slopes.cols(), 2);
   constexpr double reach = 1e-5;
   for (Index a = 0; a < 2; ++a) {
     const Points& move = along.positions[static_cast<std::size_t>(a)];
     const Eigen::VectorXd change =
-        (goal_terms(model, goals, at + reach * move) - goal_terms(model, goals, at - reach * move)) / (2 * reach);
+        (inverse::goal_terms(model, goals, at + reach * move) - inverse::goal_terms(model, goals, at - reach * move)) /
+        (2 * reach);
     EXPECT_LT((slopes.col(a) - change).norm(), 1e-8 * change.norm());
   }
 }
@@ -73,7 +74,7 @@ TEST(Goal, MarkersThatLieOnEachOtherHaveNoDirection) {
   Sensitivity along;
   along.positions.push_back(noise(at.rows(), 1, 1));
   EXPECT_NEAR(goal_errors(model, goals, at)[0], 3, 1e-12);
-  EXPECT_TRUE(goal_slopes(model, goals, at, along).isZero(0));
+  EXPECT_TRUE(inverse::goal_slopes(model, goals, at, along).isZero(0));
 }
 
 TEST(Goal, RefusesWhatMeansNothing) {

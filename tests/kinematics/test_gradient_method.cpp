@@ -35,7 +35,7 @@ TEST(GradientMethod, ReachesWhatNewtonReaches) {
   EXPECT_LE((marker_at(model, result.equilibrium) - marker_at(model, made)).norm(), 0.2);
   // each iteration takes two equilibria per actuator and those of its line search
   EXPECT_GE(result.equilibria, 1 + result.iterations * (2 * 2 + 2));
-  for (const InverseRecord& record : result.history)
+  for (const InverseTrial& record : result.history)
     for (Index a = 0; a < 2; ++a) {
       EXPECT_GE(record.actuation[a], 1);
       EXPECT_LE(record.actuation[a], 1.6);

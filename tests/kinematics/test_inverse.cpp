@@ -6,7 +6,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/jacobian.hpp>
-#include <softkin/statics/measure.hpp>
+#include <softkin/statics/deformation.hpp>
 
 #include "statics/physical_samples.hpp"
 
@@ -30,7 +30,7 @@ std::vector<Goal> at_point(const Vec3& target, Index marker = 0) {
 
 void expect_inside(const Model& model, const InverseResult& result) {
   std::vector<Actuation> all{result.equilibrium.actuation, result.equilibrium.state.actuation};
-  for (const InverseRecord& record : result.history) all.push_back(record.actuation);
+  for (const InverseTrial& record : result.history) all.push_back(record.actuation);
   for (const Actuation& actuation : all)
     for (std::size_t a = 0; a < model.actuators.size(); ++a) {
       EXPECT_GE(actuation[static_cast<Index>(a)], model.actuators[a].low);
@@ -259,7 +259,7 @@ TEST(Inverse, FixedActuatorsStay) {
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_EQ(result.equilibrium.actuation[2], 1.4);
   EXPECT_LT((result.equilibrium.actuation - made.actuation).norm(), 1e-3);
-  for (const InverseRecord& record : result.history) EXPECT_EQ(record.actuation[2], 1.4);
+  for (const InverseTrial& record : result.history) EXPECT_EQ(record.actuation[2], 1.4);
   options.free = {false, false, false};
   const InverseResult still = solve_inverse(model, statics, at_point(marker_at(model, made)), start.state, options);
   EXPECT_EQ(still.status, InverseStatus::unreachable);
@@ -329,7 +329,7 @@ TEST(Inverse, StopsWhereEquilibriaEnd) {
   EXPECT_NE(result.remark, "");
   EXPECT_TRUE(result.equilibrium.state.positions.allFinite());
   bool limit = false;
-  for (const InverseRecord& record : result.history) limit = limit || record.status != Status::converged;
+  for (const InverseTrial& record : result.history) limit = limit || record.status != Status::converged;
   EXPECT_TRUE(limit);
   // what it returns is an equilibrium all the same: that of its volume, which exists beyond the greatest pressure too
   const Model by_volume = compile(bending_finger());

@@ -13,15 +13,15 @@ using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
 /// Terms that are a function of the shares; slopes by central differences.
-class Function : public Response {
+class Function : public inverse::Response {
  public:
   std::function<Vector(const Vector&)> terms;
   double tolerance = 1e-6;
   int most = 200, asked = 0;
   bool inside = true;
 
-  Pose at(const Vector& shares) const {
-    Pose pose;
+  inverse::Pose at(const Vector& shares) const {
+    inverse::Pose pose;
     pose.shares = shares;
     pose.terms = terms(shares);
     pose.miss = pose.terms.norm() / tolerance;
@@ -29,13 +29,13 @@ class Function : public Response {
     pose.tensions.resize(0);
     return pose;
   }
-  Outcome go(const Vector& shares, const Pose&, Pose& to) override {
+  Outcome go(const Vector& shares, const inverse::Pose&, inverse::Pose& to) override {
     ++asked;
     inside = inside && shares.minCoeff() >= 0 && shares.maxCoeff() <= 1;
     to = at(shares);
     return Outcome::arrived;
   }
-  bool slopes(const Pose& at, Slopes& slopes) override {
+  bool slopes(const inverse::Pose& at, inverse::Slopes& slopes) override {
     slopes.terms = difference(terms, at.shares);
     slopes.tensions.resize(0, at.shares.size());
     return true;
@@ -65,8 +65,8 @@ Eigen::Vector2d arm(const Vector& shares) {
   return tip;
 }
 
-SearchSettings settings_for(const Vector& preferred) {
-  SearchSettings settings;
+inverse::SearchSettings settings_for(const Vector& preferred) {
+  inverse::SearchSettings settings;
   settings.preferred = preferred;
   settings.resolution_mm = 1e-7;
   settings.accuracy_mm = 1e-12;
@@ -87,13 +87,13 @@ TEST(InverseSearch, ReachesWhatCanBeReached) {
     const Eigen::Vector2d target = arm(point({any(engine), any(engine)}));
     Function response;
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
-    const Pose start = response.at(point({0.5, 0.6}));
-    const SearchResult found = search_inverse(response, start, settings_for(start.shares));
+    const inverse::Pose start = response.at(point({0.5, 0.6}));
+    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
     EXPECT_TRUE(response.inside);
     EXPECT_LT(response.asked, 40);
     // else it is at a range's end, with the elbow on the other side
-    if (found.end != SearchEnd::stationary) {
-      EXPECT_EQ(found.end, SearchEnd::reached);
+    if (found.end != inverse::SearchEnd::stationary) {
+      EXPECT_EQ(found.end, inverse::SearchEnd::reached);
       EXPECT_LT((arm(found.pose.shares) - target).norm(), 1e-6);
       ++reached;
     }
@@ -117,9 +117,9 @@ TEST(InverseSearch, NearestPointIsThatOfTheGrid) {
           nearest = u;
         }
       }
-    const Pose start = response.at(nearest.array().max(0.1).min(0.9).matrix());
-    const SearchResult found = search_inverse(response, start, settings_for(start.shares));
-    ASSERT_EQ(found.end, SearchEnd::stationary) << target.transpose();
+    const inverse::Pose start = response.at(nearest.array().max(0.1).min(0.9).matrix());
+    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
+    ASSERT_EQ(found.end, inverse::SearchEnd::stationary) << target.transpose();
     EXPECT_LE(found.pose.terms.norm(), least + 1e-9) << target.transpose();
     EXPECT_GE(found.pose.terms.norm(), least - 0.05) << target.transpose();  // slope times half a cell
     EXPECT_LT(found.slope, 1e-3);
@@ -136,9 +136,9 @@ TEST(InverseSearch, NearestPointOfACurveFarAway) {
       const double angle = 0.5 * std::numbers::pi * u[0];
       return 10 * Eigen::Vector2d(std::cos(angle) - far * std::cos(1.0), std::sin(angle) - far * std::sin(1.0));
     };
-    const Pose start = response.at(point({0.1}));
-    const SearchResult found = search_inverse(response, start, settings_for(start.shares));
-    ASSERT_EQ(found.end, SearchEnd::stationary) << far;
+    const inverse::Pose start = response.at(point({0.1}));
+    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
+    ASSERT_EQ(found.end, inverse::SearchEnd::stationary) << far;
     EXPECT_NEAR(found.pose.shares[0], 2 / std::numbers::pi, 1e-4) << far;
     EXPECT_LT(response.asked, 25) << far;
   }
@@ -149,12 +149,12 @@ class Coarse : public Function {
  public:
   static constexpr double grain = 4e-6;
 
-  Pose rounded(const Vector& shares) const {
-    Pose pose = at(shares);
+  inverse::Pose rounded(const Vector& shares) const {
+    inverse::Pose pose = at(shares);
     pose.terms = (pose.terms / grain).array().round() * grain;
     return pose;
   }
-  Outcome go(const Vector& shares, const Pose&, Pose& to) override {
+  Outcome go(const Vector& shares, const inverse::Pose&, inverse::Pose& to) override {
     ++asked;
     to = rounded(shares);
     return Outcome::arrived;
@@ -170,11 +170,11 @@ TEST(InverseSearch, EndsWhereNothingMeasurableIsLeftToGain) {
     const Eigen::Vector2d target = 200 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
     Coarse response;
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
-    const Pose start = response.rounded(point({0.45, 0.6, 0.4}));
-    SearchSettings settings = settings_for(start.shares);
+    const inverse::Pose start = response.rounded(point({0.45, 0.6, 0.4}));
+    inverse::SearchSettings settings = settings_for(start.shares);
     settings.accuracy_mm = Coarse::grain;
-    const SearchResult found = search_inverse(response, start, settings);
-    EXPECT_EQ(found.end, SearchEnd::stationary) << target.transpose();
+    const inverse::SearchResult found = inverse::search_inverse(response, start, settings);
+    EXPECT_EQ(found.end, inverse::SearchEnd::stationary) << target.transpose();
     EXPECT_LT(found.slope, 1e-2) << target.transpose();
     EXPECT_LT(response.asked, 60) << target.transpose();
   }
@@ -207,9 +207,10 @@ TEST(InverseSearch, OfManyAnswersTheNearest) {
          {Eigen::Vector2d(22, 10), Eigen::Vector2d(18, 12), Eigen::Vector2d(25, -5), Eigen::Vector2d(16, 18)}) {
       Function response;
       response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
-      const Pose start = response.at(preferred);
-      const SearchResult found = search_inverse(response, start, settings_for(preferred));
-      ASSERT_EQ(found.end, SearchEnd::reached) << target.transpose() << ", preferred " << preferred.transpose();
+      const inverse::Pose start = response.at(preferred);
+      const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(preferred));
+      ASSERT_EQ(found.end, inverse::SearchEnd::reached)
+          << target.transpose() << ", preferred " << preferred.transpose();
       EXPECT_LE(found.pose.miss, 1);
       EXPECT_NEAR((found.pose.shares - preferred).norm(), least_distance(target, preferred), 2e-4)
           << target.transpose() << ", preferred " << preferred.transpose();
@@ -223,8 +224,9 @@ TEST(InverseSearch, PrefersAnActuationOtherThanTheStart) {
   const Vector preferred = point({0.6, 0.3, 0.9});
   Function response;
   response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
-  const SearchResult found = search_inverse(response, response.at(point({0.5, 0.6, 0.6})), settings_for(preferred));
-  ASSERT_EQ(found.end, SearchEnd::reached);
+  const inverse::SearchResult found =
+      inverse::search_inverse(response, response.at(point({0.5, 0.6, 0.6})), settings_for(preferred));
+  ASSERT_EQ(found.end, inverse::SearchEnd::reached);
   EXPECT_NEAR((found.pose.shares - preferred).norm(), least_distance(target, preferred), 2e-4);
 }
 
@@ -233,21 +235,21 @@ class Cables : public Function {
  public:
   static double path(const Vector& u) { return 0.8 - 0.5 * (1 - u[0]) - 0.2 * (1 - u[0]) * (1 - u[0]); }
 
-  Pose pose(Vector u) const {
+  inverse::Pose pose(Vector u) const {
     const bool slack = u[1] >= path(u);
     u[1] = std::min(u[1], path(u));
-    Pose result = at(u);
+    inverse::Pose result = at(u);
     result.idle[1] = slack ? 1 : 0;
     result.tensions = Vector::Constant(1, 3 * (path(u) - u[1]));
     return result;
   }
-  Outcome go(const Vector& shares, const Pose&, Pose& to) override {
+  Outcome go(const Vector& shares, const inverse::Pose&, inverse::Pose& to) override {
     ++asked;
     inside = inside && shares.minCoeff() >= 0 && shares.maxCoeff() <= 1;
     to = pose(shares);
     return Outcome::arrived;
   }
-  bool slopes(const Pose& at, Slopes& slopes) override {
+  bool slopes(const inverse::Pose& at, inverse::Slopes& slopes) override {
     slopes.terms = difference(terms, at.shares);
     slopes.tensions =
         difference([](const Vector& u) -> Vector { return Vector::Constant(1, 3 * (path(u) - u[1])); }, at.shares);
@@ -260,8 +262,8 @@ TEST(InverseSearch, PullsASlackCable) {
   Cables response;
   response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
   const Vector start = point({0.9, 1});  // slack
-  const SearchResult found = search_inverse(response, response.pose(start), settings_for(start));
-  ASSERT_EQ(found.end, SearchEnd::reached);
+  const inverse::SearchResult found = inverse::search_inverse(response, response.pose(start), settings_for(start));
+  ASSERT_EQ(found.end, inverse::SearchEnd::reached);
   EXPECT_LT((found.pose.shares - point({0.7, 0.58})).norm(), 1e-5);
 }
 
@@ -273,7 +275,7 @@ TEST(InverseSearch, CablesDoNotPush) {
     Vector nearest;
     for (int i = 0; i <= 500; ++i)
       for (int j = 0; j <= 500; ++j) {
-        const Pose pose = response.pose(point({i / 500.0, j / 500.0}));
+        const inverse::Pose pose = response.pose(point({i / 500.0, j / 500.0}));
         if (pose.terms.norm() < least) {
           least = pose.terms.norm();
           nearest = pose.shares;
@@ -285,8 +287,8 @@ TEST(InverseSearch, CablesDoNotPush) {
       Vector start = inside;
       start[1] = Cables::path(start) - pulled;
       response.asked = 0;
-      const SearchResult found = search_inverse(response, response.pose(start), settings_for(start));
-      ASSERT_EQ(found.end, SearchEnd::stationary) << target.transpose() << ", " << pulled;
+      const inverse::SearchResult found = inverse::search_inverse(response, response.pose(start), settings_for(start));
+      ASSERT_EQ(found.end, inverse::SearchEnd::stationary) << target.transpose() << ", " << pulled;
       EXPECT_LE(found.pose.terms.norm(), least + 1e-4) << target.transpose() << ", " << pulled;
       EXPECT_GE(found.pose.terms.norm(), least - 0.05) << target.transpose() << ", " << pulled;
       EXPECT_LT(found.slope, 1e-3) << target.transpose() << ", " << pulled;
@@ -302,7 +304,7 @@ class Walled : public Function {
   double wall = 0.6;
   bool halfway = true;
 
-  Outcome go(const Vector& shares, const Pose& from, Pose& to) override {
+  Outcome go(const Vector& shares, const inverse::Pose& from, inverse::Pose& to) override {
     ++asked;
     if (shares[0] <= wall) {
       to = at(shares);
@@ -320,15 +322,15 @@ TEST(InverseSearch, ShortensItsStepsWhereNothingConverges) {
     response.halfway = halfway;
     const Eigen::Vector2d target = arm(point({0.58, 0.7}));
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
-    const Pose start = response.at(point({0.1, 0.9}));
-    EXPECT_EQ(search_inverse(response, start, settings_for(start.shares)).end, SearchEnd::reached);
+    const inverse::Pose start = response.at(point({0.1, 0.9}));
+    EXPECT_EQ(inverse::search_inverse(response, start, settings_for(start.shares)).end, inverse::SearchEnd::reached);
 
     const Eigen::Vector2d beyond = arm(point({0.8, 0.7}));
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - beyond; };
     response.asked = 0;
-    const Pose again = response.at(point({0.1, 0.9}));
-    const SearchResult found = search_inverse(response, again, settings_for(again.shares));
-    EXPECT_EQ(found.end, SearchEnd::stuck);  // and does not say that nothing helps
+    const inverse::Pose again = response.at(point({0.1, 0.9}));
+    const inverse::SearchResult found = inverse::search_inverse(response, again, settings_for(again.shares));
+    EXPECT_EQ(found.end, inverse::SearchEnd::stuck);  // and does not say that nothing helps
     EXPECT_LT(found.pose.terms.norm(), again.terms.norm());
   }
 }
@@ -337,9 +339,9 @@ TEST(InverseSearch, EndsWithItsAllowance) {
   Function response;
   response.most = 2;
   response.terms = [&](const Vector& u) -> Vector { return arm(u) - arm(point({0.9, 0.1})); };
-  const Pose start = response.at(point({0.3, 0.6}));
-  const SearchResult found = search_inverse(response, start, settings_for(start.shares));
-  EXPECT_EQ(found.end, SearchEnd::none_left);
+  const inverse::Pose start = response.at(point({0.3, 0.6}));
+  const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
+  EXPECT_EQ(found.end, inverse::SearchEnd::none_left);
   EXPECT_EQ(response.asked, 2);
   EXPECT_LE(found.pose.terms.norm(), start.terms.norm());
 }

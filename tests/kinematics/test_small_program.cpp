@@ -60,7 +60,7 @@ TEST(SmallProgram, EqualsTheEnumerationOfFaces) {
   std::mt19937 engine(1);
   for (int i = 0; i < 300; ++i) {
     const Program p = random_program(engine, 1 + i % 4, 1 + i % 7, 1);
-    const Vector s = solve_small_program(p.h, p.g, p.rows, p.bounds);
+    const Vector s = inverse::solve_small_program(p.h, p.g, p.rows, p.bounds);
     EXPECT_TRUE(p.allows(s)) << i;
     EXPECT_NEAR(p.value(s), by_enumeration(p), 1e-7) << i;
   }
@@ -75,7 +75,7 @@ TEST(SmallProgram, LeavesACornerWhereManyRowsMeet) {
     p.rows.row(5) = p.rows.row(0) + p.rows.row(2);  // implied by others
     if (i % 2 == 0) p.rows.topRows(p.h.rows()) = -Matrix::Identity(p.h.rows(), p.h.rows());
     if (i % 3 == 0) p.rows = (p.rows.array() * 2).round() / 2;  // ties
-    const Vector s = solve_small_program(p.h, p.g, p.rows, p.bounds);
+    const Vector s = inverse::solve_small_program(p.h, p.g, p.rows, p.bounds);
     EXPECT_TRUE(p.allows(s)) << i;
     EXPECT_NEAR(p.value(s), by_enumeration(p), 1e-7) << i;
     if (s.norm() > 1e-6) ++moved;
@@ -85,12 +85,12 @@ TEST(SmallProgram, LeavesACornerWhereManyRowsMeet) {
 
 TEST(SmallProgram, LeavesOutRowsOfZeros) {
   const Matrix one = Matrix::Identity(1, 1);
-  EXPECT_NEAR(solve_small_program(one, -Vector::Ones(1), Matrix::Zero(1, 1), Vector::Zero(1))[0], 1, 1e-12);
+  EXPECT_NEAR(inverse::solve_small_program(one, -Vector::Ones(1), Matrix::Zero(1, 1), Vector::Zero(1))[0], 1, 1e-12);
 }
 
 TEST(SmallProgram, FreeMinimumAndNoRows) {
   const Matrix h = 4 * Matrix::Identity(2, 2);
-  const Vector s = solve_small_program(h, Vector::Constant(2, -8), Matrix(0, 2), Vector(0));
+  const Vector s = inverse::solve_small_program(h, Vector::Constant(2, -8), Matrix(0, 2), Vector(0));
   EXPECT_LT((s - Vector::Constant(2, 2)).norm(), 1e-12);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <softkin/model/boundary.hpp>
+#include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
 #include <tuple>

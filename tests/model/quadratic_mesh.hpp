@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/model/mesh_order.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 
 #include "model/block_mesh.hpp"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 #include <random>
-#include <softkin/model/cavity.hpp>
-#include <softkin/model/regions.hpp>
+#include <softkin/model/compile/cavity.hpp>
+#include <softkin/model/compile/regions.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <softkin/model/cavity.hpp>
+#include <softkin/model/compile/cavity.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"

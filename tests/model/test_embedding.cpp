@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <softkin/model/embedding.hpp>
-#include <softkin/model/surface_tree.hpp>
+#include <softkin/model/compile/embedding.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 #include "model/block_mesh.hpp"
 

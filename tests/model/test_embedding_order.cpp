@@ -2,7 +2,7 @@
 
 #include <numeric>
 #include <random>
-#include <softkin/model/embedding.hpp>
+#include <softkin/model/compile/embedding.hpp>
 
 #include "model/quadratic_mesh.hpp"
 

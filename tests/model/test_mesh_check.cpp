@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <numeric>
 #include <random>
-#include <softkin/model/mesh_check.hpp>
+#include <softkin/model/mesh/mesh_check.hpp>
 #include <utility>
 #include <vector>
 

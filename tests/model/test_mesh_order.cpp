@@ -2,7 +2,7 @@
 
 #include <set>
 #include <softkin/core/error.hpp>
-#include <softkin/model/mesh_check.hpp>
+#include <softkin/model/mesh/mesh_check.hpp>
 
 #include "model/quadratic_mesh.hpp"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <softkin/model/regions.hpp>
+#include <softkin/model/compile/regions.hpp>
 
 #include "model/compile_testing.hpp"
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh_io.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/statics/statics.hpp>
 #include <sstream>
 

@@ -1,6 +1,6 @@
 #include <Eigen/Geometry>
 #include <softkin/model/equilibrium.hpp>
-#include <softkin/statics/elastic_system.hpp>
+#include <softkin/statics/physical/body.hpp>
 
 #include "model/physical_robots.hpp"
 #include "statics/difference.hpp"
@@ -53,12 +53,12 @@ RobotSpec quadratic_laws() {
 
 void expect_consistent(const Model& model, const Eigen::VectorXd& actuation) {
   Team alone(1);
-  ElasticSystem system(model);
+  physical::Body system(model);
   Cliques cliques;
   system.add_cliques(cliques);
   const Index n = static_cast<Index>(model.rest.rows());
   const BlockPattern pattern(n, cliques);
-  ElasticSystem::Scratch scratch = system.make_scratch();
+  physical::Body::Scratch scratch = system.make_scratch();
   const auto gradient_at = [&](const Points& p) {
     Points gradient;
     EXPECT_FALSE(system.force(actuation, p, scratch, gradient, alone).forbidden);
@@ -86,18 +86,18 @@ void expect_consistent(const Model& model, const Eigen::VectorXd& actuation) {
 
 }  // namespace
 
-TEST(ElasticSystem, GradientAndStiffnessAgreeWithDifferences) {
+TEST(Body, GradientAndStiffnessAgreeWithDifferences) {
   expect_consistent(compile(mixed_laws()), (Actuation(3) << 1, 1, 1).finished());
   expect_consistent(compile(mixed_laws()), (Actuation(3) << 1.3, 1, 1).finished());
   expect_consistent(compile(quadratic_laws()), {});
 }
 
 /// One scratch serves one actuation after another.
-TEST(ElasticSystem, LayersFollowTheActuation) {
+TEST(Body, LayersFollowTheActuation) {
   Team alone(1);
   const Model model = compile(mixed_laws());
-  const ElasticSystem system(model);
-  ElasticSystem::Scratch used = system.make_scratch(), fresh = system.make_scratch();
+  const physical::Body system(model);
+  physical::Body::Scratch used = system.make_scratch(), fresh = system.make_scratch();
   Points a, b;
   (void)system.force((Actuation(3) << 1.4, 1, 1).finished(), model.rest, used, a, alone);
   EXPECT_GT(a.norm(), 1e-3);
@@ -111,11 +111,11 @@ TEST(ElasticSystem, LayersFollowTheActuation) {
 }
 
 /// Moved and turned, the body has the same energy, and its forces turn with it; at rest there are none.
-TEST(ElasticSystem, InvariantUnderRigidMotion) {
+TEST(Body, InvariantUnderRigidMotion) {
   Team alone(1), pair(2);
   for (const Model& model : {compile(mixed_laws()), compile(quadratic_laws())}) {
-    const ElasticSystem system(model);
-    ElasticSystem::Scratch scratch = system.make_scratch();
+    const physical::Body system(model);
+    physical::Body::Scratch scratch = system.make_scratch();
     const Actuation actuation = Actuation::Ones(static_cast<Index>(model.actuators.size()));
     Points gradient, turned;
     EXPECT_NEAR(system.force(actuation, model.rest, scratch, gradient, alone).energy, 0, 1e-12);
@@ -133,15 +133,15 @@ TEST(ElasticSystem, InvariantUnderRigidMotion) {
 }
 
 /// The projected stiffness has no negative direction; the exact one of a strongly compressed body has.
-TEST(ElasticSystem, ProjectedStiffnessIsPositive) {
+TEST(Body, ProjectedStiffnessIsPositive) {
   Team alone(1);
   const Model model = compile(mixed_laws());
-  ElasticSystem system(model);
+  physical::Body system(model);
   Cliques cliques;
   system.add_cliques(cliques);
   const Index n = static_cast<Index>(model.rest.rows());
   const BlockPattern pattern(n, cliques);
-  ElasticSystem::Scratch scratch = system.make_scratch();
+  physical::Body::Scratch scratch = system.make_scratch();
   const Points positions = model.rest * Eigen::Vector3d(0.5, 0.9, 0.9).asDiagonal() + noise(n, 0.3, 5);
   LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 0.0), blocks;
   const auto lowest = [&](bool projected) {
@@ -160,11 +160,11 @@ TEST(ElasticSystem, ProjectedStiffnessIsPositive) {
   EXPECT_GT(lowest(true), -1e-10);
 }
 
-TEST(ElasticSystem, TellsForbiddenInversion) {
+TEST(Body, TellsForbiddenInversion) {
   Team alone(1);
   const Model model = compile(quadratic_laws());
-  const ElasticSystem system(model);
-  ElasticSystem::Scratch scratch = system.make_scratch();
+  const physical::Body system(model);
+  physical::Body::Scratch scratch = system.make_scratch();
   Points gradient;
   EXPECT_TRUE(
       system.force({}, model.rest * Eigen::Vector3d(1, 1, -1).asDiagonal(), scratch, gradient, alone).forbidden);
@@ -172,9 +172,9 @@ TEST(ElasticSystem, TellsForbiddenInversion) {
 }
 
 /// x^T L x is the integral of |grad x|^2: of a linear field, its squared slope times the volume.
-TEST(ElasticSystem, LaplacianOfALinearField) {
+TEST(Body, LaplacianOfALinearField) {
   for (const Model& model : {compile(mixed_laws()), compile(quadratic_laws())}) {
-    const Eigen::SparseMatrix<double> lower = ElasticSystem(model).laplacian();
+    const Eigen::SparseMatrix<double> lower = physical::Body(model).laplacian();
     const Eigen::SparseMatrix<double> matrix = lower.selfadjointView<Eigen::Lower>();
     double volume = 0;
     for (const double v : model.tetrahedron_volumes) volume += v;

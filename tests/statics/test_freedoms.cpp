@@ -1,6 +1,6 @@
 #include <Eigen/Geometry>
 #include <softkin/energy/rotation.hpp>
-#include <softkin/statics/freedoms.hpp>
+#include <softkin/statics/supports/freedoms.hpp>
 
 #include "model/physical_robots.hpp"
 #include "statics/robots.hpp"
@@ -54,7 +54,7 @@ struct Sample {
   Model model;
   Cliques cliques;
   std::optional<BlockPattern> pattern;
-  std::optional<Freedoms> freedoms;
+  std::optional<supports::Freedoms> freedoms;
   Points positions;
 };
 

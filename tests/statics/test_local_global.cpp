@@ -1,6 +1,6 @@
 #include <Eigen/Geometry>
 #include <softkin/core/error.hpp>
-#include <softkin/statics/measure.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "statics/robots.hpp"

@@ -1,5 +1,5 @@
 #include <softkin/statics/statics.hpp>
-#include <softkin/statics/target_shape_system.hpp>
+#include <softkin/statics/target_shape/system.hpp>
 
 #include "statics/robots.hpp"
 
@@ -37,8 +37,8 @@ Response stretch(testing::Split split, double shape_ratio, bool all_axes) {
   options.anderson = 10;
   const Points positions = statics.solve(Actuation(0), statics.rest(), options).state.positions;
 
-  const TargetShapeSystem system(model);
-  TargetShapeSystem::Scratch scratch = system.make_scratch();
+  const target_shape::System system(model);
+  target_shape::System::Scratch scratch = system.make_scratch();
   Team alone(1);
   system.local_step(Actuation(0), positions, scratch, alone);
   Response response;

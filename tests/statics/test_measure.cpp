@@ -4,10 +4,10 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <numeric>
-#include <softkin/model/boundary.hpp>
-#include <softkin/model/mesh_order.hpp>
-#include <softkin/model/quadratic_tetrahedron.hpp>
-#include <softkin/statics/measure.hpp>
+#include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/statics/deformation.hpp>
 
 namespace softkin {
 namespace {

@@ -1,6 +1,6 @@
 #include <Eigen/Geometry>
 #include <softkin/model/model.hpp>
-#include <softkin/statics/measures.hpp>
+#include <softkin/statics/supports/actuator_measures.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"
@@ -42,7 +42,7 @@ RobotSpec measuring_robot(bool quadratic) {
 TEST(Measures, AtRestTheyAreWhatGeometrySays) {
   for (const bool quadratic : {false, true}) {
     const Model model = compile(measuring_robot(quadratic));
-    const Measures measures(model);
+    const supports::ActuatorMeasures measures(model);
     const double expected[] = {1000, 7 * 6 * 5,
                                (Vec3(16, 7, 24) - Vec3(1, 2, 28)).norm() + (Vec3(29, 3, 22) - Vec3(16, 7, 24)).norm(),
                                30, 2 * Vec3(19, 1, 4).norm()};
@@ -59,7 +59,7 @@ TEST(Measures, AtRestTheyAreWhatGeometrySays) {
 TEST(Measures, OfMappedBodies) {
   for (const bool quadratic : {false, true}) {
     const Model model = compile(measuring_robot(quadratic));
-    const Measures measures(model);
+    const supports::ActuatorMeasures measures(model);
     Mat3 map;
     map << 1.1, 0.2, -0.1, 0.05, 0.9, 0.3, -0.2, 0.1, 1.2;
     const Points moved = (model.rest * map.transpose()).rowwise() + Eigen::RowVector3d(5, -80, 300);
@@ -71,14 +71,14 @@ TEST(Measures, OfMappedBodies) {
   const Bend bend{0.006, -0.005, 0.004};
   Points bent = model.rest;
   for (Index v = 0; v < bent.rows(); ++v) bent.row(v) = bend(model.rest.row(v).transpose()).transpose();
-  EXPECT_NEAR(Measures(model).value(0, bent), bend.moments({10, 10, 10}, {20, 20, 20}).first, 1e-9);
+  EXPECT_NEAR(supports::ActuatorMeasures(model).value(0, bent), bend.moments({10, 10, 10}, {20, 20, 20}).first, 1e-9);
 }
 
 TEST(Measures, GradientAndSecondDerivativeAgreeWithDifferences) {
   Team alone(1);
   for (const bool quadratic : {false, true}) {
     const Model model = compile(measuring_robot(quadratic));
-    Measures measures(model);
+    supports::ActuatorMeasures measures(model);
     Cliques cliques;
     measures.add_cliques(cliques);
     const Index n = static_cast<Index>(model.rest.rows());
@@ -119,7 +119,7 @@ TEST(Measures, ASegmentWithoutLengthPullsNowhere) {
   RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 10, 10}));
   spec.actuators.push_back(cable({at(0, 5, 5), at(10, 5, 5), at(20, 5, 5)}));
   const Model model = compile(spec);
-  Measures measures(model);
+  supports::ActuatorMeasures measures(model);
   Cliques cliques;
   measures.add_cliques(cliques);
   Points flat = model.rest;
@@ -138,7 +138,7 @@ TEST(Measures, ADeaMeasuresNothing) {
   RobotSpec spec = physical_robot(mixed.mesh);
   spec.actuators = mixed.actuators;
   const Model model = compile(spec);
-  const Measures measures(model);
+  const supports::ActuatorMeasures measures(model);
   EXPECT_FALSE(measures.measures(0));
   EXPECT_TRUE(measures.measures(1));
   EXPECT_TRUE(measures.measures(2));

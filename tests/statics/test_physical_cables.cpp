@@ -1,4 +1,4 @@
-#include <softkin/statics/measure.hpp>
+#include <softkin/statics/deformation.hpp>
 
 #include "statics/physical_samples.hpp"
 

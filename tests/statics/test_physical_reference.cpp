@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <cstdio>
 #include <set>
-#include <softkin/model/mesh_order.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 
 #include "statics/reference_cases.hpp"
 

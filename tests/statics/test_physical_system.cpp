@@ -1,6 +1,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <softkin/statics/physical_system.hpp>
+#include <softkin/statics/physical/system.hpp>
 
 #include "statics/physical_samples.hpp"
 
@@ -33,27 +33,28 @@ struct Sample {
     for (Index a = 0; a < system.actuators(); ++a) active[a] = system.constrains(a);
   }
 
-  PhysicalSystem::Balance balance_at(const Iterate& iterate) {
-    PhysicalSystem::Balance balance;
+  physical::System::Balance balance_at(const physical::Iterate& iterate) {
+    physical::System::Balance balance;
     system.evaluate(iterate, demand, active, work, balance, team);
     return balance;
   }
-  int factorise(PhysicalSystem::Stiffness kind = PhysicalSystem::Stiffness::exact) {
+  int factorise(physical::System::Stiffness kind = physical::System::Stiffness::exact) {
     (void)balance_at(at);
     return system.factorise(at, demand, active, kind, 0, work, team);
   }
 
   Model model;
-  PhysicalSystem system;
-  PhysicalSystem::Workspace work;
+  physical::System system;
+  physical::System::Workspace work;
   Team team;
-  Demand demand;
-  Iterate at;
+  physical::Demand demand;
+  physical::Iterate at;
   std::vector<bool> active;
 };
 
-Iterate moved(const Sample& sample, const Eigen::VectorXd& step, const Eigen::VectorXd& change, double scale) {
-  Iterate iterate = sample.at;
+physical::Iterate moved(const Sample& sample, const Eigen::VectorXd& step, const Eigen::VectorXd& change,
+                        double scale) {
+  physical::Iterate iterate = sample.at;
   sample.system.freedoms().move(step, scale, iterate.positions);
   iterate.multipliers += scale * change;
   return iterate;
@@ -62,13 +63,13 @@ Iterate moved(const Sample& sample, const Eigen::VectorXd& step, const Eigen::Ve
 }  // namespace
 
 /// After a fraction of a Newton step, what is not in balance has fallen by that fraction, to second order.
-TEST(PhysicalSystem, ANewtonStepSolvesTheLinearisedEquations) {
+TEST(System, ANewtonStepSolvesTheLinearisedEquations) {
   for (const bool partly : {false, true}) {
     RobotSpec spec = full_robot();
     if (partly) spec.rigid.clear();
     Sample sample(spec);
     if (partly) sample.active[1] = false;  // its multiplier is given
-    const PhysicalSystem::Balance before = sample.balance_at(sample.at);
+    const physical::System::Balance before = sample.balance_at(sample.at);
     (void)sample.factorise();
     Eigen::VectorXd step, change;
     sample.system.step(before, sample.work, step, change, sample.team);
@@ -80,7 +81,7 @@ TEST(PhysicalSystem, ANewtonStepSolvesTheLinearisedEquations) {
     double errors[2];
     for (int i = 0; i < 2; ++i) {
       const double scale = i == 0 ? 1e-3 : 5e-4;
-      const PhysicalSystem::Balance after = sample.balance_at(moved(sample, step, change, scale));
+      const physical::System::Balance after = sample.balance_at(moved(sample, step, change, scale));
       EXPECT_LT((after.constraint - (1 - scale) * before.constraint).norm(), 2e-3 * scale * before.constraint.norm());
       if (partly) {  // turns aside, in which T changes too
         errors[i] = (after.force - (1 - scale) * before.force).norm() / before.force.norm();
@@ -94,7 +95,7 @@ TEST(PhysicalSystem, ANewtonStepSolvesTheLinearisedEquations) {
 }
 
 /// Inertia of the bordered matrix: negative eigenvalues on the changes that keep the measures, by a dense null space.
-TEST(PhysicalSystem, CountsUnstableDirections) {
+TEST(System, CountsUnstableDirections) {
   RobotSpec spec = physical_robot(block_mesh({6, 3, 3}, {60, 9, 9}));
   add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
     return p.x() > 10 && p.x() < 50 && p.y() > 3 && p.y() < 6 && p.z() > 3 && p.z() < 6;
@@ -125,7 +126,7 @@ TEST(PhysicalSystem, CountsUnstableDirections) {
 }
 
 /// The change of balance that the predictor assumes is that of the equations.
-TEST(PhysicalSystem, UpsetIsTheSlopeInTheDemand) {
+TEST(System, UpsetIsTheSlopeInTheDemand) {
   RobotSpec spec = physical_robot(mixed_robot(true).mesh);
   spec.actuators = mixed_robot(true).actuators;
   spec.actuators[1] = by_load(spec.actuators[1]);
@@ -133,18 +134,18 @@ TEST(PhysicalSystem, UpsetIsTheSlopeInTheDemand) {
   spec.gravity = {0, 0, -2};
   Sample sample(spec);
   sample.at.multipliers[1] = sample.system.unit(1) * 30;
-  const Demand from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
+  const physical::Demand from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
   sample.demand = from;
   (void)sample.factorise();
-  PhysicalSystem::Balance upset;
+  physical::System::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-4;
-  PhysicalSystem::Balance sides[2];
+  physical::System::Balance sides[2];
   for (int side = 0; side < 2; ++side) {
     const double way = side == 0 ? reach : -reach;
     sample.demand = {from.actuation + way * (to.actuation - from.actuation),
                      from.share + way * (to.share - from.share)};
-    Iterate iterate = sample.at;
+    physical::Iterate iterate = sample.at;
     iterate.multipliers[1] = sample.system.unit(1) * sample.demand.actuation[1];
     sides[side] = sample.balance_at(iterate);
   }
@@ -156,20 +157,20 @@ TEST(PhysicalSystem, UpsetIsTheSlopeInTheDemand) {
 }
 
 /// What is held moves from rest to its place, and the body is pulled along.
-TEST(PhysicalSystem, UpsetFollowsDisplacedSupports) {
+TEST(System, UpsetFollowsDisplacedSupports) {
   RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {30, 10, 10}));
   FixedSpec end{{std::string("x_high"), {}}};
   end.displacement = {2, 1, -1};
   spec.fixed.push_back(end);
   Sample sample(spec);
-  const Demand from{Actuation(0), 0.3}, to{Actuation(0), 0.8};
+  const physical::Demand from{Actuation(0), 0.3}, to{Actuation(0), 0.8};
   sample.demand = from;
   sample.system.freedoms().hold(from.share, sample.at.positions);
   (void)sample.factorise();
-  PhysicalSystem::Balance upset;
+  physical::System::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-5;
-  Iterate high = sample.at, low = sample.at;
+  physical::Iterate high = sample.at, low = sample.at;
   sample.system.freedoms().hold(from.share + 0.5 * reach, high.positions);
   sample.system.freedoms().hold(from.share - 0.5 * reach, low.positions);
   const Eigen::VectorXd force = (sample.balance_at(high).force - sample.balance_at(low).force) / (2 * reach);
@@ -177,7 +178,7 @@ TEST(PhysicalSystem, UpsetFollowsDisplacedSupports) {
 }
 
 /// A step is taken as it is to first order: the difference falls with its square.
-TEST(PhysicalSystem, AdvanceIsTheStepToFirstOrder) {
+TEST(System, AdvanceIsTheStepToFirstOrder) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = full_robot();
     spec.quadratic = quadratic;
@@ -201,7 +202,7 @@ TEST(PhysicalSystem, AdvanceIsTheStepToFirstOrder) {
 
 /// The linear step that bends a bar lengthens its outer end; turned, it keeps its length, through a right angle and
 /// more.
-TEST(PhysicalSystem, AdvanceBendsABarWithoutStretchingIt) {
+TEST(System, AdvanceBendsABarWithoutStretchingIt) {
   const double length = 60;
   RobotSpec spec = physical_robot(block_mesh({24, 2, 2}, {length, 5, 5}));
   Sample sample(spec);

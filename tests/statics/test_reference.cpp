@@ -1,7 +1,7 @@
 #include <fstream>
 #include <softkin/energy/rotation.hpp>
-#include <softkin/io/text_meshes.hpp>
-#include <softkin/statics/measure.hpp>
+#include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "statics/robots.hpp"
@@ -22,7 +22,7 @@ Points read_xyz(const std::filesystem::path& path, Index count) {
 Points aligned(const Points& a, const Points& b) {
   const Eigen::RowVector3d center_a = a.colwise().mean(), center_b = b.colwise().mean();
   const Mat3 correlation = (a.rowwise() - center_a).transpose() * (b.rowwise() - center_b);
-  const Mat3 r = best_rotation(correlation);
+  const Mat3 r = energy::best_rotation(correlation);
   return ((b.rowwise() - center_b) * r.transpose()).rowwise() + center_a;
 }
 

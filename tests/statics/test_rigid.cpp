@@ -1,7 +1,7 @@
 #include <softkin/core/error.hpp>
-#include <softkin/statics/global_step.hpp>
 #include <softkin/statics/statics.hpp>
-#include <softkin/statics/target_shape_system.hpp>
+#include <softkin/statics/supports/global_step.hpp>
+#include <softkin/statics/target_shape/system.hpp>
 
 #include "statics/robots.hpp"
 
@@ -35,15 +35,15 @@ double largest_stretch(const Model& model, const Points& positions) {
 /// At fixed targets the energy is x'Ax - 2x'b: after one step no admissible motion is pulled any more.
 TEST(GlobalStep, MinimisesTheQuadraticOverVerticesAndPosesTogether) {
   const Model model = compile(rigid_robot());
-  const TargetShapeSystem system(model);
+  const target_shape::System system(model);
   const Eigen::SparseMatrix<double> lower = system.global_matrix();
   const Eigen::SparseMatrix<double> matrix = lower.selfadjointView<Eigen::Lower>();
-  const GlobalStep global(model, lower);
+  const supports::GlobalStep global(model, lower);
   Team alone(1);
-  TargetShapeSystem::Scratch scratch = system.make_scratch();
+  target_shape::System::Scratch scratch = system.make_scratch();
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 2, seed);
-    std::vector<Pose> poses = global.project(positions);
+    std::vector<supports::Pose> poses = global.project(positions);
     system.local_step((Actuation(3) << 1.3, 1.8, 0.8).finished(), positions, scratch, alone);
     const Points residual = scratch.residual, before = positions;
     global.step(residual, positions, poses, alone);

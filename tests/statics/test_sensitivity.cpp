@@ -1,5 +1,5 @@
-#include <softkin/statics/measure.hpp>
-#include <softkin/statics/physical_system.hpp>
+#include <softkin/statics/deformation.hpp>
+#include <softkin/statics/physical/system.hpp>
 
 #include "statics/sensitivity_samples.hpp"
 
@@ -244,16 +244,16 @@ TEST(Sensitivity, SingularStiffnessIsNotRegular) {
   RobotSpec spec = cable_beam();
   spec.actuators = {by_load(cable("askew", {{0, 3, 9}, {30, 4, 8}, {60, 2, 7}}))};  // pulls at every mode
   const Model model = compile(spec);
-  const PhysicalSystem system(model);
-  PhysicalSystem::Workspace work(system);
+  const physical::System system(model);
+  physical::System::Workspace work(system);
   Team team(1);
-  Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
-  const Demand demand{values({0}), 1};
+  physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
+  const physical::Demand demand{values({0}), 1};
   const auto press = [&](double length) { at.positions = model.rest * Eigen::Vector3d(length, 1, 1).asDiagonal(); };
   const auto modes = [&] {
-    PhysicalSystem::Balance balance;
+    physical::System::Balance balance;
     system.evaluate(at, demand, {false}, work, balance, team);
-    return system.factorise(at, demand, {false}, PhysicalSystem::Stiffness::exact, 0, work, team);
+    return system.factorise(at, demand, {false}, physical::System::Stiffness::exact, 0, work, team);
   };
   double unstable = 0.5, stable = 1;
   press(unstable);

@@ -1,4 +1,4 @@
-#include <softkin/statics/measure.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "statics/robots.hpp"

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <softkin/io/scene.hpp>
-#include <softkin/statics/measure.hpp>
+#include <softkin/io/scene/scene.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "statics/robots.hpp"

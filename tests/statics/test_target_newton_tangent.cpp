@@ -1,6 +1,6 @@
 #include <Eigen/LU>
-#include <softkin/statics/gmres.hpp>
-#include <softkin/statics/target_shape_newton_tangent.hpp>
+#include <softkin/linear/gmres.hpp>
+#include <softkin/statics/target_shape/newton_tangent.hpp>
 
 #include "statics/robots.hpp"
 
@@ -22,14 +22,14 @@ struct Case {
   }
 
   Points residual_at(const Points& shape) {
-    TargetShapeSystem::Scratch scratch = system.make_scratch();
+    target_shape::System::Scratch scratch = system.make_scratch();
     system.local_step(away_from_rest(), shape, scratch, alone);
     return scratch.residual;
   }
 
   Model model;
-  TargetShapeSystem system;
-  TargetShapeSystem::Scratch local;
+  target_shape::System system;
+  target_shape::System::Scratch local;
   Points positions;
   Team alone{1};
 };
@@ -49,7 +49,7 @@ TEST(TargetTangent, ResidualChangesAsTheDifferenceQuotientSays) {
       EXPECT_EQ(c.system.is_gradient(), !least_norm && shape_ratio == 1);
       const Points along = noise(static_cast<Index>(c.model.rest.rows()), 1, 9);
       c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
-      TargetShapeSystem::Scratch out = c.system.make_scratch();
+      target_shape::System::Scratch out = c.system.make_scratch();
       c.system.residual_change(c.local, along, out, c.alone);
       const double h = 1e-5;
       const Points quotient =
@@ -60,10 +60,10 @@ TEST(TargetTangent, ResidualChangesAsTheDifferenceQuotientSays) {
 
 TEST(TargetTangent, MatrixIsTheDerivativeWhereThatIsSymmetric) {
   Case c(mixed_robot(false));
-  const TargetShapeMatrix matrix(c.model, c.system);
+  const target_shape::NewtonMatrix matrix(c.model, c.system);
   const Points along = noise(static_cast<Index>(c.model.rest.rows()), 1, 9);
   c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
-  TargetShapeSystem::Scratch out = c.system.make_scratch();
+  target_shape::System::Scratch out = c.system.make_scratch();
   c.system.residual_change(c.local, along, out, c.alone);
   LargeVector<double> slots, blocks;
   matrix.assemble(c.local, false, slots, c.alone);
@@ -77,8 +77,8 @@ TEST(TargetTangent, MatrixIsTheDerivativeWhereThatIsSymmetric) {
 TEST(TargetTangent, RedistributionIsTheCouplingOfAllElements) {
   Case c(testing::finger_robot(true));
   c.system.local_step(Actuation::Constant(1, 1.5), c.positions, c.local, c.alone);
-  TargetShapeSystem::Scratch out = c.system.make_scratch();
-  std::vector<TargetShapeSystem::Redistribution> parts;
+  target_shape::System::Scratch out = c.system.make_scratch();
+  std::vector<target_shape::System::Redistribution> parts;
   c.system.redistributions(c.local, out, parts, c.alone);
   ASSERT_EQ(parts.size(), 1u);
   Index corner = -1;  // of the chamber, x from 5 to 45
@@ -106,8 +106,8 @@ TEST(TargetTangent, SolvesTheExactDerivative) {
       for (const bool rigid : {false, true}) {
         RobotSpec spec = mixed_robot(least_norm, shape_ratio);
         Case c(rigid ? with_rigid_regions(spec) : spec);
-        const TargetShapeUnknowns unknowns(c.model, c.system);
-        TargetShapeTangent tangent(unknowns);
+        const target_shape::Unknowns unknowns(c.model, c.system);
+        target_shape::Tangent tangent(unknowns);
         c.positions = c.model.rest + noise(static_cast<Index>(c.model.rest.rows()), 0.1, 4);
         unknowns.freedoms.hold(1, c.positions);
         c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
@@ -134,8 +134,8 @@ TEST(TargetTangent, SolvesTheExactDerivative) {
 /// Indefinite matrices are projected, and what then still is none is shifted.
 TEST(TargetTangent, FactorisesAnyShape) {
   Case c(mixed_robot(false));
-  const TargetShapeUnknowns unknowns(c.model, c.system);
-  TargetShapeTangent tangent(unknowns);
+  const target_shape::Unknowns unknowns(c.model, c.system);
+  target_shape::Tangent tangent(unknowns);
   SolveReport report;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     c.positions = c.model.rest + noise(static_cast<Index>(c.model.rest.rows()), 5, seed);
@@ -161,7 +161,7 @@ TEST(Gmres, SolvesAsADenseFactorDoes) {
       std::vector<Eigen::VectorXd> basis(static_cast<std::size_t>(columns) + 1);
       Eigen::VectorXd x;
       const auto product = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out = matrix * in; };
-      EXPECT_TRUE(gmres(product, right, 1e-12, 200, basis, x));
+      EXPECT_TRUE(linear::gmres(product, right, 1e-12, 200, basis, x));
       EXPECT_LT((x - matrix.partialPivLu().solve(right)).norm(), 1e-10);
     }
 }
@@ -172,11 +172,11 @@ TEST(Gmres, SaysSoWhereItFails) {
   std::vector<Eigen::VectorXd> basis(3);
   Eigen::VectorXd x;
   const auto permute = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out = shift * in; };
-  EXPECT_FALSE(gmres(permute, right, 1e-6, 5, basis, x));  // two columns see nothing of a cycle of three
+  EXPECT_FALSE(linear::gmres(permute, right, 1e-6, 5, basis, x));  // two columns see nothing of a cycle of three
   const auto nothing = [](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out = Eigen::VectorXd::Zero(in.size()); };
-  EXPECT_FALSE(gmres(nothing, right, 1e-6, 5, basis, x));
+  EXPECT_FALSE(linear::gmres(nothing, right, 1e-6, 5, basis, x));
   EXPECT_TRUE(x.allFinite());
-  EXPECT_TRUE(gmres(permute, Eigen::VectorXd(Eigen::VectorXd::Zero(3)), 1e-6, 5, basis, x));
+  EXPECT_TRUE(linear::gmres(permute, Eigen::VectorXd(Eigen::VectorXd::Zero(3)), 1e-6, 5, basis, x));
   EXPECT_EQ(x.norm(), 0);
 }
 

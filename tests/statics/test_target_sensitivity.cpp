@@ -1,4 +1,4 @@
-#include <softkin/statics/target_shape_system.hpp>
+#include <softkin/statics/target_shape/system.hpp>
 
 #include "statics/sensitivity_samples.hpp"
 
@@ -30,8 +30,8 @@ TEST(TargetSensitivity, ResidualChangesWithCommandsAsTheDifferenceQuotientSays) 
   for (const bool least_norm : {false, true})
     for (const double shape_ratio : {1.0, 0.5}) {
       const Model model = compile(mixed_robot(least_norm, shape_ratio));
-      const TargetShapeSystem system(model);
-      TargetShapeSystem::Scratch local = system.make_scratch(), out = system.make_scratch();
+      const target_shape::System system(model);
+      target_shape::System::Scratch local = system.make_scratch(), out = system.make_scratch();
       const Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 4);
       for (const Actuation& at : {values({1.2, 1.5, 0.85}), values({1, 1, 1}), values({1.2, 0.005, 0.85})}) {
         const auto residual_at = [&](Index actuator, double change) {

@@ -6,7 +6,7 @@
 #include <opencv2/videoio.hpp>
 #include <softkin/calibration/dots.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/png.hpp>
+#include <softkin/io/picture/png.hpp>
 #include <softkin/vision/pictures.hpp>
 
 #include "../cli/run_program.hpp"

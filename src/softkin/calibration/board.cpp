@@ -3,7 +3,7 @@
 #include <optional>
 #include <softkin/calibration/board.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/length_unit.hpp>
+#include <softkin/io/mesh/length_unit.hpp>
 #include <vector>
 
 namespace softkin {

@@ -4,7 +4,7 @@
 #include <softkin/calibration/camera.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/scene_tree.hpp>
+#include <softkin/io/scene/tree.hpp>
 #include <sstream>
 #include <vector>
 

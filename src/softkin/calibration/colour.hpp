@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/io/rgb_image.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 #include <string>
 #include <vector>
 

@@ -7,7 +7,7 @@
 #include <softkin/core/types.hpp>
 #include <utility>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -206,4 +206,4 @@ CurveFit fit_curve(const std::vector<CurveSample>& samples) {
   return fit;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

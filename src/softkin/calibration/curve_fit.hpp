@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// A measured point of an actuator's curve.
 struct CurveSample {
@@ -43,4 +43,4 @@ struct CurveFit {
 ///         rise with its input
 [[nodiscard]] CurveFit fit_curve(const std::vector<CurveSample>& samples);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -4,7 +4,7 @@
 #include <softkin/core/error.hpp>
 #include <string>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -134,4 +134,4 @@ DielectricCurve dielectric_curve(const Dielectric& d, int points, double breakdo
   return curve;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-namespace softkin {
+namespace softkin::calibration {
 
 enum class DielectricLaw { neo_hookean, gent };
 
@@ -57,4 +57,4 @@ struct DielectricCurve {
 /// throws           InvalidInput on values out of range
 [[nodiscard]] DielectricCurve dielectric_curve(const Dielectric& elastomer, int points, double breakdown_kV_mm = 0);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

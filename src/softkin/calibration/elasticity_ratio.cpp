@@ -3,7 +3,7 @@
 #include <softkin/calibration/elasticity_ratio.hpp>
 #include <softkin/core/error.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 double elasticity_ratio(const StretchedSpecimen& s) {
   const bool inside = s.interface_mm > 0 && s.interface_mm < s.length_mm && std::isfinite(s.length_mm);
@@ -65,4 +65,4 @@ double closed_form_log_ratio(double elasticity_ratio, double stiffer) {
   return elasticity_ratio >= 1 ? log_ratio : -log_ratio;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

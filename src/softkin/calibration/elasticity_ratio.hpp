@@ -3,7 +3,7 @@
 #include <softkin/model/material_tests.hpp>
 #include <vector>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// E_A / E_B of a stretched rod, A at the fixed end: strain of B over strain of A [-].
 ///
@@ -45,4 +45,4 @@ struct RatioEstimate {
 /// ln(R_omega A / R_omega B) of that closed form for an E_A / E_B; the stiffer one has the R_omega given.
 [[nodiscard]] double closed_form_log_ratio(double elasticity_ratio, double stiffer);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -7,18 +7,13 @@
 #include <optional>
 #include <softkin/calibration/path_comparison.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
 constexpr double rounding = 1e-9;  // relative, of places and starts
-
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 Vec3 masked(const Vec3& point, const std::array<bool, 3>& axes) {
   Vec3 result = point;
@@ -112,8 +107,8 @@ Vec3 point_of_sweep(const SingleSweep& sweep, double command) {
     return sweep.points[i] + (command - a) / (b - a) * (sweep.points[i + 1] - sweep.points[i]);
   }
   const auto [low, high] = std::minmax_element(sweep.commands.begin(), sweep.commands.end());
-  throw InvalidInput({sweep.name}, "the command " + text_of(command) + " is outside this sweep, " + text_of(*low) +
-                                       " to " + text_of(*high));
+  throw InvalidInput({sweep.name}, "the command " + number(command) + " is outside this sweep, " + number(*low) +
+                                       " to " + number(*high));
 }
 
 }  // namespace
@@ -148,7 +143,7 @@ PathComparison compare_paths(const Track& reference, const Track& other, Resampl
   }
   if (comparison.waypoints.empty())
     throw InvalidInput({other.name}, "no waypoint of " + reference.name + " lies within its range, " +
-                                         text_of(others.front()) + " to " + text_of(others.back()));
+                                         number(others.front()) + " to " + number(others.back()));
   if (aligned) align(comparison);
   judge(comparison);
   return comparison;
@@ -161,11 +156,11 @@ Vec3 superposed(const std::vector<SingleSweep>& sweeps, const std::vector<double
   for (std::size_t s = 0; s < sweeps.size(); ++s) {
     const SingleSweep& sweep = sweeps[s];
     if ((sweep.points.at(0) - start).norm() > 1e-3)
-      throw InvalidInput({sweep.name}, "the sweep starts " + text_of((sweep.points[0] - start).norm()) +
+      throw InvalidInput({sweep.name}, "the sweep starts " + number((sweep.points[0] - start).norm()) +
                                            " mm away from where " + sweeps.front().name + " starts");
     sum += point_of_sweep(sweep, commands[s]) - sweep.points[0];
   }
   return sum;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

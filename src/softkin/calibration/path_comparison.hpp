@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// Which points of two tracks belong together: those of the same row, of the same time (or other parameter), or of the
 /// same share of the track's length.
@@ -59,4 +59,4 @@ struct SingleSweep {
 /// throws    InvalidInput naming the sweep: a command outside it, a start at another place than that of the first
 [[nodiscard]] Vec3 superposed(const std::vector<SingleSweep>& sweeps, const std::vector<double>& commands);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

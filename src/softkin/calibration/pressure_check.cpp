@@ -3,7 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/statics/statics.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -57,4 +57,4 @@ ModulusCheck check_modulus(const std::vector<double>& measured, const std::vecto
   return {factor, misfit(measured, predicted, 1), misfit(measured, predicted, factor)};
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -5,7 +5,7 @@
 #include <softkin/model/model.hpp>
 #include <vector>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// Gauge pressures that the physical formulation predicts for volume ratios of one chamber, the others at rest.
 ///
@@ -31,4 +31,4 @@ struct ModulusCheck {
 /// throws               InvalidInput where nothing is predicted to resist
 [[nodiscard]] ModulusCheck check_modulus(const std::vector<double>& measured, const std::vector<double>& predicted);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 #include <softkin/calibration/camera.hpp>
-#include <softkin/io/rgb_image.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 
 namespace softkin {
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <softkin/calibration/ratio_fit.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -189,4 +189,4 @@ std::vector<SpecimenResponse> predict(const std::vector<TwistedSpecimen>& specim
   return predicted(specimens, options, formulation, log_ratio, progress);
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -4,7 +4,7 @@
 #include <softkin/calibration/elasticity_ratio.hpp>
 #include <softkin/calibration/specimen_test.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// What a specimen says about a ratio, by simulations of its test.
 struct SpecimenFit {
@@ -56,4 +56,4 @@ using ShareDone = std::function<void(double share)>;
                                                     const SpecimenOptions& options, Formulation formulation,
                                                     double log_ratio, const ShareDone& progress = {});
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -4,7 +4,7 @@
 #include <softkin/calibration/specimen_mesh.hpp>
 #include <softkin/core/error.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -120,4 +120,4 @@ Mesh bar_mesh(const BarShape& shape) {
   return mesh;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <softkin/model/mesh.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// A bar of two materials along x, from 0 to length; its axis is y = z = 0.
 struct BarShape {
@@ -17,4 +17,4 @@ struct BarShape {
 ///         a million tetrahedra
 [[nodiscard]] Mesh bar_mesh(const BarShape& shape);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -2,10 +2,10 @@
 #include <numbers>
 #include <softkin/calibration/specimen_mesh.hpp>
 #include <softkin/calibration/specimen_test.hpp>
-#include <softkin/model/mesh_order.hpp>
-#include <softkin/statics/elastic_system.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/statics/physical/body.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -119,8 +119,8 @@ double SpecimenTest::turn_of_interface(const Points& positions) const {
 
 double SpecimenTest::force_at_end(const Model& model, const Points& positions) const {
   if (model.formulation != Formulation::physical) return 0;
-  const ElasticSystem body(model);
-  ElasticSystem::Scratch scratch = body.make_scratch();
+  const physical::Body body(model);
+  physical::Body::Scratch scratch = body.make_scratch();
   Points gradient(positions.rows(), 3);
   Team alone(1);
   (void)body.force(Actuation(0), positions, scratch, gradient, alone);
@@ -147,4 +147,4 @@ SpecimenResponse SpecimenTest::at(double log_ratio) {
   return response;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

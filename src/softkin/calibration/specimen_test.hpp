@@ -3,7 +3,7 @@
 #include <softkin/model/material_tests.hpp>
 #include <softkin/statics/statics.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// How both ends are held: not at all across the bar (sliding), or as in the jaws of a testing machine (clamped).
 enum class Grip { clamped, sliding };
@@ -62,4 +62,4 @@ class SpecimenTest {
   Points last_;  // the last equilibrium; no rows: none yet
 };
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <softkin/calibration/sweeps.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -49,4 +49,4 @@ std::vector<Sweep> sweeps_of(const std::vector<double>& drive) {
   return sweeps;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

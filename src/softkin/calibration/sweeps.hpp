@@ -4,7 +4,7 @@
 #include <softkin/model/actuator_curve.hpp>
 #include <vector>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// Rows from one turning point of what drives a test to the next, both included.
 struct Sweep {
@@ -19,4 +19,4 @@ struct Sweep {
 /// returns  none where the drive does not change
 [[nodiscard]] std::vector<Sweep> sweeps_of(const std::vector<double>& drive);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

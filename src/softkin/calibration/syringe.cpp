@@ -4,20 +4,15 @@
 #include <softkin/calibration/sweeps.hpp>
 #include <softkin/calibration/syringe.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
 constexpr double rest_share = 0.02;                   // of the syringe's way
 constexpr double least_ratio = 0.2, most_ratio = 20;  // of a chamber that anybody builds
 constexpr double rounding = 1e-9;
-
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 const char* scale_name(PressureScale scale) {
   return scale == PressureScale::absolute ? "absolute" : "gauge";
@@ -85,8 +80,8 @@ void check_scale(const SyringeSetup& setup, const SyringeRun& run) {
   const bool is_absolute = run.scale == PressureScale::absolute;
   const double expected = is_absolute ? setup.atmosphere_kPa : 0, swapped = setup.atmosphere_kPa - expected;
   if (rest && std::abs(*rest - swapped) < std::abs(*rest - expected))
-    refuse_scale(run, "with the syringe at rest its pressure is " + text_of(*rest) + " kPa, and " +
-                          scale_name(run.scale) + " pressures are " + text_of(expected) + " kPa there");
+    refuse_scale(run, "with the syringe at rest its pressure is " + number(*rest, 4) + " kPa, and " +
+                          scale_name(run.scale) + " pressures are " + number(expected, 4) + " kPa there");
   if (!rest && !makes_sense(setup, run, {run.scale}) && makes_sense(setup, run, {other(run.scale)}))
     refuse_scale(run, "its volume ratios make no sense, but they would on the other scale");
 }
@@ -106,14 +101,14 @@ std::string hint(const SyringeSetup& setup, const SyringeRun& run) {
 
 double checked_ratio(const SyringeSetup& setup, const SyringeRun& run, const SyringeRow& row) {
   const double pressure = absolute(setup, run.scale, row.pressure_kPa);
-  if (!(pressure > 0)) refuse_row(run, row, "an absolute pressure is above 0, not " + text_of(pressure) + " kPa");
+  if (!(pressure > 0)) refuse_row(run, row, "an absolute pressure is above 0, not " + number(pressure, 4) + " kPa");
   if (row.syringe_mm3 > setup.syringe_mm3 * (1 + rounding))
     refuse_row(run, row,
-               "the syringe cannot give " + text_of(row.syringe_mm3) + " mm^3, it holds " + text_of(setup.syringe_mm3) +
-                   " mm^3" + hint(setup, run));
+               "the syringe cannot give " + number(row.syringe_mm3, 4) + " mm^3, it holds " +
+                   number(setup.syringe_mm3, 4) + " mm^3" + hint(setup, run));
   const double ratio = chamber_ratio(setup, pressure, row.syringe_mm3);
   if (!(ratio > least_ratio && ratio < most_ratio))
-    refuse_row(run, row, "the volume ratio of the chamber would be " + text_of(ratio) + hint(setup, run));
+    refuse_row(run, row, "the volume ratio of the chamber would be " + number(ratio, 4) + hint(setup, run));
   return ratio;
 }
 
@@ -167,4 +162,4 @@ std::vector<SyringeSample> chamber_ratios(const SyringeSetup& setup, const std::
   return samples;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -3,7 +3,7 @@
 #include <softkin/calibration/curve_fit.hpp>
 #include <softkin/model/syringe_run.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// Volumes of the closed air of a syringe test at its start, under atmospheric pressure.
 struct SyringeSetup {
@@ -40,4 +40,4 @@ struct SyringeSample {
 /// way; none where there is no such row.
 [[nodiscard]] std::optional<double> rest_pressure(const SyringeSetup& setup, const SyringeRun& run);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

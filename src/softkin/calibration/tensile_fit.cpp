@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/calibration/tensile_fit.hpp>
-#include <softkin/model/compile_parts.hpp>
+#include <softkin/model/compile/parts.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -186,4 +186,4 @@ FitQuality scene_quality(const TensileCurve& curve, const ElasticSpec& spec, dou
   return quality_of(points.stress, fitted);
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -4,7 +4,7 @@
 #include <softkin/model/material_tests.hpp>
 #include <softkin/model/robot_spec.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// How well a curve follows the data.
 struct FitQuality {
@@ -52,4 +52,4 @@ struct LawFit {
 /// Of the law as the scene has it, over the points that were fitted.
 [[nodiscard]] FitQuality scene_quality(const TensileCurve& curve, const ElasticSpec& spec, double most = 0);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

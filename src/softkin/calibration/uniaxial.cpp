@@ -2,7 +2,7 @@
 #include <softkin/calibration/uniaxial.hpp>
 #include <softkin/core/error.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -55,4 +55,4 @@ double uniaxial_stress(const ElasticLaw& law, double strain) {
   return nearly_incompressible_stress(law, stretch);
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -2,7 +2,7 @@
 
 #include <softkin/core/elastic_law.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// Constants of an incompressible law [MPa]: W = c10 (I1 - 3) + c01 (I2 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3.
 /// neo-hookean: c10 alone; mooney-rivlin: c10, c01; yeoh: c10, c20, c30.
@@ -26,4 +26,4 @@ struct IncompressibleLaw {
 /// throws  InvalidInput on another law, a strain below 0, or where no stretch of the sides is found
 [[nodiscard]] double uniaxial_stress(const ElasticLaw& law, double strain);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

@@ -3,7 +3,7 @@
 #include <softkin/calibration/voltage.hpp>
 #include <softkin/core/error.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 namespace {
 
@@ -47,4 +47,4 @@ VoltageSamples voltage_samples(const std::vector<VoltageRun>& runs) {
   return result;
 }
 
-}  // namespace softkin
+}  // namespace softkin::calibration

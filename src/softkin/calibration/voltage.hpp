@@ -3,7 +3,7 @@
 #include <softkin/calibration/curve_fit.hpp>
 #include <softkin/model/voltage_run.hpp>
 
-namespace softkin {
+namespace softkin::calibration {
 
 /// Samples of the runs of a dielectric elastomer, cut where the voltage turns, areas over that without voltage.
 struct VoltageSamples {
@@ -16,4 +16,4 @@ struct VoltageSamples {
 /// throws  InvalidInput naming file and run: no row without voltage, a voltage that does not change
 [[nodiscard]] VoltageSamples voltage_samples(const std::vector<VoltageRun>& runs);
 
-}  // namespace softkin
+}  // namespace softkin::calibration

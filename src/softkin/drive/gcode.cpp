@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <softkin/drive/gcode.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 namespace {
 
@@ -148,4 +148,4 @@ std::string gcode_text(const Machine& machine, const GcodeProgram& program) {
   return text + "M400\n";
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

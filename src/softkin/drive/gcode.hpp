@@ -3,7 +3,7 @@
 #include <softkin/drive/motion.hpp>
 #include <string>
 
-namespace softkin {
+namespace softkin::drive {
 
 /// A line that moves motors or waits.
 struct GcodeLine {
@@ -33,4 +33,4 @@ struct GcodeProgram {
 /// The program as a file, comments included, for a sender of the user's own; ends with M400.
 [[nodiscard]] std::string gcode_text(const Machine& machine, const GcodeProgram& program);
 
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -1,17 +1,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
+#include <softkin/core/text.hpp>
 #include <softkin/drive/machine.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 namespace {
-
-std::string text_of(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// Takes what is given, and notes what is not.
 class Defaults {
@@ -19,7 +14,7 @@ class Defaults {
   explicit Defaults(std::string owner) : owner_(std::move(owner)) {}
 
   double operator()(const std::optional<double>& given, double value, const std::string& key) {
-    if (!given) note(key, text_of(value));
+    if (!given) note(key, number(value));
     return given.value_or(value);
   }
   void note(const std::string& key, const std::string& value) {
@@ -61,7 +56,7 @@ Tendon tendon_of(const TendonSpec& spec, const Actuator& actuator, Index index, 
     tendon.longest_mm = (*spec.length_limits_mm)[1];
   } else {
     take.note("length_limits_mm",
-              "[" + text_of(tendon.shortest_mm) + ", " + text_of(tendon.longest_mm) + "] (the actuator's range)");
+              "[" + number(tendon.shortest_mm) + ", " + number(tendon.longest_mm) + "] (the actuator's range)");
   }
   tendon.max_speed_mm_per_s = take(spec.max_speed_mm_per_s, HardwareDefaults::max_speed_mm_per_s, "max_speed_mm_per_s");
   tendon.max_acceleration_mm_per_s2 =
@@ -83,7 +78,7 @@ Chamber chamber_of(const ChamberSpec& spec, Index index, Machine& machine) {
     chamber.low_kpa = (*spec.limits_kpa)[0];
     chamber.high_kpa = (*spec.limits_kpa)[1];
   } else {
-    take.note("limits_kPa", "[" + text_of(chamber.low_kpa) + ", " + text_of(chamber.high_kpa) + "]");
+    take.note("limits_kPa", "[" + number(chamber.low_kpa) + ", " + number(chamber.high_kpa) + "]");
   }
   take.add_to(machine.defaults);
   return chamber;
@@ -177,4 +172,4 @@ Machine assemble(const Model& model, const HardwareSpec& hardware, const Command
   return Assembly(model, hardware, commands).run();
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

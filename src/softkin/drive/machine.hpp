@@ -4,7 +4,7 @@
 #include <softkin/model/hardware_spec.hpp>
 #include <softkin/model/model.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 /// What holds where the hardware file says nothing.
 struct HardwareDefaults {
@@ -60,4 +60,4 @@ struct Machine {
 ///         elastomers; chambers commanded by volume whose pressures are not known
 [[nodiscard]] Machine assemble(const Model& model, const HardwareSpec& hardware, const Commands& commands);
 
-}  // namespace softkin
+}  // namespace softkin::drive

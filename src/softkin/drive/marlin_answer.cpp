@@ -1,7 +1,7 @@
 #include <charconv>
 #include <softkin/drive/marlin_answer.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 namespace {
 
@@ -79,4 +79,4 @@ MarlinAnswer parse_answer(std::string_view line) {
   return {};
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

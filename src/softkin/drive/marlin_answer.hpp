@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace softkin {
+namespace softkin::drive {
 
 /// One line that Marlin sent.
 struct MarlinAnswer {
@@ -26,4 +26,4 @@ struct MarlinAnswer {
 
 [[nodiscard]] MarlinAnswer parse_answer(std::string_view line);
 
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -1,10 +1,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <softkin/core/text.hpp>
 #include <softkin/drive/marlin_answer.hpp>
 #include <softkin/drive/marlin_link.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 namespace {
 
@@ -18,12 +19,6 @@ constexpr int position_attempts = 5;
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::string text_of(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
 }
 
 /// The stream is over.
@@ -227,7 +222,8 @@ class Session {
       const auto found = coordinate(program_.axes[i]);
       if (!found) return "the board has no axis " + axis;
       if (std::abs(*found - expected[i]) > report_step_mm)
-        return "the board reports " + axis + " " + text_of(*found) + " mm instead of " + text_of(expected[i]) + " mm";
+        return "the board reports " + axis + " " + decimal(*found, 2) + " mm instead of " + decimal(expected[i], 2) +
+               " mm";
     }
     return "";
   }
@@ -373,4 +369,4 @@ StreamReport stream(SerialPort& port, const GcodeProgram& program, const LinkOpt
   return Session(port, program, options, hooks).run();
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

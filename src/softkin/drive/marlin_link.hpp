@@ -4,7 +4,7 @@
 #include <softkin/drive/gcode.hpp>
 #include <softkin/drive/serial_port.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 /// How a program is streamed. Defaults suit boards on USB.
 struct LinkOptions {
@@ -75,4 +75,4 @@ struct LinkHooks {
 /// "N10001 G21*31" without the end of the line.
 [[nodiscard]] std::string numbered_line(long number, const std::string& text);
 
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <softkin/core/text.hpp>
 #include <softkin/drive/motion.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 namespace {
 
@@ -11,12 +12,6 @@ constexpr std::int64_t fewest_steps = 6;  // MIN_STEPS_PER_SEGMENT of Marlin
 constexpr double shortest_s = 0.1;
 constexpr double no_move_mm = 1e-9;       // of cable: rounding of ratios
 constexpr double slack_of_limits = 1e-9;  // relative
-
-std::string text_of(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// Where the motors stand, in mm of cable from home, backlash included.
 class Motors {
@@ -142,9 +137,9 @@ class Planner {
       const bool low = length < tendon.shortest_mm * (1 - slack_of_limits);
       if (low || length > tendon.longest_mm * (1 + slack_of_limits))
         fail(row, tendon,
-             "length " + text_of(length) + " mm (ratio " + text_of(row.actuation[tendon.actuator]) + " of " +
-                 text_of(tendon.rest_length_mm) + " mm) is " + (low ? "below" : "above") + " its limit of " +
-                 text_of(low ? tendon.shortest_mm : tendon.longest_mm) + " mm (" + tendon.origin.text() + ")");
+             "length " + number(length) + " mm (ratio " + number(row.actuation[tendon.actuator]) + " of " +
+                 number(tendon.rest_length_mm) + " mm) is " + (low ? "below" : "above") + " its limit of " +
+                 number(low ? tendon.shortest_mm : tendon.longest_mm) + " mm (" + tendon.origin.text() + ")");
       result.push_back(tendon.wound_mm(length));
     }
     return result;
@@ -186,8 +181,8 @@ class Planner {
       const Tendon& tendon = machine_.tendons[i];
       if (std::abs(speeds[i]) > tendon.max_speed_mm_per_s * (1 + slack_of_limits))
         fail(row, tendon,
-             text_of(std::abs(speeds[i])) + " mm/s to reach this row is above its limit of " +
-                 text_of(tendon.max_speed_mm_per_s) + " mm/s (" + tendon.origin.text() + ")");
+             number(std::abs(speeds[i])) + " mm/s to reach this row is above its limit of " +
+                 number(tendon.max_speed_mm_per_s) + " mm/s (" + tendon.origin.text() + ")");
     }
     check_acceleration(row, speeds_, speeds, (last_seconds_ + seconds) / 2, "the way to");
     merger.add(to_steps(machine_, motors), motors == here_, seconds, row.line);
@@ -203,8 +198,8 @@ class Planner {
       const double change = std::abs(after[i] - before[i]);
       if (change <= tendon.max_acceleration_mm_per_s2 * seconds * (1 + slack_of_limits)) continue;
       fail(row, tendon,
-           "a change of speed by " + text_of(change) + " mm/s on " + where + " this row takes " +
-               text_of(change / seconds) + " mm/s^2, above its limit of " + text_of(tendon.max_acceleration_mm_per_s2) +
+           "a change of speed by " + number(change) + " mm/s on " + where + " this row takes " +
+               number(change / seconds) + " mm/s^2, above its limit of " + number(tendon.max_acceleration_mm_per_s2) +
                " mm/s^2 (" + tendon.origin.text() + ")");
     }
   }
@@ -223,4 +218,4 @@ Motion plan_motion(const Machine& machine, const Commands& commands, bool return
   return Planner(machine, commands).plan(return_home);
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

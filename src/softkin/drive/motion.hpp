@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <softkin/drive/machine.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 /// Motors of all tendons, in steps from home.
 using Steps = std::vector<std::int64_t>;
@@ -35,4 +35,4 @@ struct Motion {
 ///         rest
 [[nodiscard]] Motion plan_motion(const Machine& machine, const Commands& commands, bool return_home);
 
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -1,17 +1,8 @@
 #include <cstdio>
+#include <softkin/core/text.hpp>
 #include <softkin/drive/pressure_schedule.hpp>
 
-namespace softkin {
-
-namespace {
-
-std::string text_of(double value, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, value == 0 ? 0.0 : value);  // never "-0"
-  return text;
-}
-
-}  // namespace
+namespace softkin::drive {
 
 PressureSchedule plan_pressures(const Machine& machine, const Commands& commands) {
   PressureSchedule schedule;
@@ -26,9 +17,9 @@ PressureSchedule plan_pressures(const Machine& machine, const Commands& commands
       const double kpa = known ? row.pressures_kpa[chamber.actuator] : row.actuation[chamber.actuator];
       const bool low = kpa < chamber.low_kpa;
       if (low || kpa > chamber.high_kpa)
-        throw InvalidInput({commands.file, row.line}, "chamber '" + chamber.name + "': pressure " + text_of(kpa, 6) +
+        throw InvalidInput({commands.file, row.line}, "chamber '" + chamber.name + "': pressure " + number(kpa, 6) +
                                                           " kPa is " + (low ? "below" : "above") + " its limit of " +
-                                                          text_of(low ? chamber.low_kpa : chamber.high_kpa, 6) +
+                                                          number(low ? chamber.low_kpa : chamber.high_kpa, 6) +
                                                           " kPa (" + chamber.origin.text() + ")");
       out.kpa.push_back(kpa);
     }
@@ -42,11 +33,11 @@ std::string schedule_csv(const PressureSchedule& schedule) {
   for (const std::string& channel : schedule.channels) text += "," + channel + "_kPa";
   text += "\n";
   for (const PressureSchedule::Row& row : schedule.rows) {
-    text += text_of(row.time_s, 12);
-    for (const double kpa : row.kpa) text += "," + text_of(kpa, 9);
+    text += number(row.time_s, 12);
+    for (const double kpa : row.kpa) text += "," + number(kpa, 9);
     text += "\n";
   }
   return text;
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -3,7 +3,7 @@
 #include <softkin/drive/machine.hpp>
 #include <string>
 
-namespace softkin {
+namespace softkin::drive {
 
 /// Gauge pressures over time; between rows they change linearly.
 struct PressureSchedule {
@@ -23,4 +23,4 @@ struct PressureSchedule {
 /// CSV: t_s, then a column CHANNEL_kPa for each.
 [[nodiscard]] std::string schedule_csv(const PressureSchedule& schedule);
 
-}  // namespace softkin
+}  // namespace softkin::drive

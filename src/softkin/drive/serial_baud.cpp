@@ -4,7 +4,7 @@
 
 #include <softkin/drive/serial_baud.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 bool set_baud(int file, int baud) {
   termios2 settings = {};
@@ -15,4 +15,4 @@ bool set_baud(int file, int baud) {
   return ioctl(file, TCSETS2, &settings) == 0;
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

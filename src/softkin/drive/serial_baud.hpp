@@ -1,8 +1,8 @@
 #pragma once
 
-namespace softkin {
+namespace softkin::drive {
 
 /// Any rate that the driver takes, such as the 250000 baud of many boards. False where it does not.
 [[nodiscard]] bool set_baud(int file, int baud);
 
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -13,7 +13,7 @@
 #include <softkin/drive/serial_baud.hpp>
 #include <softkin/drive/serial_port.hpp>
 
-namespace softkin {
+namespace softkin::drive {
 
 namespace {
 
@@ -119,4 +119,4 @@ SerialPort::Read SerialPort::read_line(std::string& line, double timeout_s) {
   }
 }
 
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace softkin {
+namespace softkin::drive {
 
 /// A serial port in raw mode, 8N1, for one program at a time.
 class SerialPort {
@@ -30,4 +30,4 @@ class SerialPort {
   std::size_t begin_ = 0;  // of what is unread in pending_
 };
 
-}  // namespace softkin
+}  // namespace softkin::drive

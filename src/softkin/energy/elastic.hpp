@@ -4,7 +4,7 @@
 #include <softkin/core/types.hpp>
 #include <softkin/energy/pack.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// Constants of a law, one set per lane [MPa]; meaning as in ElasticLaw.
 struct LawBlock {
@@ -75,4 +75,4 @@ struct ElasticRest {
 /// throws  InvalidInput where the triangles span no area
 [[nodiscard]] Mat3 layer_frame(const Eigen::Matrix<double, 6, 3>& rest);
 
-}  // namespace softkin
+}  // namespace softkin::energy

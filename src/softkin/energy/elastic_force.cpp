@@ -1,7 +1,7 @@
 #include <softkin/energy/elastic_law_point.hpp>
 #include <softkin/energy/elastic_polar.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -81,4 +81,4 @@ template void elastic_force(const ElasticBlock<4, 1>&, const Shape<4>&, ElasticF
 template void elastic_force(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticForce<10>&);
 template void elastic_force(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticForce<6>&);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -3,7 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/energy/elastic.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// A deformation gradient and what the laws that are functions of the invariants need of it, in every lane.
 struct Deformation {
@@ -190,4 +190,4 @@ void dispatch(Law law, const Work& work) {
   throw InvalidInput("elastic law " + std::to_string(static_cast<int>(law)) + ": there is no such law");
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 #include <softkin/energy/elastic_polar.hpp>
 #include <softkin/energy/rotation.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -121,4 +121,4 @@ Principal principal(const Pack33& symmetric) {
   return {{a, b, c}, transposed({{axis[0], axis[1], axis[2]}})};
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 
 #include <softkin/energy/pack.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// F = R S with a proper rotation R (the best one, so det S < 0 where det F < 0) and a symmetric S.
 struct Polar {
@@ -25,4 +25,4 @@ struct Principal {
 };
 [[nodiscard]] Principal principal(const Pack33& symmetric);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 #include <softkin/energy/elastic_polar.hpp>
 #include <softkin/energy/elastic_stiffness.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -149,4 +149,4 @@ template void projected_stiffness(const ElasticBlock<4, 1>&, const Shape<4>&, El
 template void projected_stiffness(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticStiffness<10>&);
 template void projected_stiffness(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticStiffness<6>&);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -5,7 +5,7 @@
 #include <softkin/energy/elastic.hpp>
 #include <string>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -107,4 +107,4 @@ Mat3 layer_frame(const Eigen::Matrix<double, 6, 3>& rest) {
   return frame;
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 #include <softkin/energy/elastic_polar.hpp>
 #include <softkin/energy/elastic_stiffness.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -151,4 +151,4 @@ template void elastic_stiffness(const ElasticBlock<4, 1>&, const Shape<4>&, bool
 template void elastic_stiffness(const ElasticBlock<10, 4>&, const Shape<10>&, bool, ElasticStiffness<10>&);
 template void elastic_stiffness(const ElasticBlock<6, 6>&, const Shape<6>&, bool, ElasticStiffness<6>&);
 
-}  // namespace softkin
+}  // namespace softkin::energy

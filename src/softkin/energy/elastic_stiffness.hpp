@@ -2,7 +2,7 @@
 
 #include <softkin/energy/elastic.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// elastic_stiffness with d^2W/dF^2 replaced by the nearest positive semidefinite matrix, in every lane.
 ///
@@ -12,4 +12,4 @@ namespace softkin {
 template <int K, int Q>
 void projected_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out);
 
-}  // namespace softkin
+}  // namespace softkin::energy

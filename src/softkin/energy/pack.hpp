@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// Elements that a kernel handles at once: a lane each.
 inline constexpr int lanes = 8;
@@ -115,4 +115,4 @@ inline void center(Shape<K>& shape) {
   for (int i = 0; i < K; ++i) shape[i] = shape[i] - mean;
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

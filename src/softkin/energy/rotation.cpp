@@ -2,7 +2,7 @@
 #include <Eigen/Geometry>
 #include <softkin/energy/rotation.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -104,4 +104,4 @@ Mat3 best_rotation(const Mat3& correlation) {
   return davenport(correlation).toRotationMatrix();
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -3,7 +3,7 @@
 #include <softkin/core/types.hpp>
 #include <softkin/energy/pack.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// Unit quaternions, one per lane; w is the real part.
 struct PackRotation {
@@ -25,4 +25,4 @@ void best_rotation(const Pack33& correlation, PackRotation& rotation);
 /// The same for one matrix, by Davenport's eigenproblem.
 [[nodiscard]] Mat3 best_rotation(const Mat3& correlation);
 
-}  // namespace softkin
+}  // namespace softkin::energy

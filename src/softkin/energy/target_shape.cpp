@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <softkin/energy/target_shape_parts.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -133,4 +133,4 @@ TargetSplit<6> split_dea(const Eigen::Matrix<double, 6, 3>& rest) {
   return split;
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

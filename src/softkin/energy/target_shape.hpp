@@ -2,7 +2,7 @@
 
 #include <softkin/energy/rotation.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// Body elements of K vertices (4: tetrahedra, 6: prisms), one per lane.
 template <int K>
@@ -69,4 +69,4 @@ struct TargetSplit {
 /// Both triangles grow in their planes about their centres; the distance of the centres thins along the mean normal.
 [[nodiscard]] TargetSplit<6> split_dea(const Eigen::Matrix<double, 6, 3>& rest);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -3,7 +3,7 @@
 #include <softkin/energy/target_shape.hpp>
 
 /// Formulas that the pulls of the target-shape formulation share with their derivatives.
-namespace softkin {
+namespace softkin::energy {
 
 /// H of best_rotation
 template <int K>
@@ -66,4 +66,4 @@ inline void soft_target_slope(const Pack& volume_ratio, Pack& scaled, Pack& rigi
   rigid = select(whole | inverted, zero, pack(-1 / whole_from));
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 #include <softkin/energy/target_shape_stiffness.hpp>
 #include <softkin/energy/turn_response.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -334,4 +334,4 @@ template void stiffness_of_actuation(const ActuationBlock<4>&, const Pack&, bool
 template void stiffness_of_actuation(const ActuationBlock<6>&, const Pack&, bool, const Shape<6>&, const PackRotation&,
                                      bool, TargetStiffness<6>&);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 
 #include <softkin/energy/target_shape.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// Blocks (a, b), b <= a, of a symmetric matrix of K x K blocks of 3 x 3, at a (a + 1) / 2 + b [mm^3].
 template <int K>
@@ -79,4 +79,4 @@ void stiffness_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, b
                             const Shape<K>& current, const PackRotation& rotation, bool projected,
                             TargetStiffness<K>& out);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -1,6 +1,6 @@
 #include <softkin/energy/turn_response.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -98,4 +98,4 @@ Pack33 turn_response(const Pack33& stiffness, const Pack33& metric, const Pack& 
   return out;
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 
 #include <softkin/energy/pack.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// Inverse of a symmetric positive semidefinite 3 x 3 matrix in every lane; zero in lanes where it is singular: there
 /// the best rotation is not unique, and none of its derivatives is more right than none.
@@ -16,4 +16,4 @@ namespace softkin {
 ///          whose metric is zero
 [[nodiscard]] Pack33 turn_response(const Pack33& stiffness, const Pack33& metric, const Pack& least);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -3,7 +3,7 @@
 #include <softkin/energy/rotation.hpp>
 #include <softkin/energy/turning.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -67,4 +67,4 @@ template void turning_pull<4, 1>(const ElasticBlock<4, 1>&, const Shape<4>&, con
 template void turning_pull<10, 4>(const ElasticBlock<10, 4>&, const Shape<10>&, const Shape<10>&, Shape<10>&);
 template void turning_pull<6, 6>(const ElasticBlock<6, 6>&, const Shape<6>&, const Shape<6>&, Shape<6>&);
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -2,7 +2,7 @@
 
 #include <softkin/energy/elastic.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 /// What a step lacks to turn an element instead of shearing it. A linear step of a body that bends far enlarges it as
 /// it turns it; the deformation gradient F with rate F' is better led to exp([w]) (F + F' - [w] F), w being the rate at
@@ -15,4 +15,4 @@ namespace softkin {
 template <int K, int Q>
 void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull);
 
-}  // namespace softkin
+}  // namespace softkin::energy

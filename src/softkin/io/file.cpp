@@ -23,9 +23,15 @@ std::string read_file(const fs::path& path) {
 }
 
 void write_file(const fs::path& path, std::string_view content) {
+  write_file(path, [content](std::ostream& stream) {
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  });
+}
+
+void write_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   const fs::path part = path.string() + "." + std::to_string(::getpid()) + ".part";
   std::ofstream stream(part, std::ios::binary);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  write(stream);
   stream.close();
   std::error_code failure;
   if (stream) fs::rename(part, path, failure);

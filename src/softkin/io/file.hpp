@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 
@@ -11,5 +13,6 @@ namespace softkin {
 
 /// Writes beside the file and renames, so that a reader never sees half a file. Throws InvalidInput on failure.
 void write_file(const std::filesystem::path& path, std::string_view content);
+void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
 }  // namespace softkin

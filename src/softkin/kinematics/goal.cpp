@@ -137,13 +137,14 @@ Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, 
   return errors;
 }
 
-Eigen::VectorXd goal_terms(const Model& model, const std::vector<Goal>& goals, const Points& positions) {
+Eigen::VectorXd inverse::goal_terms(const Model& model, const std::vector<Goal>& goals, const Points& positions) {
   return joined(goals, [&](const Goal& goal) { return terms_of(model, goal, positions); });
 }
 
-Eigen::MatrixXd goal_slopes(const Model& model, const std::vector<Goal>& goals, const Points& positions,
-                            const Sensitivity& sensitivity) {
-  Eigen::MatrixXd slopes(goal_terms(model, goals, positions).size(), static_cast<Index>(sensitivity.positions.size()));
+Eigen::MatrixXd inverse::goal_slopes(const Model& model, const std::vector<Goal>& goals, const Points& positions,
+                                     const Sensitivity& sensitivity) {
+  Eigen::MatrixXd slopes(inverse::goal_terms(model, goals, positions).size(),
+                         static_cast<Index>(sensitivity.positions.size()));
   for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
     slopes.col(static_cast<Index>(a)) =
         joined(goals, [&](const Goal& goal) { return change_of(model, goal, positions, sensitivity.positions[a]); });

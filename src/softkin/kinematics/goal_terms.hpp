@@ -3,7 +3,7 @@
 #include <softkin/kinematics/goal.hpp>
 #include <softkin/statics/sensitivity.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 /// Goals as terms whose squares are summed: each coordinate's error times the root of its goal's weight [mm].
 ///
@@ -14,4 +14,4 @@ namespace softkin {
 [[nodiscard]] Eigen::MatrixXd goal_slopes(const Model& model, const std::vector<Goal>& goals, const Points& positions,
                                           const Sensitivity& sensitivity);
 
-}  // namespace softkin
+}  // namespace softkin::inverse

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/model/mesh.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 #include <vector>
 
 namespace softkin {

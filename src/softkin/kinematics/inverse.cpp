@@ -114,9 +114,9 @@ class Inverse {
 
   void descend_from(Equilibrium first) {
     response_.keep_slack();
-    Pose pose = response_.pose_of(std::move(first), false);
-    const bool reached = descend(response_, model_.diagonal_mm, accuracy_mm(), options_.max_iterations, pose,
-                                 result_.iterations, result_.remark);
+    inverse::Pose pose = response_.pose_of(std::move(first), false);
+    const bool reached = inverse::descend(response_, model_.diagonal_mm, accuracy_mm(), options_.max_iterations, pose,
+                                          result_.iterations, result_.remark);
     result_.status = reached ? InverseStatus::reached : InverseStatus::not_converged;
     if (response_.interrupted()) result_.status = InverseStatus::interrupted;
     if (reached) result_.remark.clear();
@@ -126,15 +126,15 @@ class Inverse {
 
   void search(Equilibrium first) {
     const Actuation preferred = options_.preferred.size() > 0 ? options_.preferred : first.actuation;
-    SearchSettings settings;
+    inverse::SearchSettings settings;
     settings.preferred = response_.shares_of(preferred);
     settings.resolution_mm = resolution_of_tolerance * options_.tolerance_mm;
     settings.accuracy_mm = accuracy_mm();
     settings.preferred_tolerance = options_.preferred_tolerance;
     first.state.actuation = first.actuation;
     if (response_.free().empty()) return stay(std::move(first));
-    const Pose start = response_.pose_of(std::move(first), true);
-    SearchResult found = search_inverse(response_, start, settings);
+    const inverse::Pose start = response_.pose_of(std::move(first), true);
+    inverse::SearchResult found = inverse::search_inverse(response_, start, settings);
     result_.iterations = found.iterations;
     for (int i = 1; i <= options_.other_starts && unreached(found); ++i) try_from(i, start, settings, found);
     conclude(std::move(found), settings);
@@ -142,7 +142,7 @@ class Inverse {
 
   /// No actuator may change.
   void stay(Equilibrium first) {
-    Pose pose = response_.pose_of(std::move(first), false);
+    inverse::Pose pose = response_.pose_of(std::move(first), false);
     result_.status = pose.miss <= 1 ? InverseStatus::reached : InverseStatus::unreachable;
     if (pose.miss > 1) result_.remark = "no actuator may change";
     result_.active.assign(model_.actuators.size(), 0);
@@ -150,43 +150,45 @@ class Inverse {
     finish(std::move(pose));
   }
 
-  [[nodiscard]] bool unreached(const SearchResult& found) const {
-    return (found.end == SearchEnd::stationary || found.end == SearchEnd::stuck) && response_.any_left();
+  [[nodiscard]] bool unreached(const inverse::SearchResult& found) const {
+    return (found.end == inverse::SearchEnd::stationary || found.end == inverse::SearchEnd::stuck) &&
+           response_.any_left();
   }
 
-  void try_from(int place, const Pose& start, const SearchSettings& settings, SearchResult& best) {
-    Pose there;
-    if (response_.go(evenly(place, start.shares.size()), start, there) == Response::Outcome::failed) return;
+  void try_from(int place, const inverse::Pose& start, const inverse::SearchSettings& settings,
+                inverse::SearchResult& best) {
+    inverse::Pose there;
+    if (response_.go(evenly(place, start.shares.size()), start, there) == inverse::Response::Outcome::failed) return;
     if (response_.interrupted()) {
-      best.end = SearchEnd::interrupted;
+      best.end = inverse::SearchEnd::interrupted;
       return;
     }
-    SearchResult found = search_inverse(response_, there, settings);
+    inverse::SearchResult found = inverse::search_inverse(response_, there, settings);
     result_.iterations += found.iterations;
-    const bool good = found.end == SearchEnd::reached || found.end == SearchEnd::stationary;
-    if (found.end == SearchEnd::interrupted) {
-      best.end = SearchEnd::interrupted;
-    } else if ((good && best.end == SearchEnd::stuck && found.pose.terms.norm() <= best.pose.terms.norm()) ||
+    const bool good = found.end == inverse::SearchEnd::reached || found.end == inverse::SearchEnd::stationary;
+    if (found.end == inverse::SearchEnd::interrupted) {
+      best.end = inverse::SearchEnd::interrupted;
+    } else if ((good && best.end == inverse::SearchEnd::stuck && found.pose.terms.norm() <= best.pose.terms.norm()) ||
                found.pose.terms.norm() < worthwhile * best.pose.terms.norm()) {
       best = std::move(found);
     }
   }
 
-  void tell_status(SearchEnd end, bool reached) {
+  void tell_status(inverse::SearchEnd end, bool reached) {
     switch (end) {
-      case SearchEnd::reached:
+      case inverse::SearchEnd::reached:
         break;
-      case SearchEnd::stationary:
+      case inverse::SearchEnd::stationary:
         result_.status = InverseStatus::unreachable;
         result_.remark = "no change of the actuation inside the ranges brings the goals nearer";
         break;
-      case SearchEnd::none_left:
+      case inverse::SearchEnd::none_left:
         result_.remark = "the limit of " + std::to_string(options_.max_equilibria) + " equilibria was reached";
         break;
-      case SearchEnd::stuck:
+      case inverse::SearchEnd::stuck:
         result_.remark = "the search came to a limit of the robot's equilibria";
         break;
-      case SearchEnd::interrupted:
+      case inverse::SearchEnd::interrupted:
         result_.status = InverseStatus::interrupted;
         result_.remark = "interrupted";
         break;
@@ -196,7 +198,7 @@ class Inverse {
     result_.remark.clear();
   }
 
-  void conclude(SearchResult found, const SearchSettings& settings) {
+  void conclude(inverse::SearchResult found, const inverse::SearchSettings& settings) {
     const bool reached = found.pose.miss <= 1;
     tell_status(found.end, reached);
     result_.slope = found.slope;
@@ -212,10 +214,10 @@ class Inverse {
 
   /// Commands at an end of their range beyond which the error, or where there is none the distance from the preferred
   /// actuation, would go on falling.
-  void tell_active(const SearchResult& found, const SearchSettings& settings) {
+  void tell_active(const inverse::SearchResult& found, const inverse::SearchSettings& settings) {
     constexpr double at_the_end = 1e-9;
     result_.active.assign(model_.actuators.size(), 0);
-    const Pose& pose = found.pose;
+    const inverse::Pose& pose = found.pose;
     if (found.slopes.terms.cols() != pose.shares.size()) return;
     const bool reached = pose.miss <= 1;
     const Eigen::VectorXd slope =
@@ -230,7 +232,7 @@ class Inverse {
   }
 
   /// Gives slack cables the length that is preferred: their shape is the same.
-  void slacken(Pose& pose, const SearchSettings& settings) const {
+  void slacken(inverse::Pose& pose, const inverse::SearchSettings& settings) const {
     State& state = pose.equilibrium.state;
     const Actuation preferred = response_.actuation_of(settings.preferred, state.actuation);
     for (Index i = 0; i < pose.idle.size(); ++i) {
@@ -240,7 +242,7 @@ class Inverse {
     }
   }
 
-  void finish(Pose pose) {
+  void finish(inverse::Pose pose) {
     result_.errors_mm = goal_errors(model_, goals_, pose.equilibrium.state.positions);
     result_.equilibrium = std::move(pose.equilibrium);
     result_.equilibrium.actuation = result_.equilibrium.state.actuation;
@@ -250,11 +252,29 @@ class Inverse {
   const Statics& statics_;
   const std::vector<Goal>& goals_;
   const InverseOptions& options_;
-  RobotResponse response_;
+  inverse::RobotResponse response_;
   InverseResult result_;
 };
 
 }  // namespace
+
+const char* name_of(InverseMethod method) {
+  return method == InverseMethod::newton ? "newton" : "gradient";
+}
+
+const char* name_of(InverseStatus status) {
+  switch (status) {
+    case InverseStatus::reached:
+      return "reached";
+    case InverseStatus::unreachable:
+      return "not reached";
+    case InverseStatus::interrupted:
+      return "interrupted";
+    case InverseStatus::not_converged:
+      break;
+  }
+  return "not converged";
+}
 
 InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
                             const State& start, const InverseOptions& options, const ProgressCallback& progress) {

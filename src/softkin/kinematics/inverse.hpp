@@ -7,6 +7,8 @@ namespace softkin {
 
 /// newton: damped Gauss-Newton with the exact Jacobian. gradient: Algorithm 2 of the paper with central differences.
 enum class InverseMethod { newton, gradient };
+/// "newton" or "gradient".
+[[nodiscard]] const char* name_of(InverseMethod method);
 
 struct InverseOptions {
   InverseMethod method = InverseMethod::newton;
@@ -25,9 +27,11 @@ struct InverseOptions {
 
 /// reached: every goal is met. unreachable: no allowed change of the actuation brings the goals nearer, to first order.
 enum class InverseStatus { reached, unreachable, not_converged, interrupted };
+/// "reached", "not reached", "not converged" or "interrupted".
+[[nodiscard]] const char* name_of(InverseStatus status);
 
 /// An equilibrium that was asked for on the way.
-struct InverseRecord {
+struct InverseTrial {
   Actuation actuation;  // asked for
   Status status = Status::not_converged;
   double error_mm = 0;  // largest of the goals; infinite where status is not converged
@@ -43,8 +47,8 @@ struct InverseResult {
                               // by the share of each range [mm]: 0 where no allowed change helps; newton
   Sensitivity sensitivity;    // at the equilibrium; newton
   int iterations = 0, equilibria = 0;
-  std::vector<InverseRecord> history;  // every equilibrium
-  std::string remark;                  // why it stopped, where status is not reached
+  std::vector<InverseTrial> history;  // every equilibrium
+  std::string remark;                 // why it stopped, where status is not reached
   double seconds = 0;
 };
 

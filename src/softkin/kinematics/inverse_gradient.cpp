@@ -2,7 +2,7 @@
 #include <cmath>
 #include <softkin/kinematics/inverse_gradient.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 namespace {
 
@@ -82,4 +82,4 @@ bool descend(RobotResponse& response, double diagonal_mm, double accuracy_mm, in
   return pose.miss <= 1;
 }
 
-}  // namespace softkin
+}  // namespace softkin::inverse

@@ -2,7 +2,7 @@
 
 #include <softkin/kinematics/inverse_robot.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 /// Algorithm 2 of Fang et al. 2020 from a pose: descends along the gradient of the sum of squares J by central
 /// differences, shrinking and expanding its step. Trials outside the ranges are brought back to them.
@@ -17,4 +17,4 @@ namespace softkin {
 [[nodiscard]] bool descend(RobotResponse& response, double diagonal_mm, double accuracy_mm, int max_iterations,
                            Pose& pose, int& iterations, std::string& remark);
 
-}  // namespace softkin
+}  // namespace softkin::inverse

@@ -3,7 +3,7 @@
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/sensitivity.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 /// A robot at one actuation, as a search sees it: f actuators are free.
 struct Pose {
@@ -41,4 +41,4 @@ class Response {
   [[nodiscard]] virtual bool any_left() const = 0;
 };
 
-}  // namespace softkin
+}  // namespace softkin::inverse

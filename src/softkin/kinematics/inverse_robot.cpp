@@ -3,10 +3,10 @@
 #include <limits>
 #include <softkin/kinematics/goal_terms.hpp>
 #include <softkin/kinematics/inverse_robot.hpp>
-#include <softkin/statics/measure.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <utility>
 
-namespace softkin {
+namespace softkin::inverse {
 
 namespace {
 
@@ -157,4 +157,4 @@ bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   return slopes.terms.allFinite() && slopes.tensions.allFinite();
 }
 
-}  // namespace softkin
+}  // namespace softkin::inverse

@@ -3,7 +3,7 @@
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/inverse_response.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 /// A robot's equilibria as a search asks for them.
 ///
@@ -32,7 +32,7 @@ class RobotResponse : public Response {
   bool release(Pose& pose, const Slopes& slopes, const Eigen::VectorXd& preferred, double resolution_mm);
 
   [[nodiscard]] bool interrupted() const { return interrupted_; }
-  [[nodiscard]] const std::vector<InverseRecord>& history() const { return history_; }
+  [[nodiscard]] const std::vector<InverseTrial>& history() const { return history_; }
   [[nodiscard]] const std::vector<Index>& free() const { return free_; }
   /// Newton's poses treat slack cables as taut ones; Algorithm 2 knows no such thing.
   void keep_slack() { taut_ = false; }
@@ -49,10 +49,10 @@ class RobotResponse : public Response {
   std::vector<Index> free_;
   std::vector<Index> cables_;  // places in free_ of what only pulls
   const ProgressCallback& progress_;
-  std::vector<InverseRecord> history_;
+  std::vector<InverseTrial> history_;
   double least_error_;  // [mm]
   int most_;
   bool interrupted_ = false, taut_ = true;
 };
 
-}  // namespace softkin
+}  // namespace softkin::inverse

@@ -4,7 +4,7 @@
 #include <softkin/kinematics/inverse_step.hpp>
 #include <utility>
 
-namespace softkin {
+namespace softkin::inverse {
 
 namespace {
 
@@ -226,4 +226,4 @@ SearchResult search_inverse(Response& response, const Pose& start, const SearchS
   return Search(response, start, settings).run();
 }
 
-}  // namespace softkin
+}  // namespace softkin::inverse

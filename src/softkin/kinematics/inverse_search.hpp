@@ -2,7 +2,7 @@
 
 #include <softkin/kinematics/inverse_response.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 struct SearchSettings {
   Eigen::VectorXd preferred;          // f, shares
@@ -29,4 +29,4 @@ struct SearchResult {
 ///         and Welsch 1981 (NL2SOL); between poses that reach their goals Broyden's update instead of new slopes
 [[nodiscard]] SearchResult search_inverse(Response& response, const Pose& start, const SearchSettings& settings);
 
-}  // namespace softkin
+}  // namespace softkin::inverse

@@ -4,7 +4,7 @@
 #include <softkin/kinematics/inverse_step.hpp>
 #include <softkin/kinematics/small_program.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 namespace {
 
@@ -123,4 +123,4 @@ double projected_slope(const Pose& pose, const Slopes& slopes) {
   return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds).norm();
 }
 
-}  // namespace softkin
+}  // namespace softkin::inverse

@@ -2,7 +2,7 @@
 
 #include <softkin/kinematics/inverse_response.hpp>
 
-namespace softkin {
+namespace softkin::inverse {
 
 /// How long a step may be, and what counts as nothing.
 struct StepLimits {
@@ -36,4 +36,4 @@ struct InverseStep {
 /// Norm of the projected gradient of the root of the sum of squares by the shares [mm per range].
 [[nodiscard]] double projected_slope(const Pose& pose, const Slopes& slopes);
 
-}  // namespace softkin
+}  // namespace softkin::inverse

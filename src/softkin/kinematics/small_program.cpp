@@ -4,7 +4,7 @@
 #include <softkin/kinematics/small_program.hpp>
 #include <vector>
 
-namespace softkin {
+namespace softkin::inverse {
 
 namespace {
 
@@ -106,4 +106,4 @@ Eigen::VectorXd solve_small_program(const Eigen::MatrixXd& h, const Eigen::Vecto
   return program.at();
 }
 
-}  // namespace softkin
+}  // namespace softkin::inverse

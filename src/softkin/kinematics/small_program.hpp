@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace softkin {
+namespace softkin::inverse {
 
 /// min 1/2 s.H s + g.s where rows s >= bounds; H symmetric positive definite, s of a handful of unknowns. bounds <= 0,
 /// so that s = 0 is allowed.
@@ -12,4 +12,4 @@ namespace softkin {
 [[nodiscard]] Eigen::VectorXd solve_small_program(const Eigen::MatrixXd& h, const Eigen::VectorXd& g,
                                                   const Eigen::MatrixXd& rows, const Eigen::VectorXd& bounds);
 
-}  // namespace softkin
+}  // namespace softkin::inverse

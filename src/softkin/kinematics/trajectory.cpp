@@ -36,7 +36,7 @@ Eigen::VectorXd move_to(const Eigen::VectorXd& terms, const Eigen::MatrixXd& slo
   Eigen::VectorXd bounds(2 * m);
   bounds << -shares, shares.array() - 1;
   bounds = bounds.cwiseMin(0);  // rounding
-  return solve_small_program(h, slopes.transpose() * terms, rows, bounds);
+  return inverse::solve_small_program(h, slopes.transpose() * terms, rows, bounds);
 }
 
 void check_path(const MarkerPath& path) {
@@ -180,7 +180,7 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
 std::optional<Actuation> PathFollower::predicted(const std::vector<Goal>& goals) const {
   if (!options_.predict || slopes_.size() == 0 || slopes_before_.size() == 0) return std::nullopt;
   const Eigen::VectorXd shares = shares_of(state_.actuation);
-  const Eigen::VectorXd terms = goal_terms(model_, goals, state_.positions);
+  const Eigen::VectorXd terms = inverse::goal_terms(model_, goals, state_.positions);
   const Eigen::VectorXd straight = move_to(terms, slopes_, shares);
   const double stretch = straight.dot(move_) / move_.squaredNorm();
   if (!(std::abs(stretch) <= largest_stretch)) return std::nullopt;
@@ -196,7 +196,7 @@ void PathFollower::learn(const std::vector<Goal>& goals, const InverseResult& fo
   sensitivity_ = found.sensitivity;
   slopes_before_ = std::exchange(slopes_, {});
   if (!sensitivity_.regular) return;
-  slopes_ = goal_slopes(model_, goals, state_.positions, sensitivity_) * widths(model_).asDiagonal();
+  slopes_ = inverse::goal_slopes(model_, goals, state_.positions, sensitivity_) * widths(model_).asDiagonal();
   for (std::size_t a = 0; a < options_.inverse.free.size(); ++a)
     if (!options_.inverse.free[a]) slopes_.col(static_cast<Index>(a)).setZero();
   move_ = shares_of(state_.actuation) - before;

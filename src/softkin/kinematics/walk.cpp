@@ -217,6 +217,7 @@ struct Walker::Parts {
   }
 
   void go_on_from(const WalkStep& step) {
+    statics.forget();
     placed = true;
     friction = step.friction_N;
     distance = step.front_mm - step.rear_mm;

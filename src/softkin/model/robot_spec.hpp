@@ -4,7 +4,7 @@
 #include <softkin/core/elastic_law.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/model/actuator_curve.hpp>
-#include <softkin/model/mesh.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 #include <variant>
 
 namespace softkin {

@@ -2,14 +2,16 @@
 #include <chrono>
 #include <cmath>
 #include <softkin/core/error.hpp>
-#include <softkin/statics/local_global.hpp>
-#include <softkin/statics/measure.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <softkin/statics/neighbourhood.hpp>
-#include <softkin/statics/physical_lease.hpp>
-#include <softkin/statics/physical_predictor.hpp>
-#include <softkin/statics/physical_statics.hpp>
+#include <softkin/statics/physical/equilibria.hpp>
+#include <softkin/statics/physical/lease.hpp>
+#include <softkin/statics/physical/predictor.hpp>
 #include <softkin/statics/statics.hpp>
-#include <softkin/statics/target_shape_newton.hpp>
+#include <softkin/statics/target_shape/local_global.hpp>
+#include <softkin/statics/target_shape/newton.hpp>
 
 namespace softkin {
 
@@ -17,13 +19,6 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::string number(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (!text.empty() && text.back() == '.') text.pop_back();
-  return text;
 }
 
 void check_start(const Model& model, const State& start, const StaticsOptions& options) {
@@ -53,16 +48,10 @@ int worthwhile_threads(const Model& model) {
       std::clamp<std::size_t>(elements / elements_each, 1, std::max(1u, std::thread::hardware_concurrency())));
 }
 
-const char* commanded(const Actuator& actuator) {
-  if (actuator.control == Control::ratio) return "ratio";
-  return actuator.kind == ActuatorKind::cable ? "tension" : "pressure";
-}
-
 }  // namespace
 
-const char* unit_of_command(const Actuator& actuator) {
-  if (actuator.control == Control::ratio) return "";
-  return actuator.kind == ActuatorKind::cable ? " N" : " kPa";
+const char* name_of(Solver solver) {
+  return solver == Solver::newton ? "newton" : "local-global";
 }
 
 void check_actuation(const Model& model, const Actuation& actuation) {
@@ -73,9 +62,9 @@ void check_actuation(const Model& model, const Actuation& actuation) {
     const Actuator& actuator = model.actuators[a];
     const double value = actuation[static_cast<Index>(a)];
     if (!(value >= actuator.low && value <= actuator.high))
-      throw InvalidInput("actuator '" + actuator.name + "': the " + commanded(actuator) + " " + number(value) +
-                         " is outside its range " + number(actuator.low) + " to " + number(actuator.high) +
-                         unit_of_command(actuator));
+      throw InvalidInput("actuator '" + actuator.name + "': the " + command_name(actuator) + " " + number(value) +
+                         " is outside its range " + number(actuator.low) + " to " +
+                         command_text(actuator, actuator.high));
   }
 }
 
@@ -92,14 +81,14 @@ struct Statics::Parts {
           unknowns(robot, system),
           global(robot, system.global_matrix(), unknowns.freedoms.vertex_order()),
           newton(unknowns, global) {}
-    TargetShapeSystem system;
-    TargetShapeUnknowns unknowns;
-    GlobalStep global;
-    TargetShapeNewton newton;
+    target_shape::System system;
+    target_shape::Unknowns unknowns;
+    supports::GlobalStep global;
+    target_shape::Newton newton;
   };
   const Model& model;
   std::optional<TargetShape> target_shape;
-  std::optional<PhysicalStatics> physical;
+  std::optional<physical::Equilibria> physical;
 };
 
 Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
@@ -138,7 +127,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     if (options.solver == Solver::newton)
       parts.newton.solve(start.actuation, options, progress, team, result);
     else
-      solve_local_global(parts.system, parts.global, options, progress, team, result);
+      target_shape::solve_local_global(parts.system, parts.global, options, progress, team, result);
     if (result.report.status == Status::converged) result.state.actuation = actuation;
     result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
   }
@@ -160,13 +149,18 @@ Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options)
   return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, team);
 }
 
+void Statics::forget() const {
+  if (parts_->physical) parts_->physical->forget();
+  if (parts_->target_shape) parts_->target_shape->newton.forget();
+}
+
 struct Neighbourhood::Parts {
   Parts(const Model& robot, const State& centre, int threads) : model(robot), at(centre), team(threads) {}
   const Model& model;
   State at;
   Team team;
-  std::optional<PhysicalStatics::Lease> lease;
-  std::optional<PhysicalPredictor> physical;
+  std::optional<physical::Equilibria::Lease> lease;
+  std::optional<physical::Predictor> physical;
 };
 
 Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int threads) {
@@ -178,7 +172,7 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
     throw InvalidInput("predictions around a shape need the actuation of which it is the equilibrium");
   parts_ = std::make_unique<Parts>(model, at, threads);
   if (!statics.parts_->physical || at.multipliers.size() == 0) return;
-  const PhysicalStatics& physical = *statics.parts_->physical;
+  const physical::Equilibria& physical = *statics.parts_->physical;
   parts_->lease.emplace(physical, at.positions, false);
   parts_->physical.emplace(physical.system(), parts_->lease->work(), at, parts_->team);
 }

@@ -11,11 +11,10 @@ namespace softkin {
 /// throws  InvalidInput on a size mismatch or a value outside its actuator's range
 void check_actuation(const Model& model, const Actuation& actuation);
 
-/// Unit of what the user commands, with a space before it: "" (a ratio), " N" or " kPa".
-[[nodiscard]] const char* unit_of_command(const Actuator& actuator);
-
 /// newton: the fixed point of Algorithm 1 by Newton's method. local_global: Algorithm 1 itself.
 enum class Solver { newton, local_global };
+/// "newton" or "local-global".
+[[nodiscard]] const char* name_of(Solver solver);
 
 struct StaticsOptions {
   Solver solver = Solver::newton;
@@ -63,6 +62,10 @@ class Statics {
   ///          without tension counts as taut, as when it is pulled. Not regular at a limit of existence
   /// throws   InvalidInput on a size mismatch, an unknown actuation, or a number that is not finite
   [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {}) const;
+
+  /// Drops the factors that earlier solves left behind: the next result is that of a new object. Not while another
+  /// thread solves.
+  void forget() const;
 
  private:
   friend class Neighbourhood;

@@ -8,7 +8,7 @@
 #include <opencv2/videoio.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/text_mesh_tools.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/vision/pictures.hpp>
 #include <utility>
 

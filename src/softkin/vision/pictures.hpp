@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <softkin/io/rgb_image.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 #include <string>
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <softkin/calibration/board.hpp>
 #include <softkin/calibration/plane_view.hpp>
-#include <softkin/io/rgb_image.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 #include <string>
 #include <vector>
 

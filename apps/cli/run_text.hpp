@@ -1,0 +1,66 @@
+#pragma once
+
+#include <softkin/core/progress.hpp>
+#include <softkin/runs/job.hpp>
+#include <string>
+
+#include "mesh_text.hpp"
+#include "terminal.hpp"
+
+namespace softkin::cli {
+
+/// What a run that goes record by record says of itself. what: "step", "waypoint" or "sample".
+[[nodiscard]] std::string resumed_text(std::size_t done, std::size_t all, const std::string& what);
+
+/// On stderr; returns the exit code. where: what is finished is kept ("they are in out/"); goes_on: by --resume
+[[nodiscard]] int tell_stopped(std::size_t done, std::size_t all, const std::string& what, const std::string& where,
+                               bool goes_on);
+
+/// Takes over what is on disk, and says so; what a killed run left half written beside its outputs is removed.
+template <class Record>
+void resume_run(runs::Run<Record>& run, const std::vector<Output>& outputs, const std::string& what, bool quiet) {
+  std::string remark;
+  run.resume(remark);
+  remove_torn_files(outputs);
+  if (quiet) return;
+  if (!remark.empty()) print(remark + "\n");
+  print(resumed_text(run.done(), run.size(), what) + "\n");
+}
+
+/// On stdout.
+template <class Record>
+void show_report(runs::Run<Record>& run) {
+  run.log().report(print_piece);
+  print(std::string());
+}
+
+/// Records done, time and time left, on the terminal.
+class RunProgress {
+ public:
+  /// first: the record with which the work begins.
+  RunProgress(std::size_t first, std::size_t all, std::string what);
+
+  void begin(std::size_t record);
+  /// detail: of the record that is being made. share: how much of it is done, 0 to 1; it does not go back
+  void show(const std::string& detail, double share = 0);
+  void clear() { line_.clear(); }
+
+ private:
+  ProgressLine line_;
+  std::size_t first_, all_, at_;
+  std::string what_;
+  double start_;      // [s]
+  double share_ = 0;  // of this record
+};
+
+/// How far an equilibrium is, from what the solver tells.
+class EquilibriumProgress {
+ public:
+  [[nodiscard]] double share(const Progress& progress);
+  [[nodiscard]] static std::string text(const Progress& progress);
+
+ private:
+  double first_move_ = 0;  // [mm]
+};
+
+}  // namespace softkin::cli

@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <map>
+#include <softkin/io/mesh/abaqus_cards.hpp>
+#include <softkin/io/mesh/abaqus_deck.hpp>
+#include <softkin/io/mesh/element_order.hpp>
+#include <softkin/io/mesh/text_meshes.hpp>
+#include <unordered_map>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+/// Corners of the faces S1, S2, ... from 1, as Abaqus numbers them; 0: none.
+constexpr Index tetrahedron_faces[4][4] = {{1, 2, 3, 0}, {1, 4, 2, 0}, {2, 4, 3, 0}, {3, 4, 1, 0}};
+constexpr Index prism_faces[5][4] = {{1, 2, 3, 0}, {4, 6, 5, 0}, {1, 4, 5, 2}, {2, 5, 6, 3}, {3, 6, 4, 1}};
+
+using Numbers = std::unordered_map<std::int64_t, Index>;  // from the file's numbers to the order of appearance
+
+void sort_unique(std::vector<Index>& members) {
+  std::sort(members.begin(), members.end());
+  members.erase(std::unique(members.begin(), members.end()), members.end());
+}
+
+struct NamedSet {
+  std::string name;
+  bool in_assembly = false;
+  std::vector<Index> members;
+};
+
+/// Sets of one kind in order of first mention; names are found without regard to case.
+class SetTable {
+ public:
+  NamedSet& at(const AbaqusCards& cards, const AbaqusSet& card) {
+    const auto [found, added] = by_name_.emplace(upper_case(card.name), sets_.size());
+    if (added) sets_.push_back({card.name, card.in_assembly, {}});
+    NamedSet& set = sets_[found->second];
+    if (set.in_assembly != card.in_assembly)
+      throw InvalidInput(cards.origin(card.line),
+                         "'" + card.name + "' is defined in the part and in the assembly: rename one of them");
+    return set;
+  }
+
+  const std::vector<Index>& members(const AbaqusCards& cards, const AbaqusItem& item, const char* kind) const {
+    const auto found = by_name_.find(upper_case(item.name));
+    if (found != by_name_.end()) return sets_[found->second].members;
+    std::vector<std::string> known;
+    for (const NamedSet& set : sets_) known.push_back(set.name);
+    const std::string name = item.name.substr(0, 40);
+    throw InvalidInput(cards.origin(item.line),
+                       std::string("unknown ") + kind + " set '" + name + "'" + suggest_name(name, known));
+  }
+
+  std::vector<NamedSet>& sets() { return sets_; }
+
+ private:
+  std::vector<NamedSet> sets_;
+  std::map<std::string, std::size_t> by_name_;
+};
+
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(const AbaqusCards& cards) : cards_(cards) {}
+
+  Mesh build() {
+    add_nodes();
+    add_elements();
+    for (const AbaqusSet& card : cards_.sets)
+      if (card.kind != AbaqusSetKind::surface) resolve(card);
+    add_element_regions();
+    for (const AbaqusSet& card : cards_.sets)
+      if (card.kind == AbaqusSetKind::surface) resolve_surface(card);
+    add_regions(
+        surfaces_,
+        [&](Region& region, Index face) {
+          const auto [is_quad, index] = faces_[static_cast<std::size_t>(face)];
+          (is_quad ? region.quads : region.triangles).push_back(index);
+        },
+        2);
+    add_regions(
+        node_sets_, [](Region& region, Index node) { region.vertices.push_back(node); }, 0);
+    return std::move(mesh_);
+  }
+
+ private:
+  void add_nodes() {
+    mesh_.vertices.resize(static_cast<Eigen::Index>(cards_.nodes.size()), 3);
+    nodes_.reserve(cards_.nodes.size());
+    for (const AbaqusNode& node : cards_.nodes) {
+      const auto index = static_cast<Index>(nodes_.size());
+      if (!nodes_.emplace(node.id, index).second)
+        throw InvalidInput(cards_.origin(node.line), "node " + std::to_string(node.id) + " is defined a second time");
+      mesh_.vertices.row(index) = node.position.transpose();
+    }
+  }
+
+  void add_elements() {
+    if (cards_.elements.empty())
+      throw InvalidInput(cards_.origin(cards_.last_line), "the mesh has neither tetrahedra nor prisms");
+    elements_.reserve(cards_.elements.size());
+    for (const AbaqusElement& element : cards_.elements) {
+      if (!elements_.emplace(element.id, static_cast<Index>(elements_.size())).second)
+        throw InvalidInput(cards_.origin(element.line),
+                           "element " + std::to_string(element.id) + " is defined a second time");
+      add_element(element);
+      const std::string refusal =
+          refusal_of_orders(mesh_.tetrahedra.size(), mesh_.edge_nodes.size(), mesh_.prisms.size());
+      if (!refusal.empty()) throw InvalidInput(cards_.origin(element.line), refusal);
+    }
+  }
+
+  void add_element(const AbaqusElement& element) {
+    place_.push_back(element.is_tetrahedron() ? mesh_.tetrahedra.size() : mesh_.prisms.size());
+    if (element.is_tetrahedron())
+      mesh_.tetrahedra.push_back(nodes_of<4>(element, 0));
+    else
+      mesh_.prisms.push_back(nodes_of<6>(element, 0));
+    if (element.count == 10) mesh_.edge_nodes.push_back(nodes_of<6>(element, 4));  // edges in softkin's order
+  }
+
+  template <std::size_t N>
+  std::array<Index, N> nodes_of(const AbaqusElement& element, std::size_t first) const {
+    std::array<Index, N> nodes;
+    for (std::size_t i = 0; i < N; ++i) nodes[i] = node_of(element, element.nodes[first + i]);
+    return nodes;
+  }
+
+  Index node_of(const AbaqusElement& element, std::int64_t id) const {
+    const auto found = nodes_.find(id);
+    if (found == nodes_.end())
+      throw InvalidInput(cards_.origin(element.line),
+                         "element " + std::to_string(element.id) + " refers to the unknown node " + std::to_string(id));
+    return found->second;
+  }
+
+  /// Appends what the numbers of an item stand for.
+  void look_up(const AbaqusItem& item, const Numbers& numbers, const char* kind, std::vector<Index>& members) const {
+    for (std::int64_t id = item.first; id <= item.last; id += item.step) {
+      const auto found = numbers.find(id);
+      if (found == numbers.end())
+        throw InvalidInput(cards_.origin(item.line), std::string("unknown ") + kind + " " + std::to_string(id));
+      members.push_back(found->second);
+    }
+  }
+
+  void resolve(const AbaqusSet& card) {
+    const bool of_nodes = card.kind == AbaqusSetKind::nodes;
+    SetTable& table = of_nodes ? node_sets_ : element_sets_;
+    const Numbers& numbers = of_nodes ? nodes_ : elements_;
+    const char* kind = of_nodes ? "node" : "element";
+    std::vector<Index> members;
+    for (const AbaqusItem& item : card.items) {
+      if (item.element_nodes)
+        append_nodes_of(element_sets_.members(cards_, item, "element"), members);
+      else if (item.name.empty())
+        look_up(item, numbers, kind, members);
+      else
+        append(members, table.members(cards_, item, kind));
+      if (members.size() > 2 * numbers.size()) sort_unique(members);  // sets of sets must not grow without bound
+    }
+    std::vector<Index>& all = table.at(cards_, card).members;
+    append(all, members);
+    sort_unique(all);
+  }
+
+  static void append(std::vector<Index>& members, const std::vector<Index>& more) {
+    members.insert(members.end(), more.begin(), more.end());
+  }
+
+  /// The corners of an element, from 0.
+  std::pair<const Index*, std::size_t> corners_of(Index element) const {
+    const auto i = static_cast<std::size_t>(element);
+    if (cards_.elements[i].is_tetrahedron()) return {mesh_.tetrahedra[place_[i]].data(), 4};
+    return {mesh_.prisms[place_[i]].data(), 6};
+  }
+
+  void append_nodes_of(const std::vector<Index>& elements, std::vector<Index>& members) const {
+    for (const Index element : elements) {
+      const auto [corners, count] = corners_of(element);
+      members.insert(members.end(), corners, corners + count);
+      if (mesh_.edge_nodes.empty()) continue;
+      const EdgeNodes& nodes = mesh_.edge_nodes[place_[static_cast<std::size_t>(element)]];
+      members.insert(members.end(), nodes.begin(), nodes.end());
+    }
+    sort_unique(members);
+  }
+
+  void resolve_surface(const AbaqusSet& card) {
+    std::vector<Index> members;
+    for (const AbaqusItem& item : card.items) {
+      std::vector<Index> elements;
+      if (item.name.empty())
+        look_up(item, elements_, "element", elements);
+      else
+        elements = element_sets_.members(cards_, item, "element");
+      for (const Index element : elements) members.push_back(face_of(element, item));
+      if (members.size() > 2 * faces_.size()) sort_unique(members);
+    }
+    std::vector<Index>& all = surfaces_.at(cards_, card).members;
+    append(all, members);
+    sort_unique(all);
+  }
+
+  /// The number of an element's face among the surface cells; new ones are added to the mesh.
+  Index face_of(Index element, const AbaqusItem& item) {
+    const auto [corners, count] = corners_of(element);
+    if (item.face > (count == 4 ? 4 : 5))
+      throw InvalidInput(cards_.origin(item.line), "a tetrahedron has no face S" + std::to_string(item.face));
+    const auto key = std::int64_t{element} * 8 + item.face;
+    const auto [found, added] = face_numbers_.emplace(key, static_cast<Index>(faces_.size()));
+    if (!added) return found->second;
+    const Index(&face)[4] = (count == 4 ? tetrahedron_faces : prism_faces)[item.face - 1];
+    if (face[3] == 0) {
+      faces_.emplace_back(false, static_cast<Index>(mesh_.triangles.size()));
+      mesh_.triangles.push_back({corners[face[0] - 1], corners[face[1] - 1], corners[face[2] - 1]});
+    } else {
+      faces_.emplace_back(true, static_cast<Index>(mesh_.quads.size()));
+      mesh_.quads.push_back({corners[face[0] - 1], corners[face[1] - 1], corners[face[2] - 1], corners[face[3] - 1]});
+    }
+    return found->second;
+  }
+
+  void add_element_regions() {
+    add_regions(
+        element_sets_,
+        [&](Region& region, Index element) {
+          const auto i = static_cast<std::size_t>(element);
+          (cards_.elements[i].is_tetrahedron() ? region.tetrahedra : region.prisms)
+              .push_back(static_cast<Index>(place_[i]));
+        },
+        3);
+  }
+
+  template <class Add>
+  void add_regions(SetTable& table, const Add& add, int dimension) {
+    for (const NamedSet& set : table.sets()) {
+      Region region;
+      region.name = set.name;
+      region.dimension = dimension;
+      for (const Index member : set.members) add(region, member);
+      mesh_.regions.push_back(std::move(region));
+    }
+  }
+
+  const AbaqusCards& cards_;
+  Mesh mesh_;
+  Numbers nodes_, elements_;
+  std::vector<std::size_t> place_;  // of each element among the tetrahedra or the prisms
+  SetTable node_sets_, element_sets_, surfaces_;
+  Numbers face_numbers_;                       // from 8 * element + face to the index into faces_
+  std::vector<std::pair<bool, Index>> faces_;  // is it a quad, and which
+};
+
+}  // namespace
+
+Mesh read_abaqus(const std::filesystem::path& path) {
+  const AbaqusCards cards = read_abaqus_cards(path);
+  return MeshBuilder(cards).build();
+}
+
+}  // namespace softkin

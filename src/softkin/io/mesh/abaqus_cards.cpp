@@ -1,0 +1,234 @@
+#include <algorithm>
+#include <softkin/io/mesh/abaqus_cards.hpp>
+#include <softkin/io/mesh/abaqus_deck.hpp>
+#include <string_view>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+class CardReader {
+ public:
+  explicit CardReader(const std::filesystem::path& path) : deck_(path) { cards_.file = path.string(); }
+
+  AbaqusCards read() {
+    if (deck_.next_data()) deck_.fail("data before the first keyword");
+    while (deck_.next_keyword()) read_keyword(deck_.keyword());
+    cards_.last_line = deck_.line();
+    return std::move(cards_);
+  }
+
+ private:
+  void read_keyword(const std::string& keyword) {
+    if (keyword == "NODE") return read_nodes();
+    if (keyword == "ELEMENT") return read_elements();
+    if (keyword == "NSET") return read_set(AbaqusSetKind::nodes);
+    if (keyword == "ELSET") return read_set(AbaqusSetKind::elements);
+    if (keyword == "SURFACE") return read_surface();
+    if (keyword == "PART") return begin_part();
+    if (keyword == "ASSEMBLY") in_assembly_ = true;
+    if (keyword == "END ASSEMBLY") in_assembly_ = false;
+    if (keyword == "INSTANCE") return begin_instance();
+    if (keyword == "END INSTANCE") in_instance_ = false;
+    if (keyword == "INCLUDE") deck_.fail("*INCLUDE is not supported: put the included lines into this file");
+    if (keyword == "SYSTEM") deck_.fail("*SYSTEM is not supported: write global Cartesian coordinates");
+    static constexpr std::string_view generators[] = {"NCOPY", "NFILL",  "NGEN",   "NMAP",
+                                                      "ELGEN", "ELCOPY", "IMPORT", "PARAMETER"};
+    if (std::find(std::begin(generators), std::end(generators), keyword) != std::end(generators))
+      deck_.fail("*" + keyword + " is not supported: write every node and element");
+  }
+
+  void read_nodes() {
+    deck_.allow({"NSET"});
+    refuse_in_assembly();
+    std::vector<AbaqusItem> numbers;
+    const std::size_t line = deck_.line();
+    const std::string set = deck_.has("NSET") ? deck_.required("NSET") : "";
+    while (deck_.next_data()) {
+      if (deck_.fields().size() != 4)
+        deck_.fail("a node is its number and 3 coordinates, here are " + std::to_string(deck_.fields().size()) +
+                   " values");
+      AbaqusNode node{deck_.integer(0, "node number"), Vec3::Zero(), deck_.line()};
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        node.position[static_cast<Eigen::Index>(axis)] = deck_.real(axis + 1, "coordinate");
+      cards_.nodes.push_back(node);
+      append_number(numbers, node.id);
+    }
+    if (!set.empty()) add_set(set, AbaqusSetKind::nodes, std::move(numbers), line);
+  }
+
+  void read_elements() {
+    deck_.allow({"TYPE", "ELSET"});
+    refuse_in_assembly();
+    const std::size_t count = nodes_of(upper_case(deck_.required("TYPE")));
+    const std::size_t line = deck_.line();
+    const std::string set = deck_.has("ELSET") ? deck_.required("ELSET") : "";
+    std::vector<AbaqusItem> numbers;
+    while (deck_.next_data()) {
+      cards_.elements.push_back(read_element(count));
+      append_number(numbers, cards_.elements.back().id);
+    }
+    if (!set.empty()) add_set(set, AbaqusSetKind::elements, std::move(numbers), line);
+  }
+
+  std::size_t nodes_of(const std::string& type) const {
+    if (type == "C3D4" || type == "C3D4H") return 4;
+    if (type == "C3D6" || type == "C3D6H") return 6;
+    if (type == "C3D10") return 10;
+    const std::string only = "; only C3D4, C3D4H, C3D6, C3D6H and C3D10 are read";
+    if (type.starts_with("C3D10"))
+      deck_.fail("element type " + type + " is another formulation than the tetrahedron of order 2" + only);
+    for (const char* second_order : {"C3D15", "C3D20", "C3D27"})
+      if (type.starts_with(second_order)) deck_.fail("second-order element type " + type + " is not supported" + only);
+    deck_.fail("element type " + type.substr(0, 40) + " is not supported" + only);
+  }
+
+  AbaqusElement read_element(std::size_t nodes) {
+    AbaqusElement element;
+    element.count = nodes;
+    element.line = deck_.line();
+    element.id = deck_.integer(0, "element number");
+    std::size_t count = 0;
+    for (std::size_t field = 1;;) {
+      for (; field < deck_.fields().size(); ++field) {
+        if (count == nodes) deck_.fail("element has more than " + std::to_string(nodes) + " nodes");
+        element.nodes[count++] = deck_.integer(field, "node number");
+      }
+      if (count == nodes) return element;
+      if (!deck_.continued() || !deck_.next_data())
+        deck_.fail("element has " + std::to_string(count) + " nodes, needs " + std::to_string(nodes));
+      field = 0;
+    }
+  }
+
+  void read_set(AbaqusSetKind kind) {
+    const bool nodes = kind == AbaqusSetKind::nodes;
+    if (nodes)
+      deck_.allow({"NSET", "ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"});
+    else
+      deck_.allow({"ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"});
+    const std::string name = deck_.required(nodes ? "NSET" : "ELSET");
+    const std::size_t line = deck_.line();
+    check_instance_parameter();
+    std::vector<AbaqusItem> items;
+    if (nodes && deck_.has("ELSET")) {
+      AbaqusItem item = make_item(deck_.required("ELSET"));
+      item.element_nodes = true;
+      items.push_back(std::move(item));
+    }
+    const bool generate = deck_.has("GENERATE");
+    while (deck_.next_data()) {
+      if (generate)
+        items.push_back(read_range());
+      else
+        for (std::size_t i = 0; i < deck_.fields().size(); ++i) items.push_back(make_item(deck_.fields()[i]));
+    }
+    add_set(name, kind, std::move(items), line);
+  }
+
+  AbaqusItem read_range() {
+    const std::size_t count = deck_.fields().size();
+    if (count != 2 && count != 3) deck_.fail("GENERATE needs first, last and step");
+    AbaqusItem item;
+    item.line = deck_.line();
+    item.first = deck_.integer(0, "first number");
+    item.last = deck_.integer(1, "last number");
+    item.step = count == 3 ? deck_.integer(2, "step") : 1;
+    if (item.last < item.first) deck_.fail("the last number is below the first");
+    if ((item.last - item.first) % item.step != 0) deck_.fail("the step does not lead from first to last");
+    return item;
+  }
+
+  void read_surface() {
+    deck_.allow({"NAME", "TYPE", "INTERNAL"});
+    const std::string name = deck_.required("NAME");
+    const std::size_t line = deck_.line();
+    if (deck_.has("TYPE") && upper_case(deck_.value("TYPE")) != "ELEMENT")
+      deck_.fail("surface '" + name + "' has TYPE=" + deck_.value("TYPE") + "; only TYPE=ELEMENT is read");
+    std::vector<AbaqusItem> items;
+    while (deck_.next_data()) {
+      if (deck_.fields().size() != 2) deck_.fail("a line of *SURFACE is an element or element set and a face S1 to S5");
+      const std::string face = upper_case(deck_.fields()[1]);
+      if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '5')
+        deck_.fail("face must be S1 to S5, not '" + face.substr(0, 40) + "'");
+      AbaqusItem item = make_item(deck_.fields()[0]);
+      item.face = face[1] - '0';
+      items.push_back(std::move(item));
+    }
+    add_set(name, AbaqusSetKind::surface, std::move(items), line);
+  }
+
+  /// A number, or the name of a set; an assembly may write INSTANCE.NUMBER and INSTANCE.NAME.
+  AbaqusItem make_item(std::string_view text) const {
+    if (!instance_.empty() && upper_case(text).starts_with(upper_case(instance_) + "."))
+      text.remove_prefix(instance_.size() + 1);
+    AbaqusItem item;
+    item.line = deck_.line();
+    if (text.empty()) deck_.fail("an entry of the list is empty");
+    if (parse_integer(text, item.first))
+      item.last = item.first;
+    else
+      item.name = text;
+    return item;
+  }
+
+  void begin_part() {
+    if (++parts_ > 1) deck_.fail("several parts are not supported: merge them into one mesh");
+    part_ = deck_.value("NAME");
+  }
+
+  void begin_instance() {
+    if (!instance_.empty()) deck_.fail("several instances are not supported: merge them into one mesh");
+    deck_.allow({"NAME", "PART"});
+    instance_ = deck_.required("NAME");
+    in_instance_ = true;
+    if (upper_case(deck_.required("PART")) != upper_case(part_))
+      deck_.fail("instance of the unknown part '" + deck_.value("PART") + "'");
+    for (bool translation = true; deck_.next_data(); translation = false)
+      for (std::size_t i = 0; i < deck_.fields().size(); ++i)
+        if (!translation || deck_.real(i, "translation") != 0)
+          deck_.fail("an instance that is moved is not supported: write the part where it belongs");
+  }
+
+  void refuse_in_assembly() const {
+    if (in_assembly_ && !in_instance_)
+      deck_.fail("*" + deck_.keyword() + " of the assembly itself (a reference point, say) is not supported");
+  }
+
+  void check_instance_parameter() const {
+    if (deck_.has("INSTANCE") && upper_case(deck_.value("INSTANCE")) != upper_case(instance_))
+      deck_.fail("unknown instance '" + deck_.value("INSTANCE") + "'");
+  }
+
+  /// Consecutive numbers share an item.
+  void append_number(std::vector<AbaqusItem>& items, std::int64_t id) const {
+    if (!items.empty() && items.back().last + 1 == id) {
+      items.back().last = id;
+      return;
+    }
+    AbaqusItem item;
+    item.first = item.last = id;
+    item.line = deck_.line();
+    items.push_back(std::move(item));
+  }
+
+  void add_set(const std::string& name, AbaqusSetKind kind, std::vector<AbaqusItem> items, std::size_t line) {
+    if (items.empty()) throw InvalidInput(deck_.origin(line), "'" + name + "' has no members");
+    cards_.sets.push_back({name, kind, in_assembly_ && !in_instance_, std::move(items), line});
+  }
+
+  AbaqusDeck deck_;
+  AbaqusCards cards_;
+  int parts_ = 0;
+  std::string part_, instance_;
+  bool in_assembly_ = false, in_instance_ = false;
+};
+
+}  // namespace
+
+AbaqusCards read_abaqus_cards(const std::filesystem::path& path) {
+  return CardReader(path).read();
+}
+
+}  // namespace softkin

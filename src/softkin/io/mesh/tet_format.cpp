@@ -1,0 +1,143 @@
+#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/mesh/text_meshes.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace softkin {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// "a:b:c:" or "a:b:c" -> a, b, c
+std::vector<std::string_view> split_row(std::string_view text) {
+  if (text.back() == ':') text.remove_suffix(1);
+  std::vector<std::string_view> cells;
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos; colon = text.find(':')) {
+    cells.push_back(trimmed(text.substr(0, colon)));
+    text.remove_prefix(colon + 1);
+  }
+  cells.push_back(trimmed(text));
+  return cells;
+}
+
+void check_id(const Scanner& scanner, std::string_view text, Index row, std::int64_t& first) {
+  std::int64_t id = 0;
+  if (!parse_integer(text, id))
+    scanner.fail("row number must be an integer, not '" + std::string(text.substr(0, 40)) + "'");
+  if (row == 0) {
+    if (id != 0 && id != 1) scanner.fail("rows must count from 0 or 1, not from " + std::to_string(id));
+    first = id;
+  }
+  if (id != first + row)
+    scanner.fail("row number " + std::to_string(id) + " where " + std::to_string(first + row) + " is due");
+}
+
+void read_flags(const Scanner& scanner, const std::vector<std::string_view>& cells, std::size_t begin,
+                Sidecar& sidecar) {
+  if (sidecar.rows == 0) sidecar.columns.resize(cells.size() - begin);
+  if (cells.size() - begin != sidecar.columns.size())
+    scanner.fail("row has " + std::to_string(cells.size() - begin) + " columns, the first one has " +
+                 std::to_string(sidecar.columns.size()));
+  for (std::size_t i = begin; i < cells.size(); ++i) {
+    if (cells[i] != "0" && cells[i] != "1")
+      scanner.fail("column " + std::to_string(i - begin + 1) + " must be 0 or 1, not '" +
+                   std::string(cells[i].substr(0, 40)) + "'");
+    if (cells[i] == "1") sidecar.columns[i - begin].push_back(sidecar.rows);
+  }
+}
+
+/// The sidecar, or one without rows where there is no such file. Its rows must be `rows` in number.
+Sidecar sidecar_if_present(const fs::path& path, Index rows, const char* items) {
+  std::error_code failure;
+  if (!fs::exists(path, failure)) return {};
+  Sidecar sidecar = read_sidecar(path);
+  if (sidecar.rows != rows)
+    throw InvalidInput({path.string()},
+                       "has " + std::to_string(sidecar.rows) + " rows for " + std::to_string(rows) + " " + items);
+  return sidecar;
+}
+
+fs::path beside(const fs::path& path, const char* suffix) {
+  return path.parent_path() / (path.stem().string() + suffix);
+}
+
+void add_chambers(const fs::path& path, Mesh& mesh) {
+  Sidecar sidecar = sidecar_if_present(path, static_cast<Index>(mesh.tetrahedra.size()), "tets");
+  for (std::size_t i = 0; i < sidecar.columns.size(); ++i) {
+    if (sidecar.columns[i].empty()) continue;
+    Region region;
+    region.name = sidecar.bare ? "chamber" : "chamber" + std::to_string(i + 1);
+    region.tetrahedra = std::move(sidecar.columns[i]);
+    mesh.regions.push_back(std::move(region));
+  }
+}
+
+void add_handle_and_rigid(const fs::path& path, Mesh& mesh) {
+  Sidecar sidecar = sidecar_if_present(path, static_cast<Index>(mesh.vertices.rows()), "vertices");
+  if (sidecar.rows == 0) return;
+  if (sidecar.bare || sidecar.columns.size() != 2)
+    throw InvalidInput({path.string(), 1}, "rows must be id:handle:rigid:");
+  const char* const names[2] = {"handle", "rigid"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (sidecar.columns[i].empty()) continue;
+    Region region;
+    region.name = names[i];
+    region.dimension = 0;
+    region.vertices = std::move(sidecar.columns[i]);
+    mesh.regions.push_back(std::move(region));
+  }
+}
+
+}  // namespace
+
+Sidecar read_sidecar(const fs::path& path) {
+  Scanner scanner(path);
+  Sidecar sidecar;
+  std::int64_t first = 0;
+  while (!scanner.at_end()) {
+    const std::string_view row = trimmed(scanner.line());
+    const bool bare = row.find(':') == std::string_view::npos;
+    if (sidecar.rows == 0) sidecar.bare = bare;
+    if (bare != sidecar.bare) scanner.fail("rows with and without ':' are mixed");
+    const std::vector<std::string_view> cells = split_row(row);
+    if (!bare) check_id(scanner, cells[0], sidecar.rows, first);
+    if (!bare && cells.size() < 2) scanner.fail("row has no column after its number");
+    read_flags(scanner, cells, bare ? 0 : 1, sidecar);
+    ++sidecar.rows;
+  }
+  if (sidecar.rows == 0) scanner.fail("has no rows");
+  return sidecar;
+}
+
+Mesh read_tet(const fs::path& path) {
+  Scanner scanner(path);
+  Mesh mesh;
+  const Index vertices = read_count(scanner, "vertices", 1, 6);
+  on_line(scanner, "vertices").expect("vertices");
+  scanner.end_line();
+  const Index tetrahedra = read_count(scanner, "tets", 1, 10);
+  on_line(scanner, "tets").expect("tets");
+  scanner.end_line();
+  mesh.vertices.resize(vertices, 3);
+  for (Index i = 0; i < vertices; ++i) {
+    mesh.vertices(i, 0) = scanner.real("coordinate");
+    for (int axis = 1; axis < 3; ++axis) mesh.vertices(i, axis) = on_line(scanner, "coordinate").real("coordinate");
+    scanner.end_line();
+  }
+  mesh.tetrahedra.resize(static_cast<std::size_t>(tetrahedra));
+  for (Tetrahedron& element : mesh.tetrahedra) {
+    if (read_label(scanner, "number of vertices") != 4) scanner.fail("an element must have 4 vertices");
+    for (Index& vertex : element)
+      vertex = read_index(on_line(scanner, "vertex number"), "vertex number", 0, vertices - 1);
+    scanner.end_line();
+  }
+  expect_end(scanner);
+  add_chambers(beside(path, "_chamber.txt"), mesh);
+  add_handle_and_rigid(beside(path, "_rigid_handle.txt"), mesh);
+  return mesh;
+}
+
+}  // namespace softkin

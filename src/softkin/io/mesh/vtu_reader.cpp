@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <softkin/io/mesh/cell_grid.hpp>
+#include <softkin/io/mesh/vtk.hpp>
+#include <softkin/io/mesh/vtu_document.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace softkin {
+
+namespace {
+
+constexpr std::int64_t kMost = std::numeric_limits<Index>::max();
+
+pugi::xml_node only_piece(const VtuDocument& document) {
+  const pugi::xml_node piece = document.child(document.grid(), "Piece");
+  const pugi::xml_node second = piece.next_sibling("Piece");
+  if (second)
+    document.fail(second, "the grid has several pieces, whose common points are not joined; write it as one piece");
+  return piece;
+}
+
+Points points_of(const VtuDocument& document, pugi::xml_node piece) {
+  const std::int64_t count = document.integer(piece, "NumberOfPoints", 1, kMost);
+  const pugi::xml_node array = document.child(document.child(piece, "Points"), "DataArray");
+  if (document.components(array) != 3) document.fail(array, "Points must have NumberOfComponents=\"3\"");
+  const std::vector<double> values = document.reals(array, 3 * static_cast<std::uint64_t>(count));
+  return Eigen::Map<const Points>(values.data(), count, 3);
+}
+
+void read_types(const VtuDocument& document, pugi::xml_node cells, std::size_t count, CellGrid& grid) {
+  const pugi::xml_node type_array = document.array(cells, "types"), offset_array = document.array(cells, "offsets");
+  const std::vector<std::int64_t> types = document.integers(type_array, count);
+  const std::vector<std::int64_t> offsets = document.integers(offset_array, count);
+  for (std::size_t cell = 0; cell < count; ++cell) {
+    const std::int64_t last = static_cast<std::int64_t>(grid.starts.back());
+    if (offsets[cell] <= last)
+      document.fail(offset_array, "array 'offsets' must ascend: cell " + std::to_string(cell) + " ends at " +
+                                      std::to_string(offsets[cell]) + ", the cell before at " + std::to_string(last));
+    const std::string refusal = cell_refusal(cell, types[cell], static_cast<std::size_t>(offsets[cell] - last));
+    if (!refusal.empty()) document.fail(type_array, refusal);
+    grid.types.push_back(static_cast<std::uint8_t>(types[cell]));
+    grid.starts.push_back(static_cast<std::size_t>(offsets[cell]));
+  }
+}
+
+void read_connectivity(const VtuDocument& document, pugi::xml_node cells, CellGrid& grid) {
+  const pugi::xml_node array = document.array(cells, "connectivity");
+  const std::vector<std::int64_t> vertices = document.integers(array, grid.starts.back());
+  grid.connectivity.reserve(vertices.size());
+  for (const std::int64_t vertex : vertices) {
+    if (vertex < 0 || vertex >= grid.points.rows()) {
+      const auto cell = std::upper_bound(grid.starts.begin(), grid.starts.end(), grid.connectivity.size());
+      document.fail(array, "array 'connectivity': cell " + std::to_string(cell - grid.starts.begin() - 1) +
+                               " has the vertex " + std::to_string(vertex) + ", outside 0 to " +
+                               std::to_string(grid.points.rows() - 1));
+    }
+    grid.connectivity.push_back(static_cast<Index>(vertex));
+  }
+}
+
+std::optional<std::vector<std::string>> region_names(const VtuDocument& document) {
+  for (const pugi::xml_node array : document.grid().child("FieldData").children())
+    if (array.attribute("Name").as_string() == std::string("region_names") &&
+        array.attribute("type").as_string() == std::string("String"))
+      return document.strings(array);
+  return std::nullopt;
+}
+
+void read_labels(const VtuDocument& document, pugi::xml_node piece, CellGrid& grid) {
+  for (const pugi::xml_node array : piece.child("CellData").children("DataArray")) {
+    const std::optional<NumberType> type = document.type(array);
+    if (!type || !is_integer(*type) || document.components(array) != 1) continue;
+    CellLabels labels{document.text(array, "Name"), {}, std::nullopt, document.origin(array)};
+    labels.values = document.integers(array, grid.types.size());
+    if (labels.name == "region") labels.names = region_names(document);
+    grid.labels.push_back(std::move(labels));
+  }
+}
+
+}  // namespace
+
+Points read_vtu_points(const std::filesystem::path& path) {
+  const VtuDocument document(path);
+  return points_of(document, only_piece(document));
+}
+
+Mesh read_vtu(const std::filesystem::path& path) {
+  const VtuDocument document(path);
+  const pugi::xml_node piece = only_piece(document);
+  CellGrid grid;
+  grid.points = points_of(document, piece);
+  const std::int64_t count = document.integer(piece, "NumberOfCells", 1, kMost);
+  const pugi::xml_node cells = document.child(piece, "Cells");
+  read_types(document, cells, static_cast<std::size_t>(count), grid);
+  read_connectivity(document, cells, grid);
+  read_labels(document, piece, grid);
+  return mesh_of(grid, {path.string()});
+}
+
+}  // namespace softkin

@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/io/picture/bitmap_font.hpp>
+#include <softkin/io/picture/canvas.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double stroke_cells = 1.05;  // width of the font's lines [cell]
+constexpr double capital_rows = 7;
+
+/// One char per code point, those outside ASCII as 127 (drawn as a box).
+std::string displayable(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xC0) == 0x80) continue;  // the later bytes of a code point
+    result += byte >= 32 && byte <= 126 ? c : char{127};
+  }
+  return result;
+}
+
+double line_width(std::size_t characters, double cell) {
+  return characters == 0 ? 0 : (double(characters) * glyph_advance - 1) * cell;
+}
+
+struct Cell {
+  int column, row;
+};
+
+/// Calls draw(a, b) for the strokes that join the inked cells of a character; a lone cell is a stroke of no length.
+template <class Draw>
+void for_each_stroke(char character, const Draw& draw) {
+  const auto inked = [&](int column, int row) { return glyph_cell(character, column, row); };
+  for (int row = 0; row < glyph_rows; ++row) {
+    for (int column = 0; column < glyph_columns; ++column) {
+      if (!inked(column, row)) continue;
+      const Cell cell{column, row};
+      draw(cell, cell);
+      const bool right = inked(column + 1, row), below = inked(column, row + 1), left = inked(column - 1, row);
+      if (right) draw(cell, Cell{column + 1, row});
+      if (below) draw(cell, Cell{column, row + 1});
+      if (!right && !below && inked(column + 1, row + 1)) draw(cell, Cell{column + 1, row + 1});
+      if (!left && !below && inked(column - 1, row + 1)) draw(cell, Cell{column - 1, row + 1});
+    }
+  }
+}
+
+double distance_to(const Canvas::Stroke& stroke, const Canvas::Place& p) {
+  const Canvas::Place along = stroke.to - stroke.from;
+  const double squared = along.squaredNorm();
+  const double share = squared > 0 ? std::clamp((p - stroke.from).dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (p - stroke.from - share * along).norm();
+}
+
+}  // namespace
+
+void Canvas::cover(int x, int y, const Rgb& color, double share) {
+  if (share <= 0 || x < 0 || y < 0 || x >= image_.width || y >= image_.height) return;
+  std::uint8_t* pixel = image_.pixel(x, y);
+  for (int k = 0; k < 3; ++k) pixel[k] = to_byte(pixel[k] / 255.0 * (1 - share) + color[k] * share);
+}
+
+void Canvas::fill(const Place& low, const Place& high, const Rgb& color) {
+  const auto overlap = [](int pixel, double from, double to) {
+    return std::max(0.0, std::min(to, pixel + 1.0) - std::max(from, double(pixel)));
+  };
+  for (int y = int(std::floor(low.y())); y < high.y(); ++y) {
+    for (int x = int(std::floor(low.x())); x < high.x(); ++x) {
+      cover(x, y, color, overlap(x, low.x(), high.x()) * overlap(y, low.y(), high.y()));
+    }
+  }
+}
+
+void Canvas::strokes(const std::vector<Stroke>& strokes, double width, const Rgb& color) {
+  if (strokes.empty()) return;
+  Place low = strokes[0].from, high = low;
+  for (const Stroke& s : strokes) {
+    low = low.cwiseMin(s.from).cwiseMin(s.to);
+    high = high.cwiseMax(s.from).cwiseMax(s.to);
+  }
+  const double reach = width / 2 + 1;
+  for (int y = int(std::floor(low.y() - reach)); y < high.y() + reach; ++y) {
+    for (int x = int(std::floor(low.x() - reach)); x < high.x() + reach; ++x) {
+      double distance = width + 1;
+      for (const Stroke& s : strokes) distance = std::min(distance, distance_to(s, Place(x + 0.5, y + 0.5)));
+      cover(x, y, color, std::clamp(width / 2 + 0.5 - distance, 0.0, 1.0));
+    }
+  }
+}
+
+double Canvas::text_width(const std::string& text, double cell) {
+  return line_width(displayable(text).size(), cell);
+}
+
+std::string Canvas::fitted(const std::string& text, double cell, double width) {
+  std::string result = displayable(text);
+  if (line_width(result.size(), cell) <= width) return result;
+  while (!result.empty() && line_width(result.size() + 3, cell) > width) result.pop_back();
+  return result + "...";
+}
+
+void Canvas::text(const Place& at, const std::string& text, double cell, const Rgb& color, Anchor anchor, bool upward) {
+  const std::string characters = displayable(text);
+  const double width = line_width(characters.size(), cell);
+  const double start = anchor == Anchor::start ? 0 : anchor == Anchor::middle ? -width / 2 : -width;
+  const Place across = upward ? Place(0, -1) : Place(1, 0), down = upward ? Place(1, 0) : Place(0, 1);
+  for (std::size_t i = 0; i < characters.size(); ++i) {
+    const auto place = [&](const Cell& c) -> Place {
+      return at + (start + (double(i) * glyph_advance + c.column + 0.5) * cell) * across +
+             (c.row + 0.5 - capital_rows / 2) * cell * down;
+    };
+    std::vector<Stroke> glyph;
+    for_each_stroke(characters[i], [&](const Cell& a, const Cell& b) { glyph.push_back({place(a), place(b)}); });
+    strokes(glyph, stroke_cells * cell, color);
+  }
+}
+
+}  // namespace softkin

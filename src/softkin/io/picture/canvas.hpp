@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <softkin/io/picture/rgb_image.hpp>
+#include <string>
+
+namespace softkin {
+
+/// Lines, areas and text with smooth borders over an image; places in pixels from the top left, y down.
+class Canvas {
+ public:
+  using Place = Eigen::Vector2d;
+  struct Stroke {
+    Place from, to;
+  };
+  enum class Anchor { start, middle, end };  // the part of the text that stands at the place
+
+  explicit Canvas(RgbImage& image) : image_(image) {}
+
+  void fill(const Place& low, const Place& high, const Rgb& color);
+  /// Lines with round ends, as one area.
+  void strokes(const std::vector<Stroke>& strokes, double width, const Rgb& color);
+  /// One line of text whose half capital height is at the place; cell: size of a cell of the font [pixel];
+  /// upward: reads from bottom to top. A character outside ASCII (one UTF-8 code point) is an empty box.
+  void text(const Place& at, const std::string& text, double cell, const Rgb& color, Anchor anchor = Anchor::start,
+            bool upward = false);
+
+  [[nodiscard]] static double text_width(const std::string& text, double cell);
+  /// The text, or its beginning and "..." where it is wider than `width`.
+  [[nodiscard]] static std::string fitted(const std::string& text, double cell, double width);
+
+ private:
+  void cover(int x, int y, const Rgb& color, double share);
+
+  RgbImage& image_;
+};
+
+}  // namespace softkin

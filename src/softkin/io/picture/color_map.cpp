@@ -1,0 +1,25 @@
+#include <algorithm>
+#include <softkin/io/picture/color_map.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr int intervals = 8;
+constexpr std::uint8_t knots[intervals + 1][3] = {{0x44, 0x01, 0x54}, {0x47, 0x2d, 0x7b}, {0x3b, 0x52, 0x8b},
+                                                  {0x2c, 0x72, 0x8e}, {0x21, 0x91, 0x8c}, {0x28, 0xae, 0x80},
+                                                  {0x5e, 0xc9, 0x62}, {0xad, 0xdc, 0x30}, {0xfd, 0xe7, 0x25}};
+
+Rgb knot(int i) {
+  return {knots[i][0] / 255.0, knots[i][1] / 255.0, knots[i][2] / 255.0};
+}
+
+}  // namespace
+
+Rgb mapped_color(double share) {
+  const double place = std::clamp(share, 0.0, 1.0) * intervals;
+  const int left = std::min(static_cast<int>(place), intervals - 1);
+  return mixed(knot(left), knot(left + 1), place - left);
+}
+
+}  // namespace softkin

@@ -1,0 +1,127 @@
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/plot/svg_panel.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double margin = 14, gap = 18, title_size = 15, title_height = 26;  // [pixel]
+constexpr double largest = 1e300;                                            // beyond it extents overflow
+
+[[noreturn]] void refuse(const std::string& where, const std::string& why) {
+  throw InvalidInput("plot: " + where + ": " + why);
+}
+
+std::string name_of(const PlotPanel& panel, std::size_t number) {
+  if (!panel.title.empty()) return "panel " + excerpt(panel.title);
+  return "panel " + std::to_string(number);
+}
+
+void check_values(const std::vector<double>& values, const PlotAxis& axis, const std::string& where) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(std::abs(values[i]) <= largest))
+      refuse(where,
+             "value " + std::to_string(i) + " along " + excerpt(axis.label) + " is not a number that can be drawn");
+    if (axis.logarithmic && !(values[i] >= 1 / largest))
+      refuse(where, "value " + std::to_string(i) + " along " + excerpt(axis.label) +
+                        " is not > 0, so a logarithmic axis cannot show it");
+  }
+}
+
+void check_axis(const PlotAxis& axis, const std::string& where) {
+  for (const auto& end : {axis.low, axis.high})
+    if (end) check_values({*end}, axis, where);
+  if (axis.low && axis.high && !(*axis.low < *axis.high))
+    refuse(where, "the ends of the axis " + excerpt(axis.label) + " do not ascend");
+}
+
+void check_panel(const PlotPanel& panel, const std::string& where) {
+  if (panel.equal && (panel.x.logarithmic || panel.y.logarithmic))
+    refuse(where, "axes of equal units cannot be logarithmic");
+  check_axis(panel.x, where);
+  check_axis(panel.y, where);
+  for (const PlotSeries& series : panel.series) {
+    const std::string at = where + ", series " + excerpt(series.label);
+    if (series.x.size() != series.y.size())
+      refuse(at, std::to_string(series.x.size()) + " values along x, " + std::to_string(series.y.size()) + " along y");
+    if (!(series.width > 0 && series.mark_radius > 0 && series.width <= 100 && series.mark_radius <= 100))
+      refuse(at, "width and radius must be > 0 and <= 100 pixels");
+    check_values(series.x, panel.x, at);
+    check_values(series.y, panel.y, at);
+  }
+}
+
+void check_plot(const Plot& plot) {
+  if (!(plot.width >= 300 && plot.width <= 10000)) refuse("width", "must be 300 to 10000 pixels");
+  if (!(plot.panel_height >= 80 && plot.panel_height <= 5000)) refuse("panel_height", "must be 80 to 5000 pixels");
+  if (plot.rows.empty()) refuse("rows", "there is no panel");
+  std::size_t number = 0;
+  for (const auto& row : plot.rows) {
+    if (row.empty()) refuse("rows", "a row has no panel");
+    if ((plot.width - 2 * margin) / static_cast<double>(row.size()) < 180)
+      refuse("rows", std::to_string(row.size()) + " panels side by side are too many for the width");
+    for (const PlotPanel& panel : row) check_panel(panel, name_of(panel, number++));
+  }
+}
+
+struct Row {
+  std::vector<SvgPanel> panels;
+  double height = 0;
+};
+
+Row row_of(const Plot& plot, const std::vector<PlotPanel>& panels) {
+  const auto count = static_cast<double>(panels.size());
+  const double width = (plot.width - 2 * margin - gap * (count - 1)) / count;
+  Row row;
+  SvgPanel::Heights heights;
+  for (const PlotPanel& panel : panels) {
+    row.panels.emplace_back(panel, width, plot.panel_height);
+    heights.cover(row.panels.back().heights());
+  }
+  for (SvgPanel& panel : row.panels) panel.settle(heights);
+  row.height = heights.all();
+  return row;
+}
+
+}  // namespace
+
+std::string svg_text(const Plot& plot) {
+  check_plot(plot);
+  std::vector<Row> rows;
+  double height = margin + (plot.title.empty() ? 0 : title_height);
+  for (const auto& panels : plot.rows) {
+    rows.push_back(row_of(plot, panels));
+    height += rows.back().height + gap;
+  }
+  SvgCanvas canvas(plot.width, height - gap + margin, plot.title);
+  double y = margin;
+  if (!plot.title.empty()) {
+    canvas.text({{plot.width / 2, y + title_size},
+                 svg_fitted(plot.title, title_size * svg_bold, plot.width - 2 * margin),
+                 title_size,
+                 SvgAnchor::middle,
+                 true,
+                 false});
+    y += title_height;
+  }
+  int number = 0;
+  for (Row& row : rows) {
+    double x = margin;
+    for (SvgPanel& panel : row.panels) {
+      panel.draw(canvas, {x, y}, number++);
+      x += panel.width() + gap;
+    }
+    y += row.height + gap;
+  }
+  return canvas.finish();
+}
+
+void write_svg(const std::filesystem::path& path, const Plot& plot) {
+  write_file(path, svg_text(plot));
+}
+
+}  // namespace softkin

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scene/parts.hpp>
+
+namespace softkin::scene {
+
+namespace {
+
+struct Kind {
+  ActuatorKind kind;
+  const char* name;
+  Keys controls;  // the ratio, then the load where there is one
+  Keys keys;      // beside the common ones
+};
+
+const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
+const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch", "curve"};
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all{
+      {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface", "curve"}},
+      {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes"}},
+      {ActuatorKind::dea, "dea", {"area"}, {"region", "prestretch", "curve"}}};
+  return all;
+}
+
+const Kind& read_kind(const Map& map) {
+  Keys names;
+  for (const Kind& kind : kinds()) names.push_back(kind.name);
+  const Kind& kind = kinds()[choice(map.at("kind"), names)];
+  for (const std::string& key : kind_keys) {
+    const Node::Entry* entry = map.entry(key);
+    if (entry && std::find(kind.keys.begin(), kind.keys.end(), key) == kind.keys.end())
+      throw InvalidInput(entry->origin, "key '" + key + "' does not belong to kind '" + kind.name + "'");
+  }
+  return kind;
+}
+
+Control read_control(const Map& map, const Kind& kind, Formulation formulation) {
+  const Node* node = map.find("control");
+  if (!node) return Control::ratio;
+  const std::string& control = text(*node);
+  const auto found = std::find(kind.controls.begin(), kind.controls.end(), control);
+  if (found == kind.controls.end())
+    fail(*node, "control of kind '" + std::string(kind.name) + "' must be " +
+                    (kind.controls.size() > 1 ? "one of " : "") + joined(kind.controls) + ", not " + excerpt(control));
+  if (found == kind.controls.begin()) return Control::ratio;
+  if (formulation != Formulation::physical)
+    fail(*node, "control '" + control + "' belongs to the physical formulation, and this scene is of 'target-shape': " +
+                    "give elastic constants and 'formulation: physical', or use '" + kind.controls[0] + "'");
+  return Control::load;
+}
+
+/// Ratios are positive; a tension pulls; a pressure may be below that around the robot.
+double read_low(const Node& node, const ActuatorSpec& actuator) {
+  if (actuator.control == Control::ratio) return positive(node);
+  const double low = number(node);
+  if (actuator.kind == ActuatorKind::cable && low < 0)
+    fail(node, node.name + " must not be negative, since a cable only pulls: " + node.text);
+  return low;
+}
+
+void read_range(const Node& node, ActuatorSpec& actuator) {
+  const auto& items = list_of(2, node);
+  actuator.low = read_low(*items[0], actuator);
+  actuator.high = actuator.control == Control::ratio ? positive(*items[1]) : number(*items[1]);
+  if (actuator.low > actuator.high)
+    fail(node, node.name + " must be [low, high], but " + items[0]->text + " is above " + items[1]->text);
+}
+
+TriangleSurface read_surface(const Context& context, const Node& node) {
+  TriangleSurface surface = load_file(context, node, context.files.surface);
+  surface.vertices *= context.to_mm;
+  if (!surface.vertices.allFinite()) fail(node, "the surface's coordinates are too large");
+  return surface;
+}
+
+void read_chamber(const Context& context, const Map& map, ActuatorSpec& actuator) {
+  const Node::Entry& entry = map.one_of({"region", "surface"});
+  if (entry.key == "region")
+    actuator.region = text(*entry.value);
+  else
+    actuator.surface = read_surface(context, *entry.value);
+}
+
+void read_cable(const Context& context, const Map& map, ActuatorSpec& actuator) {
+  const Node& points = map.at("points");
+  for (const auto& item : list(points)) actuator.points.push_back(read_point(context, *item));
+  if (actuator.points.size() < 2) fail(points, points.name + " must hold at least 2 points");
+  const Node* apexes = map.find("apexes");
+  if (!apexes) return;
+  for (const auto& item : list(*apexes)) actuator.apexes.push_back(read_point(context, *item));
+  if (actuator.apexes.empty() || actuator.apexes.size() >= actuator.points.size())
+    fail(*apexes, apexes->name + " must hold 1 to " + std::to_string(actuator.points.size() - 1) +
+                      " points, at most one for each segment of the cable");
+}
+
+/// A file, or a map of file and branch.
+void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator) {
+  const Node* file = &node;
+  if (node.kind == Node::Kind::map) {
+    const Map map(node, {"file", "branch"});
+    file = &map.at("file");
+    if (const Node* branch = map.find("branch"))
+      actuator.branch = choice(*branch, {"loading", "unloading"}) == 0 ? Branch::loading : Branch::unloading;
+  }
+  if (actuator.control == Control::load)
+    fail(node, node.name + " turns a pressure into a volume, but the pressure itself is controlled here: leave " +
+                   node.name + " out, or use 'control: volume'");
+  actuator.curve = load_file(context, *file, context.files.curve);
+}
+
+ActuatorSpec read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
+  ActuatorSpec actuator;
+  actuator.origin = map.node().origin;
+  actuator.name = names.add_label(map.at("name"));
+  const Kind& kind = read_kind(map);
+  actuator.kind = kind.kind;
+  actuator.control = read_control(map, kind, formulation);
+  if (actuator.control == Control::load) actuator.rest = 0;
+  read_range(map.at("range"), actuator);
+  if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
+  if (const Node* node = map.find("distribution")) actuator.least_norm = choice(*node, {"least-norm", "uniform"}) == 0;
+  if (const Node* node = map.find("prestretch")) actuator.rest = positive(*node);
+  if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
+  if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);
+  if (kind.kind == ActuatorKind::cable) read_cable(context, map, actuator);
+  if (kind.kind == ActuatorKind::dea) actuator.region = text(map.at("region"));
+  return actuator;
+}
+
+}  // namespace
+
+std::vector<ActuatorSpec> read_actuators(const Context& context, Formulation formulation, const Node& node) {
+  Keys known = common_keys;
+  known.insert(known.end(), kind_keys.begin(), kind_keys.end());
+  std::vector<ActuatorSpec> actuators;
+  Names names;
+  for (const auto& item : list(node))
+    actuators.push_back(read_actuator(context, formulation, Map(*item, known), names));
+  return actuators;
+}
+
+}  // namespace softkin::scene

@@ -1,0 +1,142 @@
+#include <softkin/io/file.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scene/hardware.hpp>
+#include <softkin/io/scene/parts.hpp>
+#include <softkin/io/scene/values.hpp>
+
+namespace softkin {
+
+namespace {
+
+using scene::Keys;
+using scene::Map;
+using scene::Node;
+
+const std::string axis_letters = "XYZABCUVW";
+
+void check_version(const Node& root) {
+  if (root.kind != Node::Kind::map)
+    scene::fail(root, "a hardware file must be a map that begins with 'softkin_hardware: 1'");
+  for (const Node::Entry& entry : root.entries) {
+    if (entry.key != "softkin_hardware") continue;
+    if (scene::integer(*entry.value) != 1)
+      scene::fail(*entry.value, "this version of softkin reads hardware of version 1, not " + entry.value->text);
+    return;
+  }
+  scene::fail(root, "a hardware file needs key 'softkin_hardware', its version: 'softkin_hardware: 1'");
+}
+
+template <class Value, class Read>
+std::optional<Value> optional(const Map& map, const char* key, const Read& read) {
+  const Node* node = map.find(key);
+  return node ? std::optional<Value>(read(*node)) : std::nullopt;
+}
+
+double not_negative(const Node& node) {
+  const double value = scene::number(node);
+  if (value < 0) scene::fail(node, node.name + " must not be negative: " + node.text);
+  return value;
+}
+
+std::array<double, 2> limits(const Node& node) {
+  const auto& items = scene::list_of(2, node);
+  const std::array<double, 2> result{scene::number(*items[0]), scene::number(*items[1])};
+  if (result[0] > result[1])
+    scene::fail(node, node.name + " must be [low, high], but " + items[0]->text + " is above " + items[1]->text);
+  return result;
+}
+
+std::array<double, 2> length_limits(const Node& node) {
+  (void)scene::positive(*scene::list_of(2, node)[0]);
+  return limits(node);
+}
+
+int direction(const Node& node) {
+  const std::int64_t value = scene::integer(node);
+  if (value != 1 && value != -1) scene::fail(node, node.name + " must be 1 or -1, not " + node.text);
+  return static_cast<int>(value);
+}
+
+bool truth(const Node& node) {
+  return scene::choice(node, {"false", "true"}) == 1;
+}
+
+char axis(const Node& node) {
+  const std::string& letter = scene::text(node);
+  if (letter == "E") scene::fail(node, node.name + " must not be E: the board moves its extruder by rules of its own");
+  if (letter.size() != 1 || axis_letters.find(letter) == std::string::npos)
+    scene::fail(node, node.name + " must be one of the letters X, Y, Z, A, B, C, U, V, W, not " + excerpt(letter));
+  return letter[0];
+}
+
+TendonSpec read_tendon(const Node& node, scene::Names& actuators, scene::Names& axes) {
+  const Map map(node, {"actuator", "axis", "rest_length_mm", "drum_radius_mm", "steps_per_revolution", "steps_per_mm",
+                       "direction", "slack_offset_mm", "backlash_mm", "length_limits_mm", "max_speed_mm_per_s",
+                       "max_acceleration_mm_per_s2"});
+  TendonSpec tendon;
+  tendon.origin = node.origin;
+  tendon.actuator = actuators.add(map.at("actuator"));
+  tendon.axis = axis(map.at("axis"));
+  (void)axes.add(map.at("axis"));
+  tendon.rest_length_mm = optional<double>(map, "rest_length_mm", scene::positive);
+  tendon.drum_radius_mm = optional<double>(map, "drum_radius_mm", scene::positive);
+  tendon.steps_per_revolution = optional<double>(map, "steps_per_revolution", scene::positive);
+  if (tendon.steps_per_revolution && !tendon.drum_radius_mm)
+    scene::fail(map.at("steps_per_revolution"), "steps_per_revolution needs drum_radius_mm beside it");
+  tendon.steps_per_mm = optional<double>(map, "steps_per_mm", scene::positive);
+  tendon.direction = optional<int>(map, "direction", direction);
+  tendon.slack_offset_mm = optional<double>(map, "slack_offset_mm", not_negative);
+  tendon.backlash_mm = optional<double>(map, "backlash_mm", not_negative);
+  tendon.length_limits_mm = optional<std::array<double, 2>>(map, "length_limits_mm", length_limits);
+  tendon.max_speed_mm_per_s = optional<double>(map, "max_speed_mm_per_s", scene::positive);
+  tendon.max_acceleration_mm_per_s2 = optional<double>(map, "max_acceleration_mm_per_s2", scene::positive);
+  return tendon;
+}
+
+ChamberSpec read_chamber(const Node& node, scene::Names& actuators, scene::Names& channels) {
+  const Map map(node, {"actuator", "channel", "limits_kPa"});
+  ChamberSpec chamber;
+  chamber.origin = node.origin;
+  chamber.actuator = actuators.add(map.at("actuator"));
+  if (const Node* channel = map.find("channel")) chamber.channel = channels.add_label(*channel);
+  chamber.limits_kpa = optional<std::array<double, 2>>(map, "limits_kPa", limits);
+  return chamber;
+}
+
+/// Which length a feed rate is of: the board's own settings decide it where both families move.
+void check_families(const Node& node, const std::vector<TendonSpec>& tendons) {
+  char first = 0, second = 0;
+  for (const TendonSpec& tendon : tendons) {
+    if (std::string("ABC").find(tendon.axis) != std::string::npos) first = tendon.axis;
+    if (std::string("UVW").find(tendon.axis) != std::string::npos) second = tendon.axis;
+  }
+  if (first && second)
+    scene::fail(node, std::string("axes ") + first + " and " + second +
+                          ": beside X, Y, Z use A, B, C or U, V, W, not both; how fast a board moves both together "
+                          "depends on how it was built");
+}
+
+}  // namespace
+
+HardwareSpec read_hardware(const std::filesystem::path& path) {
+  const auto root = scene::parse_yaml(read_file(path), path.string());
+  check_version(*root);
+  const Map map(*root, {"softkin_hardware", "board", "tendons", "chambers"});
+  HardwareSpec spec;
+  spec.file = path.string();
+  scene::Names actuators, axes, channels;
+  if (const Node* node = map.find("board")) {
+    const Map board(*node, {"configure", "approach_speed_mm_per_s"});
+    spec.configure = optional<bool>(board, "configure", truth);
+    spec.approach_speed_mm_per_s = optional<double>(board, "approach_speed_mm_per_s", scene::positive);
+  }
+  if (const Node* node = map.find("tendons")) {
+    for (const auto& item : scene::list(*node)) spec.tendons.push_back(read_tendon(*item, actuators, axes));
+    check_families(*node, spec.tendons);
+  }
+  if (const Node* node = map.find("chambers"))
+    for (const auto& item : scene::list(*node)) spec.chambers.push_back(read_chamber(*item, actuators, channels));
+  return spec;
+}
+
+}  // namespace softkin

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <softkin/io/scene/scene.hpp>
+#include <softkin/io/scene/values.hpp>
+
+namespace softkin::scene {
+
+/// What the parts of a scene need to know of the whole.
+struct Context {
+  std::filesystem::path folder;
+  const SceneFiles& files;
+  double to_mm = 1;
+  std::int64_t vertices = 0, tetrahedra = 0;  // of the mesh
+};
+
+/// Names that must differ; a second use fails and names the line of the first.
+class Names {
+ public:
+  const std::string& add(const Node& node);
+  /// As add, for names that stand in commands and in the headers of CSV files.
+  const std::string& add_label(const Node& node);
+
+ private:
+  std::map<std::string, std::size_t> lines_;
+};
+
+/// What load(path) returns, path being named by a node; its InvalidInput gains the scene's line.
+template <class Load>
+auto load_file(const Context& context, const Node& node, const Load& load) {
+  const std::filesystem::path path = context.folder / text(node);
+  try {
+    return load(path);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(node.origin, error.what());
+  }
+}
+
+[[nodiscard]] Vec3 read_position(const Context& context, const Node& node);  // [mm]
+[[nodiscard]] PointRef read_point(const Context& context, const Node& node);
+/// Keys that say where something is: a region's name, or a shape in its place.
+[[nodiscard]] const Keys& place_keys();
+[[nodiscard]] RegionRef read_place(const Context& context, const Map& map);
+[[nodiscard]] RegionRef read_region_name(const Node& node);
+
+[[nodiscard]] std::vector<RegionSpec> read_regions(const Context& context, const Node& node);
+/// Target-shape keys, elastic constants, or both.
+[[nodiscard]] MaterialSpec read_material(const Node& node);
+/// Loads are commanded in the physical formulation alone.
+[[nodiscard]] std::vector<ActuatorSpec> read_actuators(const Context& context, Formulation formulation,
+                                                       const Node& node);
+
+}  // namespace softkin::scene

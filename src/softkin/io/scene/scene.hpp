@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/io/table/actuator_curve_file.hpp>
+#include <softkin/model/robot_spec.hpp>
+#include <string>
+
+namespace softkin {
+
+/// Reads a scene (YAML, docs/scene.md) and the files that it names, relative to it. Lengths become mm.
+/// throws  InvalidInput naming file and line; unknown keys are errors with the nearest valid name
+[[nodiscard]] RobotSpec read_scene(const std::filesystem::path& path);
+
+/// How the files that a scene names are read; lengths in the file's unit.
+struct SceneFiles {
+  std::function<Mesh(const std::filesystem::path&)> mesh;
+  std::function<TriangleSurface(const std::filesystem::path&)> surface;
+  std::function<Sidecar(const std::filesystem::path&)> sidecar;
+  std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;
+};
+
+/// As read_scene, from a text in memory. file_name is for messages; the paths given to `files` are relative to its
+/// folder. An InvalidInput of `files` is passed on with the line of the scene that names the file.
+[[nodiscard]] RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name,
+                                    const SceneFiles& files);
+
+}  // namespace softkin

@@ -1,0 +1,156 @@
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scene/tree.hpp>
+#include <sstream>
+
+namespace softkin::scene {
+
+namespace {
+
+/// Builds the tree from the parser's events. YAML::Node would lose the lines of keys and empty values.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(const std::string& file) : file_(file) {}
+
+  [[nodiscard]] const std::shared_ptr<Node>& root() const { return root_; }
+  [[nodiscard]] const Origin& start() const { return start_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override { start_ = origin(mark); }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(Node::Kind::nothing, mark, "?", anchor); }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    const std::shared_ptr<Node> node = make(Node::Kind::scalar, mark, tag, anchor);
+    node->text = value;
+    node->plain = tag != "!";
+    attach(node);
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end() ||
+        std::any_of(open_.begin(), open_.end(), [&](const Open& open) { return open.node == found->second; }))
+      throw InvalidInput(origin(mark), "an alias stands within its own anchor");
+    attach(found->second);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open_.push_back({add(Node::Kind::list, mark, tag, anchor), {}});
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open_.push_back({add(Node::Kind::map, mark, tag, anchor), {}});
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  struct Open {
+    std::shared_ptr<Node> node;
+    std::shared_ptr<const Node> key;  // map: key whose value comes next
+  };
+
+  [[nodiscard]] Origin origin(const YAML::Mark& mark) const {
+    return {file_, mark.line < 0 ? 0 : static_cast<std::size_t>(mark.line) + 1};
+  }
+
+  std::shared_ptr<Node> make(Node::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
+    auto node = std::make_shared<Node>();
+    node->kind = kind;
+    node->origin = origin(mark);
+    if (tag != "" && tag != "?" && tag != "!")
+      throw InvalidInput(node->origin, "the YAML tag " + excerpt(tag) + " is not supported");
+    if (anchor != 0) anchors_[anchor] = node;
+    return node;
+  }
+
+  std::shared_ptr<Node> add(Node::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
+    const std::shared_ptr<Node> node = make(kind, mark, tag, anchor);
+    attach(node);
+    return node;
+  }
+
+  void attach(const std::shared_ptr<Node>& node) {
+    if (open_.empty()) {
+      root_ = node;
+      if (node->name.empty()) node->name = "the scene";
+      return;
+    }
+    Open& parent = open_.back();
+    if (parent.node->kind == Node::Kind::list) {
+      attach_to_list(*parent.node, node);
+    } else if (!parent.key) {
+      parent.key = checked_key(*parent.node, node);
+    } else {
+      attach_to_map(*parent.node, *parent.key, node);
+      parent.key.reset();
+    }
+  }
+
+  static void attach_to_list(Node& list, const std::shared_ptr<Node>& node) {
+    if (node->name.empty()) node->name = "entry " + std::to_string(list.items.size() + 1) + " of " + list.name;
+    // the parser places an empty entry at whatever follows it
+    if (node->kind == Node::Kind::nothing) node->origin = list.origin;
+    list.items.push_back(node);
+  }
+
+  static void attach_to_map(Node& map, const Node& key, const std::shared_ptr<Node>& node) {
+    if (node->name.empty()) node->name = excerpt(key.text);
+    if (node->kind == Node::Kind::nothing) node->origin = key.origin;
+    map.entries.push_back({key.text, key.origin, node});
+  }
+
+  static std::shared_ptr<const Node> checked_key(const Node& map, const std::shared_ptr<Node>& node) {
+    if (node->kind != Node::Kind::scalar) throw InvalidInput(node->origin, "a key of " + map.name + " must be a word");
+    for (const Node::Entry& entry : map.entries)
+      if (entry.key == node->text)
+        throw InvalidInput(node->origin, "key " + excerpt(node->text) + " appears twice in " + map.name +
+                                             "; first in line " + std::to_string(entry.origin.line));
+    return node;
+  }
+
+  std::string file_;
+  Origin start_;
+  std::shared_ptr<Node> root_;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, std::shared_ptr<Node>> anchors_;
+};
+
+void check_text(const std::string& text, const std::string& file) {
+  const std::size_t bad = find_unprintable(text);
+  if (bad == std::string::npos) return;
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bad), '\n');
+  throw InvalidInput({file, static_cast<std::size_t>(line)}, "the text holds a control character or is not UTF-8");
+}
+
+}  // namespace
+
+std::shared_ptr<const Node> parse_yaml(const std::string& text, const std::string& file) {
+  check_text(text, file);
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    TreeBuilder builder(file);
+    if (!parser.HandleNextDocument(builder) || !builder.root() || builder.root()->kind == Node::Kind::nothing)
+      throw InvalidInput({file, 1}, "the scene is empty");
+    TreeBuilder more(file);
+    if (parser.HandleNextDocument(more))
+      throw InvalidInput(more.start(), "a second YAML document begins; a scene is one document");
+    return builder.root();
+  } catch (const YAML::Exception& error) {
+    const std::size_t line = error.mark.is_null() ? 0 : static_cast<std::size_t>(error.mark.line) + 1;
+    throw InvalidInput({file, line}, "not valid YAML: " + (error.msg.empty() ? "cannot be parsed" : error.msg));
+  }
+}
+
+}  // namespace softkin::scene

@@ -1,0 +1,203 @@
+#include <algorithm>
+#include <cstdio>
+#include <softkin/core/error.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/table/csv.hpp>
+#include <softkin/io/table/material_tables.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double greatest_strain = 15;
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// A column that a table may have: its quantity and unit, "dl" and "mm". Units of no case of their own may be written
+/// as usual: force_N, stress_MPa.
+struct Quantity {
+  std::string name, unit, usual;  // usual: as in "MPa", where the unit is written "mpa"
+  bool required = true;
+
+  [[nodiscard]] std::string column() const { return unit.empty() ? name : name + "_" + unit; }
+  [[nodiscard]] bool is(const std::string& column_name) const {
+    return column_name == column() || (!usual.empty() && column_name == name + "_" + usual);
+  }
+};
+
+class Table {
+ public:
+  Table(const std::filesystem::path& path, const std::vector<Quantity>& quantities)
+      : file_(path.string()), table_(read_csv(path)), quantities_(quantities) {
+    places_.assign(quantities.size(), -1);
+    for (std::size_t c = 0; c < table_.columns.size(); ++c) place(table_.columns[c], static_cast<int>(c));
+    for (std::size_t q = 0; q < quantities.size(); ++q)
+      if (quantities[q].required && places_[q] < 0)
+        throw InvalidInput({file_, table_.header_line}, "column '" + quantities[q].column() + "' is missing");
+  }
+
+  [[nodiscard]] std::size_t rows() const { return table_.rows.size(); }
+  [[nodiscard]] std::size_t line(std::size_t row) const { return table_.lines[row]; }
+  [[nodiscard]] std::optional<double> find(std::size_t row, const std::string& name) const {
+    const int at = places_[index(name)];
+    if (at < 0) return std::nullopt;
+    return table_.rows[row][static_cast<std::size_t>(at)];
+  }
+  [[nodiscard]] double at(std::size_t row, const std::string& name) const { return *find(row, name); }
+  [[nodiscard]] double positive(std::size_t row, const std::string& name) const {
+    const double value = at(row, name);
+    if (!(value > 0)) fail(row, called(name) + " must be greater than 0, not " + number_text(value));
+    return value;
+  }
+  [[nodiscard]] std::optional<double> positive_if_there(std::size_t row, const std::string& name) const {
+    if (!find(row, name)) return std::nullopt;
+    return positive(row, name);
+  }
+  /// Of what lies inside something else: 0 < part < whole.
+  [[nodiscard]] double part(std::size_t row, const std::string& name, const std::string& whole) const {
+    const double value = positive(row, name), all = at(row, whole);
+    if (!(value < all))
+      fail(row, called(name) + " must be less than " + called(whole) + ", but " + number_text(value) +
+                    " is not below " + number_text(all));
+    return value;
+  }
+  [[nodiscard]] std::string called(const std::string& name) const {
+    return "'" + quantities_[index(name)].column() + "'";
+  }
+  [[noreturn]] void fail(std::size_t row, const std::string& message) const {
+    throw InvalidInput({file_, line(row)}, message);
+  }
+  [[noreturn]] void fail(const std::string& message) const { throw InvalidInput({file_}, message); }
+  [[noreturn]] void fail_header(const std::string& message) const {
+    throw InvalidInput({file_, table_.header_line}, message);
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(const std::string& name) const {
+    const auto found =
+        std::find_if(quantities_.begin(), quantities_.end(), [&](const Quantity& q) { return q.name == name; });
+    return static_cast<std::size_t>(found - quantities_.begin());
+  }
+
+  void place(const std::string& column, int at) {
+    for (std::size_t q = 0; q < quantities_.size(); ++q) {
+      if (!quantities_[q].is(column)) continue;
+      if (places_[q] >= 0) fail_header("two columns are " + called(quantities_[q].name));
+      places_[q] = at;
+      return;
+    }
+    refuse(column);
+  }
+
+  [[noreturn]] void refuse(const std::string& column) const {
+    const auto complain = [&](const std::string& why) { fail_header("column " + excerpt(column) + ": " + why); };
+    for (const Quantity& q : quantities_) {
+      if (q.unit.empty()) continue;
+      if (column == q.name) complain("its unit is missing: write '" + q.column() + "'");
+      if (column.starts_with(q.name + "_"))
+        complain("this is taken in " + (q.usual.empty() ? q.unit : q.usual) + ", not in " +
+                 excerpt(column.substr(q.name.size() + 1)) + ": convert it to '" + q.column() + "'");
+    }
+    std::vector<std::string> known;
+    for (const Quantity& q : quantities_) known.push_back(q.column());
+    fail_header("column " + excerpt(column) + ": there is no such column" + suggest_name(column, known));
+  }
+
+  std::string file_;
+  CsvTable table_;
+  std::vector<Quantity> quantities_;
+  std::vector<int> places_;
+};
+
+/// The strains of a tensile test, without unit.
+struct Strains {
+  const Table& table;
+  bool percent;
+
+  [[nodiscard]] std::string name() const { return percent ? "strain_percent" : "strain"; }
+  [[nodiscard]] double at(std::size_t row) const {
+    const double strain = table.at(row, name()) / (percent ? 100 : 1);
+    if (strain < 0) table.fail(row, table.called(name()) + " must not be below 0: a tensile test begins at rest");
+    if (strain > greatest_strain)
+      table.fail(row, table.called(name()) + " is " + number_text(100 * strain) + " %, more than 1500 %" +
+                          (percent ? "" : ": is it in percent? Then name the column 'strain_percent'"));
+    if (row > 0) check_order(row, strain, table.at(row - 1, name()) / (percent ? 100 : 1));
+    return strain;
+  }
+
+ private:
+  void check_order(std::size_t row, double strain, double before) const {
+    if (strain > before) return;
+    table.fail(row, table.called(name()) + " must ascend, but " + number_text(table.at(row, name())) + " follows " +
+                        number_text(table.at(row - 1, name())) + ": give the loading branch of one test");
+  }
+};
+
+}  // namespace
+
+std::vector<StretchedSpecimen> read_stretched_specimens(const std::filesystem::path& path) {
+  const Table table(path, {{"l", "mm", "", true},
+                           {"l1", "mm", "", true},
+                           {"dl", "mm", "", true},
+                           {"dl1", "mm", "", true},
+                           {"force", "n", "N", false},
+                           {"area", "mm2", "", false}});
+  std::vector<StretchedSpecimen> specimens;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    StretchedSpecimen& s = specimens.emplace_back();
+    s.length_mm = table.positive(row, "l");
+    s.interface_mm = table.part(row, "l1", "l");
+    s.stretch_mm = table.positive(row, "dl");
+    s.interface_moved_mm = table.part(row, "dl1", "dl");
+    s.force_n = table.positive_if_there(row, "force");
+    s.area_mm2 = table.positive_if_there(row, "area");
+    s.line = table.line(row);
+  }
+  return specimens;
+}
+
+std::vector<TwistedSpecimen> read_twisted_specimens(const std::filesystem::path& path) {
+  const Table table(
+      path,
+      {{"l", "mm", "", true}, {"l1", "mm", "", true}, {"twist", "deg", "", true}, {"interface", "deg", "", false}});
+  std::vector<TwistedSpecimen> specimens;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    TwistedSpecimen& s = specimens.emplace_back();
+    s.length_mm = table.positive(row, "l");
+    s.interface_mm = table.part(row, "l1", "l");
+    s.twist_deg = table.positive(row, "twist");
+    if (s.twist_deg > 180)
+      table.fail(row, table.called("twist") + " must be at most 180, not " + number_text(s.twist_deg));
+    if (table.find(row, "interface")) s.interface_deg = table.part(row, "interface", "twist");
+    s.line = table.line(row);
+  }
+  return specimens;
+}
+
+TensileCurve read_tensile_curve(const std::filesystem::path& path) {
+  const Table table(path,
+                    {{"strain_percent", "", "", false}, {"strain", "", "", false}, {"stress", "mpa", "MPa", true}});
+  const bool percent = table.find(0, "strain_percent").has_value();
+  if (percent == table.find(0, "strain").has_value())
+    table.fail_header(percent ? "two columns are the strain: leave one of 'strain' and 'strain_percent'"
+                              : "a column of the strain is missing: 'strain' (without unit) or 'strain_percent'");
+  const Strains strains{table, percent};
+  TensileCurve curve;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    curve.strain.push_back(strains.at(row));
+    curve.stress.push_back(table.at(row, "stress"));
+    curve.lines.push_back(table.line(row));
+  }
+  constexpr std::size_t least_rows = 5;
+  if (table.rows() < least_rows)
+    table.fail("a tensile test needs at least five rows, not " + std::to_string(table.rows()));
+  if (!(*std::max_element(curve.stress.begin(), curve.stress.end()) > 0))
+    table.fail("no stress is greater than 0: tension counts positive");
+  return curve;
+}
+
+}  // namespace softkin

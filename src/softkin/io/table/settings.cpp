@@ -1,0 +1,159 @@
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
+#include <softkin/io/table/settings.hpp>
+#include <softkin/model/curve_command.hpp>
+#include <softkin/model/names.hpp>
+
+namespace softkin {
+
+namespace {
+
+/// Takes an end, and a blank before it, off a text that has it.
+bool take_end(std::string& text, const std::string& end) {
+  if (!text.ends_with(end)) return false;
+  text.resize(text.size() - end.size());
+  if (text.ends_with(' ')) text.pop_back();
+  return true;
+}
+
+std::string input_text(const ActuatorCurve& curve, double input) {
+  return number(input) + unit_of_input(curve.input) + (curve.input == CurveInput::pressure ? " (gauge)" : "");
+}
+
+}  // namespace
+
+std::optional<CurveSetting> parse_curve_setting(const Actuator& actuator, const std::string& text) {
+  if (!actuator.curve) return std::nullopt;
+  CurveSetting setting{0, actuator.branch};
+  std::string rest = text;
+  for (const Branch branch : {Branch::unloading, Branch::loading})
+    if (take_end(rest, std::string(":") + branch_name(branch))) {
+      setting.branch = branch;
+      break;
+    }
+  const bool absolute = actuator.curve->input == CurveInput::pressure && take_end(rest, "kPa_abs");
+  if (!absolute && !take_end(rest, unit_of_input(actuator.curve->input) + 1)) return std::nullopt;
+  if (!parse_real(rest, setting.input)) return std::nullopt;
+  if (absolute) setting.input -= actuator.curve->atmosphere_kPa;
+  return setting;
+}
+
+double ratio_of(const Actuator& actuator, const CurveSetting& setting) {
+  const std::string name = "actuator '" + actuator.name + "': ";
+  double ratio = 0;
+  try {
+    ratio = ratio_by_curve(actuator, setting.input, setting.branch);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(name + error.what());
+  }
+  if (!(ratio >= actuator.low && ratio <= actuator.high))
+    throw InvalidInput(name + input_text(*actuator.curve, setting.input) + " is a ratio of " + number(ratio) +
+                       " by curve " + actuator.curve->file + ", outside " + range_text(actuator));
+  return ratio;
+}
+
+std::string curve_hint(const Actuator& actuator) {
+  if (!actuator.curve) return "";
+  const bool dea = actuator.kind == ActuatorKind::dea;
+  return dea ? "; or a voltage by its curve, such as 2.5kV" +
+                   std::string(actuator.curve->unloading ? " or 2.5kV:unloading" : "")
+             : "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs" +
+                   std::string(actuator.curve->unloading ? " or 50kPa:unloading" : "");
+}
+
+std::string missing_curve(const Actuator& actuator, const std::string& text) {
+  if (actuator.curve || actuator.control != Control::ratio) return "";
+  if (actuator.kind == ActuatorKind::pneumatic && (text.ends_with("kPa") || text.ends_with("kPa_abs")))
+    return "; a pressure needs a curve in the scene (softkin calibrate pressure)";
+  if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
+    return "; a voltage needs a curve in the scene (softkin calibrate dea)";
+  return "";
+}
+
+std::vector<std::string> curve_units(const Actuator& actuator) {
+  if (!actuator.curve) return {};
+  if (actuator.curve->input == CurveInput::voltage) return {"kV"};
+  return {"kPa", "kPa_abs"};
+}
+
+std::string curve_remarks(const Model& model, const std::vector<std::string>& settings) {
+  std::string text;
+  for (const std::string& setting : settings)
+    for (const Actuator& actuator : model.actuators) {
+      if (!setting.starts_with(actuator.name + "=")) continue;
+      const auto asked = parse_curve_setting(actuator, setting.substr(actuator.name.size() + 1));
+      if (!asked) continue;
+      const std::optional<double> spread = spread_by_curve(actuator, asked->input, asked->branch);
+      text += actuator.name + ": " + input_text(*actuator.curve, asked->input) + ", " + branch_name(asked->branch) +
+              " branch of " + actuator.curve->file + ": ratio " + number(ratio_of(actuator, *asked)) +
+              (spread ? " +- " + number(*spread, 2) : "") + " [-]\n";
+    }
+  return text;
+}
+
+std::string curve_text(const Actuator& actuator) {
+  if (!actuator.curve) return "";
+  const std::vector<double>& inputs = actuator.curve->branch(actuator.branch).ratio.x();
+  return "; curve " + actuator.curve->file + ": " + number(inputs.front()) + " to " +
+         input_text(*actuator.curve, inputs.back()) + ", " + branch_name(actuator.branch) + " branch";
+}
+
+bool parse_command(const Actuator& actuator, const std::string& text, double& value) {
+  if (const auto setting = parse_curve_setting(actuator, text)) {
+    value = ratio_of(actuator, *setting);
+    return true;
+  }
+  const std::string unit = command_unit(actuator);
+  std::string digits = text;
+  if (!unit.empty() && text.ends_with(unit)) {
+    digits.resize(text.size() - unit.size());
+    if (digits.ends_with(' ')) digits.pop_back();
+  }
+  return parse_real(digits, value);
+}
+
+std::string expected_command(const Actuator& actuator) {
+  const std::string unit = command_unit(actuator);
+  if (unit.empty()) return "the ratio to rest must be a finite number without unit" + curve_hint(actuator);
+  return std::string("the ") + command_name(actuator) + " must be a finite number in " + unit + ", such as 5 or 5" +
+         unit;
+}
+
+std::string unknown_actuator(const Model& model, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Actuator& actuator : model.actuators) names.push_back(actuator.name);
+  return "no actuator " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
+}
+
+Settings read_settings(const Model& model, const std::string& option, const std::vector<std::string>& settings) {
+  Settings values(model.actuators.size());
+  for (const std::string& setting : settings) {
+    const auto refuse = [&](const std::string& why) {
+      throw InvalidInput(option + " " + excerpt(setting) + ": " + why);
+    };
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) refuse("expected ACTUATOR=VALUE, for example " + option + " air=1.5");
+    const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
+    const std::optional<Index> a = find_actuator(model, name);
+    if (!a) refuse(unknown_actuator(model, name));
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
+    double value = 0;
+    if (!parse_command(actuator, text, value))
+      refuse(expected_command(actuator) + ", not " + excerpt(text) + missing_curve(actuator, text));
+    if (!(value >= actuator.low && value <= actuator.high))
+      refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator));
+    if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");
+    values[static_cast<std::size_t>(*a)] = value;
+  }
+  return values;
+}
+
+Actuation with_settings(Actuation actuation, const Settings& settings) {
+  for (std::size_t a = 0; a < settings.size(); ++a)
+    if (settings[a]) actuation[static_cast<Index>(a)] = *settings[a];
+  return actuation;
+}
+
+}  // namespace softkin

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <numeric>
+#include <softkin/linear/block_matrix.hpp>
+
+namespace softkin::linear {
+
+void Cliques::add(std::span<const Index> set) {
+  vertices.insert(vertices.end(), set.begin(), set.end());
+  starts.push_back(static_cast<std::int64_t>(vertices.size()));
+  const auto count = static_cast<std::int64_t>(set.size());
+  slots.push_back(slots.back() + count * (count + 1) / 2);
+}
+
+BlockPattern::BlockPattern(Index vertices, const Cliques& cliques) {
+  // every slot once, with the row and the column that it falls into
+  const auto each_slot = [&](const auto& visit) {
+    for (Index c = 0; c < cliques.count(); ++c) {
+      std::int64_t slot = cliques.slots[c];
+      for (std::int64_t a = cliques.starts[c]; a < cliques.starts[c + 1]; ++a)
+        for (std::int64_t b = cliques.starts[c]; b <= a; ++b, ++slot) {
+          const Index i = cliques.vertices[a], j = cliques.vertices[b];
+          visit(std::max(i, j), std::min(i, j), 2 * slot + (i < j));
+        }
+    }
+  };
+  std::vector<std::int64_t> row_starts(static_cast<std::size_t>(vertices) + 1, 0);
+  each_slot([&](Index row, Index, std::int64_t) { ++row_starts[row + 1]; });
+  std::partial_sum(row_starts.begin(), row_starts.end(), row_starts.begin());
+  std::vector<std::pair<Index, std::int64_t>> sorted(static_cast<std::size_t>(row_starts.back()));
+  std::vector<std::int64_t> next(row_starts.begin(), row_starts.end() - 1);
+  each_slot([&](Index row, Index column, std::int64_t source) { sorted[next[row]++] = {column, source}; });
+
+  starts_.push_back(0);
+  sources_.reserve(sorted.size());
+  for (Index v = 0; v < vertices; ++v) {
+    std::sort(sorted.begin() + row_starts[v], sorted.begin() + row_starts[v + 1]);
+    for (std::int64_t s = row_starts[v]; s < row_starts[v + 1]; ++s) {
+      if (s == row_starts[v] || sorted[s].first != sorted[s - 1].first) {
+        columns_.push_back(sorted[s].first);
+        source_starts_.push_back(static_cast<std::int64_t>(sources_.size()));
+      }
+      sources_.push_back(sorted[s].second);
+    }
+    starts_.push_back(static_cast<std::int64_t>(columns_.size()));
+  }
+  source_starts_.push_back(static_cast<std::int64_t>(sources_.size()));
+
+  across_starts_.assign(static_cast<std::size_t>(vertices) + 1, 0);
+  each([&](std::int64_t, Index row, Index column) { across_starts_[column + 1] += row != column; });
+  std::partial_sum(across_starts_.begin(), across_starts_.end(), across_starts_.begin());
+  across_.resize(static_cast<std::size_t>(across_starts_.back()));
+  next.assign(across_starts_.begin(), across_starts_.end() - 1);
+  each([&](std::int64_t entry, Index row, Index column) {
+    if (row != column) across_[next[column]++] = {entry, row};
+  });
+}
+
+void BlockPattern::gather(const LargeVector<double>& slots, LargeVector<double>& blocks, Team& team) const {
+  blocks.resize(9 * columns_.size());
+  team.pieces(vertices(), [&](Index begin, Index end) {
+    double block[9];
+    for (std::int64_t e = starts_[begin]; e < starts_[end]; ++e) {
+      sum(slots, e, block);
+      std::copy(block, block + 9, blocks.data() + 9 * e);
+    }
+  });
+}
+
+void BlockPattern::multiply(const LargeVector<double>& blocks, const Points& x, Points& result, Team& team) const {
+  result.resize(x.rows(), 3);
+  team.pieces(vertices(), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      double sum[3] = {};
+      for (std::int64_t e = starts_[v]; e < starts_[v + 1]; ++e) {
+        const double* b = blocks.data() + 9 * e;
+        const double* p = x.data() + 3 * static_cast<std::ptrdiff_t>(columns_[e]);
+        for (int r = 0; r < 3; ++r) sum[r] += b[3 * r] * p[0] + b[3 * r + 1] * p[1] + b[3 * r + 2] * p[2];
+      }
+      for (std::int64_t a = across_starts_[v]; a < across_starts_[v + 1]; ++a) {
+        const double* b = blocks.data() + 9 * across_[a].first;
+        const double* p = x.data() + 3 * static_cast<std::ptrdiff_t>(across_[a].second);
+        for (int c = 0; c < 3; ++c) sum[c] += b[c] * p[0] + b[3 + c] * p[1] + b[6 + c] * p[2];
+      }
+      for (int r = 0; r < 3; ++r) result(v, r) = sum[r];
+    }
+  });
+}
+
+}  // namespace softkin::linear

@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <softkin/linear/front_kernel.hpp>
+#include <softkin/linear/front_tree.hpp>
+
+namespace softkin::linear {
+
+namespace {
+
+/// Columns of nodes [begin, end) and the nodes below them.
+struct Group {
+  Index begin, end;
+  std::vector<Index> below;
+  Index parent = -1;  // group
+  double zeros = 0;   // entries stored in vain
+  Index joined = -1;  // group that took it in
+};
+
+class Symbolic {
+ public:
+  explicit Symbolic(const BlockColumns& pattern) : pattern_(pattern), mark_(pattern.nodes(), -1) {
+    find_groups();
+    amalgamate();
+  }
+
+  [[nodiscard]] std::vector<Group> groups() && {
+    std::vector<Group> kept;
+    for (Group& group : groups_)
+      if (group.joined < 0) kept.push_back(std::move(group));
+    return kept;
+  }
+
+ private:
+  [[nodiscard]] double unknowns(Index begin, Index end) const {
+    return pattern_.unknowns[end] - pattern_.unknowns[begin];
+  }
+  [[nodiscard]] double unknowns(const std::vector<Index>& nodes) const {
+    double count = 0;
+    for (const Index node : nodes) count += pattern_.width(node);
+    return count;
+  }
+
+  [[nodiscard]] bool begins_piece(Index node) const {
+    return std::binary_search(pattern_.pieces.begin(), pattern_.pieces.end(), node);
+  }
+
+  /// Rows of column j below its diagonal: its own entries and what its children leave.
+  std::vector<Index> column(Index j, const std::vector<Index>& children) {
+    std::vector<Index> rows;
+    const auto add = [&](Index node) {
+      if (node <= j || mark_[node] == j) return;
+      mark_[node] = j;
+      rows.push_back(node);
+    };
+    for (Index e = pattern_.starts[j]; e < pattern_.starts[j + 1]; ++e) add(pattern_.rows[e]);
+    for (const Index child : children)
+      for (const Index node : groups_[child].below) add(node);
+    std::sort(rows.begin(), rows.end());
+    return rows;
+  }
+
+  /// Maximal runs of columns of the same structure.
+  void find_groups() {
+    std::vector<std::vector<Index>> waiting(pattern_.nodes());  // groups whose first row below is the node
+    for (Index j = 0; j < pattern_.nodes(); ++j) {
+      std::vector<Index> rows = column(j, waiting[j]);
+      Group* last = groups_.empty() ? nullptr : &groups_.back();
+      const bool joins = last && !last->below.empty() && last->below.front() == j &&
+                         last->below.size() == rows.size() + 1 && !begins_piece(j);
+      if (joins) {
+        last->end = j + 1;
+        // it waited for j, and now waits for its new first row
+        for (const Index child : waiting[j])
+          if (child != static_cast<Index>(groups_.size()) - 1)
+            groups_[child].parent = static_cast<Index>(groups_.size()) - 1;
+        last->below = std::move(rows);
+      } else {
+        for (const Index child : waiting[j]) groups_[child].parent = static_cast<Index>(groups_.size());
+        groups_.push_back({j, j + 1, std::move(rows)});
+      }
+      const Index current = static_cast<Index>(groups_.size()) - 1;
+      if (!groups_[current].below.empty()) waiting[groups_[current].below.front()].push_back(current);
+      waiting[j] = {};
+    }
+  }
+
+  /// Joins a group to the one right before it, its child, where that stores few zeros.
+  void amalgamate() {
+    std::vector<Index> stack;  // groups that are kept so far
+    for (Index g = 0; g < static_cast<Index>(groups_.size()); ++g) {
+      while (!stack.empty() && parent_of(stack.back()) == g && groups_[stack.back()].end == groups_[g].begin &&
+             !begins_piece(groups_[g].begin) && worthwhile(groups_[stack.back()], groups_[g])) {
+        const Index child = stack.back();
+        stack.pop_back();
+        groups_[g].begin = groups_[child].begin;
+        groups_[g].zeros = zeros_together_;
+        groups_[child].joined = g;
+      }
+      stack.push_back(g);
+    }
+  }
+
+  [[nodiscard]] Index parent_of(Index group) const {
+    Index parent = groups_[group].parent;
+    while (parent >= 0 && groups_[parent].joined >= 0) parent = groups_[parent].joined;
+    return parent;
+  }
+
+  bool worthwhile(const Group& child, const Group& parent) {
+    const double narrow = unknowns(child.begin, child.end), wide = unknowns(parent.begin, parent.end);
+    const double below = unknowns(parent.below), width = narrow + wide;
+    const double missing = wide + below - unknowns(child.below);
+    zeros_together_ = child.zeros + parent.zeros + narrow * missing;
+    const double share = zeros_together_ / (width * (0.5 * width + below));
+    return width <= 16 || (width <= 48 && share < 0.4) || (width <= 144 && share < 0.12) || share < 0.05;
+  }
+
+  const BlockColumns& pattern_;
+  std::vector<Group> groups_;
+  std::vector<Index> mark_;
+  double zeros_together_ = 0;
+};
+
+/// Where fronts wait for their parents: first fit into what is free.
+class Arena {
+ public:
+  std::int64_t take(std::int64_t size) {
+    for (auto gap = free_.begin(); gap != free_.end(); ++gap)
+      if (gap->second - gap->first >= size) {
+        const std::int64_t at = gap->first;
+        gap->first += size;
+        if (gap->first == gap->second) free_.erase(gap);
+        return at;
+      }
+    if (!free_.empty() && free_.back().second == size_) {  // the last gap grows
+      const std::int64_t at = free_.back().first;
+      free_.pop_back();
+      size_ = at + size;
+      return at;
+    }
+    size_ += size;
+    return size_ - size;
+  }
+
+  void give(std::int64_t at, std::int64_t size) {
+    if (size == 0) return;
+    auto next = std::lower_bound(free_.begin(), free_.end(), std::pair{at, at + size});
+    next = free_.insert(next, {at, at + size});
+    if (next + 1 != free_.end() && next->second == (next + 1)->first) {
+      next->second = (next + 1)->second;
+      free_.erase(next + 1);
+    }
+    if (next != free_.begin() && (next - 1)->second == next->first) {
+      (next - 1)->second = next->second;
+      free_.erase(next);
+    }
+  }
+
+  [[nodiscard]] std::int64_t size() const { return size_; }
+
+ private:
+  std::vector<std::pair<std::int64_t, std::int64_t>> free_;
+  std::int64_t size_ = 0;
+};
+
+std::int64_t place_of(const Front& front) {
+  return static_cast<std::int64_t>(front_stride(front.size())) * front.size();
+}
+
+/// Offsets of the fronts. Those of a piece's roots, which outlive the piece, stand in the top's arena.
+void plan_arenas(FrontTree& tree) {
+  const Index pieces = static_cast<Index>(tree.pieces.size()) - 2;
+  const Index top = tree.pieces[pieces];
+  Arena above;
+  for (Index p = 0; p <= pieces; ++p) {
+    Arena own;
+    Arena& inside = p < pieces ? own : above;
+    for (Index f = tree.pieces[p]; f < tree.pieces[p + 1]; ++f) {
+      Front& front = tree.fronts[f];
+      Arena& arena = front.parent >= top ? above : inside;
+      front.offset = arena.take(place_of(front));
+      for (Index c = tree.first_child[f]; c >= 0; c = tree.next_sibling[c])
+        inside.give(tree.fronts[c].offset, place_of(tree.fronts[c]));
+      if (front.below == 0) arena.give(front.offset, place_of(front));
+    }
+    if (p < pieces) tree.arena_sizes.push_back(own.size());
+  }
+  tree.arena_sizes.push_back(above.size());
+}
+
+void add_runs(const Front& child, const std::vector<Index>& place, FrontTree& tree) {
+  for (Index r = 0; r < child.below; ++r) {
+    const Index to = place[tree.rows[child.first_row + r]];
+    if (r > 0 && tree.runs.back().to + tree.runs.back().length == to)
+      ++tree.runs.back().length;
+    else
+      tree.runs.push_back({r, to, 1});
+  }
+}
+
+void place_rows(const BlockColumns& pattern, FrontTree& tree) {
+  tree.entry_places.resize(pattern.rows.size());
+  std::vector<Index> place(static_cast<std::size_t>(pattern.size()));
+  const auto place_in = [&](const Front& front) {
+    for (Index u = front.begin; u < front.end; ++u) place[u] = u - front.begin;
+    for (Index r = 0; r < front.below; ++r) place[tree.rows[front.first_row + r]] = front.pivots() + r;
+  };
+  for (const Front& front : tree.fronts) {
+    tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
+    if (front.parent >= 0) {
+      place_in(tree.fronts[front.parent]);
+      add_runs(front, place, tree);
+    }
+    place_in(front);
+    for (Index e = pattern.starts[front.begin_node]; e < pattern.starts[front.end_node]; ++e)
+      tree.entry_places[e] = place[pattern.unknowns[pattern.rows[e]]];
+  }
+  tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
+}
+
+}  // namespace
+
+FrontTree make_front_tree(BlockColumns columns) {
+  FrontTree tree;
+  tree.pattern = std::move(columns);
+  const BlockColumns& pattern = tree.pattern;
+  const std::vector<Group> groups = Symbolic(pattern).groups();
+  std::vector<Index> front_of(static_cast<std::size_t>(pattern.nodes()));
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (Index node = groups[g].begin; node < groups[g].end; ++node) front_of[node] = static_cast<Index>(g);
+  tree.first_child.assign(groups.size(), -1);
+  tree.next_sibling.assign(groups.size(), -1);
+  for (const Group& group : groups) {
+    Front front;
+    front.begin_node = group.begin;
+    front.end_node = group.end;
+    front.begin = pattern.unknowns[group.begin];
+    front.end = pattern.unknowns[group.end];
+    front.first_row = static_cast<std::int64_t>(tree.rows.size());
+    for (const Index node : group.below)
+      for (Index u = pattern.unknowns[node]; u < pattern.unknowns[node + 1]; ++u) tree.rows.push_back(u);
+    front.below = static_cast<Index>(static_cast<std::int64_t>(tree.rows.size()) - front.first_row);
+    if (!group.below.empty()) front.parent = front_of[group.below.front()];
+    front.first_value = tree.values;
+    tree.values += static_cast<std::int64_t>(front.size()) * front.pivots();
+    for (Index c = 0; c < front.pivots(); ++c) {
+      const double height = front.size() - c;
+      tree.flops += height * height;
+    }
+    tree.fronts.push_back(front);
+  }
+  for (Index f = static_cast<Index>(tree.fronts.size()) - 1; f >= 0; --f)
+    if (const Index parent = tree.fronts[f].parent; parent >= 0) {
+      tree.next_sibling[f] = tree.first_child[parent];
+      tree.first_child[parent] = f;
+    }
+  for (const Index node : pattern.pieces)
+    tree.pieces.push_back(node < pattern.nodes() ? front_of[node] : static_cast<Index>(groups.size()));
+  tree.pieces.push_back(static_cast<Index>(groups.size()));
+  plan_arenas(tree);
+  place_rows(pattern, tree);
+  return tree;
+}
+
+}  // namespace softkin::linear

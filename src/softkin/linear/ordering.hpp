@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <softkin/core/types.hpp>
+#include <vector>
+
+namespace softkin::linear {
+
+/// An elimination order with independent parts: columns pieces[i] to pieces[i + 1] form whole subtrees of the
+/// elimination tree, the columns from pieces.back() on are their common ancestors.
+struct Ordering {
+  std::vector<Index> order;   // order[k]: the row that is eliminated k-th
+  std::vector<Index> pieces;  // ascending, from 0
+};
+
+/// Nested dissection (METIS), postordered, cut into about equally heavy pieces.
+///
+/// matrix  structurally symmetric; the lower triangle is read
+[[nodiscard]] Ordering nested_dissection(const Eigen::SparseMatrix<double>& matrix);
+
+/// The same from an order that is known already, of this or a larger matrix of the same mesh.
+///
+/// order  every row once
+[[nodiscard]] Ordering postordered(const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order);
+
+}  // namespace softkin::linear

@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <softkin/linear/sparse_ldlt.hpp>
+#include <utility>
+
+namespace softkin::linear {
+
+namespace {
+
+using Panel = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+/// Columns worth a thread's start.
+template <class Body>
+void each_column(Index columns, Index rows, Team& team, const Body& body) {
+  constexpr double worthwhile = 1e5;
+  if (static_cast<double>(columns) * rows < worthwhile) {
+    for (Index c = 0; c < columns; ++c) body(c);
+  } else {
+    team.pieces(columns, [&](Index begin, Index end) {
+      for (Index c = begin; c < end; ++c) body(c);
+    });
+  }
+}
+
+}  // namespace
+
+SparseLdlt::SparseLdlt(const BlockColumns& pattern)
+    : SparseLdlt(std::make_shared<const FrontTree>(make_front_tree(pattern))) {}
+
+SparseLdlt::SparseLdlt(std::shared_ptr<const FrontTree> tree)
+    : tree_(std::move(tree)),
+      diagonal_(static_cast<std::size_t>(tree_->pattern.size())),
+      pieces_(tree_->arena_sizes.size()) {}
+
+void SparseLdlt::take_memory() {
+  lower_.resize(static_cast<std::size_t>(tree_->values));
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    Index below = 0;
+    for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f) below = std::max(below, tree_->fronts[f].below);
+    pieces_[p].arena.resize(static_cast<std::size_t>(tree_->arena_sizes[p]) + front_slack);
+    pieces_[p].rows.resize(below);
+  }
+}
+
+double SparseLdlt::bytes() const {
+  double values = static_cast<double>(lower_.size() + diagonal_.size());
+  for (const Piece& piece : pieces_)
+    values += static_cast<double>(piece.arena.size() + piece.work.plain.size() + piece.work.scaled.size());
+  return 8 * values + 4.0 * static_cast<double>(tree_->rows.size() + 3 * tree_->runs.size() +
+                                                tree_->pattern.rows.size() + tree_->entry_places.size());
+}
+
+void SparseLdlt::assemble(Index index, const LargeVector<double>& values, double* front, const Piece& piece,
+                          Team& team) const {
+  const Front& own = tree_->fronts[index];
+  const Index stride = front_stride(own.size());
+  each_column(own.size(), stride, team, [&](Index c) {
+    double* column = front + static_cast<std::ptrdiff_t>(c) * stride;
+    std::fill(column + c / 8 * 8, column + stride, 0.0);
+  });
+  for (Index node = own.begin_node; node < own.end_node; ++node) {
+    const Index width = tree_->pattern.width(node);
+    double* columns = front + static_cast<std::ptrdiff_t>(tree_->pattern.unknowns[node] - own.begin) * stride;
+    for (Index e = tree_->pattern.starts[node]; e < tree_->pattern.starts[node + 1]; ++e) {
+      const Index height = tree_->pattern.width(tree_->pattern.rows[e]);
+      const double* block = values.data() + tree_->pattern.offsets[e];
+      double* target = columns + tree_->entry_places[e];
+      for (Index c = 0; c < width; ++c)
+        for (Index r = 0; r < height; ++r) target[static_cast<std::ptrdiff_t>(c) * stride + r] = block[c * height + r];
+    }
+  }
+  for (Index i = tree_->first_child[index]; i >= 0; i = tree_->next_sibling[i]) {
+    const Front& child = tree_->fronts[i];
+    const Index child_stride = front_stride(child.size()), pivots = child.pivots();
+    const double* update =
+        piece.arena.data() + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
+    const RowRun* first = tree_->runs.data() + tree_->first_run[i];
+    const RowRun* last = tree_->runs.data() + tree_->first_run[i + 1];
+    each_column(static_cast<Index>(last - first), child.below, team, [&](Index k) {
+      for (Index c = 0; c < first[k].length; ++c) {
+        const Index column = first[k].from + c;
+        double* to = front + static_cast<std::ptrdiff_t>(first[k].to + c) * stride;
+        const double* from = update + static_cast<std::ptrdiff_t>(column) * child_stride;
+        for (Index r = c; r < first[k].length; ++r) to[first[k].to + r] += from[first[k].from + r];
+        for (const RowRun* run = first + k + 1; run < last; ++run)
+          for (Index r = 0; r < run->length; ++r) to[run->to + r] += from[run->from + r];
+      }
+    });
+  }
+}
+
+void SparseLdlt::factor(Index index, const LargeVector<double>& values, double least, Piece& piece, Team& team) {
+  const Front& own = tree_->fronts[index];
+  const Index size = own.size(), pivots = own.pivots(), stride = front_stride(size);
+  Piece& home = own.parent >= top_front() ? pieces_.back() : piece;
+  double* front = home.arena.data() + own.offset;
+  assemble(index, values, front, piece, team);
+  piece.negative += factor_front(front, size, pivots, least, diagonal_.data() + own.begin, piece.work, team);
+  const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
+  each_column(pivots, size, team, [&](Index c) {
+    std::copy(column(c) + c, column(c) + size,
+              lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size + c);
+  });
+}
+
+SparseLdlt::Pivots SparseLdlt::factorise(const LargeVector<double>& values, double least, Team& team) {
+  if (lower_.empty()) take_memory();
+  const Index count = static_cast<Index>(pieces_.size()) - 1;
+  Team alone(1);
+  const auto run = [&](Index p, Team& helpers) {
+    pieces_[p].negative = 0;
+    for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f) factor(f, values, least, pieces_[p], helpers);
+  };
+  team.each(count, [&](Index p) { run(p, alone); });
+  run(count, team);
+  Pivots pivots;
+  for (const Piece& piece : pieces_) pivots.negative += piece.negative;
+  pivots.replaced = static_cast<Index>(std::count(diagonal_.begin(), diagonal_.end(), -least));
+  return pivots;
+}
+
+/// One column after the other while the front is in the cache. x: the unknowns; above: what is to be subtracted from
+/// unknowns from `top` on; work: as many rows as a front has below.
+void SparseLdlt::forward(const Front& front, Columns& x, Columns& above, Vector& work, Index top) const {
+  const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
+                    Eigen::OuterStride<>(front.size()));
+  const Index* rows = tree_->rows.data() + front.first_row;
+  for (Index c = 0; c < x.cols(); ++c) {
+    auto own = x.col(c).segment(front.begin, front.pivots());
+    panel.topRows(front.pivots()).triangularView<Eigen::UnitLower>().solveInPlace(own);
+    if (front.below == 0) continue;
+    auto moved = work.head(front.below);
+    moved.noalias() = panel.bottomRows(front.below) * own;
+    for (Index r = 0; r < front.below; ++r) {
+      if (rows[r] < top)
+        x(rows[r], c) -= moved[r];
+      else
+        above(rows[r] - top, c) += moved[r];
+    }
+  }
+}
+
+void SparseLdlt::backward(const Front& front, Columns& x, Vector& work) const {
+  const Panel panel(lower_.data() + front.first_value, front.size(), front.pivots(),
+                    Eigen::OuterStride<>(front.size()));
+  const Index* rows = tree_->rows.data() + front.first_row;
+  for (Index c = 0; c < x.cols(); ++c) {
+    auto own = x.col(c).segment(front.begin, front.pivots());
+    for (Index r = 0; r < front.pivots(); ++r) own[r] /= diagonal_[front.begin + r];
+    if (front.below > 0) {
+      auto known = work.head(front.below);
+      for (Index r = 0; r < front.below; ++r) known[r] = x(rows[r], c);
+      own.noalias() -= panel.bottomRows(front.below).transpose() * known;
+    }
+    panel.topRows(front.pivots()).transpose().triangularView<Eigen::UnitUpper>().solveInPlace(own);
+  }
+}
+
+void SparseLdlt::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+  const Index count = static_cast<Index>(pieces_.size()) - 1, first_top = top_front();
+  const Index end = static_cast<Index>(tree_->fronts.size());
+  const Index top = first_top < end ? tree_->fronts[first_top].begin : size();
+  solution_ = right_sides;
+  team.each(count, [&](Index p) {
+    pieces_[p].above.setZero(size() - top, solution_.cols());
+    for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f)
+      forward(tree_->fronts[f], solution_, pieces_[p].above, pieces_[p].rows, top);
+  });
+  for (Index p = 0; p < count; ++p) solution_.bottomRows(size() - top) -= pieces_[p].above;
+  Piece& last = pieces_.back();
+  for (Index f = first_top; f < end; ++f) forward(tree_->fronts[f], solution_, last.above, last.rows, size());
+  for (Index f = end - 1; f >= first_top; --f) backward(tree_->fronts[f], solution_, last.rows);
+  team.each(count, [&](Index p) {
+    for (Index f = tree_->pieces[p + 1] - 1; f >= tree_->pieces[p]; --f)
+      backward(tree_->fronts[f], solution_, pieces_[p].rows);
+  });
+  right_sides = solution_;
+}
+
+}  // namespace softkin::linear

@@ -1,0 +1,294 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <softkin/model/compile/cavity.hpp>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
+
+namespace softkin {
+
+namespace {
+
+[[noreturn]] void refuse(const ActuatorSpec& spec, const std::string& what) {
+  throw InvalidInput(spec.origin, "actuator '" + spec.name + "' " + what);
+}
+
+std::string range_text(double low, double high) {
+  return "[" + number_text(low) + ", " + number_text(high) + "]";
+}
+
+void check_load(const ActuatorSpec& spec, Formulation formulation) {
+  if (formulation != Formulation::physical)
+    refuse(spec, "is controlled by its load: that needs the physical formulation");
+  if (spec.kind == ActuatorKind::dea) refuse(spec, "is a dea: it is controlled by its ratio, not by a load");
+  const bool cable = spec.kind == ActuatorKind::cable;
+  if (!(std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high)) || (cable && spec.low < 0))
+    refuse(spec, std::string("needs a range of its ") +
+                     (cable ? "tension with 0 <= low <= high" : "pressure with low <= high") + ", not " +
+                     range_text(spec.low, spec.high));
+  if (spec.rest != 0) refuse(spec, "cannot have a load at rest other than 0, not " + number_text(spec.rest));
+}
+
+void check_ratio(const ActuatorSpec& spec) {
+  if (!(spec.low > 0 && spec.low <= spec.high && std::isfinite(spec.high)))
+    refuse(spec, "needs a range with 0 < low <= high, not " + range_text(spec.low, spec.high));
+  if (spec.kind == ActuatorKind::dea) {
+    if (!(spec.rest >= spec.low && spec.rest <= spec.high))
+      refuse(spec, "has its rest ratio (prestretch) " + number_text(spec.rest) + " outside its range " +
+                       range_text(spec.low, spec.high));
+  } else if (spec.rest != 1) {
+    refuse(spec, "cannot have a rest ratio other than 1: only a dea has a prestretch");
+  }
+}
+
+void check_curve(const ActuatorSpec& spec) {
+  if (spec.kind == ActuatorKind::cable) refuse(spec, "is a cable: it takes no curve");
+  if (spec.control == Control::load)
+    refuse(spec, "is controlled by its pressure, which needs no curve: control its volume, or leave the curve out");
+  const bool pressure = spec.curve->input == CurveInput::pressure;
+  if (pressure != (spec.kind == ActuatorKind::pneumatic))
+    refuse(spec, std::string("needs a curve of ") + (pressure ? "voltages" : "pressures") + ", but " +
+                     spec.curve->file + " is one of " + (pressure ? "pressures" : "voltages"));
+  if (spec.branch == Branch::unloading && !spec.curve->unloading)
+    refuse(spec, "takes the unloading branch of its curve, but " + spec.curve->file + " has none");
+}
+
+void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
+  if (!(spec.weight > 0 && std::isfinite(spec.weight)))
+    refuse(spec, "needs a weight above 0, not " + number_text(spec.weight));
+  if (spec.control == Control::load)
+    check_load(spec, formulation);
+  else
+    check_ratio(spec);
+  if (spec.curve) check_curve(spec);
+}
+
+void check_members(const ActuatorSpec& spec) {
+  const bool cable = spec.kind == ActuatorKind::cable;
+  if (!cable && !(spec.points.empty() && spec.apexes.empty())) refuse(spec, "takes no points: only a cable does");
+  if (cable && (spec.region || spec.surface)) refuse(spec, "is a cable: it takes points, no region and no surface");
+  if (spec.kind == ActuatorKind::dea && (!spec.region || spec.surface)) refuse(spec, "needs a region of prisms");
+  if (spec.kind == ActuatorKind::pneumatic && spec.region.has_value() == spec.surface.has_value())
+    refuse(spec, "needs a region or a surface, one of the two");
+}
+
+// The model's elements among a region's; role says whose they are.
+void take(Compilation& c, const ActuatorSpec& spec, const std::vector<Index>& found, std::vector<ElementRole>& roles,
+          const std::vector<Index>& mesh_index, const char* kind, std::vector<Index>& elements) {
+  const auto actuator = static_cast<Index>(c.model.actuators.size());
+  for (const Index i : found) {
+    if (roles[i].actuator >= 0)
+      refuse(spec, std::string("and actuator '") + c.model.actuators[roles[i].actuator].name + "' both hold " + kind +
+                       " " + std::to_string(mesh_index[i]) + " (from 0)");
+    roles[i].actuator = actuator;
+    elements.push_back(i);
+  }
+}
+
+std::vector<Index> in_model(const ActuatorSpec& spec, const std::vector<Index>& elements, const std::vector<Index>& at,
+                            const char* kind) {
+  std::vector<Index> found;
+  found.reserve(elements.size());
+  for (const Index i : elements) {
+    if (at[i] < 0)
+      refuse(spec,
+             "holds " + std::string(kind) + " " + std::to_string(i) + " (from 0), which is void: it cannot be both");
+    found.push_back(at[i]);
+  }
+  return found;
+}
+
+std::vector<Index> tetrahedra_inside(const Model& model, const TriangleSurface& surface) {
+  const SurfaceTree tree(surface.vertices, surface.triangles);
+  std::vector<Index> inside;
+  for (std::size_t i = 0; i < model.tetrahedra.size(); ++i) {
+    Vec3 centroid = Vec3::Zero();
+    for (const Index v : model.tetrahedra[i]) centroid += 0.25 * vertex_at(model.rest, v);
+    if (tree.contains(centroid)) inside.push_back(static_cast<Index>(i));
+  }
+  return inside;
+}
+
+TriangleSurface checked_surface(const ActuatorSpec& spec) {
+  try {
+    if (!spec.surface->vertices.allFinite()) throw InvalidInput("the surface has a vertex that is not finite");
+    return closed_outwards(*spec.surface);
+  } catch (const InvalidInput& error) {
+    refuse(spec, std::string("needs a closed surface: ") + error.what());
+  }
+}
+
+const std::vector<Index>& chamber_region(const Compilation& c, const ActuatorSpec& spec) {
+  const Region& region = c.regions.find(*spec.region, spec.origin);
+  if (!region.prisms.empty())
+    refuse(spec, "is pneumatic and needs tetrahedra, but region '" + *spec.region + "' has " +
+                     count_text(region.prisms.size(), "prism"));
+  if (region.tetrahedra.empty()) refuse(spec, "has no element: region '" + *spec.region + "' holds no tetrahedron");
+  return region.tetrahedra;
+}
+
+void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  Model& model = c.model;
+  std::vector<Index> found;
+  if (spec.surface) {
+    TriangleSurface surface = checked_surface(spec);
+    found = tetrahedra_inside(model, surface);
+    if (found.empty())
+      refuse(spec,
+             "has no element: the target-shape formulation needs the chamber meshed, and no element lies inside "
+             "the surface");
+    actuator.surface = std::move(surface.triangles);
+  } else {
+    found = in_model(spec, chamber_region(c, spec), c.tetrahedron_at, "tetrahedron");
+  }
+  take(c, spec, found, model.tetrahedron_roles, c.tetrahedron_of, "tetrahedron", actuator.tetrahedra);
+  for (const Index i : actuator.tetrahedra) actuator.rest_measure += model.tetrahedron_volumes[i];
+}
+
+// What of a cavity's boundary is not the body's cannot move.
+void check_contact(Compilation& c, const ActuatorSpec& spec, const std::vector<CavityFace>& cavity) {
+  std::set<Index> vertices;
+  for (const CavityFace& face : cavity) {
+    vertices.insert(face.corners.begin(), face.corners.end());
+    if (face.edges[0] >= 0) vertices.insert(face.edges.begin(), face.edges.end());
+  }
+  const auto loose = static_cast<std::size_t>(
+      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
+  if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
+  if (loose > 0)
+    c.model.notes.push_back(count_text(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
+                            spec.name + "' " + (loose == 1 ? "belongs" : "belong") +
+                            " to no element of the body and stay" + (loose == 1 ? "s" : "") + " in place.");
+}
+
+CavityFace cavity_face(const Compilation& c, const Triangle& corners, Index element) {
+  CavityFace face{corners};
+  if (c.chamber_edge_nodes.empty()) return face;
+  for (int i = 0; i < 3; ++i)
+    face.edges[i] =
+        edge_node(c.chamber_tetrahedra[element], c.chamber_edge_nodes[element], corners[i], corners[(i + 1) % 3]);
+  return face;
+}
+
+void fill_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  std::vector<Index> elements;
+  take(c, spec, in_model(spec, chamber_region(c, spec), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
+       "tetrahedron", elements);
+  std::vector<Tetrahedron> tetrahedra;
+  tetrahedra.reserve(elements.size());
+  for (const Index i : elements) tetrahedra.push_back(c.chamber_tetrahedra[i]);
+  const Boundary boundary = boundary_of(tetrahedra, {});
+  for (std::size_t i = 0; i < boundary.triangles.size(); ++i)
+    actuator.cavity.push_back(cavity_face(c, boundary.triangles[i], elements[boundary.triangle_owners[i]]));
+  check_contact(c, spec, actuator.cavity);
+  actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
+}
+
+void fill_pneumatic(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  if (c.spec.formulation != Formulation::physical)
+    fill_chamber(c, spec, actuator);
+  else if (spec.surface)
+    actuator.surface = checked_surface(spec).triangles;
+  else
+    fill_cavity(c, spec, actuator);
+}
+
+double area(const Points& vertices, Index i, Index j, Index k) {
+  const Vec3 a = vertex_at(vertices, i);
+  return 0.5 * (vertex_at(vertices, j) - a).cross(vertex_at(vertices, k) - a).norm();
+}
+
+void fill_membrane(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  Model& model = c.model;
+  const Region& region = c.regions.find(*spec.region, spec.origin);
+  if (!region.tetrahedra.empty())
+    refuse(spec, "is a dea and needs prisms, but region '" + *spec.region + "' has " +
+                     count_text(region.tetrahedra.size(), "tetrahedron", "tetrahedra"));
+  if (region.prisms.empty()) refuse(spec, "is a dea and needs prisms, but region '" + *spec.region + "' has none");
+  take(c, spec, in_model(spec, region.prisms, c.prism_at, "prism"), model.prism_roles, c.prism_of, "prism",
+       actuator.prisms);
+  for (const Index i : actuator.prisms) {
+    const Prism& p = model.prisms[i];
+    actuator.rest_measure += 0.5 * (area(model.rest, p[0], p[1], p[2]) + area(model.rest, p[3], p[4], p[5]));
+  }
+}
+
+void note_rest(Compilation& c, const Actuator& actuator) {
+  if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
+  c.model.notes.push_back("The range " + range_text(actuator.low, actuator.high) + " of actuator '" + actuator.name +
+                          "' excludes its " + (actuator.control == Control::load ? "load at rest 0" : "rest ratio 1") +
+                          ": where none is asked for, " +
+                          number_text(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
+}
+
+}  // namespace
+
+void compile_actuator_elements(Compilation& c) {
+  std::set<std::string> names;
+  for (const ActuatorSpec& spec : c.spec.actuators) {
+    if (spec.name.empty()) throw InvalidInput(spec.origin, "an actuator needs a name");
+    if (!names.insert(spec.name).second) throw InvalidInput(spec.origin, "there are two actuators '" + spec.name + "'");
+    check_numbers(spec, c.spec.formulation);
+    check_members(spec);
+    Actuator actuator;
+    actuator.name = spec.name;
+    actuator.kind = spec.kind;
+    actuator.control = spec.control;
+    actuator.low = spec.low;
+    actuator.high = spec.high;
+    actuator.rest = spec.rest;
+    actuator.weight = spec.weight;
+    actuator.least_norm = spec.least_norm;
+    actuator.curve = spec.curve;
+    actuator.branch = spec.branch;
+    if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);
+    if (spec.kind == ActuatorKind::dea) fill_membrane(c, spec, actuator);
+    note_rest(c, actuator);
+    c.model.actuators.push_back(std::move(actuator));
+  }
+}
+
+namespace {
+
+void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  const Points& vertices = spec.surface->vertices;
+  actuator.points.reserve(static_cast<std::size_t>(vertices.rows()));
+  std::size_t outside = 0;
+  double farthest = 0;
+  for (Index i = 0; i < vertices.rows(); ++i) {
+    try {
+      actuator.points.push_back(c.embedder->embed(vertex_at(vertices, i)));
+    } catch (const InvalidInput& error) {
+      refuse(spec, "has a surface whose vertex " + std::to_string(i) + " (from 0) cannot be embedded: " + error.what());
+    }
+    const double distance = actuator.points.back().distance_mm;
+    farthest = std::max(farthest, distance);
+    if (distance > 1e-6 * c.model.diagonal_mm) ++outside;
+  }
+  if (farthest > 0.1 * c.model.diagonal_mm)
+    refuse(spec, "has a surface of which a vertex is " + number_text(farthest) + " mm from the body");
+  if (outside > 0)
+    c.model.notes.push_back(count_text(outside, "vertex", "vertices") + " of the surface of actuator '" + spec.name +
+                            "' " + (outside == 1 ? "is" : "are") + " up to " + number_text(farthest) +
+                            " mm outside the body and follow" + (outside == 1 ? "s" : "") + " its nearest elements.");
+  if (c.spec.formulation != Formulation::physical) return;
+  Points embedded(vertices.rows(), 3);
+  for (Index i = 0; i < vertices.rows(); ++i) embedded.row(i) = actuator.points[i].at(c.model.rest).transpose();
+  actuator.rest_measure = enclosed_volume(embedded, actuator.surface);
+}
+
+}  // namespace
+
+void compile_actuator_points(Compilation& c) {
+  for (std::size_t i = 0; i < c.spec.actuators.size(); ++i) {
+    const ActuatorSpec& spec = c.spec.actuators[i];
+    Actuator& actuator = c.model.actuators[i];
+    if (spec.kind == ActuatorKind::cable) compile_cable(c, spec, actuator);
+    if (!spec.surface) continue;
+    if (c.embedder->empty()) refuse(spec, "has a surface but the robot has no body that could hold it");
+    embed_surface(c, spec, actuator);
+  }
+}
+
+}  // namespace softkin

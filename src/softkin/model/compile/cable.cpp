@@ -1,0 +1,125 @@
+#include <Eigen/Geometry>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double least_segment_mm = 1e-6;
+constexpr double least_height = 1e-3;  // of a gap's triangle, over the length of its segment
+
+[[noreturn]] void refuse(const ActuatorSpec& spec, const std::string& what) {
+  throw InvalidInput(spec.origin, "actuator '" + spec.name + "' " + what);
+}
+
+std::string segment_text(std::size_t segment) {
+  return "between points[" + std::to_string(segment) + "] and points[" + std::to_string(segment + 1) + "]";
+}
+
+/// The cable's points at rest.
+std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
+  if (spec.points.size() < 2) refuse(spec, "is a cable and needs at least two points");
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < spec.points.size(); ++i) {
+    cable.points.push_back(
+        embed_point(c, spec.points[i], "points[" + std::to_string(i) + "] of actuator '" + spec.name + "'"));
+    points.push_back(cable.points.back().at(c.model.rest));
+    if (i > 0 && (points[i] - points[i - 1]).norm() < least_segment_mm)
+      refuse(spec, "has no length " + segment_text(i - 1));
+  }
+  return points;
+}
+
+/// Segments that run free outside the body; every one where none does.
+std::vector<Index> free_segments(const Compilation& c, const std::vector<Vec3>& points) {
+  std::vector<Index> gaps, every;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Vec3 middle = 0.5 * (points[i] + points[i + 1]);
+    every.push_back(static_cast<Index>(i));
+    if (c.embedder->embed(middle).distance_mm > 1e-9 * c.model.diagonal_mm) gaps.push_back(static_cast<Index>(i));
+  }
+  return gaps.empty() ? every : gaps;
+}
+
+Vec3 body_centroid(const Compilation& c) {
+  double total = 0;
+  Vec3 sum = Vec3::Zero();
+  const auto add = [&](const auto& elements) {
+    for (const auto& element : elements) {
+      const double volume = signed_volume(c.model.rest, element);
+      for (const Index v : element) sum += volume / static_cast<double>(element.size()) * vertex_at(c.model.rest, v);
+      total += volume;
+    }
+  };
+  add(c.solid_tetrahedra);
+  add(c.solid_prisms);
+  return sum / total;
+}
+
+double height_over(const Vec3& start, const Vec3& end, const Vec3& point) {
+  return (point - start).cross((end - start).normalized()).norm();
+}
+
+/// From the middle of the segment straight towards the body's centroid: the first point of the body's boundary.
+Vec3 find_apex(const Compilation& c, const ActuatorSpec& spec, const SurfaceTree& boundary, const Vec3& centroid,
+               const std::vector<Vec3>& points, Index segment) {
+  const Vec3 start = points[segment], end = points[segment + 1], middle = 0.5 * (start + end);
+  const Vec3 along = (end - start).normalized();
+  const Vec3 offset = centroid - middle;
+  const Vec3 across = offset - offset.dot(along) * along;
+  const double length = (end - start).norm();
+  if (across.norm() > 1e-9 * c.model.diagonal_mm) {
+    const Vec3 direction = across.normalized();
+    const auto hit = boundary.first_hit(middle, direction, 1e-9 * c.model.diagonal_mm);
+    if (hit && *hit >= least_height * length) return middle + *hit * direction;
+  }
+  refuse(spec, "has a gap " + segment_text(static_cast<std::size_t>(segment)) +
+                   " with no body straight across it: name its third corner in `apexes`");
+}
+
+void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, Actuator& cable) {
+  const SurfaceTree boundary(c.model.rest, triangulated(boundary_of(c.solid_tetrahedra, c.solid_prisms)));
+  const Vec3 centroid = body_centroid(c);
+  for (CableGap& gap : cable.gaps)
+    gap.apex = c.embedder->embed(find_apex(c, spec, boundary, centroid, points, gap.segment));
+}
+
+void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, Actuator& cable) {
+  if (spec.apexes.size() != cable.gaps.size())
+    refuse(spec, "has " + count_text(cable.gaps.size(), "gap") + " but " +
+                     count_text(spec.apexes.size(), "apex", "apexes") + ": it needs one for each, in order");
+  for (std::size_t i = 0; i < cable.gaps.size(); ++i) {
+    CableGap& gap = cable.gaps[i];
+    const std::string what = "apexes[" + std::to_string(i) + "] of actuator '" + spec.name + "'";
+    gap.apex = embed_point(c, spec.apexes[i], what);
+    const Vec3 start = points[gap.segment], end = points[gap.segment + 1];
+    if (height_over(start, end, gap.apex.at(c.model.rest)) < least_height * (end - start).norm())
+      throw InvalidInput(spec.apexes[i].origin, what + " lies on the line of the cable: move it into the body");
+  }
+}
+
+}  // namespace
+
+void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
+  const std::vector<Vec3> points = embed_points(c, spec, cable);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) cable.rest_measure += (points[i + 1] - points[i]).norm();
+  // physical: a constraint on its length, without actuation elements
+  if (c.spec.formulation == Formulation::physical) return;
+  for (const Index segment : free_segments(c, points)) cable.gaps.push_back({segment, {}});
+  if (spec.apexes.empty())
+    find_apexes(c, spec, points, cable);
+  else
+    take_apexes(c, spec, points, cable);
+
+  double inside = cable.rest_measure;
+  for (const CableGap& gap : cable.gaps) inside -= (points[gap.segment + 1] - points[gap.segment]).norm();
+  const double least = inside / cable.rest_measure;
+  if (cable.low < least - 1e-12)
+    refuse(spec, "has a range that begins at " + number_text(cable.low) +
+                     ", but its pieces inside the body alone make " + number_text(least) + " of its length of " +
+                     number_text(cable.rest_measure) + " mm");
+}
+
+}  // namespace softkin

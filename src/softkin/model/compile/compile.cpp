@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <softkin/model/compile/anchoring.hpp>
+#include <softkin/model/compile/parts.hpp>
+
+namespace softkin {
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value == 0 ? 0.0 : value);
+  return text;
+}
+
+std::string count_text(std::size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+std::string point_text(const Vec3& point) {
+  return "(" + number_text(point[0]) + ", " + number_text(point[1]) + ", " + number_text(point[2]) + ")";
+}
+
+namespace {
+
+EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& origin, const std::string& what) {
+  if (!point.allFinite()) throw InvalidInput(origin, what + " is not finite");
+  if (c.embedder->empty())
+    throw InvalidInput(origin, what + " needs a body to lie in, but every element belongs to a chamber");
+  EmbeddedPoint embedded;
+  try {
+    embedded = c.embedder->embed(point);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(origin, what + ": " + error.what());
+  }
+  const std::string distance = number_text(embedded.distance_mm);
+  if (embedded.distance_mm > 0.1 * c.model.diagonal_mm)
+    throw InvalidInput(origin, what + " is " + distance + " mm from the mesh");
+  if (embedded.distance_mm > 1e-6 * c.model.diagonal_mm)
+    c.model.notes.push_back(what + " is " + distance + " mm outside the body and follows its nearest element.");
+  return embedded;
+}
+
+}  // namespace
+
+EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what) {
+  if (const auto* point = std::get_if<Vec3>(&reference.point)) return embed_inside(c, *point, reference.origin, what);
+  const auto& name = std::get<std::string>(reference.point);
+  const Region& region = c.regions.find(name, reference.origin);
+  EmbeddedPoint mean;
+  try {
+    mean = mean_of(region, c.mesh, c.regions.edges());
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(reference.origin, what + ": " + error.what());
+  }
+  for (const Index v : mean.vertices)
+    if (!c.model.used[v])
+      throw InvalidInput(reference.origin, what + " is the mean of region '" + name + "', of which vertex " +
+                                               std::to_string(v) + " (from 0) belongs to no element of the robot");
+  return mean;
+}
+
+void compile_markers(Compilation& c) {
+  std::set<std::string> names;
+  for (const MarkerSpec& spec : c.spec.markers) {
+    if (spec.name.empty()) throw InvalidInput(spec.at.origin, "a marker needs a name");
+    if (!names.insert(spec.name).second)
+      throw InvalidInput(spec.at.origin, "there are two markers '" + spec.name + "'");
+    c.model.markers.push_back({spec.name, embed_point(c, spec.at, "marker '" + spec.name + "'")});
+  }
+}
+
+namespace {
+
+/// The mesh where the model takes it in another order than it has.
+std::optional<Mesh> in_other_order(const RobotSpec& spec, std::vector<std::string>& notes) {
+  const Origin origin{.file = spec.name};
+  const bool is_quadratic = !spec.mesh.edge_nodes.empty();
+  if (spec.formulation == Formulation::physical) {
+    if (!spec.quadratic || is_quadratic) return std::nullopt;
+    if (!spec.mesh.prisms.empty())
+      throw InvalidInput(origin, "a mesh with prisms cannot be of order 2: prisms are linear");
+    check_cells(spec.mesh, origin);
+    return elevated(spec.mesh);
+  }
+  if (is_quadratic)
+    notes.emplace_back("The mesh is of order 2: its edge nodes are left out, target shapes are of linear elements.");
+  else if (spec.quadratic)
+    notes.emplace_back("The elements stay linear: target shapes are not of order 2.");
+  if (!is_quadratic) return std::nullopt;
+  check_cells(spec.mesh, origin);
+  return lowered(spec.mesh);
+}
+
+}  // namespace
+
+Model compile(const RobotSpec& spec) {
+  std::vector<std::string> notes;
+  const std::optional<Mesh> other = in_other_order(spec, notes);
+  Compilation c(spec, other ? *other : spec.mesh);
+  c.model.notes = std::move(notes);
+  c.model.name = spec.name;
+  c.model.formulation = spec.formulation;
+  compile_elements(c);
+  compile_actuator_elements(c);
+  compile_materials(c);
+  compile_actuator_points(c);
+  compile_supports(c);
+  compile_markers(c);
+  compile_feet(c);
+  compile_loads(c);
+  check_anchoring(c.model, c.origin);
+  return std::move(c.model);
+}
+
+}  // namespace softkin

@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
+
+namespace softkin {
+
+namespace {
+
+// Flatter than this (volume over the cube of the longest edge) an element counts as one without volume.
+constexpr double flat = 1e-9;
+
+void reverse(Tetrahedron& t) {
+  std::swap(t[2], t[3]);
+}
+
+void reverse(Prism& p) {
+  for (int i = 0; i < 3; ++i) std::swap(p[i], p[i + 3]);
+}
+
+template <class Element>
+double longest_edge(const Points& vertices, const Element& element) {
+  double longest2 = 0;
+  for (std::size_t i = 0; i < element.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      longest2 = std::max(longest2, (vertices.row(element[i]) - vertices.row(element[j])).squaredNorm());
+  return std::sqrt(longest2);
+}
+
+bool folds_over(const Points&, const Tetrahedron&) {
+  return false;
+}
+
+bool folds_over(const Points& vertices, const Prism& p) {
+  for (int i = 0; i < 6; ++i) {
+    const int base = i < 3 ? 0 : 3, j = base + (i + 1) % 3, k = base + (i + 2) % 3, across = (i + 3) % 6;
+    const Vec3 corner = vertex_at(vertices, p[i]);
+    const Vec3 up = i < 3 ? vertex_at(vertices, p[across]) - corner : corner - vertex_at(vertices, p[across]);
+    if (!((vertex_at(vertices, p[j]) - corner).cross(vertex_at(vertices, p[k]) - corner).dot(up) > 0)) return true;
+  }
+  return false;
+}
+
+std::vector<bool> void_elements(const Compilation& c, std::vector<Index> Region::*list, std::size_t count) {
+  std::vector<bool> inside(count);
+  for (const RegionRef& reference : c.spec.voids) {
+    const Region region = c.regions.resolve(reference);
+    if (region.tetrahedra.empty() && region.prisms.empty())
+      throw InvalidInput(reference.origin, label(reference) + " cannot be void: it holds no element");
+    for (const Index i : region.*list) inside[i] = true;
+  }
+  return inside;
+}
+
+/// Physical: tetrahedra of pneumatic chambers, which are no elements of the model.
+std::vector<bool> chamber_elements(const Compilation& c) {
+  std::vector<bool> inside(c.mesh.tetrahedra.size());
+  if (c.spec.formulation != Formulation::physical) return inside;
+  for (const ActuatorSpec& spec : c.spec.actuators) {
+    if (spec.kind != ActuatorKind::pneumatic || !spec.region) continue;
+    for (const Index i : c.regions.find(*spec.region, spec.origin).tetrahedra) inside[i] = true;
+  }
+  return inside;
+}
+
+template <class Element>
+struct Kind {
+  const char *one, *many;
+  const std::vector<Element>& mesh_elements;
+  std::vector<Element>& elements;
+  std::vector<double>& volumes;
+  std::vector<Index>&at, &of;
+};
+
+// First element of a kind that is refused, and how many are.
+struct Refused {
+  std::size_t count = 0;
+  Index first = 0;
+
+  void add(Index i) {
+    if (count++ == 0) first = i;
+  }
+};
+
+void refuse(const Compilation& c, const std::string& one, const std::string& many, const Refused& refused,
+            const std::string& what) {
+  if (refused.count == 0) return;
+  throw InvalidInput(c.origin, count_text(refused.count, one, many) + " " + what + "; the first is " + one + " " +
+                                   std::to_string(refused.first) + " (from 0)");
+}
+
+/// Fills in the elements of a kind and returns how many it reversed.
+template <class Element>
+std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind<Element>& kind, double least_volume) {
+  std::size_t reversed = 0;
+  Refused empty, folded;
+  kind.at.assign(kind.mesh_elements.size(), -1);
+  for (std::size_t i = 0; i < kind.mesh_elements.size(); ++i) {
+    if (left_out[i]) continue;
+    Element element = kind.mesh_elements[i];
+    double volume = signed_volume(c.mesh.vertices, element);
+    const double edge = longest_edge(c.mesh.vertices, element);
+    if (!(std::abs(volume) > std::max(least_volume, flat * edge * edge * edge))) {
+      empty.add(static_cast<Index>(i));
+      continue;
+    }
+    if (volume < 0) {
+      reverse(element);
+      volume = -volume;
+      ++reversed;
+    }
+    if (folds_over(c.mesh.vertices, element)) folded.add(static_cast<Index>(i));
+    kind.at[i] = static_cast<Index>(kind.elements.size());
+    kind.of.push_back(static_cast<Index>(i));
+    kind.elements.push_back(element);
+    kind.volumes.push_back(volume);
+  }
+  refuse(c, kind.one, kind.many, empty, empty.count == 1 ? "has no volume" : "have no volume");
+  refuse(c, kind.one, kind.many, folded, folded.count == 1 ? "folds over at a corner" : "fold over at a corner");
+  return reversed;
+}
+
+bool has_stray_node(const TetrahedronNodes& nodes) {
+  for (int e = 0; e < 6; ++e) {
+    const auto start = nodes.row(tetrahedron_edges[e][0]), end = nodes.row(tetrahedron_edges[e][1]);
+    if (!((nodes.row(e + 4) - 0.5 * (start + end)).norm() <= 0.25 * (end - start).norm())) return true;
+  }
+  return false;
+}
+
+/// Order 2: gives elements that were oriented the edge nodes that they have in the mesh, checks them and measures the
+/// elements with their curved edges.
+void take_edge_nodes(const Compilation& c, const std::vector<Tetrahedron>& elements, const std::vector<Index>& of,
+                     std::vector<EdgeNodes>& edge_nodes, std::vector<double>& volumes) {
+  Refused stray, folded;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    EdgeNodes nodes = c.mesh.edge_nodes[of[e]];
+    if (elements[e] != c.mesh.tetrahedra[of[e]]) exchange_corners_2_and_3(nodes);
+    edge_nodes.push_back(nodes);
+    const TetrahedronNodes positions = nodes_of(c.mesh.vertices, elements[e], nodes);
+    volumes[e] = shape_integrals(positions).sum();
+    if (has_stray_node(positions))
+      stray.add(of[e]);
+    else if (!(least_jacobian(positions) > 0))
+      folded.add(of[e]);
+  }
+  refuse(c, "tetrahedron", "tetrahedra", stray,
+         std::string(stray.count == 1 ? "has" : "have") +
+             " an edge node more than a quarter of its edge's length from the middle");
+  refuse(c, "tetrahedron", "tetrahedra", folded,
+         std::string(folded.count == 1 ? "folds" : "fold") + " over: the edge nodes make the Jacobian negative");
+}
+
+void find_used_vertices(Compilation& c) {
+  Model& model = c.model;
+  model.used.assign(static_cast<std::size_t>(model.rest.rows()), false);
+  for (const Tetrahedron& t : model.tetrahedra)
+    for (const Index v : t) model.used[v] = true;
+  for (const EdgeNodes& nodes : model.edge_nodes)
+    for (const Index v : nodes) model.used[v] = true;
+  for (const Prism& p : model.prisms)
+    for (const Index v : p) model.used[v] = true;
+  Bounds bounds;
+  model.fixed.assign(model.used.size(), {false, false, false});
+  std::vector<bool> of_chamber(model.used.size());
+  for (const Tetrahedron& t : c.chamber_tetrahedra)
+    for (const Index v : t) of_chamber[v] = true;
+  for (const EdgeNodes& nodes : c.chamber_edge_nodes)
+    for (const Index v : nodes) of_chamber[v] = true;
+  std::size_t unused = 0;
+  for (std::size_t v = 0; v < model.used.size(); ++v) {
+    if (model.used[v]) {
+      bounds.extend(vertex_at(model.rest, static_cast<Index>(v)));
+      continue;
+    }
+    model.fixed[v] = {true, true, true};
+    if (!of_chamber[v]) ++unused;
+  }
+  model.diagonal_mm = bounds.diagonal().norm();
+  if (unused > 0)
+    model.notes.push_back(count_text(unused, "vertex belongs", "vertices belong") + " to no element and stay" +
+                          (unused == 1 ? "s" : "") + " where they are.");
+}
+
+void name_regions(Compilation& c) {
+  Model& model = c.model;
+  const auto name = [](const std::vector<Index>& elements, const std::vector<Index>& at, Index region,
+                       std::vector<ElementRole>& roles) {
+    for (const Index i : elements)
+      if (at[i] >= 0 && roles[at[i]].region < 0) roles[at[i]].region = region;
+  };
+  for (const Region& region : c.regions.regions()) {
+    if (region.dimension != 3) continue;
+    const auto index = static_cast<Index>(model.region_names.size());
+    model.region_names.push_back(region.name);
+    name(region.tetrahedra, c.tetrahedron_at, index, model.tetrahedron_roles);
+    name(region.prisms, c.prism_at, index, model.prism_roles);
+  }
+}
+
+}  // namespace
+
+void compile_elements(Compilation& c) {
+  Model& model = c.model;
+  const Mesh& mesh = c.mesh;
+  if (mesh.tetrahedra.empty() && mesh.prisms.empty()) throw InvalidInput(c.origin, "the mesh has no element");
+  std::vector<bool> not_body = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
+  const std::vector<bool> of_chamber = chamber_elements(c);
+  std::vector<bool> not_chamber = not_body;
+  for (std::size_t i = 0; i < not_body.size(); ++i) {
+    not_chamber[i] = not_chamber[i] || !of_chamber[i];
+    not_body[i] = not_body[i] || of_chamber[i];
+  }
+  const std::vector<bool> void_prisms = void_elements(c, &Region::prisms, mesh.prisms.size());
+  model.rest = mesh.vertices;
+  model.held = mesh.vertices;
+  // below this a volume is the rounding of the coordinates
+  const double diagonal = (model.rest.colwise().maxCoeff() - model.rest.colwise().minCoeff()).norm();
+  const double least_volume = 1e-15 * diagonal * diagonal * diagonal;
+  const std::size_t reversed =
+      orient(c, not_body,
+             Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, model.tetrahedra,
+                               model.tetrahedron_volumes, c.tetrahedron_at, c.tetrahedron_of},
+             least_volume) +
+      orient(c, not_chamber,
+             Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, c.chamber_tetrahedra, c.chamber_volumes,
+                               c.chamber_at, c.chamber_of},
+             least_volume) +
+      orient(c, void_prisms,
+             Kind<Prism>{"prism", "prisms", mesh.prisms, model.prisms, model.prism_volumes, c.prism_at, c.prism_of},
+             least_volume);
+  if (model.tetrahedra.empty() && model.prisms.empty())
+    throw InvalidInput(c.origin, std::string("every element of the mesh is void") +
+                                     (c.chamber_tetrahedra.empty() ? "" : " or belongs to a chamber"));
+  if (reversed > 0)
+    model.notes.push_back(count_text(reversed, "element was", "elements were") +
+                          " reordered, because the order of the vertices made the volume negative.");
+  if (!mesh.edge_nodes.empty()) {
+    take_edge_nodes(c, model.tetrahedra, c.tetrahedron_of, model.edge_nodes, model.tetrahedron_volumes);
+    take_edge_nodes(c, c.chamber_tetrahedra, c.chamber_of, c.chamber_edge_nodes, c.chamber_volumes);
+  }
+  model.tetrahedron_roles.resize(model.tetrahedra.size());
+  model.prism_roles.resize(model.prisms.size());
+  c.chamber_roles.resize(c.chamber_tetrahedra.size());
+  find_used_vertices(c);
+  name_regions(c);
+}
+
+}  // namespace softkin

@@ -1,0 +1,164 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <softkin/model/compile/embedding.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
+
+namespace softkin {
+
+namespace {
+
+// Orders that put corner i first and keep the prism's orientation.
+constexpr int prism_turns[6][6] = {{0, 1, 2, 3, 4, 5}, {1, 2, 0, 4, 5, 3}, {2, 0, 1, 5, 3, 4},
+                                   {3, 5, 4, 0, 2, 1}, {4, 3, 5, 1, 0, 2}, {5, 4, 3, 2, 1, 0}};
+
+void split(const Prism& prism, std::vector<Tetrahedron>& tetrahedra) {
+  const auto first = std::min_element(prism.begin(), prism.end()) - prism.begin();
+  Prism p;
+  for (int i = 0; i < 6; ++i) p[i] = prism[prism_turns[first][i]];
+  if (std::min(p[1], p[5]) < std::min(p[2], p[4])) {
+    tetrahedra.push_back({p[0], p[1], p[2], p[5]});
+    tetrahedra.push_back({p[0], p[1], p[5], p[4]});
+  } else {
+    tetrahedra.push_back({p[0], p[1], p[2], p[4]});
+    tetrahedra.push_back({p[0], p[4], p[2], p[5]});
+  }
+  tetrahedra.push_back({p[0], p[4], p[5], p[3]});
+}
+
+std::vector<Tetrahedron> as_tetrahedra(const Points& vertices, std::vector<Tetrahedron> tetrahedra,
+                                       const std::vector<Prism>& prisms) {
+  std::vector<Tetrahedron> pieces;
+  pieces.reserve(3 * prisms.size());
+  for (const Prism& prism : prisms) split(prism, pieces);
+  for (const Tetrahedron& piece : pieces) {
+    double longest2 = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j)
+        longest2 = std::max(longest2, (vertices.row(piece[i]) - vertices.row(piece[j])).squaredNorm());
+    // a strongly twisted prism can have a flat piece, which its neighbours cover
+    if (signed_volume(vertices, piece) > 1e-9 * longest2 * std::sqrt(longest2)) tetrahedra.push_back(piece);
+  }
+  return tetrahedra;
+}
+
+std::vector<Bounds> tetrahedron_bounds(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra) {
+  std::vector<Bounds> bounds(tetrahedra.size());
+  for (std::size_t i = 0; i < tetrahedra.size(); ++i)
+    for (const Index v : tetrahedra[i]) bounds[i].extend(vertex_at(vertices, v));
+  return bounds;
+}
+
+Barycentric barycentric(const Vec3 (&corners)[4], const Vec3& point) {
+  const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0],
+             offset = point - corners[0];
+  const Vec3 bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
+  const double six_volumes = a.dot(bc);
+  Barycentric w(0, offset.dot(bc) / six_volumes, offset.dot(ca) / six_volumes, offset.dot(ab) / six_volumes);
+  w[0] = 1 - w[1] - w[2] - w[3];
+  return w;
+}
+
+// The nearest point of a tetrahedron lies on a face that the point is on the outer side of.
+double squared_distance(const Vec3 (&corners)[4], const Barycentric& weights, const Vec3& point) {
+  if (weights.minCoeff() >= 0) return 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i) {
+    if (weights[i] >= 0) continue;
+    nearest = std::min(
+        nearest, squared_distance_to_triangle(point, corners[(i + 1) % 4], corners[(i + 2) % 4], corners[(i + 3) % 4]));
+  }
+  return nearest;
+}
+
+template <std::size_t K, class Weights>
+void add_weights(const std::array<Index, K>& vertices, const Weights& weights, EmbeddedPoint& embedded) {
+  for (std::size_t i = 0; i < K; ++i) {
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    if (std::abs(weight) < 1e-12) continue;
+    embedded.vertices.push_back(vertices[i]);
+    embedded.weights.push_back(weight);
+  }
+}
+
+EmbeddedPoint normalised(EmbeddedPoint embedded) {
+  double sum = 0;
+  for (const double w : embedded.weights) sum += w;
+  for (double& w : embedded.weights) w /= sum;
+  return embedded;
+}
+
+/// Where the way from the element's middle to the point leaves the element; the point itself where it is inside.
+Barycentric drawn_inside(const Barycentric& l) {
+  const Barycentric middle = Barycentric::Constant(0.25);
+  const double least = l.minCoeff();
+  return least >= 0 ? l : Barycentric(middle + 0.25 / (0.25 - least) * (l - middle));
+}
+
+}  // namespace
+
+Embedder::Embedder(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms,
+                   const std::vector<EdgeNodes>& edge_nodes)
+    : vertices_(vertices),
+      tetrahedra_(as_tetrahedra(vertices, tetrahedra, prisms)),
+      edge_nodes_(edge_nodes),
+      tree_(tetrahedron_bounds(vertices, tetrahedra_)) {
+  Bounds bounds;
+  for (Index i = 0; i < vertices_.rows(); ++i) bounds.extend(vertex_at(vertices_, i));
+  if (!bounds.isEmpty()) tolerance_ = 1e-13 * bounds.diagonal().norm();
+}
+
+EmbeddedPoint Embedder::embed(const Vec3& point) const {
+  if (empty()) throw InvalidInput("there is no element to embed a point in");
+  if (!point.allFinite()) throw InvalidInput("a point to embed is not finite");
+  Index nearest = -1;
+  double distance = std::numeric_limits<double>::infinity();
+  Barycentric weights = Barycentric::Constant(-distance);
+  tree_.visit_near(point, [&](Index item) {
+    Vec3 corners[4];
+    for (int i = 0; i < 4; ++i) corners[i] = vertex_at(vertices_, tetrahedra_[item][i]);
+    const Barycentric w = barycentric(corners, point);
+    const double d = std::sqrt(squared_distance(corners, w, point));
+    const bool nearer = d < distance - tolerance_;
+    if (nearer || (d <= distance + tolerance_ && w.minCoeff() > weights.minCoeff())) {
+      nearest = item;
+      distance = d;
+      weights = w;
+    }
+    return (distance + tolerance_) * (distance + tolerance_);
+  });
+  EmbeddedPoint embedded;
+  if (edge_nodes_.empty()) {
+    add_weights(tetrahedra_[nearest], weights, embedded);
+  } else {
+    const TetrahedronWeights quadratic = quadratic_weights(nearest, point, weights, distance);
+    add_weights(tetrahedra_[nearest], quadratic.head<4>(), embedded);
+    add_weights(edge_nodes_[nearest], quadratic.tail<6>(), embedded);
+  }
+  embedded.distance_mm = distance;
+  return normalised(std::move(embedded));
+}
+
+TetrahedronWeights Embedder::quadratic_weights(Index element, const Vec3& point, Barycentric coordinates,
+                                               double& distance) const {
+  constexpr int most_iterations = 50;
+  const TetrahedronNodes nodes = nodes_of(vertices_, tetrahedra_[element], edge_nodes_[element]);
+  for (int i = 0; i < most_iterations; ++i) {
+    const Barycentric inside = drawn_inside(coordinates);
+    const Eigen::Matrix<double, 10, 4> slope = quadratic_slope(inside);
+    const TetrahedronWeights weights = quadratic_shape(inside) + slope * (coordinates - inside);
+    const Vec3 missing = point - nodes.transpose() * weights;
+    if (missing.norm() <= 10 * tolerance_) {
+      // the distance from the corners' tetrahedron is not that from the curved element
+      if (i > 0) distance = std::min(distance, (point - nodes.transpose() * quadratic_shape(inside)).norm());
+      return weights;
+    }
+    const Eigen::Matrix<double, 3, 4> along = nodes.transpose() * slope;
+    const Vec3 step = (along.rightCols<3>().colwise() - along.col(0)).eval().partialPivLu().solve(missing);
+    coordinates += Barycentric(-step.sum(), step[0], step[1], step[2]);
+  }
+  throw InvalidInput("the nearest element is too strongly curved to carry the point");
+}
+
+}  // namespace softkin

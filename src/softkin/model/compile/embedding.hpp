@@ -1,0 +1,40 @@
+#pragma once
+
+#include <softkin/model/mesh/box_tree.hpp>
+#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/model.hpp>
+
+namespace softkin {
+
+/// Finds, for a point, the element that carries it along. Prisms count as three tetrahedra each, split along the
+/// diagonals from the smallest vertex index, so that neighbours agree.
+class Embedder {
+ public:
+  /// vertices    #V by 3 [mm]; elements with positive volume
+  /// edge_nodes  order 2: of every tetrahedron, and there are no prisms; order 1: empty
+  Embedder(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms,
+           const std::vector<EdgeNodes>& edge_nodes = {});
+
+  [[nodiscard]] bool empty() const { return tetrahedra_.empty(); }
+
+  /// The point as a weighted sum of vertices of the nearest tetrahedron: its barycentric coordinates, extrapolated
+  /// where it lies outside; of equally near ones that which extrapolates least. Weights below 1e-12 are dropped.
+  /// Order 2: the nearest by its corners, with the quadratic shape functions, which are continued linearly outside it.
+  ///
+  /// throws  InvalidInput where there is no element, the point is not finite, or the nearest element is so strongly
+  ///         curved that no coordinates in it give the point
+  [[nodiscard]] EmbeddedPoint embed(const Vec3& point) const;
+
+ private:
+  /// Of order 2: weights in an element whose corners give the point the coordinates; distance is updated.
+  [[nodiscard]] TetrahedronWeights quadratic_weights(Index element, const Vec3& point, Barycentric coordinates,
+                                                     double& distance) const;
+
+  Points vertices_;
+  std::vector<Tetrahedron> tetrahedra_;
+  std::vector<EdgeNodes> edge_nodes_;
+  BoxTree tree_;
+  double tolerance_ = 0;  // distances that differ by less are the same [mm]
+};
+
+}  // namespace softkin

@@ -1,0 +1,99 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double cubic_metres = 1e-9;  // in a mm^3
+
+using PrismIntegrals = Eigen::Matrix<double, 6, 1>;
+
+/// Integrals of a prism's shape functions L_i (1 -+ z) / 2 over it [mm^3]. They are of degree 2 in the triangle and 3
+/// along z: three points by two are exact.
+PrismIntegrals prism_integrals(const Points& vertices, const Prism& prism) {
+  Eigen::Matrix<double, 6, 3> nodes;
+  for (int i = 0; i < 6; ++i) nodes.row(i) = vertices.row(prism[i]);
+  const double gauss = 1 / std::sqrt(3.0);
+  PrismIntegrals integrals = PrismIntegrals::Zero();
+  for (int i = 0; i < 3; ++i)
+    for (const double z : {-gauss, gauss}) {
+      const Vec3 l = Vec3::Constant(1.0 / 6) + 0.5 * Vec3::Unit(i);
+      PrismIntegrals shape, across;
+      shape << (1 - z) / 2 * l, (1 + z) / 2 * l;
+      across << -0.5 * l, 0.5 * l;
+      const Vec3 u = (1 - z) / 2 * (nodes.row(1) - nodes.row(0)) + (1 + z) / 2 * (nodes.row(4) - nodes.row(3));
+      const Vec3 v = (1 - z) / 2 * (nodes.row(2) - nodes.row(0)) + (1 + z) / 2 * (nodes.row(5) - nodes.row(3));
+      integrals += u.cross(v).dot(nodes.transpose() * across) / 6 * shape;
+    }
+  return integrals;
+}
+
+void add_weight(Compilation& c) {
+  Model& model = c.model;
+  const auto per_volume = [&](const ElementRole& role) {  // [N/mm^3]
+    return Eigen::RowVector3d(model.materials[role.material].density * cubic_metres * c.spec.gravity.transpose());
+  };
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    const Eigen::RowVector3d weight = per_volume(model.tetrahedron_roles[e]);
+    if (model.edge_nodes.empty()) {
+      for (const Index v : model.tetrahedra[e]) model.dead_load.row(v) += model.tetrahedron_volumes[e] / 4 * weight;
+      continue;
+    }
+    const TetrahedronWeights integrals =
+        shape_integrals(nodes_of(model.rest, model.tetrahedra[e], model.edge_nodes[e]));
+    for (int i = 0; i < 10; ++i)
+      model.dead_load.row(i < 4 ? model.tetrahedra[e][i] : model.edge_nodes[e][i - 4]) += integrals[i] * weight;
+  }
+  for (std::size_t e = 0; e < model.prisms.size(); ++e) {
+    const PrismIntegrals integrals = prism_integrals(model.rest, model.prisms[e]);
+    const Eigen::RowVector3d weight = per_volume(model.prism_roles[e]);
+    for (int i = 0; i < 6; ++i) model.dead_load.row(model.prisms[e][i]) += integrals[i] * weight;
+  }
+}
+
+void check_density(Compilation& c) {
+  std::vector<bool> has_element(c.model.materials.size());
+  for (const auto* roles : {&c.model.tetrahedron_roles, &c.model.prism_roles})
+    for (const ElementRole& role : *roles) has_element[role.material] = true;
+  bool any = false;
+  for (std::size_t m = 0; m < has_element.size(); ++m)
+    any = any || (has_element[m] && c.model.materials[m].density > 0);
+  if (!any) throw InvalidInput(c.origin, "there is gravity but no material has a density");
+  for (std::size_t m = 0; m < has_element.size(); ++m)
+    if (has_element[m] && c.model.materials[m].density == 0)
+      c.model.notes.push_back("The material of region '" + c.model.materials[m].region +
+                              "' has no density and so no weight.");
+}
+
+void add_force(Compilation& c, const ForceSpec& spec) {
+  const std::string what = spec.name.empty() ? "a force" : "force '" + spec.name + "'";
+  if (!spec.force.allFinite()) throw InvalidInput(spec.at.origin, what + " is not finite");
+  const EmbeddedPoint at = embed_point(c, spec.at, "the point of " + what);
+  for (std::size_t i = 0; i < at.vertices.size(); ++i)
+    c.model.dead_load.row(at.vertices[i]) += at.weights[i] * spec.force.transpose();
+}
+
+}  // namespace
+
+void compile_loads(Compilation& c) {
+  const bool weight = !c.spec.gravity.isZero(0);
+  if (c.spec.formulation != Formulation::physical) {
+    if (weight) c.model.notes.emplace_back("Gravity is left out: the target-shape formulation knows no forces.");
+    if (!c.spec.forces.empty())
+      c.model.notes.push_back(count_text(c.spec.forces.size(), "force is", "forces are") +
+                              " left out: the target-shape formulation knows none.");
+    return;
+  }
+  if (!c.spec.gravity.allFinite()) throw InvalidInput(c.origin, "gravity is not finite");
+  c.model.dead_load = Points::Zero(c.model.rest.rows(), 3);
+  if (weight) {
+    check_density(c);
+    add_weight(c);
+  }
+  for (const ForceSpec& spec : c.spec.forces) add_force(c, spec);
+}
+
+}  // namespace softkin

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <softkin/model/compile/parts.hpp>
+
+namespace softkin {
+
+namespace {
+
+Material checked_material(const MaterialSpec& spec, Formulation formulation) {
+  const std::string owner = "the material of region '" + spec.region + "'";
+  const bool physical = formulation == Formulation::physical;
+  if (!physical && !spec.shape_ratio)
+    throw InvalidInput(spec.origin, owner + " needs shape_ratio, R_omega of the target shapes");
+  if (physical && !spec.elastic)
+    throw InvalidInput(spec.origin, owner + " needs elastic constants: the formulation is physical");
+  if (spec.shape_ratio && !(*spec.shape_ratio >= 0 && *spec.shape_ratio <= 1))
+    throw InvalidInput(spec.origin,
+                       owner + ": shape_ratio must lie in [0, 1], not be " + number_text(*spec.shape_ratio));
+  if (!(spec.weight > 0 && std::isfinite(spec.weight)))
+    throw InvalidInput(spec.origin, owner + ": weight must be above 0, not " + number_text(spec.weight));
+  if (spec.linear_range && !(*spec.linear_range > 0 && std::isfinite(*spec.linear_range)))
+    throw InvalidInput(spec.origin, owner + ": linear_range must be above 0, not " + number_text(*spec.linear_range));
+  if (!(spec.density >= 0 && std::isfinite(spec.density)))
+    throw InvalidInput(spec.origin, owner + ": density must be 0 or above, not " + number_text(spec.density));
+  Material material;
+  material.region = spec.region;
+  if (spec.shape_ratio) material.shape_ratio = *spec.shape_ratio;
+  material.weight = spec.weight;
+  if (physical) material.elastic = elastic_law(*spec.elastic, owner, spec.origin);
+  material.density = spec.density;
+  material.linear_range = spec.linear_range;
+  return material;
+}
+
+// Target shapes: an actuator's elements have no material. Physical: those of a dea have one too.
+std::size_t assign(const std::vector<Index>& elements, const std::vector<Index>& at, Index material, bool actuated_too,
+                   std::vector<ElementRole>& roles) {
+  std::size_t count = 0;
+  for (const Index i : elements) {
+    if (at[i] < 0 || (roles[at[i]].actuator >= 0 && !actuated_too)) continue;
+    roles[at[i]].material = material;
+    ++count;
+  }
+  return count;
+}
+
+void refuse_bare_elements(const Compilation& c) {
+  const Model& model = c.model;
+  const bool physical = c.spec.formulation == Formulation::physical;
+  std::map<Index, std::size_t> bare;  // by region
+  for (const auto* roles : {&model.tetrahedron_roles, &model.prism_roles})
+    for (const ElementRole& role : *roles)
+      if (role.material < 0 && (role.actuator < 0 || physical)) ++bare[role.region];
+  if (bare.empty()) return;
+  std::string text;
+  for (const auto& [region, count] : bare) {
+    const std::string where = region < 0 ? "of no region" : "of region '" + model.region_names[region] + "'";
+    text += (text.empty() ? "" : " and ") + count_text(count, "element") + " " + where;
+  }
+  const bool single = bare.size() == 1 && bare.begin()->second == 1;
+  throw InvalidInput(c.origin, text + (single ? " has" : " have") + " no material: give one, or make the region void");
+}
+
+/// Do all elements of a region belong to actuators? Their materials matter to the physical formulation alone.
+bool only_actuated(const Compilation& c, const Region& region) {
+  const auto actuated = [](const std::vector<Index>& elements, const std::vector<Index>& at,
+                           const std::vector<ElementRole>& roles) {
+    return std::all_of(elements.begin(), elements.end(),
+                       [&](Index i) { return at[i] >= 0 && roles[at[i]].actuator >= 0; });
+  };
+  return !(region.tetrahedra.empty() && region.prisms.empty()) &&
+         actuated(region.tetrahedra, c.tetrahedron_at, c.model.tetrahedron_roles) &&
+         actuated(region.prisms, c.prism_at, c.model.prism_roles);
+}
+
+}  // namespace
+
+void compile_materials(Compilation& c) {
+  Model& model = c.model;
+  const bool physical = c.spec.formulation == Formulation::physical;
+  for (const MaterialSpec& spec : c.spec.materials) {
+    if (!physical && spec.elastic && only_actuated(c, c.regions.find(spec.region, spec.origin))) continue;
+    const auto index = static_cast<Index>(model.materials.size());
+    model.materials.push_back(checked_material(spec, c.spec.formulation));
+    const Region& region = c.regions.find(spec.region, spec.origin);
+    if (assign(region.tetrahedra, c.tetrahedron_at, index, physical, model.tetrahedron_roles) +
+            assign(region.prisms, c.prism_at, index, physical, model.prism_roles) ==
+        0)
+      throw InvalidInput(spec.origin, "region '" + spec.region +
+                                          "' has a material but no element of the body: its elements are void, belong "
+                                          "to actuators, or it is not a volume");
+  }
+  refuse_bare_elements(c);
+  for (std::size_t i = 0; i < model.tetrahedra.size(); ++i)
+    if (model.tetrahedron_roles[i].material >= 0) c.solid_tetrahedra.push_back(model.tetrahedra[i]);
+  c.solid_prisms = model.prisms;
+  c.embedder.emplace(model.rest, c.solid_tetrahedra, c.solid_prisms, model.edge_nodes);
+}
+
+}  // namespace softkin

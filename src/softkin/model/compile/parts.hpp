@@ -1,0 +1,75 @@
+#pragma once
+
+#include <softkin/model/compile/embedding.hpp>
+#include <softkin/model/compile/regions.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
+
+namespace softkin {
+
+/// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
+struct Compilation {
+  Compilation(const RobotSpec& robot, const Mesh& its_mesh)
+      : spec(robot), mesh(its_mesh), origin{.file = robot.name}, regions(robot, its_mesh) {}
+
+  const RobotSpec& spec;
+  const Mesh& mesh;  // of the order that the model takes: spec.mesh, or made from it
+  Origin origin;     // of what has no line of its own
+  RegionTable regions;
+  Model model;
+  // index in the model of each element of the mesh; -1: void
+  std::vector<Index> tetrahedron_at, prism_at;
+  // the other way round
+  std::vector<Index> tetrahedron_of, prism_of;
+  // physical: tetrahedra of pneumatic chambers, oriented as the model's, and what is known of them
+  std::vector<Tetrahedron> chamber_tetrahedra;
+  std::vector<EdgeNodes> chamber_edge_nodes;
+  std::vector<double> chamber_volumes;
+  std::vector<ElementRole> chamber_roles;
+  std::vector<Index> chamber_at, chamber_of;  // as tetrahedron_at and tetrahedron_of
+  // the body: elements with a material and those of dielectric elastomers, where points are embedded
+  std::vector<Tetrahedron> solid_tetrahedra;
+  std::vector<Prism> solid_prisms;
+  std::optional<Embedder> embedder;
+};
+
+/// Drops void elements, orients the others, measures them and names their regions. Physical: sets the elements of
+/// chambers apart.
+void compile_elements(Compilation& c);
+
+/// Checks names and numbers of the actuators and gives them their elements or the boundary of their chamber.
+void compile_actuator_elements(Compilation& c);
+
+/// Gives the elements their materials (target-shape: those of no actuator), and prepares embedding in them.
+void compile_materials(Compilation& c);
+
+/// The constants of a law from those that the user gives.
+///
+/// spec    E [MPa] and nu; or c10, c01, c20, c30 [MPa] with the bulk modulus [MPa] or nu
+/// owner   names the material in messages
+/// source  mu = E / (2 (1 + nu)), lambda = E nu / ((1 + nu) (1 - 2 nu)); bulk = 2 G (1 + nu) / (3 (1 - 2 nu)) with
+///         G = 2 (c10 + c01), the shear modulus at small strain
+/// throws  InvalidInput on constants that are missing, belong to another law or lie outside their range
+[[nodiscard]] ElasticLaw elastic_law(const ElasticSpec& spec, const std::string& owner, const Origin& origin);
+
+/// Embeds cables and, for target shapes, finds their gaps and apexes; embeds the surfaces of pneumatic actuators.
+void compile_actuator_points(Compilation& c);
+void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
+
+/// Fixed vertices and rigid regions.
+void compile_supports(Compilation& c);
+
+void compile_markers(Compilation& c);
+/// After the markers.
+void compile_feet(Compilation& c);
+
+/// Physical: the weight of the elements and the forces, lumped on the vertices [N].
+void compile_loads(Compilation& c);
+
+/// A point of the body; what names it in messages. Notes one that is outside, refuses one that is far outside.
+[[nodiscard]] EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what);
+
+[[nodiscard]] std::string number_text(double value);
+[[nodiscard]] std::string count_text(std::size_t count, const std::string& one, const std::string& many = "");
+[[nodiscard]] std::string point_text(const Vec3& point);
+
+}  // namespace softkin

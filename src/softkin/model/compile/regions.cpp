@@ -1,0 +1,316 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <softkin/model/compile/regions.hpp>
+#include <softkin/model/compile/selectors.hpp>
+#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/quadratic_triangle.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
+
+namespace softkin {
+
+namespace {
+
+void sort_unique(std::vector<Index>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+template <class Cell>
+void add_vertices(const std::vector<Cell>& cells, const std::vector<Index>& which, std::vector<Index>& vertices) {
+  for (const Index i : which) vertices.insert(vertices.end(), cells[i].begin(), cells[i].end());
+}
+
+void add_element_vertices(const Mesh& mesh, Region& region) {
+  add_vertices(mesh.tetrahedra, region.tetrahedra, region.vertices);
+  if (!mesh.edge_nodes.empty()) add_vertices(mesh.edge_nodes, region.tetrahedra, region.vertices);
+  add_vertices(mesh.prisms, region.prisms, region.vertices);
+}
+
+void check_indices(const std::vector<Index>& indices, std::size_t count, const std::string& owner,
+                   const std::string& what, const Origin& origin) {
+  for (const Index i : indices)
+    if (i < 0 || static_cast<std::size_t>(i) >= count)
+      throw InvalidInput(origin, owner + " names " + what + " " + std::to_string(i) + ", but the mesh has " +
+                                     std::to_string(count) + " (counted from 0)");
+}
+
+Region complete(Region region, const Mesh& mesh, const EdgeTable& edges, const Origin& origin) {
+  const std::string owner = "region '" + region.name + "' of the mesh";
+  check_indices(region.tetrahedra, mesh.tetrahedra.size(), owner, "tetrahedron", origin);
+  check_indices(region.prisms, mesh.prisms.size(), owner, "prism", origin);
+  check_indices(region.triangles, mesh.triangles.size(), owner, "triangle", origin);
+  check_indices(region.quads, mesh.quads.size(), owner, "quad", origin);
+  check_indices(region.vertices, static_cast<std::size_t>(mesh.vertices.rows()), owner, "vertex", origin);
+  add_element_vertices(mesh, region);
+  add_vertices(mesh.triangles, region.triangles, region.vertices);
+  add_vertices(mesh.quads, region.quads, region.vertices);
+  if (!edges.empty())
+    for (const Index i : region.triangles)
+      for (const Index node : edges.of(mesh.triangles[i]))
+        if (node >= 0) region.vertices.push_back(node);
+  for (auto* list : {&region.tetrahedra, &region.prisms, &region.triangles, &region.quads, &region.vertices})
+    sort_unique(*list);
+  return region;
+}
+
+template <class Cell, class Accept>
+std::vector<Index> cells_where(const std::vector<Cell>& cells, const Accept& accept) {
+  std::vector<Index> found;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (accept(cells[i])) found.push_back(static_cast<Index>(i));
+  return found;
+}
+
+template <class Cell>
+Vec3 centroid(const Points& vertices, const Cell& cell) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index i : cell) sum += vertex_at(vertices, i);
+  return sum / static_cast<double>(cell.size());
+}
+
+Region every_element(const Mesh& mesh) {
+  Region all;
+  all.name = "all";
+  all.tetrahedra.resize(mesh.tetrahedra.size());
+  all.prisms.resize(mesh.prisms.size());
+  std::iota(all.tetrahedra.begin(), all.tetrahedra.end(), 0);
+  std::iota(all.prisms.begin(), all.prisms.end(), 0);
+  add_element_vertices(mesh, all);
+  sort_unique(all.vertices);
+  return all;
+}
+
+}  // namespace
+
+void check_cells(const Mesh& mesh, const Origin& origin) {
+  const auto check = [&](const auto& cells, const std::string& what) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (const Index v : cells[i])
+        if (v < 0 || v >= mesh.vertices.rows())
+          throw InvalidInput(origin, what + " " + std::to_string(i) + " names vertex " + std::to_string(v) +
+                                         ", but the mesh has " + std::to_string(mesh.vertices.rows()) +
+                                         " (counted from 0)");
+  };
+  check(mesh.tetrahedra, "tetrahedron");
+  check(mesh.prisms, "prism");
+  check(mesh.triangles, "triangle");
+  check(mesh.quads, "quad");
+  if (!mesh.edge_nodes.empty()) {
+    if (mesh.edge_nodes.size() != mesh.tetrahedra.size() || !mesh.prisms.empty())
+      throw InvalidInput(origin, "a mesh of order 2 needs edge nodes for every element, and prisms have none");
+    check(mesh.edge_nodes, "the edges of tetrahedron");
+  }
+  for (Index i = 0; i < mesh.vertices.rows(); ++i)
+    if (!mesh.vertices.row(i).allFinite())
+      throw InvalidInput(origin, "vertex " + std::to_string(i) + " (from 0) is not finite");
+}
+
+namespace {
+
+EdgeTable checked_edges(const Mesh& mesh, const Origin& origin) {
+  check_cells(mesh, origin);
+  try {
+    return EdgeTable(mesh);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(origin, error.what());
+  }
+}
+
+}  // namespace
+
+RegionTable::RegionTable(const RobotSpec& spec, const Mesh& mesh)
+    : mesh_(mesh), edges_(checked_edges(mesh, {.file = spec.name})) {
+  const Origin origin{.file = spec.name};
+  if (mesh_.vertices.rows() > 0)
+    tolerance_ = 1e-9 * (mesh_.vertices.colwise().maxCoeff() - mesh_.vertices.colwise().minCoeff()).norm();
+  all_ = every_element(mesh_);
+  std::set<std::string> names{"all"};
+  for (const Region& region : mesh_.regions) {
+    regions_.push_back(complete(region, mesh_, edges_, origin));
+    const Region& added = regions_.back();
+    if (region.name == "all" && (added.tetrahedra != all_.tetrahedra || added.prisms != all_.prisms))
+      throw InvalidInput(origin, "the mesh has a region 'all' that is not every element: rename it");
+    names.insert(region.name);
+  }
+  for (const RegionSpec& region : spec.regions) {
+    if (!names.insert(region.name).second)
+      throw InvalidInput(region.origin, "there is already a region '" + region.name + "'");
+    regions_.push_back(select(region.selector, region.name, region.origin));
+  }
+}
+
+const Region& RegionTable::find(const std::string& name, const Origin& origin) const {
+  if (name == all_.name) return all_;
+  const Region* found = nullptr;
+  for (const Region& region : regions_) {
+    if (region.name != name) continue;
+    if (found) throw InvalidInput(origin, "the mesh has two regions '" + name + "': rename one");
+    found = &region;
+  }
+  if (found && found->vertices.empty() && found->tetrahedra.empty() && found->prisms.empty())
+    throw InvalidInput(origin, "region '" + name + "' is empty");
+  if (found) return *found;
+  std::vector<std::string> names{all_.name};
+  for (const Region& region : regions_) names.push_back(region.name);
+  throw InvalidInput(origin, "there is no region '" + name + "'" + suggest_name(name, names));
+}
+
+Region RegionTable::resolve(const RegionRef& reference) const {
+  if (const auto* name = std::get_if<std::string>(&reference.region)) return find(*name, reference.origin);
+  return select(std::get<Selector>(reference.region), "", reference.origin);
+}
+
+Region RegionTable::select(const Selector& selector, const std::string& name, const Origin& origin) const {
+  check_shape(selector, origin);
+  const std::string owner = name.empty() ? "the " + kind_of(selector) : "region '" + name + "'";
+  Region region;
+  region.name = name;
+  if (const auto* vertices = std::get_if<VertexList>(&selector)) {
+    region.vertices = vertices->vertices;
+    check_indices(region.vertices, static_cast<std::size_t>(mesh_.vertices.rows()), owner, "vertex", origin);
+    sort_unique(region.vertices);
+    std::vector<bool> listed(static_cast<std::size_t>(mesh_.vertices.rows()));
+    for (const Index v : region.vertices) listed[v] = true;
+    const auto accept = [&](const auto& cell) {
+      return std::all_of(cell.begin(), cell.end(), [&](Index v) { return listed[v]; });
+    };
+    region.tetrahedra = cells_where(mesh_.tetrahedra, accept);
+    region.prisms = cells_where(mesh_.prisms, accept);
+    region.dimension = 0;
+    const std::vector<Index> nodes = edges_.between(region.vertices);
+    region.vertices.insert(region.vertices.end(), nodes.begin(), nodes.end());
+    sort_unique(region.vertices);
+  } else if (const auto* elements = std::get_if<ElementList>(&selector)) {
+    region.tetrahedra = elements->tetrahedra;
+    check_indices(region.tetrahedra, mesh_.tetrahedra.size(), owner, "tetrahedron", origin);
+    sort_unique(region.tetrahedra);
+    add_element_vertices(mesh_, region);
+    sort_unique(region.vertices);
+  } else {
+    const auto accept = [&](const auto& cell) { return holds(selector, centroid(mesh_.vertices, cell), tolerance_); };
+    for (Index i = 0; i < mesh_.vertices.rows(); ++i)
+      if (holds(selector, vertex_at(mesh_.vertices, i), tolerance_)) region.vertices.push_back(i);
+    region.tetrahedra = cells_where(mesh_.tetrahedra, accept);
+    region.prisms = cells_where(mesh_.prisms, accept);
+    region.dimension = region.tetrahedra.empty() && region.prisms.empty() ? 0 : 3;
+  }
+  if (region.vertices.empty() && region.tetrahedra.empty() && region.prisms.empty())
+    throw InvalidInput(origin, owner + " holds no vertex and no element");
+  return region;
+}
+
+std::string label(const RegionRef& reference) {
+  if (const auto* name = std::get_if<std::string>(&reference.region)) return "region '" + *name + "'";
+  return "the " + kind_of(std::get<Selector>(reference.region));
+}
+
+namespace {
+
+using VertexWeights = std::map<Index, double>;
+
+template <class Cell>
+void spread(const Cell& cell, double measure, VertexWeights& weights) {
+  for (const Index i : cell) weights[i] += measure / static_cast<double>(cell.size());
+}
+
+double area(const Points& vertices, const Triangle& t) {
+  const Vec3 a = vertex_at(vertices, t[0]);
+  return 0.5 * (vertex_at(vertices, t[1]) - a).cross(vertex_at(vertices, t[2]) - a).norm();
+}
+
+void spread_quad(const Points& vertices, const Quad& q, VertexWeights& weights) {
+  for (const Triangle& t :
+       {Triangle{q[0], q[1], q[2]}, Triangle{q[0], q[2], q[3]}, Triangle{q[0], q[1], q[3]}, Triangle{q[1], q[2], q[3]}})
+    spread(t, 0.5 * area(vertices, t), weights);
+}
+
+void spread_quadratic(const Mesh& mesh, Index tetrahedron, VertexWeights& weights) {
+  const Tetrahedron& corners = mesh.tetrahedra[tetrahedron];
+  const EdgeNodes& edge_nodes = mesh.edge_nodes[tetrahedron];
+  TetrahedronWeights integrals = shape_integrals(nodes_of(mesh.vertices, corners, edge_nodes));
+  if (integrals.sum() < 0) integrals = -integrals;  // in the file's order the corners may be reversed
+  for (int i = 0; i < 10; ++i) weights[i < 4 ? corners[i] : edge_nodes[i - 4]] += integrals[i];
+}
+
+void spread_quadratic(const Points& vertices, const Triangle& corners, const std::array<Index, 3>& edge_nodes,
+                      VertexWeights& weights) {
+  if (*std::min_element(edge_nodes.begin(), edge_nodes.end()) < 0)
+    throw InvalidInput("a triangle of the region is not a face of an element of order 2");
+  TriangleNodes nodes;
+  for (int i = 0; i < 3; ++i) {
+    nodes.row(i) = vertices.row(corners[i]);
+    nodes.row(i + 3) = vertices.row(edge_nodes[i]);
+  }
+  const Eigen::Matrix<double, 6, 1> integrals = shape_integrals(nodes);
+  for (int i = 0; i < 6; ++i) weights[i < 3 ? corners[i] : edge_nodes[i - 3]] += integrals[i];
+}
+
+/// By integrals of the shape functions over the region's cells.
+VertexWeights integrated(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
+  VertexWeights weights;
+  if (region.dimension == 3)
+    for (const Index i : region.tetrahedra) spread_quadratic(mesh, i, weights);
+  else
+    for (const Index i : region.triangles)
+      spread_quadratic(mesh.vertices, mesh.triangles[i], edges.of(mesh.triangles[i]), weights);
+  double total = 0;
+  for (const auto& [vertex, weight] : weights) total += weight;
+  // corners of straight cells weigh nothing, but for rounding
+  std::erase_if(weights, [&](const auto& entry) { return std::abs(entry.second) < 1e-15 * total; });
+  return weights;
+}
+
+}  // namespace
+
+EmbeddedPoint mean_of(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
+  const Points& vertices = mesh.vertices;
+  VertexWeights weights;
+  if (region.dimension >= 2 && !edges.empty()) {
+    weights = integrated(region, mesh, edges);
+  } else if (region.dimension == 3) {
+    for (const Index i : region.tetrahedra)
+      spread(mesh.tetrahedra[i], std::abs(signed_volume(vertices, mesh.tetrahedra[i])), weights);
+    for (const Index i : region.prisms)
+      spread(mesh.prisms[i], std::abs(signed_volume(vertices, mesh.prisms[i])), weights);
+  } else if (region.dimension == 2) {
+    for (const Index i : region.triangles) spread(mesh.triangles[i], area(vertices, mesh.triangles[i]), weights);
+    for (const Index i : region.quads) spread_quad(vertices, mesh.quads[i], weights);
+  } else {
+    for (const Index i : region.vertices) weights[i] = 1;
+  }
+  double total = 0;
+  for (const auto& [vertex, weight] : weights) total += weight;
+  if (!(total > 0)) throw InvalidInput("region '" + region.name + "' has no extent to take the mean of");
+  EmbeddedPoint mean;
+  for (const auto& [vertex, weight] : weights) {
+    mean.vertices.push_back(vertex);
+    mean.weights.push_back(weight / total);
+  }
+  return mean;
+}
+
+bool span_plane(const Points& points, const std::vector<Index>& vertices) {
+  if (vertices.size() < 3) return false;
+  const Vec3 first = vertex_at(points, vertices[0]);
+  const auto farthest = [&](const auto& distance) {
+    double most = 0;
+    Vec3 at = first;
+    for (const Index i : vertices) {
+      const Vec3 p = vertex_at(points, i);
+      if (distance(p) <= most) continue;
+      most = distance(p);
+      at = p;
+    }
+    return std::pair(most, at);
+  };
+  const auto [length, second] = farthest([&](const Vec3& p) { return (p - first).norm(); });
+  if (length == 0) return false;
+  const Vec3 axis = (second - first) / length;
+  return farthest([&](const Vec3& p) { return (p - first).cross(axis).norm(); }).first > 1e-6 * length;
+}
+
+}  // namespace softkin

@@ -1,0 +1,88 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+
+namespace softkin {
+
+namespace {
+
+struct RulePoint {
+  Barycentric at;
+  double weight;  // the weights sum to 1
+};
+
+// The points that give one corner the coordinate 1 - 3 a and the others a.
+std::array<Barycentric, 4> around_corners(double a) {
+  std::array<Barycentric, 4> points;
+  for (int i = 0; i < 4; ++i) points[i] = Barycentric::Constant(a) + (1 - 4 * a) * Barycentric::Unit(i);
+  return points;
+}
+
+std::array<RulePoint, 14> make_rule() {
+  std::array<RulePoint, 14> rule;
+  int count = 0;
+  for (const Barycentric& at : around_corners(0.31088591926330060980)) rule[count++] = {at, 0.11268792571801585080};
+  for (const Barycentric& at : around_corners(0.09273525031089122640)) rule[count++] = {at, 0.07349304311636194954};
+  constexpr double a = 0.04550370412564964949;
+  for (const auto& [i, j] : tetrahedron_edges)
+    rule[count++] = {Barycentric::Constant(a) + (0.5 - 2 * a) * (Barycentric::Unit(i) + Barycentric::Unit(j)),
+                     0.04254602077708146644};
+  return rule;
+}
+
+const std::array<RulePoint, 14>& rule_of_degree_5() {
+  static const std::array<RulePoint, 14> rule = make_rule();
+  return rule;
+}
+
+double jacobian(const TetrahedronNodes& nodes, const Barycentric& l) {
+  const Eigen::Matrix<double, 3, 4> along = nodes.transpose() * quadratic_slope(l);
+  return (along.rightCols<3>().colwise() - along.col(0)).determinant();
+}
+
+}  // namespace
+
+TetrahedronNodes nodes_of(const Points& vertices, const Tetrahedron& element, const EdgeNodes& edge_nodes) {
+  TetrahedronNodes nodes;
+  for (int i = 0; i < 4; ++i) nodes.row(i) = vertices.row(element[i]);
+  for (int i = 0; i < 6; ++i) nodes.row(i + 4) = vertices.row(edge_nodes[i]);
+  return nodes;
+}
+
+TetrahedronWeights quadratic_shape(const Barycentric& l) {
+  TetrahedronWeights shape;
+  for (int i = 0; i < 4; ++i) shape[i] = l[i] * (2 * l[i] - 1);
+  for (int e = 0; e < 6; ++e) shape[e + 4] = 4 * l[tetrahedron_edges[e][0]] * l[tetrahedron_edges[e][1]];
+  return shape;
+}
+
+Eigen::Matrix<double, 10, 4> quadratic_slope(const Barycentric& l) {
+  Eigen::Matrix<double, 10, 4> slope = Eigen::Matrix<double, 10, 4>::Zero();
+  for (int i = 0; i < 4; ++i) slope(i, i) = 4 * l[i] - 1;
+  for (int e = 0; e < 6; ++e) {
+    const auto& [i, j] = tetrahedron_edges[e];
+    slope(e + 4, i) = 4 * l[j];
+    slope(e + 4, j) = 4 * l[i];
+  }
+  return slope;
+}
+
+TetrahedronWeights shape_integrals(const TetrahedronNodes& nodes) {
+  TetrahedronWeights integrals = TetrahedronWeights::Zero();
+  for (const RulePoint& point : rule_of_degree_5())
+    integrals += point.weight / 6 * jacobian(nodes, point.at) * quadratic_shape(point.at);
+  return integrals;
+}
+
+double least_jacobian(const TetrahedronNodes& nodes) {
+  constexpr double degree_2 = 0.13819660112501051518;  // (5 - sqrt 5) / 20
+  double least = std::numeric_limits<double>::infinity();
+  const auto visit = [&](const Barycentric& l) { least = std::min(least, jacobian(nodes, l)); };
+  for (const Barycentric& corner : around_corners(0)) visit(corner);
+  for (const Barycentric& point : around_corners(degree_2)) visit(point);
+  for (const RulePoint& point : rule_of_degree_5()) visit(point.at);
+  return least;
+}
+
+}  // namespace softkin

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <softkin/model/mesh/mesh.hpp>
+
+namespace softkin {
+
+/// Nodes of a quadratic tetrahedron: the corners, then those on its edges in the order of tetrahedron_edges [mm].
+using TetrahedronNodes = Eigen::Matrix<double, 10, 3>;
+using TetrahedronWeights = Eigen::Matrix<double, 10, 1>;
+using Barycentric = Eigen::Vector4d;
+
+[[nodiscard]] TetrahedronNodes nodes_of(const Points& vertices, const Tetrahedron& element,
+                                        const EdgeNodes& edge_nodes);
+
+/// Shape functions L_i (2 L_i - 1) of the corners and 4 L_i L_j of the edges at the barycentric coordinates L.
+[[nodiscard]] TetrahedronWeights quadratic_shape(const Barycentric& l);
+/// Their derivatives with respect to the four coordinates.
+[[nodiscard]] Eigen::Matrix<double, 10, 4> quadratic_slope(const Barycentric& l);
+
+/// Integrals of the shape functions over the element, signed [mm^3]; their sum is its volume. Exact for curved edges:
+/// the integrand is of degree 5 and so is the rule. Straight edges: -1/20 of the volume at a corner, 1/5 at an edge.
+///
+/// source  N. J. Walkington, Quadrature on simplices of arbitrary dimension, 2000: 14 points, degree 5
+[[nodiscard]] TetrahedronWeights shape_integrals(const TetrahedronNodes& nodes);
+
+/// The least determinant of d(position)/d(L_1, L_2, L_3) at the corners, the four points of the rule of degree 2 with
+/// which the energy is integrated, and those of shape_integrals [mm^3]; 6 volumes where the edges are straight.
+[[nodiscard]] double least_jacobian(const TetrahedronNodes& nodes);
+
+}  // namespace softkin

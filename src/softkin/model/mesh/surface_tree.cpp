@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <softkin/core/error.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double margin = 1e-9;  // in barycentric coordinates: nearer to an edge than this is doubtful
+
+std::vector<Bounds> triangle_bounds(const Points& vertices, const std::vector<Triangle>& triangles) {
+  Bounds all;
+  for (Index i = 0; i < vertices.rows(); ++i) all.extend(vertex_at(vertices, i));
+  const Vec3 padding = Vec3::Constant(vertices.rows() > 0 ? 1e-9 * all.diagonal().norm() : 0);
+  std::vector<Bounds> bounds;
+  bounds.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    Bounds box;
+    for (const Index i : t) box.extend(vertex_at(vertices, i));
+    bounds.emplace_back(box.min() - padding, box.max() + padding);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+SurfaceTree::SurfaceTree(const Points& vertices, std::vector<Triangle> triangles)
+    : vertices_(vertices), triangles_(std::move(triangles)), tree_(triangle_bounds(vertices_, triangles_)) {}
+
+std::optional<double> SurfaceTree::first_hit(const Vec3& origin, const Vec3& direction, double after) const {
+  std::optional<double> first;
+  tree_.visit_ray(origin, direction, [&](Index item) {
+    const Triangle& t = triangles_[item];
+    const auto hit = meet_plane(origin, direction, vertex_at(vertices_, t[0]), vertex_at(vertices_, t[1]),
+                                vertex_at(vertices_, t[2]));
+    if (hit && hit->weights.minCoeff() >= -margin && hit->t > after && (!first || hit->t < *first)) first = hit->t;
+    return true;
+  });
+  return first;
+}
+
+std::optional<bool> SurfaceTree::crosses_oddly(const Vec3& point, const Vec3& direction) const {
+  bool odd = false, clear = true;
+  tree_.visit_ray(point, direction, [&](Index item) {
+    const Triangle& t = triangles_[item];
+    const auto hit = meet_plane(point, direction, vertex_at(vertices_, t[0]), vertex_at(vertices_, t[1]),
+                                vertex_at(vertices_, t[2]));
+    const double inside = hit ? hit->weights.minCoeff() : 0;
+    if (std::abs(inside) < margin) return clear = false;
+    if (inside > 0 && hit->t > 0) odd = !odd;
+    return true;
+  });
+  return clear ? std::optional<bool>(odd) : std::nullopt;
+}
+
+double SurfaceTree::winding_number(const Vec3& point) const {
+  double solid_angle = 0;
+  for (const Triangle& t : triangles_) {
+    const Vec3 a = vertex_at(vertices_, t[0]) - point, b = vertex_at(vertices_, t[1]) - point,
+               c = vertex_at(vertices_, t[2]) - point;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    solid_angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return solid_angle / (4 * std::numbers::pi);
+}
+
+bool SurfaceTree::contains(const Vec3& point) const {
+  if (!tree_.contains(point)) return false;
+  // directions that no designed part is likely to be aligned with
+  static const Vec3 directions[] = {{0.8371, 0.4127, 0.3589}, {-0.2953, 0.9013, 0.3163}, {0.1789, -0.3371, 0.9241}};
+  for (const Vec3& direction : directions)
+    if (const auto odd = crosses_oddly(point, direction)) return *odd;
+  return std::abs(winding_number(point)) > 0.5;
+}
+
+TriangleSurface closed_outwards(TriangleSurface surface) {
+  std::vector<std::pair<Index, Index>> edges;
+  edges.reserve(3 * surface.triangles.size());
+  for (const Triangle& t : surface.triangles)
+    for (int i = 0; i < 3; ++i) {
+      if (t[i] < 0 || t[i] >= surface.vertices.rows())
+        throw InvalidInput("the surface names a vertex that is not there");
+      edges.emplace_back(t[i], t[(i + 1) % 3]);
+    }
+  std::sort(edges.begin(), edges.end());
+  const bool twice = std::adjacent_find(edges.begin(), edges.end()) != edges.end();
+  const auto open = std::find_if(edges.begin(), edges.end(), [&](const auto& edge) {
+    return !std::binary_search(edges.begin(), edges.end(), std::pair(edge.second, edge.first));
+  });
+  if (twice)
+    throw InvalidInput("the surface has an edge of more than two triangles, or triangles of mixed orientation");
+  if (edges.empty() || open != edges.end()) throw InvalidInput("the surface is not closed");
+
+  const double volume = enclosed_volume(surface.vertices, surface.triangles);
+  if (!(std::abs(volume) > 0)) throw InvalidInput("the surface encloses no volume");
+  if (volume < 0)
+    for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+  return surface;
+}
+
+}  // namespace softkin

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <softkin/model/mesh/box_tree.hpp>
+#include <softkin/model/mesh/mesh.hpp>
+
+namespace softkin {
+
+/// A triangle surface that answers where a ray meets it and, if it is closed, what lies inside.
+class SurfaceTree {
+ public:
+  SurfaceTree(const Points& vertices, std::vector<Triangle> triangles);
+
+  /// The least t > after at which origin + t direction meets the surface; direction need not have length 1.
+  [[nodiscard]] std::optional<double> first_hit(const Vec3& origin, const Vec3& direction, double after) const;
+
+  /// Whether the point lies inside; the surface must be closed.
+  [[nodiscard]] bool contains(const Vec3& point) const;
+
+ private:
+  [[nodiscard]] std::optional<bool> crosses_oddly(const Vec3& point, const Vec3& direction) const;
+  [[nodiscard]] double winding_number(const Vec3& point) const;
+
+  Points vertices_;
+  std::vector<Triangle> triangles_;
+  BoxTree tree_;
+};
+
+/// throws  InvalidInput unless every edge belongs to exactly two triangles that run through it in opposite directions
+/// returns the surface with its normals outwards
+[[nodiscard]] TriangleSurface closed_outwards(TriangleSurface surface);
+
+}  // namespace softkin

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <softkin/model/equilibrium.hpp>
+#include <softkin/model/model.hpp>
+#include <string>
+
+namespace softkin {
+
+/// "pneumatic", "cable" or "dea".
+[[nodiscard]] const char* kind_name(const Actuator& actuator);
+/// What the user commands: "volume", "length", "area" (over that at rest), "pressure" or "tension".
+[[nodiscard]] const char* control_name(const Actuator& actuator);
+/// "ratio", "pressure" or "tension".
+[[nodiscard]] const char* command_name(const Actuator& actuator);
+/// The unit of what the user commands, bare: "", "kPa" or "N"; as a table has it: "[-]", "[kPa]" or "[N]".
+[[nodiscard]] std::string command_unit(const Actuator& actuator);
+[[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
+/// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa".
+[[nodiscard]] std::string command_column(const Actuator& actuator);
+
+/// What a physical robot answers with: "pressure_kPa" (pneumatic), "tension_N" (cable), or "" (dea).
+[[nodiscard]] std::string multiplier_key(const Actuator& actuator);
+/// "curve_pressure_kPa" or "curve_voltage_kV".
+[[nodiscard]] const char* curve_key(const ActuatorCurve& curve);
+
+/// "1.62" or "50 kPa".
+[[nodiscard]] std::string command_text(const Actuator& actuator, double value, int digits = 6);
+/// "its range, 1 to 2 [-]" or "its range, 0 to 80 kPa".
+[[nodiscard]] std::string range_text(const Actuator& actuator);
+
+[[nodiscard]] const char* law_name(Law law);
+[[nodiscard]] const char* formulation_name(Formulation formulation);
+/// "converged", "not converged", "interrupted" or "limit".
+[[nodiscard]] const char* name_of(Status status);
+
+/// The marker that shows where a foot is. foot: 0 the rear one, 1 the front one.
+[[nodiscard]] const std::string& foot_name(const Model& model, std::size_t foot);
+
+[[nodiscard]] std::optional<Index> find_actuator(const Model& model, const std::string& name);
+
+}  // namespace softkin

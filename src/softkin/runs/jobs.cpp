@@ -1,0 +1,175 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/jobs.hpp>
+#include <softkin/runs/records_json.hpp>
+#include <utility>
+
+namespace softkin::runs {
+
+namespace {
+
+/// Reads a line by from_json of the record. throws  InvalidInput where it is none of to_json
+template <class Record, class Read>
+Codec<Record> codec_of(std::function<Json(const Record&)> write, Read read) {
+  return {[write](const Record& record) { return line_of(write(record)); },
+          [read](std::string_view line) {
+            Record record;
+            try {
+              read(Json::parse(line), record);
+            } catch (const std::out_of_range&) {
+              throw InvalidInput("it is not a report that this command wrote");
+            } catch (const Json::exception&) {
+              throw InvalidInput("it is not a report that this command wrote");
+            }
+            return record;
+          }};
+}
+
+}  // namespace
+
+PathJob::PathJob(const Model& model, const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
+                 const StaticsOptions& options)
+    : model_(model),
+      statics_(statics),
+      steps_(steps),
+      file_(std::move(file)),
+      options_(options),
+      state_(statics.rest()) {}
+
+Codec<StepRecord> PathJob::codec() const {
+  return codec_of<StepRecord>([this](const StepRecord& record) { return to_json(model_, record); },
+                              [this](const Json& json, StepRecord& record) { from_json(model_, json, record); });
+}
+
+std::string PathJob::mismatch(std::size_t number, const StepRecord& record) const {
+  const std::string step = "step " + std::to_string(number);
+  if (number >= steps_.size()) return "it has " + step + ", but " + file_ + " ends before; the path has changed";
+  const ActuationStep& asked = steps_[number];
+  const std::string where = file_ + ":" + std::to_string(asked.line);
+  for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+    const Actuator& actuator = model_.actuators[a];
+    const double before = record.actuation[static_cast<Index>(a)], now = asked.actuation[static_cast<Index>(a)];
+    if (before != now)
+      return step + " was solved for " + actuator.name + " = " + command_text(actuator, before, 12) + ", but " + where +
+             " asks for " + command_text(actuator, now, 12) + "; the path has changed";
+  }
+  if (record.time_s != asked.time) return step + " has another time than " + where + "; the path has changed";
+  return "";
+}
+
+std::optional<PathJob::Made> PathJob::make(std::size_t number, const ProgressCallback& progress) {
+  Equilibrium found = statics_.solve(steps_[number].actuation, state_, options_, progress);
+  if (found.report.status == Status::interrupted) return std::nullopt;
+  ElementDeformation deformation = deformation_of(model_, found.state.positions);
+  StepRecord record = step_record(model_, found, deformation);
+  record.time_s = steps_[number].time;
+  state_ = std::move(found.state);
+  return Made{std::move(record), state_.positions, std::move(deformation)};
+}
+
+void PathJob::go_on(std::size_t, const StepRecord& before, Points positions) {
+  statics_.forget();
+  state_ = state_of(model_, before, std::move(positions));
+}
+
+FollowJob::FollowJob(const Model& model, const Statics& statics, const MarkerPath& path, std::string file,
+                     const TrajectoryOptions& options)
+    : model_(model), statics_(statics), path_(path), file_(std::move(file)), follower_(model, statics, path, options) {}
+
+Codec<WaypointRecord> FollowJob::codec() const {
+  return codec_of<WaypointRecord>(
+      [this](const WaypointRecord& record) { return to_json(model_, path_, record); },
+      [this](const Json& json, WaypointRecord& record) { from_json(model_, path_, json, record); });
+}
+
+std::string FollowJob::mismatch(std::size_t number, const WaypointRecord& record) const {
+  if (number >= path_.waypoints.size())
+    return "it has waypoint " + std::to_string(number) + ", but the path ends before; the path has changed";
+  const Waypoint& asked = path_.waypoints[number];
+  if (record.asked.targets == asked.targets && record.asked.time == asked.time &&
+      record.asked.inserted == asked.inserted)
+    return "";
+  return "waypoint " + std::to_string(number) + " is another one than in " + file_ + "; the path has changed";
+}
+
+std::optional<FollowJob::Made> FollowJob::make(std::size_t number, const ProgressCallback& progress) {
+  const InverseResult found = follower_.advance(progress);
+  if (found.status == InverseStatus::interrupted) return std::nullopt;
+  const Points& positions = found.equilibrium.state.positions;
+  ElementDeformation deformation = deformation_of(model_, positions);
+  WaypointRecord record = waypoint_record(model_, path_.waypoints[number], found, deformation);
+  return Made{std::move(record), positions, std::move(deformation)};
+}
+
+void FollowJob::go_on(std::size_t number, const WaypointRecord& before, Points positions) {
+  statics_.forget();
+  follower_.resume(number, state_of(model_, before, std::move(positions)));
+}
+
+namespace {
+
+void check_closed(const Model& model, const std::string& file, const std::vector<ActuationStep>& gait) {
+  if (gait.size() < 2) throw InvalidInput({file}, "a gait needs two rows or more, not " + std::to_string(gait.size()));
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const auto value = [&](const ActuationStep& step) { return step.actuation[static_cast<Index>(a)]; };
+    const double first = value(gait.front()), last = value(gait.back());
+    if (std::abs(first - last) > 1e-9 * std::max(1.0, std::abs(first)))
+      throw InvalidInput({file, gait.back().line}, "a gait ends where it begins, but " + model.actuators[a].name +
+                                                       " ends at " + command_text(model.actuators[a], last) +
+                                                       " and begins at " + command_text(model.actuators[a], first));
+  }
+}
+
+}  // namespace
+
+std::vector<GaitStep> repeated(const Model& model, const std::string& file, const std::vector<ActuationStep>& gait,
+                               std::size_t cycles) {
+  check_closed(model, file, gait);
+  const bool timed = gait.front().time.has_value();
+  const double period = timed ? *gait.back().time - *gait.front().time : 0;
+  std::vector<GaitStep> steps{{gait.front(), 0}};
+  for (std::size_t cycle = 1; cycle <= cycles; ++cycle)
+    for (std::size_t row = 1; row < gait.size(); ++row) {
+      steps.push_back({gait[row], cycle});
+      if (timed) *steps.back().asked.time += static_cast<double>(cycle - 1) * period;
+    }
+  return steps;
+}
+
+WalkJob::WalkJob(const Model& model, Walker& walker, const std::vector<GaitStep>& steps, std::string file)
+    : model_(model), walker_(walker), steps_(steps), file_(std::move(file)) {}
+
+Codec<WalkRecord> WalkJob::codec() const {
+  return codec_of<WalkRecord>([this](const WalkRecord& record) { return to_json(model_, record); },
+                              [this](const Json& json, WalkRecord& record) { from_json(model_, json, record); });
+}
+
+std::string WalkJob::mismatch(std::size_t number, const WalkRecord& record) const {
+  const std::string step = "step " + std::to_string(number);
+  if (number >= steps_.size())
+    return "it has " + step + ", but " + counted(steps_.back().cycle, "cycle") + " of " + file_ + " end before";
+  const ActuationStep& asked = steps_[number].asked;
+  if (record.actuation == asked.actuation && record.time_s == asked.time) return "";
+  return step + " is another one than in " + file_ + "; the gait has changed";
+}
+
+std::optional<WalkJob::Made> WalkJob::make(std::size_t number, const ProgressCallback& progress) {
+  const WalkStep found = walker_.advance(steps_[number].asked.actuation, progress);
+  if (found.equilibrium.report.status == Status::interrupted) return std::nullopt;
+  const Points& positions = found.equilibrium.state.positions;
+  ElementDeformation deformation = deformation_of(model_, positions);
+  WalkRecord record = walk_record(model_, steps_[number].cycle, found, deformation);
+  record.time_s = steps_[number].asked.time;
+  return Made{std::move(record), positions, std::move(deformation)};
+}
+
+void WalkJob::go_on(std::size_t, const WalkRecord& before, Points positions) {
+  WalkStep last = before.walk;
+  last.equilibrium.state = state_of(model_, before, std::move(positions));
+  walker_.resume(last);
+}
+
+}  // namespace softkin::runs

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <softkin/core/error.hpp>
+#include <softkin/model/model.hpp>
+#include <softkin/runs/records.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace softkin::runs {
+
+/// What a run writes.
+struct RunFiles {
+  std::filesystem::path report{};  // JSON; empty: none
+  std::filesystem::path shapes{};  // .pvd of a series, its shapes beside it; empty: none
+};
+
+/// How a record is written and read: a line of JSON.
+template <class Record>
+struct Codec {
+  std::function<std::string(const Record&)> write;
+  std::function<Record(std::string_view line)> read;  // throws  InvalidInput where the line is none of write
+};
+
+/// The records of a run on disk. While it goes on they are in a journal beside the report, REPORT.run; at its end they
+/// become the report and the series that users know. A killed run leaves its journal and the shapes, and nothing torn.
+class RecordLog {
+ public:
+  /// head  what the report says before its steps: a JSON object on one line
+  /// same  keys of the head that a run to be resumed must have had alike, beside version, robot and solver
+  RecordLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same);
+  ~RecordLog();
+  RecordLog(RecordLog&&) noexcept;
+
+  /// Goes on with the journal or, where there is none, with the report; else begins.
+  ///
+  /// take     called with every line; throws where it is not what is asked for now (refuse)
+  /// remark   for the user, of what was not there as it was written; empty: all was
+  /// throws   InvalidInput where it is no report, or one of another robot, solver or `same`
+  void resume(const std::function<const StepRecord&(std::size_t number, std::string_view line)>& take,
+              std::string& remark);
+  [[noreturn]] void refuse(const std::string& why) const;
+
+  [[nodiscard]] std::size_t size() const;
+
+  /// Writes the shape into the series and the record, with its shape, behind the others.
+  void add_shape(StepRecord& record, const Points& positions, const ElementDeformation& deformation) const;
+  void add(std::string_view line, double seconds);
+  /// The shape of a record as it was written; none where it is not there.
+  [[nodiscard]] std::optional<Points> shape_of(std::size_t number, const StepRecord& record) const;
+  void each(const std::function<bool(std::size_t number, std::string_view line)>& visit) const;
+
+  /// One more entry of the report's head.
+  void note(const std::string& key, const std::vector<double>& values);
+  /// The report, piece by piece.
+  void report(const std::function<void(std::string_view piece)>& write) const;
+  /// Writes the report, and removes the journal.
+  void finish();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// A RecordLog of one kind of records.
+template <class Record>
+class TypedLog : public RecordLog {
+ public:
+  TypedLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same, Codec<Record> codec)
+      : RecordLog(model, std::move(files), std::move(head), std::move(same)), codec_(std::move(codec)) {}
+
+  /// check: why a record is not what is asked for now; empty: it is
+  void resume(const std::function<std::string(std::size_t number, const Record&)>& check, std::string& remark) {
+    Record record;
+    RecordLog::resume(
+        [&](std::size_t number, std::string_view line) -> const StepRecord& {
+          try {
+            record = codec_.read(line);
+          } catch (const InvalidInput& error) {
+            refuse(error.what());
+          }
+          if (const std::string why = check(number, record); !why.empty()) refuse(why);
+          return record;
+        },
+        remark);
+  }
+  void add(Record& record, const Points& positions, const ElementDeformation& deformation) {
+    add_shape(record, positions, deformation);
+    RecordLog::add(codec_.write(record), record.seconds);
+  }
+  void each(const std::function<void(std::size_t number, const Record&)>& visit) const {
+    RecordLog::each([&](std::size_t number, std::string_view line) {
+      visit(number, codec_.read(line));
+      return true;
+    });
+  }
+  [[nodiscard]] Record at(std::size_t number) const {
+    Record record;
+    RecordLog::each([&](std::size_t each, std::string_view line) {
+      if (each == number) record = codec_.read(line);
+      return each < number;
+    });
+    return record;
+  }
+
+ private:
+  Codec<Record> codec_;
+};
+
+}  // namespace softkin::runs

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <softkin/model/curve_command.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/records.hpp>
+#include <utility>
+
+namespace softkin::runs {
+
+namespace {
+
+/// A cable under length control that carries nothing because its path is shorter than the cable.
+bool is_slack(const Actuator& actuator, double achieved, double length, double tension) {
+  constexpr double rounding = 1e-9;
+  return actuator.kind == ActuatorKind::cable && actuator.control == Control::ratio && tension == 0 &&
+         achieved < length * (1 - rounding);
+}
+
+ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std::size_t a) {
+  const Actuator& actuator = model.actuators[a];
+  const auto i = static_cast<Index>(a);
+  ActuatorRecord record{found.actuation[i], achieved_ratio(model, actuator, found.state.positions)};
+  if (actuator.curve) record.by_curve = input_by_curve(actuator, found.actuation[i], actuator.branch);
+  if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return record;
+  record.multiplier = found.state.multipliers[i];
+  if (actuator.kind == ActuatorKind::cable)
+    record.slack = is_slack(actuator, record.achieved, found.state.actuation[i], record.multiplier);
+  return record;
+}
+
+/// Share of the way from the step before to what was asked for.
+std::optional<double> reached_share(const Model& model, const SolveReport& report) {
+  if (report.status == Status::converged) return 1;
+  if (model.formulation != Formulation::physical || !std::isfinite(report.reached)) return std::nullopt;
+  return report.reached;
+}
+
+}  // namespace
+
+StepRecord step_record(const Model& model, const Equilibrium& found, const ElementDeformation& deformation) {
+  const SolveReport& report = found.report;
+  StepRecord record;
+  record.actuation = found.actuation;
+  record.status = report.status;
+  record.reached = reached_share(model, report);
+  record.remark = report.remark;
+  if (found.state.actuation.size() == found.actuation.size()) record.shape_actuation = found.state.actuation;
+  record.shape_load_share = found.state.share;
+  record.iterations = report.iterations;
+  record.factorisations = report.factorisations;
+  record.projections = report.projections;
+  record.shifts = report.shifts;
+  record.continuation_steps = report.continuation_steps;
+  record.residual = report.gradient_norm;
+  record.step_mm = report.step_mm;
+  record.tolerance_mm = report.tolerance_mm;
+  record.estimated_error_mm = report.estimated_error_mm;
+  record.seconds = report.seconds;
+  record.energy = report.energy;
+  record.inverted_elements = static_cast<std::size_t>(
+      std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
+  for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
+  record.strain = strain_histogram(model, deformation);
+  record.history = report.history;
+  return record;
+}
+
+WaypointRecord waypoint_record(const Model& model, const Waypoint& asked, const InverseResult& found,
+                               const ElementDeformation& deformation) {
+  WaypointRecord record;
+  static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
+  record.seconds = found.seconds;
+  record.time_s = asked.time;
+  record.asked = asked;
+  record.end = found.status;
+  record.error_mm = found.errors_mm.maxCoeff();
+  record.equilibria = found.equilibria;
+  record.search_remark = found.remark;
+  return record;
+}
+
+WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& found,
+                       const ElementDeformation& deformation) {
+  WalkRecord record;
+  static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
+  record.cycle = cycle;
+  record.walk.sliding = found.sliding;
+  record.walk.friction_N = found.friction_N;
+  record.walk.rear_mm = found.rear_mm;
+  record.walk.front_mm = found.front_mm;
+  record.walk.travel_mm = found.travel_mm;
+  record.walk.shift_mm = found.shift_mm;
+  record.walk.equilibria = found.equilibria;
+  return record;
+}
+
+State state_of(const Model& model, const StepRecord& record, Points positions) {
+  State state{std::move(positions), record.shape_actuation.value_or(Actuation()),
+              Eigen::VectorXd::Zero(static_cast<Index>(model.actuators.size()))};
+  if (model.formulation != Formulation::physical) return state;
+  state.share = record.shape_load_share;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    state.multipliers[static_cast<Index>(a)] = record.actuators[a].multiplier;
+  return state;
+}
+
+}  // namespace softkin::runs

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <softkin/kinematics/inverse.hpp>
+#include <softkin/kinematics/walk.hpp>
+#include <softkin/model/equilibrium.hpp>
+#include <softkin/model/marker_path.hpp>
+#include <softkin/model/model.hpp>
+#include <softkin/statics/deformation.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin::runs {
+
+// What is kept of what was computed. A number that a diverged solve does not know is not finite here, and null in JSON.
+
+/// An actuator in a shape.
+struct ActuatorRecord {
+  double requested = 0;              // ratio to rest [-], or tension [N] or gauge pressure [kPa]
+  double achieved = 0;               // ratio to rest [-]
+  std::optional<double> by_curve{};  // the input that the actuator's curve gives for the request [kPa gauge or kV];
+                                     // none outside the curve or without one
+  double multiplier = 0;             // tension [N] or gauge pressure [kPa]; physical
+  bool slack = false;                // a cable that carries nothing because its path is shorter than it
+};
+
+/// One equilibrium: what was asked, what came of it, and how. Of a report a step.
+struct StepRecord {
+  Actuation actuation;  // m, asked for
+  Status status = Status::not_converged;
+  std::optional<double> reached{};  // share of the way from the step before [-]; none: not known
+  std::string remark;
+  std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
+  double shape_load_share = 1;
+  int iterations = 0, factorisations = 0, projections = 0, shifts = 0, continuation_steps = 0;
+  double residual = 0, step_mm = 0, tolerance_mm = 0, estimated_error_mm = 0, seconds = 0, energy = 0;
+  std::size_t inverted_elements = 0;
+  std::vector<Vec3> markers;  // [mm]
+  std::vector<ActuatorRecord> actuators;
+  StrainHistogram strain;
+  std::vector<IterationRecord> history;  // all iterations; of a record that was read: those that were written
+  std::vector<int> history_iterations;   // from 1, per entry of history; empty: all
+
+  std::optional<double> time_s{};
+  std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
+};
+
+/// A waypoint of a path of markers.
+struct WaypointRecord : StepRecord {
+  Waypoint asked;
+  InverseStatus end = InverseStatus::not_converged;
+  double error_mm = 0;  // of the marker that is farthest from its target
+  int equilibria = 0;
+  std::string search_remark;
+
+  [[nodiscard]] bool is_reached() const { return end == InverseStatus::reached; }
+};
+
+/// A step of a walk; walk.equilibrium is empty.
+struct WalkRecord : StepRecord {
+  std::size_t cycle = 0;  // from 1; 0: where the robot is put down
+  WalkStep walk;
+};
+
+/// deformation: of the equilibrium's shape
+[[nodiscard]] StepRecord step_record(const Model& model, const Equilibrium& found,
+                                     const ElementDeformation& deformation);
+[[nodiscard]] WaypointRecord waypoint_record(const Model& model, const Waypoint& asked, const InverseResult& found,
+                                             const ElementDeformation& deformation);
+[[nodiscard]] WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& found,
+                                     const ElementDeformation& deformation);
+
+/// The state that a record's shape is, as if it had just been solved.
+[[nodiscard]] State state_of(const Model& model, const StepRecord& record, Points positions);
+
+}  // namespace softkin::runs

@@ -1,0 +1,289 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/records_json.hpp>
+#include <stdexcept>
+
+namespace softkin::runs {
+
+namespace {
+
+constexpr std::array<Status, 4> statuses{Status::converged, Status::not_converged, Status::interrupted, Status::limit};
+constexpr std::array<InverseStatus, 4> ends{InverseStatus::reached, InverseStatus::unreachable,
+                                            InverseStatus::not_converged, InverseStatus::interrupted};
+constexpr const char* sliding_names[] = {"none", "rear", "front", "both"};  // of Sliding
+
+/// The value of that name. throws  std::out_of_range where there is none
+template <class Value, std::size_t N>
+Value named(const std::array<Value, N>& values, const std::string& name) {
+  for (const Value value : values)
+    if (name == name_of(value)) return value;
+  throw std::out_of_range("no such status: " + name);
+}
+
+double number_or_nan(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+Json strain_json(const StrainHistogram& histogram) {
+  Json json = {{"least", histogram.least},
+               {"greatest", histogram.greatest},
+               {"magnitude_percentile_95", histogram.percentile_95},
+               {"bin_edges", histogram.edges},
+               {"volume_shares", histogram.shares},
+               {"beyond_linear_range", Json::array()}};
+  for (const auto& beyond : histogram.beyond)
+    json["beyond_linear_range"].push_back(
+        {{"region", beyond.region}, {"linear_range", beyond.linear_range}, {"volume_share", beyond.share}});
+  return json;
+}
+
+StrainHistogram strain_of(const Json& json) {
+  StrainHistogram strain;
+  strain.least = json.at("least").get<double>();
+  strain.greatest = json.at("greatest").get<double>();
+  strain.percentile_95 = json.at("magnitude_percentile_95").get<double>();
+  strain.edges = json.at("bin_edges").get<std::vector<double>>();
+  strain.shares = json.at("volume_shares").get<std::vector<double>>();
+  for (const Json& beyond : json.at("beyond_linear_range"))
+    strain.beyond.push_back({beyond.at("region").get<std::string>(), beyond.at("linear_range").get<double>(),
+                             beyond.at("volume_share").get<double>()});
+  return strain;
+}
+
+/// As many digits as a curve needs.
+Json rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return known(std::strtod(text, nullptr));
+}
+
+/// Every iteration up to 50, then ever sparser: a curve stays a curve and a report stays small.
+Json history_json(const StepRecord& record) {
+  const bool all = record.history_iterations.empty();
+  Json json = {
+      {"iteration", Json::array()}, {"energy", Json::array()}, {"step_mm", Json::array()}, {"residual", Json::array()}};
+  for (std::size_t i = 0; i < record.history.size(); i += all ? std::max<std::size_t>(1, i / 50) : 1) {
+    json["iteration"].push_back(all ? static_cast<int>(i) + 1 : record.history_iterations[i]);
+    json["energy"].push_back(rounded(record.history[i].energy));
+    json["step_mm"].push_back(rounded(record.history[i].step_mm));
+    json["residual"].push_back(rounded(record.history[i].gradient_norm));
+  }
+  return json;
+}
+
+void read_history(const Json& json, StepRecord& record) {
+  record.history_iterations = json.at("iteration").get<std::vector<int>>();
+  for (std::size_t i = 0; i < record.history_iterations.size(); ++i)
+    record.history.push_back({number_or_nan(json.at("energy").at(i)), number_or_nan(json.at("step_mm").at(i)),
+                              number_or_nan(json.at("residual").at(i))});
+}
+
+Json actuator_json(const Model& model, const Actuator& actuator, const ActuatorRecord& record) {
+  Json json = {{"requested", record.requested}, {"achieved", known(record.achieved)}};
+  if (actuator.curve) json[curve_key(*actuator.curve)] = record.by_curve ? known(*record.by_curve) : Json();
+  const std::string key = multiplier_key(actuator);
+  if (model.formulation != Formulation::physical || key.empty()) return json;
+  json[key] = known(record.multiplier);
+  if (actuator.kind == ActuatorKind::cable) json["slack"] = record.slack;
+  return json;
+}
+
+ActuatorRecord actuator_of(const Model& model, const Actuator& actuator, const Json& json) {
+  ActuatorRecord record{json.at("requested").get<double>(), number_or_nan(json.at("achieved"))};
+  if (actuator.curve)
+    if (const Json& input = json.at(curve_key(*actuator.curve)); !input.is_null())
+      record.by_curve = input.get<double>();
+  const std::string key = multiplier_key(actuator);
+  if (model.formulation != Formulation::physical || key.empty()) return record;
+  record.multiplier = number_or_nan(json.at(key));
+  if (actuator.kind == ActuatorKind::cable) record.slack = json.at("slack").get<bool>();
+  return record;
+}
+
+Json by_actuator(const Model& model, const Actuation& values) {
+  Json json = Json::object();
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    json[model.actuators[a].name] = values[static_cast<Index>(a)];
+  return json;
+}
+
+Actuation by_actuator(const Model& model, const Json& json) {
+  Actuation values(static_cast<Index>(model.actuators.size()));
+  if (json.size() != model.actuators.size()) throw std::out_of_range("other actuators");
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    values[static_cast<Index>(a)] = json.at(model.actuators[a].name).get<double>();
+  return values;
+}
+
+/// What the end of a record has where its shape is in a file.
+void add_shape(const StepRecord& record, Json& json) {
+  if (record.shape.empty()) return;
+  json["shape"] = record.shape;
+  json["shape_fingerprint"] = record.shape_fingerprint;
+}
+
+/// All of a step but its shape.
+Json step_json(const Model& model, const StepRecord& record) {
+  Json step = {{"actuation", by_actuator(model, record.actuation)},
+               {"status", name_of(record.status)},
+               {"reached", record.reached ? Json(*record.reached) : Json()},
+               {"remark", record.remark},
+               {"shape_actuation", Json()},
+               {"iterations", record.iterations},
+               {"factorisations", record.factorisations},
+               {"projections", record.projections},
+               {"shifts", record.shifts},
+               {"continuation_steps", record.continuation_steps},
+               {"residual", known(record.residual)},
+               {"step_mm", known(record.step_mm)},
+               {"tolerance_mm", record.tolerance_mm},
+               {"estimated_error_mm", known(record.estimated_error_mm)},
+               {"seconds", record.seconds},
+               {"energy", known(record.energy)},
+               {"inverted_elements", record.inverted_elements},
+               {"markers", Json::object()},
+               {"actuators", Json::object()}};
+  if (record.shape_actuation) step["shape_actuation"] = by_actuator(model, *record.shape_actuation);
+  for (std::size_t m = 0; m < model.markers.size(); ++m) {
+    const Vec3& p = record.markers[m];
+    step["markers"][model.markers[m].name] = {p.x(), p.y(), p.z()};
+  }
+  if (model.formulation == Formulation::physical) step["shape_load_share"] = record.shape_load_share;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    step["actuators"][model.actuators[a].name] = actuator_json(model, model.actuators[a], record.actuators[a]);
+  step["strain"] = strain_json(record.strain);
+  step["history"] = history_json(record);
+  if (record.time_s) step["time_s"] = *record.time_s;
+  return step;
+}
+
+const std::string& marker_name(const Model& model, const MarkerPath& path, std::size_t m) {
+  return model.markers[static_cast<std::size_t>(path.markers[m])].name;
+}
+
+}  // namespace
+
+std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json known(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json to_json(const Model& model, const StepRecord& record) {
+  Json json = step_json(model, record);
+  add_shape(record, json);
+  return json;
+}
+
+Json to_json(const Model& model, const MarkerPath& path, const WaypointRecord& record) {
+  Json step = step_json(model, record);
+  Json& json = step["waypoint"];
+  json = {{"inserted", record.asked.inserted}, {"targets", Json::object()}};
+  if (record.asked.time) json["time_s"] = *record.asked.time;
+  for (std::size_t m = 0; m < path.markers.size(); ++m) {
+    Json& target = json["targets"][marker_name(model, path, m)] = Json::array();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      target.push_back(path.axes[m][axis] ? Json(record.asked.targets[m][static_cast<Index>(axis)]) : Json());
+  }
+  json["status"] = name_of(record.end);
+  json["reached"] = record.is_reached();
+  json["error_mm"] = record.error_mm;
+  json["equilibria"] = record.equilibria;
+  json["remark"] = record.search_remark;
+  add_shape(record, step);
+  return step;
+}
+
+Json to_json(const Model& model, const WalkRecord& record) {
+  Json step = step_json(model, record);
+  Json& json = step["walk"];
+  json = {{"cycle", record.cycle}, {"sliding", sliding_names[static_cast<std::size_t>(record.walk.sliding)]}};
+  if (model.formulation == Formulation::physical) json["friction_N"] = record.walk.friction_N;
+  json["feet_mm"] = {{foot_name(model, 0), record.walk.rear_mm}, {foot_name(model, 1), record.walk.front_mm}};
+  json["travel_mm"] = record.walk.travel_mm;
+  json["shift_mm"] = record.walk.shift_mm;
+  json["equilibria"] = record.walk.equilibria;
+  add_shape(record, step);
+  return step;
+}
+
+void from_json(const Model& model, const Json& json, StepRecord& record) {
+  record.actuation = by_actuator(model, json.at("actuation"));
+  record.status = named(statuses, json.at("status").get<std::string>());
+  if (const Json& reached = json.at("reached"); !reached.is_null()) record.reached = reached.get<double>();
+  record.remark = json.at("remark").get<std::string>();
+  if (const Json& shape = json.at("shape_actuation"); !shape.is_null())
+    record.shape_actuation = by_actuator(model, shape);
+  if (model.formulation == Formulation::physical) record.shape_load_share = json.at("shape_load_share").get<double>();
+  for (const auto& [key, value] : {std::pair{"iterations", &record.iterations},
+                                   {"factorisations", &record.factorisations},
+                                   {"projections", &record.projections},
+                                   {"shifts", &record.shifts},
+                                   {"continuation_steps", &record.continuation_steps}})
+    *value = json.at(key).get<int>();
+  for (const auto& [key, value] : {std::pair{"residual", &record.residual},
+                                   {"step_mm", &record.step_mm},
+                                   {"tolerance_mm", &record.tolerance_mm},
+                                   {"estimated_error_mm", &record.estimated_error_mm},
+                                   {"seconds", &record.seconds},
+                                   {"energy", &record.energy}})
+    *value = number_or_nan(json.at(key));
+  record.inverted_elements = json.at("inverted_elements").get<std::size_t>();
+  for (const Marker& marker : model.markers) {
+    const Json& p = json.at("markers").at(marker.name);
+    record.markers.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
+  }
+  for (const Actuator& actuator : model.actuators)
+    record.actuators.push_back(actuator_of(model, actuator, json.at("actuators").at(actuator.name)));
+  record.strain = strain_of(json.at("strain"));
+  read_history(json.at("history"), record);
+  if (json.contains("time_s")) record.time_s = json.at("time_s").get<double>();
+  if (!json.contains("shape")) return;
+  record.shape = json.at("shape").get<std::string>();
+  record.shape_fingerprint = json.at("shape_fingerprint").get<std::string>();
+}
+
+void from_json(const Model& model, const MarkerPath& path, const Json& step, WaypointRecord& record) {
+  from_json(model, step, static_cast<StepRecord&>(record));
+  const Json& json = step.at("waypoint");
+  record.asked.inserted = json.at("inserted").get<bool>();
+  if (json.contains("time_s")) record.asked.time = json.at("time_s").get<double>();
+  if (json.at("targets").size() != path.markers.size()) throw std::out_of_range("other markers");
+  for (std::size_t m = 0; m < path.markers.size(); ++m) {
+    const Json& target = json.at("targets").at(marker_name(model, path, m));
+    Vec3 point = Vec3::Zero();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (target.at(axis).is_null() == path.axes[m][axis]) throw std::out_of_range("other axes");
+      if (path.axes[m][axis]) point[static_cast<Index>(axis)] = target.at(axis).get<double>();
+    }
+    record.asked.targets.push_back(point);
+  }
+  record.end = named(ends, json.at("status").get<std::string>());
+  record.error_mm = json.at("error_mm").get<double>();
+  record.equilibria = json.at("equilibria").get<int>();
+  record.search_remark = json.at("remark").get<std::string>();
+}
+
+void from_json(const Model& model, const Json& step, WalkRecord& record) {
+  from_json(model, step, static_cast<StepRecord&>(record));
+  const Json& json = step.at("walk");
+  record.cycle = json.at("cycle").get<std::size_t>();
+  const auto name = std::find(std::begin(sliding_names), std::end(sliding_names), json.at("sliding"));
+  if (name == std::end(sliding_names)) throw std::out_of_range("no such sliding");
+  record.walk.sliding = static_cast<Sliding>(name - std::begin(sliding_names));
+  if (model.formulation == Formulation::physical) record.walk.friction_N = json.at("friction_N").get<double>();
+  record.walk.rear_mm = json.at("feet_mm").at(foot_name(model, 0)).get<double>();
+  record.walk.front_mm = json.at("feet_mm").at(foot_name(model, 1)).get<double>();
+  record.walk.travel_mm = json.at("travel_mm").get<double>();
+  record.walk.shift_mm = json.at("shift_mm").get<double>();
+  record.walk.equilibria = json.at("equilibria").get<int>();
+}
+
+}  // namespace softkin::runs

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <softkin/runs/records.hpp>
+
+namespace softkin::runs {
+
+using Json = nlohmann::ordered_json;
+
+// A record as a step of a report, and back. What the model knows (names, units, which axes count) is not in the record.
+// from_json reads what to_json of the same model wrote. throws  Json::exception on anything else
+
+[[nodiscard]] Json to_json(const Model& model, const StepRecord& record);
+/// path: whose waypoint it is.
+[[nodiscard]] Json to_json(const Model& model, const MarkerPath& path, const WaypointRecord& record);
+[[nodiscard]] Json to_json(const Model& model, const WalkRecord& record);
+
+void from_json(const Model& model, const Json& json, StepRecord& record);
+void from_json(const Model& model, const MarkerPath& path, const Json& json, WaypointRecord& record);
+void from_json(const Model& model, const Json& json, WalkRecord& record);
+
+/// JSON on one line; text that is no UTF-8 is replaced.
+[[nodiscard]] std::string line_of(const Json& json);
+/// JSON knows no NaN: what a diverged solve does not know is null.
+[[nodiscard]] Json known(double value);
+
+}  // namespace softkin::runs

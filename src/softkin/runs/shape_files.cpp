@@ -1,0 +1,78 @@
+#include <softkin/runs/shape_files.hpp>
+
+#include <softkin/io/mesh/element_order.hpp>
+#include <softkin/io/mesh/vtk.hpp>
+#include <softkin/io/picture/picture.hpp>
+
+namespace softkin::runs {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Boundary of what has substance: the body and dielectric elastomers, not the air in chambers.
+std::vector<Triangle> visible_surface(const Model& model) {
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<EdgeNodes> edge_nodes;
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    if (model.tetrahedron_roles[e].material < 0) continue;
+    tetrahedra.push_back(model.tetrahedra[e]);
+    if (!model.edge_nodes.empty()) edge_nodes.push_back(model.edge_nodes[e]);
+  }
+  return boundary_triangles(tetrahedra, edge_nodes, model.prisms);
+}
+
+std::vector<ElementRole> all_roles(const Model& model) {
+  std::vector<ElementRole> roles = model.tetrahedron_roles;
+  roles.insert(roles.end(), model.prism_roles.begin(), model.prism_roles.end());
+  return roles;
+}
+
+}  // namespace
+
+void write_shape(const fs::path& path, const Model& model, const Points& positions,
+                 const ElementDeformation& deformation, bool converged) {
+  VtuContent content;
+  content.points = positions;
+  content.tetrahedra = model.tetrahedra;
+  content.edge_nodes = model.edge_nodes;
+  content.prisms = model.prisms;
+  const Points moved = positions - model.rest;
+  content.point_fields.push_back({"displacement_mm", 3, {moved.data(), moved.data() + moved.size()}});
+
+  Field greatest{"principal_strain_max", 1, {}}, least{"principal_strain_min", 1, {}}, actuator{"actuator", 1, {}};
+  for (const auto& strain : deformation.strain) {
+    greatest.values.push_back(strain[0]);
+    least.values.push_back(strain[2]);
+  }
+  for (const ElementRole& role : all_roles(model)) {
+    content.cell_regions.push_back(role.region);
+    actuator.values.push_back(role.actuator);
+  }
+  const Field mark{"converged", 1, std::vector<double>(deformation.strain.size(), converged ? 1 : 0)};
+  content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator, mark};
+  content.region_names = model.region_names;
+  write_vtu(path, content);
+}
+
+void write_image(const fs::path& path, const Model& model, const Points& positions, const std::vector<double>& view,
+                 const std::string& title) {
+  const std::vector<Triangle> surface = visible_surface(model);
+  PictureLayer shape, ghost;
+  shape.points = positions;
+  shape.triangles = surface;
+  const Eigen::VectorXd moved = (positions - model.rest).rowwise().norm();
+  shape.values.assign(moved.data(), moved.data() + moved.size());
+  ghost.points = model.rest;
+  ghost.triangles = surface;
+  ghost.opacity = 0.15;
+  ghost.edges = false;
+  PictureOptions options;
+  if (!view.empty()) options.view = Vec3(view[0], view[1], view[2]).stableNormalized();
+  if (options.view.head<2>().norm() < 1e-6) options.up = Vec3::UnitY();  // from above or below
+  options.title = title;
+  options.value_label = "displacement [mm]";
+  write_picture(path, {shape, ghost}, options);
+}
+
+}  // namespace softkin::runs

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <softkin/model/equilibrium.hpp>
+#include <softkin/model/model.hpp>
+#include <softkin/statics/deformation.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin::runs {
+
+/// The shape with displacement [mm], volume ratio and principal strains [-], region, actuator, and whether the solve
+/// converged (1) or not (0). deformation: of positions.
+void write_shape(const std::filesystem::path& path, const Model& model, const Points& positions,
+                 const ElementDeformation& deformation, bool converged);
+
+/// The body coloured by displacement over a ghost of its rest shape. view: three numbers, not all zero, from the
+/// robot to the eye, y upwards where it looks along z; empty: from the front, left and above.
+void write_image(const std::filesystem::path& path, const Model& model, const Points& positions,
+                 const std::vector<double>& view, const std::string& title);
+
+}  // namespace softkin::runs

@@ -1,0 +1,153 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <softkin/core/error.hpp>
+#include <softkin/runs/store.hpp>
+#include <vector>
+
+namespace softkin::runs {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double sync_every = 1;  // [s]
+constexpr std::size_t piece = 1 << 18;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Every line of a file from an offset on, without its end, and whether it has one.
+void each_line(int file, std::size_t offset, const std::function<bool(std::string_view line, bool whole)>& visit) {
+  std::string rest;
+  std::vector<char> buffer(piece);
+  for (;;) {
+    const ssize_t count = ::pread(file, buffer.data(), buffer.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    offset += static_cast<std::size_t>(count);
+    std::string_view text(buffer.data(), static_cast<std::size_t>(count));
+    for (std::size_t end; (end = text.find('\n')) != std::string_view::npos; text.remove_prefix(end + 1)) {
+      rest += text.substr(0, end);
+      if (!visit(rest, true)) return;
+      rest.clear();
+    }
+    rest += text;
+  }
+  if (!rest.empty()) visit(rest, false);
+}
+
+}  // namespace
+
+Store::Store(fs::path path, const std::string& head, bool resume) : path_(std::move(path)), head_(head) {
+  const bool begin = !resume || path_.empty() || !fs::exists(path_);
+  open(begin);
+  try {
+    if (begin) {
+      if (::ftruncate(file_, 0) != 0) refuse(std::string("cannot be written: ") + std::strerror(errno));
+      write(head);
+    } else {
+      measure(static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n')));
+    }
+  } catch (...) {
+    ::close(file_);
+    throw;
+  }
+}
+
+Store::~Store() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void Store::refuse(const std::string& why) const {
+  throw InvalidInput({path_.empty() ? "temporary file" : path_.string()}, why);
+}
+
+void Store::open(bool begin) {
+  if (path_.empty()) {
+    std::string name = (fs::temp_directory_path() / "softkin.XXXXXX").string();
+    file_ = ::mkstemp(name.data());
+    if (file_ < 0) refuse(std::string("cannot be made: ") + std::strerror(errno));
+    ::unlink(name.c_str());
+    return;
+  }
+  file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | (begin ? O_CREAT : 0), 0666);
+  if (file_ < 0) refuse(std::string("cannot be written: ") + std::strerror(errno));
+  if (::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // a disk may know no locks
+  ::close(file_);
+  refuse("another softkin is at work on it");
+}
+
+void Store::measure(std::size_t head_lines) {
+  std::size_t lines = 0;
+  std::string head;
+  each_line(file_, 0, [&](std::string_view line, bool whole) {
+    torn_ = !whole;
+    if (!whole) return false;
+    bytes_ += line.size() + 1;
+    if (lines++ < head_lines) (head += line) += '\n';
+    return true;
+  });
+  if (lines < head_lines) refuse("ends within its first lines");
+  head_ = std::move(head);
+  size_ = lines - head_lines;
+  if (torn_ && ::ftruncate(file_, static_cast<off_t>(bytes_)) != 0)
+    refuse(std::string("cannot be written: ") + std::strerror(errno));
+}
+
+void Store::write(std::string_view text) {
+  ssize_t written = -1;
+  do {
+    written = ::pwrite(file_, text.data(), text.size(), static_cast<off_t>(bytes_));
+  } while (written < 0 && errno == EINTR);
+  if (written == static_cast<ssize_t>(text.size())) {
+    bytes_ += text.size();
+    return;
+  }
+  const std::string why = written < 0 ? std::strerror(errno) : "no room left";
+  if (::ftruncate(file_, static_cast<off_t>(bytes_)) != 0) refuse("a row could not be written whole: " + why);
+  refuse("cannot be written: " + why);
+}
+
+void Store::append(std::string_view record) {
+  std::string line(record);
+  write(line += '\n');
+  ++size_;
+  if (const double now = seconds_now(); !path_.empty() && now - last_sync_ > sync_every) {
+    (void)::fdatasync(file_);
+    last_sync_ = now;
+  }
+}
+
+void Store::each(const std::function<bool(std::size_t, std::string_view)>& visit) const {
+  std::size_t number = 0;
+  each_line(file_, head_.size(), [&](std::string_view line, bool) { return number < size_ && visit(number++, line); });
+}
+
+void Store::cut(std::size_t records) {
+  if (records >= size_) return;
+  std::size_t bytes = head_.size();
+  each([&](std::size_t number, std::string_view record) {
+    if (number < records) bytes += record.size() + 1;
+    return number < records;
+  });
+  if (::ftruncate(file_, static_cast<off_t>(bytes)) != 0)
+    refuse(std::string("cannot be written: ") + std::strerror(errno));
+  bytes_ = bytes;
+  size_ = records;
+}
+
+void Store::remove() {
+  if (path_.empty()) return;
+  std::error_code ignored;
+  fs::remove(path_, ignored);
+}
+
+}  // namespace softkin::runs

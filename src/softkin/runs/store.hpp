@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace softkin::runs {
+
+/// Records on disk while a run makes them: lines of a file that only grows, locked against a second softkin. A record
+/// is written whole in one write and outlives the program at once; once a second they are made to outlive the machine.
+/// A last line that a kill tore is cut off. Adding a record costs the same however many there are.
+class Store {
+ public:
+  /// Begins the file with head, whole lines; or, where resume is set and the file is there, goes on with it.
+  ///
+  /// path    empty: a temporary file without a name
+  /// throws  InvalidInput where it cannot be written, another softkin is at work on it, or it ends within the head
+  Store(std::filesystem::path path, const std::string& head, bool resume);
+  ~Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+
+  /// The lines of the head as they are on disk; of a resumed file as many as head has.
+  [[nodiscard]] const std::string& head() const { return head_; }
+  [[nodiscard]] std::size_t size() const { return size_; }  // records
+  [[nodiscard]] bool was_torn() const { return torn_; }     // found so, and mended
+
+  /// Adds a record, a line without its end. throws InvalidInput where the disk has no room; the file is as before
+  void append(std::string_view record);
+
+  /// The records in their order; false ends it early.
+  void each(const std::function<bool(std::size_t number, std::string_view record)>& visit) const;
+
+  /// Keeps the first so many records.
+  void cut(std::size_t records);
+
+  /// Removes the file.
+  void remove();
+
+ private:
+  void open(bool begin);
+  void measure(std::size_t head_lines);
+  [[noreturn]] void refuse(const std::string& why) const;
+  void write(std::string_view text);
+
+  std::filesystem::path path_;
+  std::string head_;
+  int file_ = -1;
+  std::size_t size_ = 0, bytes_ = 0;
+  bool torn_ = false;
+  double last_sync_ = 0;  // [s]
+};
+
+}  // namespace softkin::runs

@@ -1,0 +1,310 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <softkin/energy/turning.hpp>
+#include <softkin/statics/physical/body.hpp>
+
+namespace softkin::physical {
+
+using namespace energy;
+
+namespace {
+
+template <int K>
+void load(const Points& positions, const std::array<std::array<Index, lanes>, K>& nodes, Shape<K>& shape) {
+  for (int i = 0; i < K; ++i)
+    for (int l = 0; l < lanes; ++l) {
+      const double* p = positions.data() + 3 * static_cast<std::ptrdiff_t>(nodes[i][l]);
+      shape[i].x[l] = p[0];
+      shape[i].y[l] = p[1];
+      shape[i].z[l] = p[2];
+    }
+}
+
+/// Elements along a curve through space that keeps neighbours together: their vertices share cache lines.
+template <class Element>
+std::vector<Index> spatial_order(const Points& rest, const std::vector<Element>& elements) {
+  const Eigen::RowVector3d low = rest.colwise().minCoeff();
+  const double extent = std::max((rest.colwise().maxCoeff() - low).maxCoeff(), 1e-300);
+  std::vector<std::pair<std::uint64_t, Index>> keys;
+  for (const Element& element : elements) {
+    Eigen::RowVector3d middle = Eigen::RowVector3d::Zero();
+    for (const Index v : element) middle += rest.row(v) / static_cast<double>(element.size());
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto place = static_cast<std::uint64_t>((middle[axis] - low[axis]) / extent * 1048575);
+      for (int bit = 0; bit < 20; ++bit) key |= (place >> bit & 1) << (3 * bit + axis);
+    }
+    keys.emplace_back(key, static_cast<Index>(keys.size()));
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Index> order;
+  for (const auto& key : keys) order.push_back(key.second);
+  return order;
+}
+
+void set_law(LawBlock& block, int lane, const ElasticLaw& law) {
+  block.law = law.law;
+  block.mu[lane] = law.mu;
+  block.lambda[lane] = law.lambda;
+  block.c10[lane] = law.c10;
+  block.c01[lane] = law.c01;
+  block.c20[lane] = law.c20;
+  block.c30[lane] = law.c30;
+  block.bulk[lane] = law.bulk;
+}
+
+void set_lane(Pack3& vector, int lane, const Vec3& value) {
+  vector.x[lane] = value[0];
+  vector.y[lane] = value[1];
+  vector.z[lane] = value[2];
+}
+
+Vec3 lane_of(const Pack3& vector, int lane) {
+  return {vector.x[lane], vector.y[lane], vector.z[lane]};
+}
+
+}  // namespace
+
+template <int K, int Q, class Element>
+void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants, Index actuator,
+               const Element& nodes) {
+  auto set = std::find_if(sets.begin(), sets.end(),
+                          [&](const Set<K, Q>& s) { return s.law == law && s.actuator == actuator; });
+  if (set == sets.end()) {
+    set = sets.insert(sets.end(), Set<K, Q>{});
+    set->law = law;
+    set->actuator = actuator;
+  }
+  Eigen::Matrix<double, K, 3> rest;
+  for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
+  const ElasticRest<K, Q> shape = elastic_rest(rest);
+  const int lane = set->count % lanes;
+  if (lane == 0) {
+    set->blocks.emplace_back();
+    set->nodes.emplace_back();
+    set->frames.emplace_back();
+  }
+  ElasticBlock<K, Q>& block = set->blocks.back();
+  for (int l = lane; l < lanes; ++l) {  // later elements overwrite the lanes that this one fills in advance
+    set_law(block.law, l, constants);
+    for (int q = 0; q < Q; ++q) {
+      for (int i = 0; i < K; ++i) set_lane(block.slope[q][i], l, shape.slope[q].row(i).transpose());
+      block.volume[q][l] = l == lane ? shape.volume[q] : 0;
+    }
+    for (int i = 0; i < K; ++i) set->nodes.back()[i][l] = nodes[i];
+  }
+  if constexpr (K == 6) set->frames.back()[lane] = layer_frame(rest);
+  ++set->count;
+}
+
+Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())) {
+  for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
+    const ElasticLaw& law = model.materials[model.tetrahedron_roles[e].material].elastic;
+    const Tetrahedron& t = model.tetrahedra[e];
+    if (model.edge_nodes.empty()) {
+      add(linear_, model, law.law, law, -1, t);
+    } else {
+      std::array<Index, 10> nodes;
+      std::copy(t.begin(), t.end(), nodes.begin());
+      std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      add(quadratic_, model, law.law, law, -1, nodes);
+    }
+  }
+  for (const Index e : spatial_order(model.rest, model.prisms)) {
+    const ElementRole& role = model.prism_roles[e];
+    const ElasticLaw& law = model.materials[role.material].elastic;
+    add(prisms_, model, law.law, law, role.actuator, model.prisms[e]);
+  }
+  each_set([&]<int K, int Q>(Set<K, Q>& set) {
+    set.first_pull = pulls_;
+    pulls_ += K * set.count;
+    blocks_ += set.blocks.size();
+  });
+  const auto each_pull = [&](const auto& visit) {
+    each_set([&]<int K, int Q>(Set<K, Q>& set) {
+      for (Index e = 0; e < set.count; ++e)
+        for (int i = 0; i < K; ++i) visit(set.nodes[e / lanes][i][e % lanes], set.first_pull + K * e + i);
+    });
+  };
+  pull_starts_.assign(static_cast<std::size_t>(vertices_) + 1, 0);
+  each_pull([&](Index vertex, Index) { ++pull_starts_[vertex + 1]; });
+  std::partial_sum(pull_starts_.begin(), pull_starts_.end(), pull_starts_.begin());
+  pull_order_.resize(static_cast<std::size_t>(pulls_));
+  std::vector<Index> next(pull_starts_.begin(), pull_starts_.end() - 1);
+  each_pull([&](Index vertex, Index pull) { pull_order_[next[vertex]++] = pull; });
+}
+
+Body::Scratch Body::make_scratch() const {
+  Scratch scratch;
+  scratch.pulls.resize(3 * static_cast<std::size_t>(pulls_));
+  scratch.energies.resize(blocks_);
+  scratch.inverted.resize(blocks_);
+  for (const auto& set : prisms_)
+    if (set.actuator >= 0) {
+      scratch.layers.push_back(set.blocks);
+      scratch.layer_ratios.push_back(0);
+    }
+  return scratch;
+}
+
+/// F_a = diag(sqrt(ratio), sqrt(ratio), 1 / ratio) in the layer's frame: slopes become F_a^-T times those at rest.
+void Body::stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) const {
+  std::size_t layer = 0;
+  for (const auto& set : prisms_) {
+    if (set.actuator < 0) continue;
+    const std::size_t index = layer++;
+    const double ratio = actuation[set.actuator];
+    if (scratch.layer_ratios[index] == ratio) continue;
+    scratch.layer_ratios[index] = ratio;
+    const Vec3 inverse(1 / std::sqrt(ratio), 1 / std::sqrt(ratio), ratio);
+    for (std::size_t b = 0; b < set.blocks.size(); ++b)
+      for (int l = 0; l < lanes; ++l) {
+        const Index e = std::min<Index>(set.count - 1, static_cast<Index>(b) * lanes + l);
+        const Mat3& frame = set.frames[e / lanes][e % lanes];
+        const Mat3 shrink = frame * inverse.asDiagonal() * frame.transpose();
+        for (int q = 0; q < 6; ++q)
+          for (int i = 0; i < 6; ++i)
+            set_lane(scratch.layers[index][b].slope[q][i], l, shrink * lane_of(set.blocks[b].slope[q][i], l));
+      }
+  }
+}
+
+template <int K, int Q>
+void Body::store(const Set<K, Q>& set, Index block, const Shape<K>& pull, Scratch& scratch) const {
+  const Index count = std::min<Index>(lanes, set.count - lanes * block);
+  double* out = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(set.first_pull + K * lanes * block);
+  for (Index l = 0; l < count; ++l)
+    for (int i = 0; i < K; ++i, out += 3) {
+      out[0] = pull[i].x[l];
+      out[1] = pull[i].y[l];
+      out[2] = pull[i].z[l];
+    }
+}
+
+void Body::gather(const Scratch& scratch, Points& sums, Team& team) const {
+  sums.resize(vertices_, 3);
+  team.pieces(vertices_, [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v) {
+      double total[3] = {};
+      for (Index i = pull_starts_[v]; i < pull_starts_[v + 1]; ++i) {
+        const double* pull = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(pull_order_[i]);
+        for (int c = 0; c < 3; ++c) total[c] += pull[c];
+      }
+      for (int c = 0; c < 3; ++c) sums(v, c) = total[c];
+    }
+  });
+}
+
+Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, Points& gradient,
+                         Team& team) const {
+  stretch_layers(actuation, scratch);
+  std::size_t first = 0;
+  Result result;
+  each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
+    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+      Shape<K> shape;
+      ElasticForce<K> out;
+      for (Index b = begin; b < end; ++b) {
+        load<K>(positions, set.nodes[b], shape);
+        elastic_force<K, Q>(blocks[b], shape, out);
+        scratch.energies[first + b] = out.energy;
+        scratch.inverted[first + b] = out.inverted;
+        store(set, b, out.gradient, scratch);
+      }
+    });
+    PackMask inverted{};
+    for (std::size_t b = first; b < first + blocks.size(); ++b) inverted |= scratch.inverted[b];
+    result.inverted |= any(inverted);
+    result.forbidden |= forbids_inversion(set.law) && any(inverted);
+    first += blocks.size();
+  });
+  Pack energy{};
+  for (const Pack& part : scratch.energies) energy += part;
+  result.energy = sum(energy);
+  gather(scratch, gradient, team);
+  return result;
+}
+
+void Body::add_cliques(linear::Cliques& cliques) {
+  each_set([&]<int K, int Q>(Set<K, Q>& set) {
+    set.first_slot = cliques.slots.back();
+    std::array<Index, K> nodes;
+    for (Index e = 0; e < set.count; ++e) {
+      for (int i = 0; i < K; ++i) nodes[i] = set.nodes[e / lanes][i][e % lanes];
+      cliques.add(nodes);
+    }
+  });
+}
+
+void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected, Scratch& scratch,
+                     LargeVector<double>& slots, Team& team) const {
+  stretch_layers(actuation, scratch);
+  each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
+    constexpr int matrices = K * (K + 1) / 2;
+    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+      Shape<K> shape;
+      ElasticStiffness<K> out;
+      for (Index b = begin; b < end; ++b) {
+        load<K>(positions, set.nodes[b], shape);
+        elastic_stiffness<K, Q>(blocks[b], shape, projected, out);
+        const Index count = std::min<Index>(lanes, set.count - lanes * b);
+        double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices) * lanes * b);
+        for (Index l = 0; l < count; ++l)
+          for (int m = 0; m < matrices; ++m, slot += 9)
+            for (int r = 0; r < 3; ++r) {
+              slot[3 * r] = out.block[m].row[r].x[l];
+              slot[3 * r + 1] = out.block[m].row[r].y[l];
+              slot[3 * r + 2] = out.block[m].row[r].z[l];
+            }
+      }
+    });
+  });
+}
+
+void Body::turning(const Points& positions, const Points& step, Scratch& scratch, Points& residual, Team& team) const {
+  const auto run = [&]<int K, int Q>(const Set<K, Q>& set) {
+    team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+      Shape<K> current, moves, pull;
+      for (Index b = begin; b < end; ++b) {
+        load<K>(positions, set.nodes[b], current);
+        load<K>(step, set.nodes[b], moves);
+        turning_pull<K, Q>(set.blocks[b], current, moves, pull);
+        store(set, b, pull, scratch);
+      }
+    });
+  };
+  for (const auto& set : linear_) run(set);
+  for (const auto& set : quadratic_) run(set);
+  for (const auto& set : prisms_) run(set);
+  gather(scratch, residual, team);
+}
+
+Eigen::SparseMatrix<double> Body::laplacian() const {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add_set = [&]<int K, int Q>(const Set<K, Q>& set) {
+    for (Index e = 0; e < set.count; ++e) {
+      const ElasticBlock<K, Q>& block = set.blocks[e / lanes];
+      const int l = e % lanes;
+      for (int i = 0; i < K; ++i)
+        for (int j = 0; j < K; ++j) {
+          const Index row = set.nodes[e / lanes][i][l], column = set.nodes[e / lanes][j][l];
+          if (row < column) continue;
+          double sum = 0;
+          for (int q = 0; q < Q; ++q)
+            sum += block.volume[q][l] * lane_of(block.slope[q][i], l).dot(lane_of(block.slope[q][j], l));
+          entries.emplace_back(row, column, sum);
+        }
+    }
+  };
+  for (const auto& set : linear_) add_set(set);
+  for (const auto& set : quadratic_) add_set(set);
+  for (const auto& set : prisms_) add_set(set);
+  for (Index v = 0; v < vertices_; ++v)
+    if (pull_starts_[v] == pull_starts_[v + 1]) entries.emplace_back(v, v, 1.0);
+  Eigen::SparseMatrix<double> matrix(vertices_, vertices_);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <mutex>
+#include <softkin/statics/physical/newton.hpp>
+#include <softkin/statics/sensitivity.hpp>
+
+namespace softkin::physical {
+
+/// Equilibria of a robot in the physical formulation: Newton along a path of demands from the start's to the one asked
+/// for, in steps as long as Newton allows, each begun with a tangent predictor.
+class Equilibria {
+ public:
+  class Lease;
+
+  /// model must outlive the object. throws InvalidInput where some part of the robot is not held
+  explicit Equilibria(const Model& model) : system_(model) {}
+
+  struct Options {
+    double tolerance_mm = 0;
+    int max_iterations = 0;  // of all Newton steps together
+    bool keep_history = true;
+    bool reuse_factor = true;
+  };
+
+  /// Arguments are checked already. report.seconds is left to the caller.
+  [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const Options& options,
+                                  const ProgressCallback& progress, Team& team) const;
+
+  /// Of an equilibrium; see Statics::sensitivity.
+  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
+
+  /// Drops what earlier solves left.
+  void forget() const;
+
+  [[nodiscard]] const System& system() const { return system_; }
+
+ private:
+  void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
+                   System::Workspace& work, Iterate& at, SolveReport& report) const;
+
+  System system_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<System::Workspace>> idle_;  // from earlier solves
+};
+
+}  // namespace softkin::physical

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <softkin/statics/physical/equilibria.hpp>
+
+namespace softkin::physical {
+
+/// A workspace, for the time of a solve.
+class Equilibria::Lease {
+ public:
+  /// One that was left at the start, if there is and it may be reused: its factor is as good as new. Another one has
+  /// no home, and nothing that it holds is used.
+  Lease(const Equilibria& owner, const Points& start, bool reuse) : owner_(owner) {
+    {
+      const std::lock_guard lock(owner_.mutex_);
+      auto& idle = owner_.idle_;
+      auto found = std::find_if(idle.begin(), idle.end(), [&](const auto& work) { return is_at(*work, start); });
+      if (found == idle.end() && !idle.empty()) found = idle.end() - 1;
+      if (found != idle.end()) {
+        work_ = std::move(*found);
+        idle.erase(found);
+      }
+    }
+    if (!work_) work_ = std::make_unique<System::Workspace>(owner_.system_);
+    if (!reuse || !is_at(*work_, start)) work_->home.resize(0, 3);
+  }
+  ~Lease() {
+    const std::lock_guard lock(owner_.mutex_);
+    owner_.idle_.push_back(std::move(work_));
+  }
+  Lease(const Lease&) = delete;
+  Lease& operator=(const Lease&) = delete;
+  [[nodiscard]] System::Workspace& work() { return *work_; }
+
+ private:
+  static bool is_at(const System::Workspace& work, const Points& shape) {
+    return work.home.rows() == shape.rows() && work.home == shape;
+  }
+
+  const Equilibria& owner_;
+  std::unique_ptr<System::Workspace> work_;
+};
+
+}  // namespace softkin::physical

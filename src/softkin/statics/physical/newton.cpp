@@ -1,0 +1,174 @@
+#include <cmath>
+#include <softkin/statics/physical/newton.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+constexpr double least_damping = 1e-3;
+/// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
+/// factorisation.
+constexpr double worthwhile_contraction = 0.6;
+constexpr int most_updates = 8;
+
+}  // namespace
+
+Newton::Newton(const System& system, System::Workspace& work, Team& team, const Settings& settings,
+               const ProgressCallback& progress, SolveReport& report)
+    : system_(system), work_(work), team_(team), settings_(settings), progress_(progress), report_(report) {}
+
+void Newton::record(double step_mm) {
+  IterationRecord entry;
+  entry.energy = balance_.energy;
+  entry.gradient_norm = balance_.force.norm();
+  entry.step_mm = step_mm;
+  ++report_.iterations;
+  report_.energy = entry.energy;
+  report_.step_mm = step_mm;
+  report_.gradient_norm = entry.gradient_norm;
+  if (settings_.keep_history) report_.history.push_back(entry);
+}
+
+/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, then by
+/// a shift.
+bool Newton::factorise(const Iterate& at, Policy policy) {
+  using Stiffness = System::Stiffness;
+  const auto negative = [&](Stiffness kind, double shift) {
+    ++report_.factorisations;
+    return system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
+  };
+  negative_ = negative(Stiffness::exact, 0);
+  if (negative_ == 0 || policy == Policy::follow) return true;
+  ++report_.projections;
+  if (negative(Stiffness::projected, 0) == 0) return true;
+  for (double shift = 1e-4; shift < 100; shift *= 10) {
+    ++report_.shifts;
+    if (negative(Stiffness::projected, shift) == 0) return true;
+  }
+  return false;
+}
+
+/// Moves by `damping` times a step and finds the simplified step there. False where the law has no energy.
+bool Newton::attempt(const Step& step, double damping, const Iterate& from) {
+  trial_ = from;
+  system_.advance(step.move, damping, work_, trial_.positions, team_);
+  trial_.multipliers += damping * step.change;
+  system_.evaluate(trial_, *demand_, *active_, work_, trial_balance_, team_);
+  return !trial_balance_.forbidden && trial_balance_.force.allFinite();
+}
+
+/// Step that the factor at hand asks for.
+void Newton::find(const System::Balance& balance, const Points& positions, Step& step) {
+  system_.step(balance, work_, step.move, step.change, team_);
+  step.size = system_.size_of(step.move, positions);
+}
+
+bool Newton::accept(double moved_mm, Iterate& at) {
+  record(moved_mm);
+  std::swap(at, trial_);
+  std::swap(balance_, trial_balance_);
+  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
+}
+
+/// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
+Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
+  system_.first_step(balance_, work_, step_.move, step_.change);
+  step_.size = system_.size_of(step_.move, at.positions);
+  if (!std::isfinite(step_.size.mean)) return Advance::none;
+  damping = std::min(1.0, 2 * damping);
+  for (;;) {
+    double factor = 0.5;
+    if (attempt(step_, damping, at)) {
+      find(trial_balance_, trial_.positions, next_);
+      if (next_.size.mean < step_.size.mean || step_.size.largest < settings_.tolerance_mm) break;
+      // near a singular stiffness the next step may be long although little is left
+      if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
+      if (std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
+        const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
+        factor = std::min(0.5, damping / (2 * residue));
+      }
+    }
+    damping *= factor;
+    if (!(damping >= least_damping)) return Advance::none;
+  }
+  return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
+}
+
+/// The workspace is back at the iterate, as the next factorisation wants it.
+Newton::Advance Newton::reject(const Iterate& at) {
+  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
+  return Advance::made;
+}
+
+/// Turns the simplified step next_ into Broyden's, given the steps made with this factor. False where it does not fit.
+bool Newton::update_next() {
+  const auto share = [&](const Step& step) { return step.move.dot(next_.move) / step.move.squaredNorm(); };
+  for (std::size_t k = 0; k + 1 < made_.size(); ++k) {
+    const double part = share(made_[k]);
+    next_.move += part * made_[k + 1].move;
+    next_.change += part * made_[k + 1].change;
+  }
+  const double part = share(made_.back());
+  if (!(part < 0.5)) return false;
+  next_.move /= 1 - part;
+  next_.change /= 1 - part;
+  next_.size = system_.size_of(next_.move, trial_.positions);
+  return next_.size.mean < worthwhile_contraction * made_.back().size.mean;
+}
+
+/// Broyden's steps from made_, the last of which has just been made, with next_ the simplified step that follows.
+///
+/// source  Deuflhard 2011, QNERR: the "good" rank-1 updates, by recursion
+Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
+  while (static_cast<int>(made_.size()) <= most_updates && update_next()) {
+    made_.push_back(next_);
+    const Step& step = made_.back();
+    if (!attempt(step, 1, at)) return reject(at);
+    const bool last = step.size.largest < settings_.tolerance_mm;
+    if (!last) {
+      find(trial_balance_, trial_.positions, next_);
+      if (!(next_.size.mean < step.size.mean)) return reject(at);
+    }
+    if (!accept(step.size.largest, at)) return Advance::interrupted;
+    if (last) return Advance::arrived;
+  }
+  return Advance::made;
+}
+
+/// Does no constraint miss its demand by more than steps that are small enough can close?
+bool Newton::meets_constraints() const {
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!(*active_)[a]) continue;
+    const double reach = 2 * settings_.tolerance_mm * work_.slopes[a].rowwise().norm().sum();
+    if (!(std::abs(balance_.constraint[a]) <= reach + 1e-9 * system_.measures().rest(a))) return false;
+  }
+  return true;
+}
+
+Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at) {
+  demand_ = &demand;
+  active_ = &active;
+  system_.evaluate(at, demand, active, work_, balance_, team_);
+  if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
+  Advance advance = Advance::made;
+  double damping = 1;
+  for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
+    if (!factorise(at, policy)) return Outcome::stuck;
+    advance = damped_step(at, damping);
+    if (advance != Advance::made || damping < 1) continue;
+    if (step_.size.largest < settings_.tolerance_mm) {
+      advance = Advance::arrived;
+    } else {
+      made_.assign(1, step_);
+      advance = quasi_newton_steps(at);
+    }
+  }
+  if (advance == Advance::interrupted) return Outcome::interrupted;
+  if (advance != Advance::arrived) return Outcome::stuck;
+  report_.gradient_norm = balance_.force.norm();
+  report_.energy = balance_.energy;
+  if (!meets_constraints()) return Outcome::unmet;
+  return negative_ == 0 ? Outcome::converged : Outcome::unstable;
+}
+
+}  // namespace softkin::physical

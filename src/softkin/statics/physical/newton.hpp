@@ -1,0 +1,73 @@
+#pragma once
+
+#include <softkin/core/progress.hpp>
+#include <softkin/model/equilibrium.hpp>
+#include <softkin/statics/physical/system.hpp>
+
+namespace softkin::physical {
+
+/// Newton's method on the equations of equilibrium under one demand, damped by the natural monotonicity test.
+///
+/// source  Deuflhard 2011, NLEQ-ERR: a step is as long as the simplified next one shrinks, which is measured with the
+///         factor at hand and does not depend on how the equations are scaled
+class Newton {
+ public:
+  struct Settings {
+    double tolerance_mm = 0;  // largest move of a vertex by a step
+    int max_iterations = 30;
+    bool keep_history = true;
+  };
+  /// unmet: arrived where the active constraints contradict each other or cannot be moved; they are missed.
+  enum class Outcome { converged, unstable, stuck, unmet, interrupted };
+
+  Newton(const System& system, System::Workspace& work, Team& team, const Settings& settings,
+         const ProgressCallback& progress, SolveReport& report);
+
+  /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact one,
+  /// towards the nearest equilibrium, stable or not.
+  enum class Policy { descend, follow };
+
+  /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
+  /// factorisation.
+  Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at);
+
+  /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
+  [[nodiscard]] int unstable_modes() const { return negative_; }
+
+  /// Is an element of the last shape inverted?
+  [[nodiscard]] bool inverted() const { return balance_.inverted; }
+
+ private:
+  struct Step {
+    Eigen::VectorXd move, change;  // of unknowns and of multipliers
+    System::Size size;
+  };
+  enum class Advance { none, made, arrived, interrupted };
+
+  bool factorise(const Iterate& at, Policy policy);
+  void find(const System::Balance& balance, const Points& positions, Step& step);
+  bool attempt(const Step& step, double damping, const Iterate& from);
+  bool accept(double moved_mm, Iterate& at);
+  Advance damped_step(Iterate& at, double& damping);
+  bool update_next();
+  Advance quasi_newton_steps(Iterate& at);
+  [[nodiscard]] bool meets_constraints() const;
+  Advance reject(const Iterate& at);
+  void record(double step_mm);
+
+  const System& system_;
+  System::Workspace& work_;
+  Team& team_;
+  Settings settings_;
+  const ProgressCallback& progress_;
+  SolveReport& report_;
+  const Demand* demand_ = nullptr;
+  const std::vector<bool>* active_ = nullptr;
+  System::Balance balance_, trial_balance_;  // at the iterate, at the one being tried
+  Step step_, next_;
+  std::vector<Step> made_;  // with the last factor
+  Iterate trial_;
+  int negative_ = 0;  // of the last factorisation
+};
+
+}  // namespace softkin::physical

@@ -1,0 +1,211 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical/system.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+/// Share of a constraint's own compliance below which what it adds to others is rounding [-].
+constexpr double dependent = 1e-9;
+
+}  // namespace
+
+namespace {
+
+/// Moves shorter than this share of the robot's diagonal turn nothing that matters.
+constexpr double least_turning = 1e-7;
+
+}  // namespace
+
+System::System(const Model& model)
+    : model_(model),
+      elastic_(model),
+      measures_(model),
+      any_dead_load_(model.dead_load.rows() > 0 && !model.dead_load.isZero(0)) {
+  linear::Cliques cliques;
+  elastic_.add_cliques(cliques);
+  measures_.add_cliques(cliques);
+  slots_ = cliques.slots.back();
+  pattern_ = std::make_unique<linear::BlockPattern>(static_cast<Index>(model.rest.rows()), cliques);
+  freedoms_ = std::make_unique<supports::Freedoms>(model, *pattern_);
+  symbolic_ = std::make_shared<const linear::FrontTree>(linear::make_front_tree(freedoms_->columns()));
+  turning_ = std::make_unique<supports::GlobalStep>(model, elastic_.laplacian(), freedoms_->vertex_order());
+}
+
+System::Workspace::Workspace(const System& system)
+    : elastic(system.elastic_.make_scratch()),
+      slots(9 * static_cast<std::size_t>(system.slots_)),
+      slopes(system.model_.actuators.size()),
+      factor(system.symbolic_) {}
+
+bool System::constrains(Index actuator) const {
+  const Actuator& a = model_.actuators[actuator];
+  return a.kind != ActuatorKind::dea && a.control == Control::ratio;
+}
+
+void System::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
+                      Balance& balance, Team& team) const {
+  const Body::Result elastic = elastic_.force(demand.actuation, at.positions, work.elastic, work.gradient, team);
+  balance.energy = elastic.energy;
+  balance.inverted = elastic.inverted;
+  balance.forbidden = elastic.forbidden;
+  if (any_dead_load()) {
+    balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();
+    work.gradient -= demand.share * model_.dead_load;
+  }
+  balance.constraint.setZero(actuators());
+  for (Index a = 0; a < actuators(); ++a) {
+    if (!measures_.measures(a) || (!active[a] && at.multipliers[a] == 0)) continue;
+    const double value = measures_.value(a, at.positions, &work.slopes[a]);
+    if (active[a]) balance.constraint[a] = value - target(a, demand);
+    work.gradient += sign(a) * at.multipliers[a] * work.slopes[a];
+  }
+  balance.force.resize(freedoms_->size());
+  freedoms_->reduce(work.gradient, at.positions, balance.force);
+}
+
+void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const {
+  elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
+  Eigen::VectorXd scale(actuators());
+  for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
+  measures_.second_derivatives(at.positions, scale, work.slots, team);
+}
+
+int System::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
+                      double shift, Workspace& work, Team& team, const Balance* balance) const {
+  assemble(at, demand, kind, work, team);
+  freedoms_->reduce_matrix(*pattern_, work.slots, work.gradient, at.positions, work.values, team);
+
+  const linear::BlockColumns& columns = freedoms_->columns();
+  double trace = 0;
+  const auto each_diagonal = [&](const auto& visit) {
+    for (Index node = 0; node < columns.nodes(); ++node)
+      for (Index i = 0; i < columns.width(node); ++i)
+        visit(work.values[columns.offsets[columns.starts[node]] + i * (columns.width(node) + 1)]);
+  };
+  each_diagonal([&](double value) { trace += std::abs(value); });
+  const double mean = trace / std::max<Index>(1, columns.size());
+  if (shift > 0) each_diagonal([&](double& value) { value += shift * mean; });
+  const int negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
+  return negative - couple(at, active, work, team, balance);
+}
+
+int System::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
+                   const Balance* balance) const {
+  work.active.clear();
+  for (Index a = 0; a < actuators(); ++a)
+    if (active[a]) work.active.push_back(a);
+  const Index count = static_cast<Index>(work.active.size());
+  work.constraint_slopes.resize(freedoms_->size(), count);
+  for (Index i = 0; i < count; ++i) {
+    freedoms_->reduce(work.slopes[work.active[i]], at.positions, work.constraint_slopes.col(i));
+    work.constraint_slopes.col(i) *= sign(work.active[i]);
+  }
+  work.solutions.resize(freedoms_->size(), count + (balance ? 1 : 0));
+  work.solutions.leftCols(count) = work.constraint_slopes;
+  if (balance) work.solutions.col(count) = -balance->force;
+  work.factor.solve(work.solutions, team);
+  if (count == 0) return 0;
+  work.responses = work.solutions.leftCols(count);
+  Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;
+  work.scale.resize(count);
+  for (Index i = 0; i < count; ++i) work.scale[i] = schur(i, i) != 0 ? 1 / std::sqrt(std::abs(schur(i, i))) : 1;
+  schur = work.scale.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * work.scale.asDiagonal();
+  work.schur.setThreshold(dependent);
+  work.schur.compute(schur);
+  const Eigen::VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(schur, Eigen::EigenvaluesOnly).eigenvalues();
+  return static_cast<int>((eigenvalues.array() < -dependent).count());
+}
+
+void System::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,
+                  Team& team) const {
+  step = -balance.force;
+  if (!step.isZero(0)) work.factor.solve(step, team);  // where constraints alone change there is nothing to solve for
+  meet_constraints(balance, work, step, change);
+}
+
+void System::first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const {
+  step = work.solutions.col(static_cast<Index>(work.active.size()));
+  meet_constraints(balance, work, step, change);
+}
+
+/// Adds to a step without constraints what closes them.
+void System::meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step,
+                              Eigen::VectorXd& change) const {
+  change.setZero(actuators());
+  const Index count = static_cast<Index>(work.active.size());
+  if (count == 0) return;
+  Eigen::VectorXd asked(count);
+  for (Index i = 0; i < count; ++i) asked[i] = sign(work.active[i]) * balance.constraint[work.active[i]];
+  asked += work.constraint_slopes.transpose() * step;
+  const Eigen::VectorXd multipliers = work.scale.cwiseProduct(work.schur.solve(work.scale.cwiseProduct(asked)));
+  step -= work.responses * multipliers;
+  for (Index i = 0; i < count; ++i) change[work.active[i]] = multipliers[i];
+}
+
+void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
+                   Workspace& work, Balance& balance, Team& team) const {
+  balance.constraint.setZero(actuators());
+  Points moves = at.positions, force;
+  freedoms_->hold(to.share, moves);
+  moves -= at.positions;
+  if (moves.isZero(0)) {
+    force.setZero(moves.rows(), 3);
+  } else {
+    pattern_->gather(work.slots, work.blocks, team);
+    pattern_->multiply(work.blocks, moves, force, team);
+  }
+  bool layers = false;
+  for (Index a = 0; a < actuators(); ++a) {
+    const double change = to.actuation[a] - from.actuation[a];
+    if (change == 0) continue;
+    if (active[a]) {
+      balance.constraint[a] = target(a, from) - target(a, to);
+    } else if (model_.actuators[a].kind == ActuatorKind::dea) {
+      layers = true;
+    } else if (!constrains(a)) {
+      (void)measures_.value(a, at.positions, &work.slopes[a]);
+      force += sign(a) * unit(a) * change * work.slopes[a];
+    }
+  }
+  if (any_dead_load()) force -= (to.share - from.share) * model_.dead_load;
+  if (layers) {  // the stretch of layers: central difference of the elastic force
+    Demand low = from, high = from;
+    constexpr double reach = 1e-4;
+    low.actuation -= reach * (to.actuation - from.actuation);
+    high.actuation += reach * (to.actuation - from.actuation);
+    Points below, above;
+    elastic_.force(low.actuation, at.positions, work.elastic, below, team);
+    elastic_.force(high.actuation, at.positions, work.elastic, above, team);
+    force += (above - below) / (2 * reach);
+  }
+  balance.force.resize(freedoms_->size());
+  freedoms_->reduce(force, at.positions, balance.force);
+}
+
+void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {
+  freedoms_->expand(scale * step, positions, work.moves);
+  if (work.moves.cwiseAbs().maxCoeff() < least_turning * model_.diagonal_mm)
+    return freedoms_->move(step, scale, positions);
+  elastic_.turning(positions, work.moves, work.elastic, work.lacking, team);
+  freedoms_->move(step, scale, positions);
+  std::vector<supports::Pose> poses = turning_->poses(positions);
+  turning_->step(work.lacking, positions, poses, team);
+}
+
+System::Size System::size_of(const Eigen::VectorXd& unknowns, const Points& positions) const {
+  Points moves;
+  freedoms_->expand(unknowns, positions, moves);
+  double largest = 0, sum = 0;
+  for (Index v = 0; v < moves.rows(); ++v) {
+    const double square = moves.row(v).squaredNorm();
+    if (!(square <= largest)) largest = square;  // also where it is not a number
+    sum += square;
+  }
+  return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(moves.rows()))};
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <softkin/linear/sparse_ldlt.hpp>
+#include <softkin/statics/physical/body.hpp>
+#include <softkin/statics/supports/actuator_measures.hpp>
+#include <softkin/statics/supports/freedoms.hpp>
+#include <softkin/statics/supports/global_step.hpp>
+
+namespace softkin::physical {
+
+/// What is asked of a robot in the physical formulation.
+struct Demand {
+  Eigen::VectorXd actuation;  // m, as the user commands it
+  double share = 1;           // of dead loads and of the displacement of what is held [-]
+};
+
+/// Shape and multipliers; a point of the path that Newton follows.
+struct Iterate {
+  Points positions;             // #V by 3 [mm]
+  Eigen::VectorXd multipliers;  // m: tension [N], gauge pressure [MPa]; 0: dea
+};
+
+/// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
+/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers.
+class System {
+ public:
+  explicit System(const Model& model);
+
+  /// Everything that is written while solving; one per thread of control. Nothing is allocated per iteration.
+  struct Workspace {
+    explicit Workspace(const System& system);
+
+    Body::Scratch elastic;
+    LargeVector<double> slots, blocks, values;
+    Points gradient;             // of the Lagrangian in x
+    Points moves, lacking;       // of advance()
+    std::vector<Points> slopes;  // of each active measure
+    linear::SparseLdlt factor;
+    Eigen::MatrixXd solutions;          // of the last factorisation: responses, then the step without constraints
+    Eigen::MatrixXd responses;          // K^-1 G, a column per active constraint, in the order of `active`
+    Eigen::MatrixXd constraint_slopes;  // G: sign_a times the gradient of measure_a
+    Eigen::VectorXd scale;              // S: makes the diagonal of the next 1
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> schur;  // S G^T K^-1 G S; singular where constraints depend
+                                                                    // on each other
+    std::vector<Index> active;                                      // constraints of the factorisation
+    Points home;  // equilibrium at which the last solve ended, and near which it factorised
+  };
+
+  struct Balance {
+    Eigen::VectorXd force;       // of the unknowns, what is not in balance [N, N mm]
+    Eigen::VectorXd constraint;  // m: measure minus demand, 0 where not active [mm, mm^3]
+    double energy = 0;           // elastic, less the work of dead loads [mJ]
+    bool inverted = false;       // an element
+    bool forbidden = false;      // inverted where the law has no energy
+  };
+
+  /// active: per actuator, is its measure held at the demand (else its multiplier is given).
+  void evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
+                Balance& balance, Team& team) const;
+
+  enum class Stiffness { exact, projected };
+  /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added.
+  /// balance  of that iterate, if first_step() is to follow: its step is solved for together with the responses
+  /// returns  how many negative eigenvalues it has on the changes that keep the active measures: 0 at a stable
+  ///          equilibrium
+  int factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind, double shift,
+                Workspace& work, Team& team, const Balance* balance = nullptr) const;
+
+  /// What the last factorisation holds of the active measures, from their slopes at an iterate that was just evaluated.
+  /// Returns how many negative eigenvalues of the stiffness they take away.
+  int couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
+             const Balance* balance = nullptr) const;
+
+  /// Stiffness of the elements and measures at an iterate, as factorise() makes it itself.
+  void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
+  /// Makes the stiffness that was assembled or factorised last ready for multiply().
+  void gather(Workspace& work, Team& team) const;
+  /// K times every column, over the unknowns, at an iterate that was just evaluated. product: of vectors' size
+  void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
+                Team& team) const;
+
+  /// Derivative of the gradient of the Lagrangian by the command of a load or a dea at fixed positions, #V by 3
+  /// [N per unit of command].
+  void command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
+                     Team& team) const;
+
+  /// Newton step of the balance with which the last factorisation was made.
+  void first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
+
+  /// Newton step of the last factorisation: K step + G change = -force, G^T step = -sign constraint; where constraints
+  /// contradict each other, what misses them least.
+  void step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change, Team& team) const;
+
+  /// Balance that a change of demand upsets, to first order: for the tangent predictor.
+  void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
+             Balance& balance, Team& team) const;
+
+  /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first
+  /// order, and far better where a step bends the robot.
+  void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
+
+  /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
+  struct Size {
+    double largest = 0, mean = 0;
+  };
+  [[nodiscard]] Size size_of(const Eigen::VectorXd& unknowns, const Points& positions) const;
+
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const supports::Freedoms& freedoms() const { return *freedoms_; }
+  [[nodiscard]] const supports::ActuatorMeasures& measures() const { return measures_; }
+  [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
+  /// Is the actuator's measure commanded (else its load, or it is a dea).
+  [[nodiscard]] bool constrains(Index actuator) const;
+  [[nodiscard]] double sign(Index actuator) const {
+    return model_.actuators[actuator].kind == ActuatorKind::cable ? 1 : -1;
+  }
+  /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
+  [[nodiscard]] double unit(Index actuator) const {
+    return model_.actuators[actuator].kind == ActuatorKind::pneumatic ? 1e-3 : 1;
+  }
+  /// Demanded measure [mm, mm^3].
+  [[nodiscard]] double target(Index actuator, const Demand& demand) const {
+    return demand.actuation[actuator] * measures_.rest(actuator);
+  }
+  [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
+
+ private:
+  void meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
+
+  const Model& model_;
+  Body elastic_;
+  supports::ActuatorMeasures measures_;
+  std::int64_t slots_ = 0;
+  bool any_dead_load_;
+  std::unique_ptr<linear::BlockPattern> pattern_;
+  std::unique_ptr<supports::Freedoms> freedoms_;
+  std::shared_ptr<const linear::FrontTree> symbolic_;
+  std::unique_ptr<supports::GlobalStep> turning_;
+};
+
+}  // namespace softkin::physical

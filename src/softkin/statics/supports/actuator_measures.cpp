@@ -1,0 +1,235 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <softkin/model/mesh/quadratic_triangle.hpp>
+#include <softkin/statics/supports/actuator_measures.hpp>
+
+namespace softkin::supports {
+
+namespace {
+
+Mat3 cross_matrix(const Vec3& v) {
+  Mat3 m;
+  m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return m;
+}
+
+/// Shape functions of a face and their derivatives along its two coordinates at a quadrature point.
+template <int N>
+struct FacePoint {
+  double weight;
+  double shape[N], along[N], across[N];
+};
+
+FacePoint<3> flat_point() {
+  return {0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3}, {-1, 1, 0}, {-1, 0, 1}};
+}
+
+/// Exact for x . (dx/ds x dx/dt), which is of degree 4.
+const std::array<FacePoint<6>, 6>& curved_points() {
+  static const std::array<FacePoint<6>, 6> points = [] {
+    std::array<FacePoint<6>, 6> all{};
+    for (std::size_t q = 0; q < all.size(); ++q) {
+      const TrianglePoint& point = triangle_rule()[q];
+      all[q].weight = point.weight;
+      for (int i = 0; i < 6; ++i) {
+        all[q].shape[i] = point.shape[i];
+        all[q].along[i] = point.along_u[i];
+        all[q].across[i] = point.along_v[i];
+      }
+    }
+    return all;
+  }();
+  return points;
+}
+
+template <int N>
+struct Surface {
+  Vec3 x = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero();
+
+  Surface(const FacePoint<N>& p, const Vec3* nodes) {
+    for (int i = 0; i < N; ++i) {
+      x += p.shape[i] * nodes[i];
+      along += p.along[i] * nodes[i];
+      across += p.across[i] * nodes[i];
+    }
+  }
+};
+
+/// Volume of the cone from the origin to a face: integral of x . (dx/ds x dx/dt) / 3, and its gradient.
+template <int N>
+double face_volume(const FacePoint<N>& p, const Vec3* nodes, Vec3* gradient) {
+  const Surface<N> s(p, nodes);
+  const double w = p.weight / 3;
+  for (int i = 0; gradient && i < N; ++i)
+    gradient[i] += w * (p.shape[i] * s.along.cross(s.across) + p.along[i] * s.across.cross(s.x) +
+                        p.across[i] * s.x.cross(s.along));
+  return w * s.x.dot(s.along.cross(s.across));
+}
+
+template <int N>
+void face_second_derivative(const FacePoint<N>& p, const Vec3* nodes, Mat3 (&blocks)[6][6]) {
+  const Surface<N> s(p, nodes);
+  const double w = p.weight / 3;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j)
+      blocks[i][j] -= cross_matrix(w * ((p.shape[i] * p.along[j] - p.along[i] * p.shape[j]) * s.across +
+                                        (p.across[i] * p.shape[j] - p.shape[i] * p.across[j]) * s.along +
+                                        (p.along[i] * p.across[j] - p.across[i] * p.along[j]) * s.x));
+}
+
+/// Lengths below this are taken for zero [mm]: a segment so short pulls nowhere.
+constexpr double least_length = 1e-12;
+
+double segment_length(const Vec3* nodes, Vec3* gradient) {
+  const Vec3 across = nodes[1] - nodes[0];
+  const double length = across.norm();
+  if (gradient && length > least_length) {
+    gradient[0] -= across / length;
+    gradient[1] += across / length;
+  }
+  return length;
+}
+
+void segment_second_derivative(const Vec3* nodes, Mat3 (&blocks)[6][6]) {
+  const Vec3 across = nodes[1] - nodes[0];
+  const double length = across.norm();
+  if (length <= least_length) return;
+  const Mat3 bend = (Mat3::Identity() - across * across.transpose() / (length * length)) / length;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) blocks[i][j] += i == j ? bend : Mat3(-bend);
+}
+
+double term_value(int count, const Vec3* nodes, Vec3* gradient) {
+  if (count == 2) return segment_length(nodes, gradient);
+  if (count == 3) return face_volume<3>(flat_point(), nodes, gradient);
+  double volume = 0;
+  for (const FacePoint<6>& p : curved_points()) volume += face_volume<6>(p, nodes, gradient);
+  return volume;
+}
+
+void term_second_derivative(int count, const Vec3* nodes, Mat3 (&blocks)[6][6]) {
+  for (auto& row : blocks)
+    for (Mat3& block : row) block.setZero();
+  if (count == 2) return segment_second_derivative(nodes, blocks);
+  if (count == 3) return face_second_derivative<3>(flat_point(), nodes, blocks);
+  for (const FacePoint<6>& p : curved_points()) face_second_derivative<6>(p, nodes, blocks);
+}
+
+}  // namespace
+
+ActuatorMeasures::ActuatorMeasures(const Model& model)
+    : vertices_(static_cast<Index>(model.rest.rows())), terms_(model.actuators.size()) {
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const Index first = vertices_ + static_cast<Index>(points_.size());
+    if (actuator.kind == ActuatorKind::dea) continue;
+    for (const EmbeddedPoint& point : actuator.points) points_.push_back(&point);
+    if (actuator.kind == ActuatorKind::cable)
+      for (Index i = 0; i + 1 < static_cast<Index>(actuator.points.size()); ++i)
+        terms_[a].push_back({2, {first + i, first + i + 1}});
+    for (const Triangle& t : actuator.surface) terms_[a].push_back({3, {first + t[0], first + t[1], first + t[2]}});
+    for (const CavityFace& face : actuator.cavity) {
+      const Triangle& c = face.corners;
+      if (face.edges[0] < 0)
+        terms_[a].push_back({3, {c[0], c[1], c[2]}});
+      else
+        terms_[a].push_back({6, {c[0], c[1], c[2], face.edges[0], face.edges[1], face.edges[2]}});
+    }
+  }
+  for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a)
+    rest_.push_back(measures(a) ? value(a, model.rest) : model.actuators[a].rest_measure);
+}
+
+Vec3 ActuatorMeasures::at(Index node, const Points& positions) const {
+  return node < vertices_ ? Vec3(positions.row(node).transpose()) : points_[node - vertices_]->at(positions);
+}
+
+void ActuatorMeasures::spread(Index node, const Vec3& vector, Points& gradient) const {
+  if (node < vertices_) {
+    gradient.row(node) += vector.transpose();
+    return;
+  }
+  const EmbeddedPoint& point = *points_[node - vertices_];
+  for (std::size_t k = 0; k < point.vertices.size(); ++k)
+    gradient.row(point.vertices[k]) += point.weights[k] * vector.transpose();
+}
+
+double ActuatorMeasures::value(Index actuator, const Points& positions, Points* gradient) const {
+  if (gradient) gradient->setZero(positions.rows(), 3);
+  double sum = 0;
+  for (const Term& term : terms_[actuator]) {
+    Vec3 nodes[6], slopes[6];
+    for (int i = 0; i < term.count; ++i) {
+      nodes[i] = at(term.nodes[i], positions);
+      slopes[i].setZero();
+    }
+    sum += term_value(term.count, nodes, gradient ? slopes : nullptr);
+    for (int i = 0; gradient && i < term.count; ++i) spread(term.nodes[i], slopes[i], *gradient);
+  }
+  return sum;
+}
+
+ActuatorMeasures::Clique ActuatorMeasures::clique_of(const Term& term) const {
+  Clique clique{0, {}, {}};
+  const auto place = [&](Index vertex) {
+    const auto found = std::find(clique.vertices.begin(), clique.vertices.end(), vertex);
+    if (found != clique.vertices.end()) return static_cast<Index>(found - clique.vertices.begin());
+    clique.vertices.push_back(vertex);
+    return static_cast<Index>(clique.vertices.size()) - 1;
+  };
+  for (int i = 0; i < term.count; ++i) {
+    auto& parts = clique.parts.emplace_back();
+    if (term.nodes[i] < vertices_) {
+      parts.emplace_back(place(term.nodes[i]), 1.0);
+      continue;
+    }
+    const EmbeddedPoint& point = *points_[term.nodes[i] - vertices_];
+    for (std::size_t k = 0; k < point.vertices.size(); ++k)
+      parts.emplace_back(place(point.vertices[k]), point.weights[k]);
+  }
+  return clique;
+}
+
+void ActuatorMeasures::add_cliques(linear::Cliques& cliques) {
+  for (auto& terms : terms_)
+    for (Term& term : terms) {
+      Clique clique = clique_of(term);
+      clique.slot = cliques.slots.back();
+      cliques.add(clique.vertices);
+      term.clique = static_cast<std::int64_t>(cliques_.size());
+      cliques_.push_back(std::move(clique));
+    }
+}
+
+void ActuatorMeasures::second_derivative(const Term& term, const Points& positions, double scale,
+                                         LargeVector<double>& slots) const {
+  using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  const Clique& clique = cliques_[term.clique];
+  const auto count = static_cast<std::int64_t>(clique.vertices.size());
+  double* out = slots.data() + 9 * clique.slot;
+  std::fill(out, out + 9 * (count * (count + 1) / 2), 0.0);
+  if (scale == 0) return;
+  Mat3 blocks[6][6];
+  Vec3 nodes[6];
+  for (int i = 0; i < term.count; ++i) nodes[i] = at(term.nodes[i], positions);
+  term_second_derivative(term.count, nodes, blocks);
+  for (int i = 0; i < term.count; ++i)
+    for (int j = 0; j < term.count; ++j)
+      for (const auto& [row, row_weight] : clique.parts[i])
+        for (const auto& [column, column_weight] : clique.parts[j])
+          if (row >= column)
+            Block(out + 9 * (static_cast<std::int64_t>(row) * (row + 1) / 2 + column)) +=
+                scale * row_weight * column_weight * blocks[i][j];
+}
+
+void ActuatorMeasures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
+                                          LargeVector<double>& slots, Team& team) const {
+  for (std::size_t a = 0; a < terms_.size(); ++a)
+    team.pieces(static_cast<Index>(terms_[a].size()), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+        second_derivative(terms_[a][t], positions, scale[static_cast<Index>(a)], slots);
+    });
+}
+
+}  // namespace softkin::supports

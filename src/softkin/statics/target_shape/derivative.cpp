@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <limits>
+#include <softkin/linear/conjugate_residuals.hpp>
+#include <softkin/statics/target_shape/newton.hpp>
+
+namespace softkin::target_shape {
+
+using namespace energy;
+
+namespace {
+
+/// Of the residual, seen through the preconditioner.
+constexpr double accuracy = 1e-10;
+/// What rounding may add to a solution with the factor of K itself: more, and K is singular.
+constexpr double singular = 1e-6, unlimited = std::numeric_limits<double>::infinity();
+/// Rounds with a factor from nearby that cost about as much as a new factor, and with one that is never exact.
+constexpr int symmetric_rounds = 8, most_rounds = 60;
+
+}  // namespace
+
+bool Tangent::solve_exactly(const System::Scratch& local, const Points& positions, const Eigen::MatrixXd& rights,
+                            int rounds, double apart, Team& team, Eigen::MatrixXd& steps) {
+  const auto precondition_all = [&](Eigen::MatrixXd& columns) {
+    factor_.solve(columns, team);
+    if (sources_.cols() > 0) columns -= sources_ * (capacitance_ * (targets_.transpose() * columns));
+  };
+  Eigen::VectorXd product(rights.rows());
+  const auto multiply_all = [&](const Eigen::MatrixXd& in, Eigen::MatrixXd& out) {
+    for (Eigen::Index i = 0; i < in.cols(); ++i) {
+      multiply(local, positions, in.col(i), product, team);
+      out.col(i) = product;
+    }
+    precondition_all(out);
+  };
+  Eigen::MatrixXd left = rights;
+  precondition_all(left);
+  if (!left.allFinite()) return false;
+  const linear::Remainder remainder = linear::conjugate_residuals(multiply_all, accuracy, rounds, left, steps);
+  return remainder.apart <= apart && remainder.left <= accuracy && steps.allFinite();
+}
+
+Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, Team& team) const {
+  const Index actuators = static_cast<Index>(at.actuation.size());
+  Sensitivity result = no_sensitivity(static_cast<Index>(at.positions.rows()), actuators);
+  std::unique_ptr<Workspace> workspace = take_workspace(&at.positions);
+  Tangent& tangent = workspace->tangent;
+  System::Scratch& local = workspace->local;
+  for (auto& rotations : local.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
+  (void)unknowns_.system.local_step(at.actuation, at.positions, local, team);
+  Eigen::MatrixXd rights(unknowns_.freedoms.size(), actuators), steps;
+  for (Index a = 0; a < actuators; ++a) {
+    unknowns_.system.command_change(local, a, workspace->work, team);
+    unknowns_.freedoms.reduce(workspace->work.residual, at.positions, rights.col(a));
+  }
+  const bool near = reuse_factor && workspace->home.rows() == at.positions.rows() && workspace->home == at.positions;
+  const auto solve = [&](int rounds, double apart) {
+    return tangent.solve_exactly(local, at.positions, rights, rounds, apart, team, steps);
+  };
+  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, unlimited);
+  if (!result.regular) {
+    SolveReport report;
+    workspace->home.resize(0, 3);
+    if (tangent.factorise(local, at.positions, false, team, report)) {
+      const bool exact = tangent.symmetric() && report.projections == 0;
+      result.regular = solve(most_rounds, exact ? singular : unlimited);
+    }
+    if (result.regular) workspace->home = at.positions;
+  }
+  for (Index a = 0; result.regular && a < actuators; ++a)
+    unknowns_.freedoms.expand(steps.col(a), at.positions, result.positions[a]);
+  put_back(std::move(workspace));
+  return result;
+}
+
+}  // namespace softkin::target_shape

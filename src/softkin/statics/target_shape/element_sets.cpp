@@ -1,0 +1,163 @@
+#include <Eigen/Geometry>
+#include <softkin/statics/target_shape/element_sets.hpp>
+
+namespace softkin::target_shape {
+
+using namespace energy;
+
+namespace {
+
+template <int K>
+using RestShape = Eigen::Matrix<double, K, 3>;
+
+void set_lane(Pack3& point, int lane, const Eigen::RowVector3d& value) {
+  point.x[lane] = value[0];
+  point.y[lane] = value[1];
+  point.z[lane] = value[2];
+}
+
+template <int K>
+RestShape<K> rest_shape(const Points& positions, const std::array<Index, K>& nodes) {
+  RestShape<K> shape;
+  for (int i = 0; i < K; ++i) shape.row(i) = positions.row(nodes[i]);
+  return shape;
+}
+
+/// Adds one element; fill(block, lane) writes everything but the nodes.
+template <int K, class Block, class Fill>
+void add_element(ElementSet<K, Block>& set, const std::array<Index, K>& nodes, const Fill& fill) {
+  const int lane = set.count % lanes;
+  if (lane == 0) {
+    set.blocks.emplace_back();
+    set.nodes.emplace_back();
+  }
+  // later elements overwrite the lanes that this one fills in advance
+  for (int l = lane; l < lanes; ++l) {
+    for (int i = 0; i < K; ++i) set.nodes.back()[i][l] = nodes[i];
+    fill(set.blocks.back(), l);
+    if (l > lane) set.blocks.back().weight[l] = 0;
+  }
+  ++set.count;
+}
+
+template <int K>
+void add_body(BodySet<K>& set, const Model& model, const std::array<Index, K>& nodes, double volume,
+              const Material& material) {
+  RestShape<K> rest = rest_shape<K>(model.rest, nodes);
+  rest.rowwise() -= rest.colwise().mean().eval();
+  add_element<K>(set, nodes, [&](BodyBlock<K>& block, int l) {
+    if (l == 0) block.blended = false;
+    for (int i = 0; i < K; ++i) set_lane(block.rest[i], l, rest.row(i));
+    block.volume[l] = volume;
+    block.weight[l] = material.weight * volume;
+    block.shape_ratio[l] = material.shape_ratio;
+    block.blended = block.blended || material.shape_ratio < 1;
+  });
+}
+
+template <int K>
+void add_actuation(ActuationSet<K>& set, const std::array<Index, K>& nodes, const TargetSplit<K>& split, double measure,
+                   double weight) {
+  set.measure_sum += measure;
+  set.measure_squares += measure * measure;
+  add_element<K>(set, nodes, [&](ActuationBlock<K>& block, int l) {
+    for (int i = 0; i < K; ++i) {
+      set_lane(block.constant[i], l, split.constant.row(i));
+      set_lane(block.grown[i], l, split.grown.row(i));
+      set_lane(block.thinned[i], l, split.thinned.row(i));
+    }
+    block.measure[l] = measure;
+    block.weight[l] = weight;
+  });
+}
+
+double mean_area(const RestShape<6>& p) {
+  const auto area = [&](int a, int b, int c) {
+    const Vec3 u = p.row(b) - p.row(a), v = p.row(c) - p.row(a);
+    return 0.5 * u.cross(v).norm();
+  };
+  return 0.5 * (area(0, 1, 2) + area(3, 4, 5));
+}
+
+/// A triangle has no volume: it counts as a body element of mean volume, so that its weight is w times that of its
+/// surroundings. Much heavier ones stop local/global from converging, much lighter ones give way.
+double triangle_volume(const Model& model) {
+  double sum = 0, count = 0;
+  const auto add = [&](const std::vector<ElementRole>& roles, const std::vector<double>& volumes) {
+    for (std::size_t e = 0; e < roles.size(); ++e)
+      if (roles[e].material >= 0) sum += volumes[e], ++count;
+  };
+  add(model.tetrahedron_roles, model.tetrahedron_volumes);
+  add(model.prism_roles, model.prism_volumes);
+  return count > 0 ? sum / count : 1;
+}
+
+ActuationSet<3> cable_set(const Model& model, const Actuator& actuator, std::vector<const EmbeddedPoint*>& points) {
+  ActuationSet<3> set;
+  const double weight = actuator.weight * triangle_volume(model);
+  const auto node = [&](const EmbeddedPoint& point) {
+    points.push_back(&point);
+    return static_cast<Index>(model.rest.rows() + static_cast<Index>(points.size()) - 1);
+  };
+  std::vector<Index> along(actuator.points.size(), -1);
+  const auto node_along = [&](Index i) { return along[i] >= 0 ? along[i] : along[i] = node(actuator.points[i]); };
+  for (const CableGap& gap : actuator.gaps) {
+    RestShape<3> rest;
+    rest.row(0) = actuator.points[gap.segment].at(model.rest).transpose();
+    rest.row(1) = actuator.points[gap.segment + 1].at(model.rest).transpose();
+    rest.row(2) = gap.apex.at(model.rest).transpose();
+    const Index first = node_along(gap.segment), second = node_along(gap.segment + 1);
+    add_actuation<3>(set, {first, second, node(gap.apex)}, split_cable(rest), (rest.row(1) - rest.row(0)).norm(),
+                     weight);
+  }
+  return set;
+}
+
+}  // namespace
+
+ElementSets make_element_sets(const Model& model) {
+  ElementSets sets;
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
+    if (const Index m = model.tetrahedron_roles[e].material; m >= 0)
+      add_body<4>(sets.tetrahedra, model, model.tetrahedra[e], model.tetrahedron_volumes[e], model.materials[m]);
+  for (std::size_t e = 0; e < model.prisms.size(); ++e)
+    if (const Index m = model.prism_roles[e].material; m >= 0)
+      add_body<6>(sets.prisms, model, model.prisms[e], model.prism_volumes[e], model.materials[m]);
+
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const Index index = static_cast<Index>(a);
+    if (actuator.kind == ActuatorKind::cable) {
+      sets.cables.push_back(cable_set(model, actuator, sets.points));
+      sets.cables.back().actuator = index;
+    } else if (actuator.kind == ActuatorKind::pneumatic) {
+      ActuationSet<4>& set = sets.pneumatic.emplace_back();
+      set.actuator = index;
+      for (const Index e : actuator.tetrahedra) {
+        const double volume = model.tetrahedron_volumes[e];
+        add_actuation<4>(set, model.tetrahedra[e], split_pneumatic(rest_shape<4>(model.rest, model.tetrahedra[e])),
+                         volume, actuator.weight * volume);
+      }
+    } else {
+      ActuationSet<6>& set = sets.dea.emplace_back();
+      set.actuator = index;
+      for (const Index e : actuator.prisms) {
+        const RestShape<6> rest = rest_shape<6>(model.rest, model.prisms[e]);
+        add_actuation<6>(set, model.prisms[e], split_dea(rest), mean_area(rest),
+                         actuator.weight * model.prism_volumes[e]);
+      }
+    }
+  }
+  const auto number = [&](auto& set, int k) {
+    set.first_slot = sets.slots;
+    sets.slots += set.count * k;
+  };
+  number(sets.tetrahedra, 4);
+  number(sets.prisms, 6);
+  for (auto& set : sets.cables) number(set, 3);
+  for (auto& set : sets.pneumatic) number(set, 4);
+  for (auto& set : sets.dea) number(set, 6);
+  return sets;
+}
+
+}  // namespace softkin::target_shape

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <softkin/energy/target_shape.hpp>
+#include <softkin/model/model.hpp>
+
+namespace softkin::target_shape {
+
+/// Elements of one kernel, `lanes` to a block. Nodes beyond the mesh's vertices are the model's embedded points.
+template <int K, class Block>
+struct ElementSet {
+  Index count = 0;       // elements; the last block repeats the last one, without weight, to fill its lanes
+  Index first_slot = 0;  // of the pulls that this set writes: element e, node i writes slot first_slot + K e + i
+  Index actuator = -1;
+  double measure_sum = 0, measure_squares = 0;  // over the actuation elements' measures at rest: sum u, sum u^2
+  std::vector<Block> blocks;
+  std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
+
+  [[nodiscard]] Index block_count() const { return static_cast<Index>(blocks.size()); }
+};
+
+template <int K>
+using BodySet = ElementSet<K, energy::BodyBlock<K>>;
+template <int K>
+using ActuationSet = ElementSet<K, energy::ActuationBlock<K>>;
+
+/// Every element of a model, ready for the kernels of the target-shape formulation.
+struct ElementSets {
+  BodySet<4> tetrahedra;
+  BodySet<6> prisms;
+  std::vector<ActuationSet<3>> cables;
+  std::vector<ActuationSet<4>> pneumatic;
+  std::vector<ActuationSet<6>> dea;
+  std::vector<const EmbeddedPoint*> points;  // node n_vertices + i
+  Index slots = 0;
+
+  template <class Visit>
+  void each(Visit&& visit) const {
+    visit(tetrahedra);
+    visit(prisms);
+    for (const auto& set : cables) visit(set);
+    for (const auto& set : pneumatic) visit(set);
+    for (const auto& set : dea) visit(set);
+  }
+};
+
+/// model must outlive the result.
+[[nodiscard]] ElementSets make_element_sets(const Model& model);
+
+}  // namespace softkin::target_shape

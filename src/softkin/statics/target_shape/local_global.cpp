@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <softkin/statics/target_shape/local_global.hpp>
+
+namespace softkin::target_shape {
+
+namespace {
+
+/// Accelerated steps may raise the energy a little on their way, and have to where R_omega < 1 or ratios are
+/// redistributed; those that raise it more lead to other equilibria.
+constexpr double tolerated_growth = 1.2;
+
+/// How far the fixed point may be: the step over the least change of steps per change of shape in the last iterations,
+/// which for a linear iteration x <- G x is bounded by 1 - (largest eigenvalue of G), accelerated or not.
+class ErrorEstimate {
+ public:
+  void add(const Points& at, const Points& step) {
+    if (last_at_.size() > 0) {
+      const double moved = (at - last_at_).norm();
+      if (moved > 0) slopes_[count_++ % slopes_.size()] = (step - last_step_).norm() / moved;
+    }
+    last_at_ = at;
+    last_step_ = step;
+  }
+  [[nodiscard]] double mm(double step_mm) const {
+    double least = 1;
+    for (std::size_t i = 0; i < std::min(count_, slopes_.size()); ++i) least = std::min(least, slopes_[i]);
+    return step_mm / std::max(least, 1e-9);
+  }
+
+ private:
+  Points last_at_, last_step_;
+  std::array<double, 20> slopes_{};
+  std::size_t count_ = 0;
+};
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void accept(const IterationRecord& record, bool keep_history, SolveReport& report) {
+  ++report.iterations;
+  report.energy = record.energy;
+  report.step_mm = record.step_mm;
+  report.gradient_norm = record.gradient_norm;
+  if (keep_history) report.history.push_back(record);
+}
+
+LocalGlobal::LocalGlobal(const System& system, const supports::GlobalStep& global, int anderson, Points& positions)
+    : system_(system),
+      global_(global),
+      anderson_(anderson),
+      mixer_(anderson),
+      positions_(positions),
+      poses_(global.project(positions)),
+      tolerated_(unlimited) {
+  accepted_ = positions;
+}
+
+bool LocalGlobal::iterate(const Actuation& actuation, System::Scratch& scratch, Team& team, IterationRecord& record) {
+  record.energy = system_.local_step(actuation, positions_, scratch, team);
+  if (record.energy > tolerated_) {  // the extrapolation went astray: on from the plain step
+    positions_ = accepted_;
+    poses_ = global_.project(positions_);
+    mixer_.restart();
+    record.energy = system_.local_step(actuation, positions_, scratch, team);
+  }
+  record.gradient_norm = 2 * global_.free_norm(scratch.residual, poses_);
+  tolerated_ = anderson_ > 0 ? tolerated_growth * record.energy : unlimited;
+  before_ = positions_;
+  global_.step(scratch.residual, positions_, poses_, team);
+  record.step_mm = (positions_ - before_).rowwise().norm().maxCoeff();
+  // the squares of far-off coordinates overflow
+  if (!std::isfinite(record.energy + record.gradient_norm + record.step_mm) || !positions_.allFinite()) {
+    positions_ = accepted_;
+    return false;
+  }
+  return true;
+}
+
+void LocalGlobal::extrapolate() {
+  accepted_ = positions_;
+  if (anderson_ == 0) return;
+  positions_ = mixer_.next(before_, positions_);
+  poses_ = global_.project(positions_);
+}
+
+void solve_local_global(const System& system, const supports::GlobalStep& global, const StaticsOptions& options,
+                        const ProgressCallback& progress, Team& team, Equilibrium& result) {
+  SolveReport& report = result.report;
+  report.solver = "local-global";
+  LocalGlobal iteration(system, global, options.anderson, result.state.positions);
+  System::Scratch scratch = system.make_scratch();
+  ErrorEstimate estimate;
+  while (report.iterations < options.max_iterations) {
+    IterationRecord record;
+    if (!iteration.iterate(result.actuation, scratch, team, record)) break;
+    accept(record, options.keep_history, report);
+    estimate.add(iteration.before(), iteration.positions() - iteration.before());
+    if (report.step_mm < report.tolerance_mm) {
+      report.status = Status::converged;
+      break;
+    }
+    if (progress && !progress({report.iterations, report.step_mm, report.tolerance_mm})) {
+      report.status = Status::interrupted;
+      break;
+    }
+    if (report.iterations < options.max_iterations) iteration.extrapolate();
+  }
+  report.estimated_error_mm = estimate.mm(report.step_mm);
+}
+
+}  // namespace softkin::target_shape
