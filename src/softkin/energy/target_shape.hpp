@@ -45,8 +45,7 @@ template <int K>
 /// rotation  in: where the search begins; out: R_i
 /// source    Fang et al. 2020, Eqs. (2)-(5), (9); r is the cube root of the volume ratio (the print lacks the root)
 /// deviation the volume-preserving target of an element below an eighth of its volume turns linearly into the rigid
-/// one,
-///           which an inverted element takes whole: Eq. (4) would enlarge inverted elements
+///           one, which an inverted element takes whole: Eq. (4) would enlarge inverted elements
 template <int K>
 void pull_of_body(const BodyBlock<K>& block, Shape<K>& current, PackRotation& rotation, ElementPull<K>& out);
 
