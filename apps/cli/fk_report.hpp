@@ -11,7 +11,7 @@
 
 namespace softkin::cli {
 
-/// The report (DESIGN.md section 4): what it is about, then the steps.
+/// The report: what it is about, then the steps.
 class Report {
  public:
   using Json = nlohmann::ordered_json;
