@@ -6,7 +6,6 @@
 #include <set>
 #include <softkin/io/gmsh.hpp>
 #include <softkin/io/mesh_io.hpp>
-#include <softkin/io/vtk.hpp>
 #include <sstream>
 
 #include "io/vtk_files.hpp"
