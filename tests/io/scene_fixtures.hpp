@@ -37,7 +37,7 @@ inline softkin::SceneFiles fake_files() {
   return files;
 }
 
-/// The example of DESIGN.md in metres, for the target-shape formulation, with every key that it may have.
+/// A finger in metres, for the target-shape formulation, with every key that a scene of it may have.
 inline const char* const whole_scene = R"(softkin: 1
 units: {length: m}
 mesh: {file: finger.msh}

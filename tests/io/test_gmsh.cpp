@@ -248,6 +248,19 @@ TEST_F(Gmsh, WritesTheFormat) {
             "$Elements\n3 3 1 3\n0 1 15 1\n1 4\n2 1 2 1\n2 1 3 2\n3 1 4 1\n3 1 2 3 4\n$EndElements\n");
 }
 
+TEST_F(Gmsh, CellsOfNoRegionAreOfGroup0BesideRegions) {
+  Mesh mesh = one_tetrahedron();
+  mesh.regions = {vertex_region("tip", 0, {3})};
+  write_gmsh(folder_ / "mesh.msh", mesh, false);
+  EXPECT_NE(read_file(folder_ / "mesh.msh").find("\n1 0 0 0 1 0.1 1e-09 1 0 0\n"), std::string::npos);
+  mesh.triangles.clear();
+  expect_same(read_gmsh(folder_ / "mesh.msh"), mesh);
+  mesh.regions.clear();
+  write_gmsh(folder_ / "mesh.msh", mesh, false);
+  EXPECT_NE(read_file(folder_ / "mesh.msh").find("\n1 0 0 0 1 0.1 1e-09 0 0\n"), std::string::npos);
+  expect_same(read_gmsh(folder_ / "mesh.msh"), mesh);
+}
+
 TEST_F(Gmsh, RefusesToWriteWhatItCouldNotRead) {
   const std::vector<std::pair<std::string, std::function<void(Mesh&)>>> changes = {
       {"no volume elements", [](Mesh& m) { m.tetrahedra.clear(); }},

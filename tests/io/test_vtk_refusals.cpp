@@ -163,6 +163,13 @@ TEST(VtkRefusals, Xml) {
     return replaced(replaced(kXml, "<UnstructuredGrid>", names + codes + "</Array></FieldData>"), "\"part\"",
                     "\"region\"");
   };
+  const auto numbered = [&](const char* first, const char* second) {
+    const std::string array = "<DataArray type=\"Int32\" NumberOfTuples=\"1\" format=\"ascii\" Name=\"region_";
+    return replaced(replaced(kXml, "<UnstructuredGrid>",
+                             "<UnstructuredGrid><FieldData>" + array + "a\">" + first + "</DataArray>" + array +
+                                 "b\">" + second + "</DataArray></FieldData>"),
+                    "\"part\"", "\"region\"");
+  };
   expect_refused(
       {
           {"a.vtu:1: the file is empty", " \n"},
@@ -216,6 +223,10 @@ TEST(VtkRefusals, Xml) {
           {"a.vtu:3: array 'region_names': the last string does not end with 0", named("98 0 98")},
           {"a.vtu:3: array 'region_names' holds 2 strings", named("98 0 98 0")},
           {"a.vtu:3: array 'region_names': 256 is no byte", named("256 0")},
+          {"a.vtu:3: two regions have the number 1", numbered("1", "1")},
+          {"a.vtu:3: the numbers of the regions must be 0 to 1", numbered("0", "2")},
+          {"a.vtu:3: array 'region_b' has no data", numbered("0", "")},
+          {"a.vtu:21: array 'region' has the value 2, outside the 2 names", numbered("1", "0")},
       },
       "a.vtu");
 }

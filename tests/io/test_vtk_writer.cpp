@@ -38,6 +38,17 @@ TEST(VtkWriter, ReaderRecoversMeshAndRegions) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.file("")), {}), 1) << "a temporary file was left";
 }
 
+TEST(VtkWriter, ReaderFindsNoRegionWhereNoCellIsInOne) {
+  const TempFolder folder;
+  VtuContent content = sample();
+  content.cell_regions = {-1, -1, -1};
+  for (const std::size_t names : {2u, 0u}) {
+    content.region_names.resize(names);
+    write_vtu(folder.file("a.vtu"), content);
+    EXPECT_TRUE(read_vtu(folder.file("a.vtu")).regions.empty());
+  }
+}
+
 /// The array's bytes, taken from the file by hand.
 std::string stored(const std::string& file, const std::string& name) {
   const std::size_t offset_at = file.find("offset=\"", file.find("Name=\"" + name + "\"")) + 8;
@@ -76,7 +87,10 @@ TEST(VtkWriter, StoresWhatTheFormatAsksFor) {
   EXPECT_EQ(stored(file, "connectivity"), packed<std::int32_t>({0, 2, 1, 6, 3, 4, 5, 7, 0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(stored(file, "offsets"), packed<std::int64_t>({4, 8, 14}));
   EXPECT_EQ(stored(file, "types"), packed<std::uint8_t>({10, 10, 13}));
-  EXPECT_NE(file.find("98 111 100 121 0\n"), std::string::npos);
+  EXPECT_NE(file.find("Name=\"region_body\" NumberOfTuples=\"1\" format=\"ascii\">0<"), std::string::npos);
+  EXPECT_NE(file.find("Name=\"region_soft \xC3\xA4 part\" NumberOfTuples=\"1\" format=\"ascii\">1<"),
+            std::string::npos);
+  EXPECT_EQ(file.find("type=\"String\""), std::string::npos) << "which other readers refuse";
 }
 
 TEST(VtkWriter, StoresTrianglesAndSinglePoints) {

@@ -58,11 +58,9 @@ TEST(VtkXml, ReadsPointsAlone) {
   for (int i = 0; i < 24; ++i) EXPECT_EQ(points(i / 3, i % 3), kPoints[i]);
 }
 
-TEST(VtkXml, NamesRegionsAsTheFileDoes) {
-  const std::string names =
-      "<FieldData>\n<Array type=\"String\" Name=\"region_names\" NumberOfTuples=\"3\" "
-      "format=\"ascii\">\n98 111 100 121 0\n-61 -92 32 98 0\n99 0\n</Array>\n</FieldData>\n<Piece";
-  std::string file = replaced(xml_file({}), "<Piece", names);
+/// `names`: what the field data hold.
+void expect_named_regions(const std::string& names) {
+  std::string file = replaced(xml_file({}), "<Piece", "<FieldData>\n" + names + "</FieldData>\n<Piece");
   file = replaced(file, "Name=\"material\"", "Name=\"region\"");
   const std::size_t begin = file.find('\n', file.find("Name=\"region\"")) + 1;
   file.replace(begin, file.find("</DataArray>", begin) - begin, "0 1 1 1 -1 -1 -1 ");
@@ -72,6 +70,20 @@ TEST(VtkXml, NamesRegionsAsTheFileDoes) {
   EXPECT_EQ(region(mesh, "\xC3\xA4 b").tetrahedra, (std::vector<Index>{0, 1}));
   EXPECT_EQ(mesh.triangles.size(), 1u);
   EXPECT_TRUE(mesh.quads.empty());
+}
+
+TEST(VtkXml, NamesRegionsAsTheFileDoes) {
+  expect_named_regions(
+      "<DataArray type=\"Int64\" Name=\"region_\xC3\xA4 b\" NumberOfTuples=\"1\" format=\"ascii\">1</DataArray>\n"
+      "<DataArray type=\"Float64\" Name=\"region_size\" NumberOfTuples=\"1\" format=\"ascii\">2.5</DataArray>\n"
+      "<DataArray type=\"Int32\" Name=\"region_sizes\" NumberOfTuples=\"2\" format=\"ascii\">3 4</DataArray>\n"
+      "<DataArray type=\"Int32\" Name=\"region_body\" NumberOfTuples=\"1\" format=\"ascii\"> 0 </DataArray>\n");
+}
+
+TEST(VtkXml, NamesRegionsByTheStringsOfOlderFiles) {
+  expect_named_regions(
+      "<Array type=\"String\" Name=\"region_names\" NumberOfTuples=\"3\" "
+      "format=\"ascii\">\n98 111 100 121 0\n-61 -92 32 98 0\n99 0\n</Array>\n");
 }
 
 }  // namespace

@@ -16,11 +16,20 @@
 
 namespace softkin::testing {
 
+/// A file of the reference solutions: the small ones are in tests/reference, the others in the folder of the reference
+/// data. Empty where it is absent.
+inline std::filesystem::path reference_file(const std::string& name) {
+  for (const std::filesystem::path& folder :
+       {std::filesystem::path(SOFTKIN_SOURCE_DIR "/tests/reference"), reference_folder() / "fem"})
+    if (std::filesystem::exists(folder / name)) return folder / name;
+  return {};
+}
+
 /// A table of the reference solutions, columns by name. Cells may be nan, which softkin's own reader refuses.
 class ReferenceTable {
  public:
   explicit ReferenceTable(const std::string& name) {
-    std::ifstream file(reference_folder() / "fem" / name);
+    std::ifstream file(reference_file(name));
     std::string line, cell;
     if (!std::getline(file, line)) throw InvalidInput("no table " + name);
     for (std::istringstream cells(line); std::getline(cells, cell, ',');) columns_.push_back(cell);
@@ -83,7 +92,8 @@ inline RobotSpec reference_robot(const std::string& mesh, bool quadratic) {
   RobotSpec spec;
   spec.name = mesh;
   spec.formulation = Formulation::physical;
-  spec.mesh = read_mesh(reference_folder() / "fem" / (mesh + ".msh"));
+  const std::filesystem::path small = reference_file(mesh + ".vtu");
+  spec.mesh = read_mesh(small.empty() ? reference_file(mesh + ".msh") : small);
   spec.quadratic = quadratic;
   spec.markers.push_back({"tip", {std::string("tip_marker"), {}}});
   return spec;

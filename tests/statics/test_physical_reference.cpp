@@ -5,7 +5,7 @@
 
 #include "statics/reference_cases.hpp"
 
-/// Against CalculiX, same mesh and same law (shared/reference/README.md). A robot is 120 mm long, the tip may be away
+/// Against CalculiX, same mesh and same law (tests/reference/README.md). A robot is 120 mm long, the tip may be away
 /// by 0.5 % of that; the reference itself is converged to about 1e-3.
 
 namespace softkin {
@@ -40,15 +40,15 @@ std::string name_of(const ::testing::TestParamInfo<Sweep>& info) {
   return info.param.table;
 }
 
-#define SKIP_WITHOUT_REFERENCE() \
-  if (reference_folder().empty()) GTEST_SKIP() << "reference data absent"
+#define SKIP_WITHOUT(table) \
+  if (reference_file(table).empty()) GTEST_SKIP() << "reference data absent: " << (table)
 
 }  // namespace
 
 /// Volume control with the reference's volumes: tip and pressure.
 TEST_P(FingerReference, TipAndPressureAtEqualVolume) {
-  SKIP_WITHOUT_REFERENCE();
   const Sweep& sweep = GetParam();
+  SKIP_WITHOUT(std::string(sweep.table) + ".csv");
   RobotSpec spec = reference_robot(sweep.mesh, sweep.quadratic);
   spec.materials = {reference_material("body", sweep.law, 12, 0.4)};
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
@@ -89,8 +89,8 @@ INSTANTIATE_TEST_SUITE_P(Fem, FingerReference,
 
 /// Length control with the reference's lengths: tip and tension. Rows in which notches would touch are left out.
 TEST_P(CableReference, TipAndTensionAtEqualLength) {
-  SKIP_WITHOUT_REFERENCE();
   const Sweep& sweep = GetParam();
+  SKIP_WITHOUT(std::string(sweep.table) + ".csv");
   RobotSpec spec = reference_robot(sweep.mesh, sweep.quadratic);
   spec.materials = {reference_material("body", sweep.law, 12, 0.4)};
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
@@ -143,7 +143,6 @@ class CantileverReference : public ::testing::TestWithParam<Cantilever> {};
 /// from the one that may be stretched and sheared (Reissner), which the beam of 100 x 10 x 10 mm is; 2 % from the
 /// inextensible elastica, whose tip is 1.2 mm from Reissner's under the largest load.
 TEST_P(CantileverReference, TipUnderLoad) {
-  SKIP_WITHOUT_REFERENCE();
   const Cantilever& beam = GetParam();
   const ReferenceTable table(std::string(beam.table) + ".csv");
   double largest = 0, from_elastica = 0, from_reissner = 0;
@@ -290,7 +289,6 @@ double shifted(const Mesh& mesh, const Points& now, const std::string& name) {
 /// reference weighs edge nodes in its mean, and warping in its turn, is not written down: 6e-3 mm of 2.4 mm, and 0.03
 /// of 20 degrees; at the axis it is one node.
 TEST_P(BarReference, InterfaceFollows) {
-  SKIP_WITHOUT_REFERENCE();
   const Bar& bar = GetParam();
   const ReferenceTable table("bar/" + table_of(bar) + ".csv");
   const std::string kind = std::string(bar.support).substr(0, std::string(bar.support).find('_'));

@@ -36,7 +36,8 @@ struct RatioEstimate {
 
 /// A small-strain material of the target-shape formulation, up to a common factor of its moduli.
 ///
-/// source  DESIGN of softkin: E proportional to 6 R / (2 + R), nu = (1 - R) / (2 + R); docs/paper.md
+/// equation  E proportional to 6 R / (2 + R), nu = (1 - R) / (2 + R)
+/// source    docs/paper.md, "What this formulation is and is not"
 [[nodiscard]] double stiffness_of_shape_ratio(double shape_ratio);
 [[nodiscard]] double poisson_ratio_of_shape_ratio(double shape_ratio);
 /// The R_omega with that Poisson's ratio: (1 - 2 nu) / (1 + nu).

@@ -29,10 +29,9 @@ struct Motion {
 /// than a board plans (6: MIN_STEPS_PER_SEGMENT) wait for the next rows; no time is lost by that.
 ///
 /// throws  InvalidInput naming file:line, tendon, value and limit where a length, a speed, or an acceleration is
-/// outside
-///         its limits. Speed: that of the motor [mm of cable per s] from row to row, backlash included. Acceleration:
-///         change of speed between two rows' moves over the mean of their times; the first begins and the last ends at
-///         rest
+///         outside its limits. Speed: that of the motor [mm of cable per s] from row to row, backlash included.
+///         Acceleration: change of speed between two rows' moves over the mean of their times; the first begins and
+///         the last ends at rest
 [[nodiscard]] Motion plan_motion(const Machine& machine, const Commands& commands, bool return_home);
 
 }  // namespace softkin::drive

@@ -106,7 +106,7 @@ inline Pack33 transpose_times(const Pack33& a, const Pack33& b) {
 template <int K>
 using Shape = Pack3[K];
 
-/// Moves the shape's mean to the origin: V <- N V, N = I - 11^T / K.
+/// Moves the shape's mean to the origin: V <- N V, N = I - 11^T / K, Eq. (2).
 template <int K>
 inline void center(Shape<K>& shape) {
   Pack3 mean = shape[0];

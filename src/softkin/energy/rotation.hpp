@@ -12,8 +12,8 @@ struct PackRotation {
 
 [[nodiscard]] Pack33 to_matrix(const PackRotation& rotation);
 
-/// Best proper rotation (det +1) between two shapes, in every lane: maximises tr(R^T H), H = sum_i current_i
-/// target_i^T. Right for inverted, flat and mirrored shapes too; where it is not unique, one of the best.
+/// Best proper rotation (det +1) between two shapes, in every lane, that of Eq. (2): maximises tr(R^T H), H = sum_i
+/// current_i target_i^T. Right for inverted, flat and mirrored shapes too; where it is not unique, one of the best.
 ///
 /// correlation  H [any unit]
 /// rotation     in: where to start (a unit quaternion); out: the best one, to rounding

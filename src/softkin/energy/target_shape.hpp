@@ -24,7 +24,7 @@ struct ActuationBlock {
   Pack weight;                        // w_i Vol_i [mm^3]; 0 in lanes without an element
 };
 
-/// What an element pulls with: weight (V^t - N V^d), and its energy weight ||N V^d - V^t||^2 [mm^5].
+/// What an element pulls with: weight (V^t - N V^d), and its energy weight ||N V^d - V^t||^2 [mm^5], Eq. (1).
 template <int K>
 struct ElementPull {
   Shape<K> pull;
@@ -45,15 +45,14 @@ template <int K>
 /// rotation  in: where the search begins; out: R_i
 /// source    Fang et al. 2020, Eqs. (2)-(5), (9); r is the cube root of the volume ratio (the print lacks the root)
 /// deviation the volume-preserving target of an element below an eighth of its volume turns linearly into the rigid
-/// one,
-///           which an inverted element takes whole: Eq. (4) would enlarge inverted elements
+///           one, which an inverted element takes whole: Eq. (4) would enlarge inverted elements
 template <int K>
 void pull_of_body(const BodyBlock<K>& block, Shape<K>& current, PackRotation& rotation, ElementPull<K>& out);
 
 /// Local step of an actuation element at the local ratios given.
 ///
 /// ratio   s_i, alpha_i or lambda_i [-], > 0
-/// source  Fang et al. 2020, Section II-D and Fig. 4
+/// source  Fang et al. 2020, Eq. (2), Section II-D and Fig. 4
 template <int K>
 void pull_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, Shape<K>& current, PackRotation& rotation,
                        ElementPull<K>& out);
@@ -63,10 +62,12 @@ template <int K>
 struct TargetSplit {
   Eigen::Matrix<double, K, 3> constant, grown, thinned;
 };
-/// (cable end, cable end, apex): the edge on x shrinks, the apex on y stays.
+/// (cable end, cable end, apex), Eq. (6): the edge on x shrinks, the apex on y stays.
 [[nodiscard]] TargetSplit<3> split_cable(const Eigen::Matrix<double, 3, 3>& rest);
+/// The whole element grows about its centroid, Eq. (8).
 [[nodiscard]] TargetSplit<4> split_pneumatic(const Eigen::Matrix<double, 4, 3>& rest);
-/// Both triangles grow in their planes about their centres; the distance of the centres thins along the mean normal.
+/// Eq. (7): both triangles grow in their planes about their centres; the distance of the centres thins along the mean
+/// normal.
 [[nodiscard]] TargetSplit<6> split_dea(const Eigen::Matrix<double, 6, 3>& rest);
 
 }  // namespace softkin::energy

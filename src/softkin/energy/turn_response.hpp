@@ -12,8 +12,7 @@ namespace softkin::energy {
 ///
 /// metric   symmetric positive definite; where it is singular it counts as slightly larger
 /// returns  L^-T Q max(Lambda, least)^-1 Q^T L^-1 with metric = L L^T, L^-1 stiffness L^-T = Q Lambda Q^T; zero in
-/// lanes
-///          whose metric is zero
+///          lanes whose metric is zero
 [[nodiscard]] Pack33 turn_response(const Pack33& stiffness, const Pack33& metric, const Pack& least);
 
 }  // namespace softkin::energy

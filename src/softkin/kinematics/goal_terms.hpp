@@ -5,7 +5,7 @@
 
 namespace softkin::inverse {
 
-/// Goals as terms whose squares are summed: each coordinate's error times the root of its goal's weight [mm].
+/// Goals as terms whose squares are summed, Eq. (12): each coordinate's error times the root of its goal's weight [mm].
 ///
 /// The goals are checked already.
 [[nodiscard]] Eigen::VectorXd goal_terms(const Model& model, const std::vector<Goal>& goals, const Points& positions);

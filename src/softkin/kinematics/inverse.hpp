@@ -61,7 +61,7 @@ struct InverseResult {
 /// source    Gauss-Newton in a trust region: Levenberg 1944, Marquardt 1963, More 1978; ranges and slack cables as
 ///           inequalities of its quadratic steps (Nocedal and Wright 2006, Section 16.5); curvature of the errors that
 ///           stay: Dennis, Gay and Welsch 1981; updated slopes: Broyden 1965.
-///           gradient: Fang et al. 2020, Alg. 2, as corrected in docs/paper.md
+///           The problem is Eq. (13) of Fang et al. 2020; gradient: their Alg. 2, as corrected in docs/paper.md
 /// throws    InvalidInput as check_goals and Statics::solve do; on options out of range, sizes that do not fit, a
 ///           preferred actuation or a start outside the ranges
 [[nodiscard]] InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,

@@ -15,7 +15,7 @@ class Descent {
   Descent(RobotResponse& response, double diagonal_mm, double accuracy_mm, Pose& pose)
       : response_(response), diagonal_mm_(diagonal_mm), accuracy_mm_(accuracy_mm), pose_(pose) {}
 
-  /// One iteration of Algorithm 2; false where it leads nowhere.
+  /// One iteration of Algorithm 2, a line search by Eq. (15); false where it leads nowhere.
   bool iterate(std::string& remark) {
     remark = "the interruption";
     if (!differences()) {
@@ -48,6 +48,7 @@ class Descent {
     return response_.go(shares, than, trial) == Response::Outcome::arrived && objective(trial) < objective(than);
   }
 
+  /// The gradient of Eq. (14), by shares; false where an equilibrium is missing.
   bool differences() {
     const double reach = std::cbrt(6 * accuracy_mm_ * pose_.terms.norm() / (diagonal_mm_ * diagonal_mm_));
     const double difference = std::clamp(reach, least_difference, most_difference);

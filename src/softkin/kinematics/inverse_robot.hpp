@@ -5,7 +5,7 @@
 
 namespace softkin::inverse {
 
-/// A robot's equilibria as a search asks for them.
+/// A robot's equilibria as a search asks for them: Eq. (11) as a function of the actuation.
 ///
 /// A slack cable is taken for one that is as long as its path: the shape is the same, and from there it can be pulled.
 class RobotResponse : public Response {

@@ -31,8 +31,7 @@ struct WalkStep {
 /// Target shapes know no forces: the body takes its shape freely, and the friction only says which foot slides.
 ///
 /// source  Coulomb friction with a limit for either direction, backward Euler: A. DeSimone, P. Gidoni, G. Noselli,
-/// Liquid
-///         crystal elastomer strips as soft crawlers, J. Mech. Phys. Solids 84, 2015
+///         Liquid crystal elastomer strips as soft crawlers, J. Mech. Phys. Solids 84, 2015
 class Walker {
  public:
   /// throws  InvalidInput on a model without feet, feet at one place, both feet held along the direction of travel, or

@@ -39,8 +39,7 @@ struct FrontTree {
 };
 
 /// source  supernodes with relaxed amalgamation as in Ashcraft and Grimes 1989; a front joins its parent where the
-/// zeros
-///         that this stores are few
+///         zeros that this stores are few
 [[nodiscard]] FrontTree make_front_tree(BlockColumns pattern);
 
 }  // namespace softkin::linear

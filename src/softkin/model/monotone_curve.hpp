@@ -9,8 +9,8 @@ namespace softkin {
 /// overshoot; and its inverse.
 ///
 /// source  Fritsch and Carlson, SIAM J. Numer. Anal. 17(2), 1980; slopes at the points are those of Fritsch and
-/// Butland,
-///         SIAM J. Sci. Stat. Comput. 5(2), 1984, at the ends three-point differences limited to stay monotone (PCHIP)
+///         Butland, SIAM J. Sci. Stat. Comput. 5(2), 1984, at the ends three-point differences limited to stay
+///         monotone (PCHIP)
 class MonotoneCurve {
  public:
   /// throws  InvalidInput: fewer than two points, not as many x as y, numbers that are not finite or do not ascend
@@ -22,7 +22,9 @@ class MonotoneCurve {
   /// throws  InvalidInput outside x().front() to x().back()
   [[nodiscard]] double value(double x) const;
   [[nodiscard]] double slope(double x) const;
-  /// The x whose value is y, to rounding. throws  InvalidInput outside y().front() to y().back()
+  /// The x whose value is y, to rounding.
+  ///
+  /// throws  InvalidInput outside y().front() to y().back()
   [[nodiscard]] double inverse(double y) const;
 
  private:

@@ -5,8 +5,8 @@
 namespace softkin {
 
 /// What an actuator controls, as it is in a shape, over its value at rest [-], whatever its control: polyline length,
-/// sum of the prisms' mean areas, or volume of the chamber: of its elements (target-shape), enclosed by its boundary
-/// (physical) or by its surface.
+/// sum of the prisms' mean areas, or volume of the chamber, Eq. (17): of its elements (target-shape), enclosed by its
+/// boundary (physical) or by its surface.
 [[nodiscard]] double achieved_ratio(const Model& model, const Actuator& actuator, const Points& positions);
 
 /// Deformation of every element, tetrahedra first, then prisms (their strain at the centre). Of order 2: the least

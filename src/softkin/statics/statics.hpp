@@ -42,15 +42,14 @@ class Statics {
   /// Equilibrium shape under one actuation.
   ///
   /// actuation  m values in model.actuators order: length, area or volume over that at rest [-], or tension [N] or
-  /// gauge
-  ///            pressure [kPa] where control is load
+  ///            gauge pressure [kPa] where control is load
   /// start      where the search begins; its positions are n x 3 [mm]; fixed vertices and rigid regions of it are
   ///            projected to what holds them
   /// returns    positions n x 3 [mm], multipliers [N or kPa] (physical formulation, else 0) and report; not converging
   ///            is report.status
-  /// source     target-shape: Fang et al. 2020, Alg. 1, Eqs. (1)-(10) as corrected in docs/paper.md; Newton: same
-  /// equilibrium throws     InvalidInput on a size mismatch, a start that is not finite, or a value outside its
-  /// actuator's range
+  /// source     target-shape: Fang et al. 2020, Alg. 1, Eqs. (1)-(11) as corrected in docs/paper.md; Newton: same
+  ///            equilibrium
+  /// throws     InvalidInput on a size mismatch, a start that is not finite, or a value outside its actuator's range
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions& options = {},
                                   const ProgressCallback& progress = {}) const;
 

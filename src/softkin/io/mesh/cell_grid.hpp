@@ -35,8 +35,7 @@ struct CellGrid {
 /// than 1000 distinct values and no names are ids of cells, not regions, and are left out.
 ///
 /// throws  InvalidInput at origin where there is no tetrahedron and no wedge, or orders are mixed; at the label's
-/// origin where a value has
-///         no name or two regions have the same name
+///         origin where a value has no name or two regions have the same name
 [[nodiscard]] Mesh mesh_of(const CellGrid& grid, const Origin& origin);
 
 }  // namespace softkin

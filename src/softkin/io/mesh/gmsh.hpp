@@ -21,8 +21,8 @@ namespace softkin {
 /// Writes Gmsh 4.1; regions become physical groups, so that read_gmsh returns the same mesh, coordinates exactly.
 ///
 /// A region of dimension 1 is written as the points that it holds and comes back with dimension 0; triangles and quads
-/// in no region are written, but read_gmsh drops them. Of order 2 triangles have their edge nodes too, where each of
-/// them is a side of tetrahedra.
+/// in no region are written, but read_gmsh drops them. Beside regions, cells in none are of physical group 0, Gmsh's
+/// number for none. Of order 2 triangles have their edge nodes too, where each of them is a side of tetrahedra.
 /// throws  InvalidInput for a mesh that read_gmsh would refuse (no volume element, NaN, indices out of range) and for
 ///         region names that are empty, repeated, longer than 127 bytes, or hold '"' or control characters
 void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary = true);

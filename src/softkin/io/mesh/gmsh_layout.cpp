@@ -67,7 +67,8 @@ class Planner {
   int entity_of(int dimension, int set) {
     std::vector<Entity>& entities = layout_.entities[static_cast<std::size_t>(dimension)];
     const auto [place, is_new] = tags_.try_emplace({dimension, set}, static_cast<int>(entities.size()) + 1);
-    if (is_new) entities.push_back({sets_.regions(set), {}});
+    // Gmsh's number for none: where some cells have a group, meshio asks for one of all
+    if (is_new) entities.push_back({set == 0 && !mesh_.regions.empty() ? std::vector{0} : sets_.regions(set), {}});
     return place->second;
   }
 

@@ -17,7 +17,7 @@ namespace softkin::gmsh {
 
 /// A geometric entity of the file: what physical groups hang on. Its tag is its place in the list, from 1.
 struct Entity {
-  std::vector<int> groups;  // physical tags: places in mesh.regions, from 1
+  std::vector<int> groups;  // physical tags: places in mesh.regions, from 1; 0: no region
   Eigen::AlignedBox3d box;
 };
 

@@ -17,7 +17,7 @@ namespace softkin {
 /// Writes .msh (Gmsh 4.1 binary, physical groups kept), .vtu (volume regions as cell data; a cell in several keeps the
 /// first) or .stl (boundary, normals outwards whatever the elements' orientation; a face of order 2 as four facets).
 /// throws  InvalidInput on another extension, on tetrahedra of two orders or of order 2 beside prisms, or where the
-/// file cannot be written
+///         file cannot be written
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 
 }  // namespace softkin

@@ -46,7 +46,7 @@ struct VtuContent {
 };
 
 /// Writes a .vtu that ParaView and read_vtu read: appended raw data, zlib-compressed, fields as Float64. Regions are
-/// the cell array "region" (Int32), their names the field array "region_names" (strings).
+/// the cell array "region" (Int32); the field array "region_NAME" has the number of each as its only value.
 ///
 /// throws  InvalidInput naming the field, cell or region: no points, a value that is not finite, a length other than
 ///         count * components, a vertex or region outside its range, tetrahedra of two orders or of order 2 beside

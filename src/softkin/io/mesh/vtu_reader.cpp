@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <softkin/io/mesh/cell_grid.hpp>
 #include <softkin/io/mesh/vtk.hpp>
@@ -63,12 +64,27 @@ void read_connectivity(const VtuDocument& document, pugi::xml_node cells, CellGr
   }
 }
 
+/// The names of the values of "region": arrays "region_NAME" with one value each, or, of older files, strings.
 std::optional<std::vector<std::string>> region_names(const VtuDocument& document) {
-  for (const pugi::xml_node array : document.grid().child("FieldData").children())
-    if (array.attribute("Name").as_string() == std::string("region_names") &&
-        array.attribute("type").as_string() == std::string("String"))
-      return document.strings(array);
-  return std::nullopt;
+  const std::string prefix = "region_";
+  std::map<std::int64_t, std::string> names;
+  for (const pugi::xml_node array : document.grid().child("FieldData").children()) {
+    const std::string name = array.attribute("Name").as_string();
+    if (!name.starts_with(prefix)) continue;
+    const std::optional<NumberType> type = document.type(array);
+    if (!type && name == "region_names") return document.strings(array);
+    if (!type || !is_integer(*type) || array.attribute("NumberOfTuples").as_int(1) != 1) continue;
+    const std::int64_t value = document.integers(array, 1).front();
+    if (!names.emplace(value, name.substr(prefix.size())).second)
+      document.fail(array, "two regions have the number " + std::to_string(value));
+  }
+  std::vector<std::string> listed;
+  for (const auto& [value, name] : names) {
+    if (std::cmp_not_equal(value, listed.size()))
+      document.fail(document.grid(), "the numbers of the regions must be 0 to " + std::to_string(names.size() - 1));
+    listed.push_back(name);
+  }
+  return names.empty() ? std::nullopt : std::optional(listed);
 }
 
 void read_labels(const VtuDocument& document, pugi::xml_node piece, CellGrid& grid) {
@@ -77,7 +93,11 @@ void read_labels(const VtuDocument& document, pugi::xml_node piece, CellGrid& gr
     if (!type || !is_integer(*type) || document.components(array) != 1) continue;
     CellLabels labels{document.text(array, "Name"), {}, std::nullopt, document.origin(array)};
     labels.values = document.integers(array, grid.types.size());
-    if (labels.name == "region") labels.names = region_names(document);
+    if (labels.name == "region") {
+      labels.names = region_names(document);
+      const bool none = std::all_of(labels.values.begin(), labels.values.end(), [](auto value) { return value == -1; });
+      if (!labels.names && none) labels.names.emplace();  // a file of softkin's without regions
+    }
     grid.labels.push_back(std::move(labels));
   }
 }

@@ -173,16 +173,14 @@ void VtuWriter::check_regions() const {
            std::to_string(content_.region_names.size()));
 }
 
-/// Strings stand in a .vtu as the codes of their bytes, each string ended by 0.
+/// Numbers only: other readers refuse arrays of strings.
 void VtuWriter::write_region_names() {
   if (content_.cell_regions.empty()) return;
-  xml_ += "<FieldData>\n<Array type=\"String\" Name=\"region_names\" NumberOfTuples=\"" +
-          std::to_string(content_.region_names.size()) + "\" format=\"ascii\">\n";
-  for (const std::string& name : content_.region_names) {
-    for (const char c : name) xml_ += std::to_string(static_cast<unsigned char>(c)) + " ";
-    xml_ += "0\n";
-  }
-  xml_ += "</Array>\n</FieldData>\n";
+  xml_ += "<FieldData>\n";
+  for (std::size_t i = 0; i < content_.region_names.size(); ++i)
+    xml_ += "<DataArray type=\"Int32\" Name=\"region_" + escaped(content_.region_names[i]) +
+            "\" NumberOfTuples=\"1\" format=\"ascii\">" + std::to_string(i) + "</DataArray>\n";
+  xml_ += "</FieldData>\n";
 }
 
 void VtuWriter::write_fields(const char* element, const std::vector<Field>& fields, const std::vector<Index>& regions) {

@@ -20,7 +20,9 @@ class RunTable {
 
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] bool has(const std::string& column) const;
-  /// The one of these columns that the table has. throws  InvalidInput: none or several
+  /// The one of these columns that the table has.
+  ///
+  /// throws  InvalidInput: none or several
   [[nodiscard]] std::string one_of(const std::vector<std::string>& columns, const std::string& what) const;
 
   struct Run {

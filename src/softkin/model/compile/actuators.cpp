@@ -128,6 +128,7 @@ const std::vector<Index>& chamber_region(const Compilation& c, const ActuatorSpe
   return region.tetrahedra;
 }
 
+/// The elements of Eq. (8).
 void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   Model& model = c.model;
   std::vector<Index> found;
@@ -199,6 +200,7 @@ double area(const Points& vertices, Index i, Index j, Index k) {
   return 0.5 * (vertex_at(vertices, j) - a).cross(vertex_at(vertices, k) - a).norm();
 }
 
+/// The elements of Eq. (7), and their areas at rest.
 void fill_membrane(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   Model& model = c.model;
   const Region& region = c.regions.find(*spec.region, spec.origin);

@@ -26,8 +26,8 @@ class SurfaceTree {
   BoxTree tree_;
 };
 
-/// throws  InvalidInput unless every edge belongs to exactly two triangles that run through it in opposite directions
-/// returns the surface with its normals outwards
+/// returns  the surface with its normals outwards
+/// throws   InvalidInput unless every edge belongs to exactly two triangles that run through it in opposite directions
 [[nodiscard]] TriangleSurface closed_outwards(TriangleSurface surface);
 
 }  // namespace softkin

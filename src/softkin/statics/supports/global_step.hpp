@@ -12,8 +12,8 @@ struct Pose {
   Mat3 rotation;
 };
 
-/// The global step of Algorithm 1 with what holds the robot: fixed vertices and axes are left out of the system, rigid
-/// regions move as one.
+/// The global step of Algorithm 1, Eq. (10), with what holds the robot: fixed vertices and axes are left out of the
+/// system, rigid regions move as one.
 ///
 /// A rigid region's vertices are [1 q] H with the 4 x 3 matrix H = [center; R^T]. All other vertices are eliminated
 /// with the constant factor, which leaves a small quadratic in the H of all regions; it is minimised over the poses by

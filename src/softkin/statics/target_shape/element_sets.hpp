@@ -43,7 +43,7 @@ struct ElementSets {
   }
 };
 
-/// model must outlive the result.
+/// The elements of Eq. (9), weighted by w Vol. model must outlive the result.
 [[nodiscard]] ElementSets make_element_sets(const Model& model);
 
 }  // namespace softkin::target_shape
