@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Shows that a changed softkin still gives the outputs of an older build.
 
-Runs every case of scripts/output_cases with both programs, each in a fresh folder, and compares standard output, standard
-error, exit codes and all files that are there in the end, byte for byte but for what a clock gives. Needs Python alone.
+Runs every case of scripts/output_cases with both programs, each in a fresh folder, and compares standard output,
+standard error, exit codes and all files that are there in the end, byte for byte but for what a clock gives. Needs Python
+alone.
 """
 
 import argparse
@@ -24,12 +25,14 @@ from output_cases.normal import normal_text, rounded_vtu
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SECONDS = 300  # a command that takes longer is killed, which is a difference
-TEXTS = {".json", ".csv", ".yaml", ".svg", ".gcode", ".pvd", ".txt", ".msh", ".mesh", ".node", ".ele", ".face", ".inp", ".tet"}
+TEXTS = {".json", ".csv", ".yaml", ".svg", ".gcode", ".pvd", ".txt", ".msh", ".mesh", ".node", ".ele", ".face", ".inp",
+         ".tet"}
 
 
 def copy_examples(case, folder):
-    """Copies what the commands and files of a case name below examples and docs, so that paths are those of the checkout."""
-    named = {match for words in case.words() for match in re.findall(r"examples/\w+|docs/(?:scenes|images/measure)", words)}
+    """Copies what a case names below examples and docs, so that paths are those of the checkout."""
+    named = {match for words in case.words() for match in re.findall(r"examples/\w+|docs/(?:scenes|images/measure)",
+                                                                     words)}
     if "docs/scenes" in named:
         named |= {"examples/pneumatic_finger", "examples/two_material_bar"}
     for name in sorted(named):
@@ -138,7 +141,8 @@ def check(case, programs, folder, digits, keep):
         codes.append(code)
     lines = differences(case, *left, digits)
     if case.ends is not None and codes[0] != case.ends:
-        last = [text.decode(errors="replace").strip() for name, text in left[0].items() if name.endswith("standard error")]
+        last = [text.decode(errors="replace").strip() for name,
+                text in left[0].items() if name.endswith("standard error")]
         lines.append(f"  the case is no good: the old program ends with {codes[0]}, not with {case.ends}: {last[-1:]}")
     if not keep:
         shutil.rmtree(folder)
@@ -164,11 +168,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old", metavar="OLD_PROGRAM")
     parser.add_argument("new", metavar="NEW_PROGRAM")
-    parser.add_argument("--only", metavar="PATTERN", action="append", help="cases whose name has this; * and ? stand for any")
+    parser.add_argument("--only", metavar="PATTERN", action="append",
+                        help="cases whose name has this; * and ? stand for any")
     parser.add_argument("--jobs", metavar="N", type=int, default=1, help="cases at once (default: 1)")
     parser.add_argument("--keep", metavar="DIR", type=pathlib.Path,
                         help="keep the folders of all cases here: NUMBER/old and NUMBER/new, numbers as --list says")
-    parser.add_argument("--digits", metavar="N", type=int, help="round numbers to N significant digits before they are compared")
+    parser.add_argument("--digits", metavar="N", type=int,
+                        help="round numbers to N significant digits before they are compared")
     parser.add_argument("--list", action="store_true", help="print the names of the cases and run nothing")
     parser.add_argument("--slow", metavar="N", type=int, default=0, help="name the N slowest cases")
     options = parser.parse_args()

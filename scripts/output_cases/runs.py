@@ -1,17 +1,18 @@
 """Commands that do their work, on small meshes: every command, its outputs, options and resumed runs."""
 
 from . import samples as s
-from .case import (Case, change, fixed_seconds, keep_bytes, keep_lines, keep_steps, marker_path, remove, write)
+from .case import Case, keep_bytes, keep_lines, keep_steps, marker_path, remove, write
 
 PATH = "t_s,air\n0,1\n0.5,1.1\n1.25,1.2\n2,1.3\n"
 BOTH = "t_s,air,tendon\n0,1,1\n1,1.1,0.98\n3,1.2,0.96\n4,1.3,0.93\n"
-COMMANDS = ("fk", "ik", "follow", "workspace", "walk", "compare", "calibrate", "calibrate material", "calibrate pressure",
+COMMANDS = ("fk", "ik", "follow", "workspace", "walk", "compare", "calibrate", "calibrate material",
+            "calibrate pressure",
             "calibrate dea", "drive", "mesh", "mesh info", "mesh check", "mesh convert", "measure")
 
 
 def cases():
-    return [*helps(), *fk_target(), *fk_physical(), *fk_scenes(), *fk_resumed(), *ik(), *follow(), *workspace(), *walk(),
-            *compare(), *calibrate(), *drive(), *mesh()]
+    return [*helps(), *fk_target(), *fk_physical(), *fk_scenes(), *fk_resumed(), *ik(), *follow(), *workspace(),
+            *walk()]
 
 
 def helps():
@@ -28,7 +29,8 @@ def fk_target():
         run = f"fk block.yaml --solver {solver}"
         yield Case(f"fk target {solver} text", [f"{run} --set air=1.4"], files)
         yield Case(f"fk target {solver} json", [f"{run} --set air=1.4 --json"], files)
-        yield Case(f"fk target {solver} files", [f"{run} --set air=1.4 -o out/s.vtu --report out/r.json --image out/i.png"], files)
+        yield Case(f"fk target {solver} files",
+                   [f"{run} --set air=1.4 -o out/s.vtu --report out/r.json --image out/i.png"], files)
         yield Case(f"fk target {solver} path", [f"{run} --path path.csv {everything}"], files | {"path.csv": PATH})
         yield Case(f"fk target {solver} path json", [f"{run} --path path.csv --json"], files | {"path.csv": PATH})
         yield Case(f"fk target {solver} order 2", [f"{run} --set air=1.3 -o s.vtu"],
@@ -36,7 +38,8 @@ def fk_target():
         yield Case(f"fk target {solver} uniform", [f"{run} --set air=1.3 --report r.json"],
                    s.target(air="range: [1, 2], distribution: uniform, weight: 2"))
         yield Case(f"fk target {solver} tolerance", [f"{run} --set air=1.4 --tolerance 0.01 --report r.json"], files)
-        yield Case(f"fk target {solver} not converged", [f"{run} --set air=1.9 --max-iterations 2 -o s.vtu --report r.json"],
+        yield Case(f"fk target {solver} not converged",
+                   [f"{run} --set air=1.9 --max-iterations 2 -o s.vtu --report r.json"],
                    files, ends=1)
     for anderson in (0, 1, 10):
         yield Case(f"fk anderson {anderson}",
@@ -50,7 +53,8 @@ def fk_target():
     yield Case("fk small shape ratio", ["fk block.yaml --set air=1.3 --report r.json"],
                s.target(materials="{region: body, shape_ratio: 0.2, weight: 3}"))
     yield Case("fk long names", ["fk block.yaml --set a_very_long_actuator_name_that_goes_on_17=1.1"],
-               files | {"block.yaml": s.target_scene().replace("name: air", "name: a_very_long_actuator_name_that_goes_on_17")
+               files | {"block.yaml": s.target_scene().replace("name: air",
+                                                               "name: a_very_long_actuator_name_that_goes_on_17")
                         .replace("name: corner", "name: \u00c4rmel\u00fcmschlag_mit_langem_Namen")})
 
 
@@ -62,13 +66,15 @@ def fk_physical():
     yield Case("fk physical files", [f"{run} --set tendon=0.9 -o o/s.vtu --report o/r.json --image o/i.png"], files)
     yield Case("fk physical path", [f"{run} --path p.csv --report o/r.json -o o/s.pvd --plot o/p.svg --image o/i.png"],
                files | {"p.csv": BOTH})
-    yield Case("fk physical one column", [f"{run} --path p.csv --set tendon=0.95 --plot p.svg"], files | {"p.csv": PATH})
+    yield Case("fk physical one column", [f"{run} --path p.csv --set tendon=0.95 --plot p.svg"],
+               files | {"p.csv": PATH})
     yield Case("fk slack", [f"{run} --set tendon=1.15 --report r.json"], files)
     yield Case("fk force", [f"{run} --set air=1.2 --force payload=0,0,-0.3 --report r.json"], files)
     yield Case("fk large force", [f"{run} --force payload=0,0,-50 --report r.json -o s.vtu"], files, ends=None)
     yield Case("fk far", [f"{run} --set air=3 --report r.json -o s.vtu"], files, ends=None)
     yield Case("fk short cable", [f"{run} --set tendon=0.5 --report r.json -o s.vtu"], files, ends=None)
-    yield Case("fk few iterations", [f"{run} --set air=2 --max-iterations 2 --report r.json -o s.vtu"], files, ends=None)
+    yield Case("fk few iterations", [f"{run} --set air=2 --max-iterations 2 --report r.json -o s.vtu"], files,
+               ends=None)
     yield Case("fk as target shape", [f"{run} --set air=1.2 --formulation target-shape --report r.json"],
                s.physical(materials="{youngs_modulus: 1, poisson_ratio: 0.3, shape_ratio: 0.8}"))
     loads = s.loaded()
@@ -76,7 +82,8 @@ def fk_physical():
     yield Case("fk loads without units", [f"{run} --set air=-20 --set tendon=1 --report r.json"], loads)
     yield Case("fk loads path", [f"{run} --path p.csv --report r.json --plot p.svg"],
                loads | {"p.csv": "t_s,air_kPa,tendon_N\n0,0,0\n1,20,1\n2,40,2\n"})
-    yield Case("fk limit of pressure", [f"{run} --set air=3000kPa --report r.json -o s.vtu --image i.png"], loads, ends=1)
+    yield Case("fk limit of pressure", [f"{run} --set air=3000kPa --report r.json -o s.vtu --image i.png"], loads,
+               ends=1)
     yield Case("fk limit on a path", [f"{run} --path p.csv --report r.json -o s.pvd --plot p.svg"],
                loads | {"p.csv": "air\n50\n2900\n100\n"}, ends=1)
     for name, law in (("st-venant-kirchhoff", "youngs_modulus: 1, poisson_ratio: 0.3"),
@@ -108,7 +115,8 @@ def fk_scenes():
             "{youngs_modulus: 1, poisson_ratio: 0.3}, {region: half, youngs_modulus: 2, poisson_ratio: 0.3},"
             "{region: listed, youngs_modulus: 3, poisson_ratio: 0.4, law: corotational}"))})
     yield Case("fk centimetres", ["fk block.yaml --set air=1.2 --report r.json -o s.vtu"], {
-        "block.msh": s.block(edge=0.4), "block.yaml": s.target_scene("units: {length: cm}\n").replace("[20, 12, 12]", "[2, 1.2, 1.2]")})
+        "block.msh": s.block(edge=0.4), "block.yaml": s.target_scene("units: {length: cm}\n").replace("[20, 12, 12]",
+                                                                                                      "[2, 1.2, 1.2]")})
     yield Case("fk moved support", ["fk block.yaml --report r.json -o s.vtu"], {
         "block.msh": s.block(), "block.yaml": s.physical_scene().replace(
             "fixed: [{region: base}]", "fixed: [{region: base}, {region: tip, displacement: [1, 0, 0.5]}]")})
@@ -118,7 +126,8 @@ def fk_scenes():
     yield Case("fk nothing but a body", ["fk block.yaml", "fk block.yaml --json"], {
         "block.msh": s.block(), "block.yaml": "softkin: 1\nmesh: {file: block.msh}\nmaterials: [{shape_ratio: 1}]\nfixed: [{region: base}]\n"})
     for formulation in ("physical", "target-shape"):
-        yield Case(f"fk dea {formulation}", [f"fk block.yaml --set skin=1.3 --formulation {formulation} --report r.json -o s.vtu"], {
+        yield Case(f"fk dea {formulation}",
+                   [f"fk block.yaml --set skin=1.3 --formulation {formulation} --report r.json -o s.vtu"], {
             "block.msh": s.block(), "block.yaml": "softkin: 1\nmesh: {file: block.msh}\n"
             "materials: [{youngs_modulus: 1, poisson_ratio: 0.3, shape_ratio: 1}]\nfixed: [{region: base}]\n"
             "actuators: [{name: skin, kind: dea, region: chamber, range: [0.7, 1.4], prestretch: 1.1}]\n" + s.MARKERS})
@@ -147,15 +156,18 @@ def fk_resumed():
     for name, files in (("target", s.target() | {"p.csv": PATH}), ("physical", s.physical() | {"p.csv": BOTH})):
         yield Case(f"fk resumed {name} complete", [run, f"{run} --resume"], files)
         yield Case(f"fk resumed {name} complete json", [run, f"{run} --resume --json"], files)
-        yield Case(f"fk resumed {name} interrupted", [run, keep_steps("o/r.json", 2), f"{run} --plot o/p.svg --resume"], files)
-        yield Case(f"fk resumed {name} one step", [run, keep_steps("o/r.json", 1), f"{run} --image o/i.png --resume"], files)
+        yield Case(f"fk resumed {name} interrupted", [run, keep_steps("o/r.json", 2), f"{run} --plot o/p.svg --resume"],
+                   files)
+        yield Case(f"fk resumed {name} one step", [run, keep_steps("o/r.json", 1), f"{run} --image o/i.png --resume"],
+                   files)
         yield Case(f"fk resumed {name} no step", [run, keep_steps("o/r.json", 0), f"{run} --resume"], files, ends=None)
         yield Case(f"fk resumed {name} lost shape", [run, remove("o/s_0002.vtu"), f"{run} --resume"], files)
         yield Case(f"fk resumed {name} torn shape", [run, keep_bytes("o/s_0003.vtu", 1000), f"{run} --resume"], files)
     files = s.target() | {"p.csv": PATH}
     yield Case("fk resumed without a report", [f"{run} --resume"], files)
     yield Case("fk resumed longer path", [run, write("p.csv", PATH + "3,1.35\n"), f"{run} --resume"], files)
-    yield Case("fk resumed left-over files", [run, write("o/s.pvd.17.part", ""), write("o/.softkin.17", ""), f"{run} --resume"], files)
+    yield Case("fk resumed left-over files", [run, write("o/s.pvd.17.part", ""), write("o/.softkin.17", ""),
+                                              f"{run} --resume"], files)
     hard = f"{run} --solver local-global --max-iterations 3 --plot o/p.svg"
     yield Case("fk resumed not converged", [hard, keep_steps("o/r.json", 2), f"{hard} --resume"], files, ends=1)
     loads = s.loaded() | {"p.csv": "air\n50\n2900\n100\n"}
@@ -169,16 +181,20 @@ def ik():
     yield Case("ik text", [run], files)
     yield Case("ik json", [f"{run} --json"], files)
     yield Case("ik files", [f"{run} {outputs}"], files)
-    yield Case("ik two goals", ["ik block.yaml --target tip=20.3,, --plane tip=0,0,6.2/0,0,1 --weight tip=3 --report r.json"], files)
-    yield Case("ik direction", ["ik block.yaml --direction tip:corner=0,1,0.98 --lever 5 --report r.json"], files, ends=None)
+    yield Case("ik two goals",
+               ["ik block.yaml --target tip=20.3,, --plane tip=0,0,6.2/0,0,1 --weight tip=3 --report r.json"], files)
+    yield Case("ik direction", ["ik block.yaml --direction tip:corner=0,1,0.98 --lever 5 --report r.json"], files,
+               ends=None)
     yield Case("ik start", [f"{run} --start air=1.3 --start tendon=0.95 --report r.json"], files)
-    yield Case("ik prefer", ["ik block.yaml --target tip=,,6.3 --prefer air=1.4 --prefer tendon=0.94 --report r.json"], files)
+    yield Case("ik prefer", ["ik block.yaml --target tip=,,6.3 --prefer air=1.4 --prefer tendon=0.94 --report r.json"],
+               files)
     yield Case("ik fix", ["ik block.yaml --target tip=,,6.3 --fix tendon=0.94 --report r.json"], files, ends=None)
     yield Case("ik loose", [f"{run} --tolerance 0.1 --solver-tolerance 1e-4 --report r.json"], files)
     yield Case("ik gradient", [f"{run} --method gradient --report r.json --plot p.svg"], files, ends=None)
     yield Case("ik gradient descents", [f"{run} --method gradient --descents 3 --report r.json"], files, ends=None)
     yield Case("ik out of reach", ["ik block.yaml --target tip=40,6,6 --report r.json --image i.png"], files, ends=1)
-    yield Case("ik out of reach, one start", ["ik block.yaml --target tip=40,6,6 --other-starts 0 --json"], files, ends=1)
+    yield Case("ik out of reach, one start", ["ik block.yaml --target tip=40,6,6 --other-starts 0 --json"], files,
+               ends=1)
     yield Case("ik few equilibria", [f"{run} --max-equilibria 2 --report r.json"], files, ends=1)
     yield Case("ik far", ["ik block.yaml --target tip=20000,6000,6000"], files, ends=1)
     yield Case("ik metres", ["ik block.yaml --target tip=0.02,0.006,0.006"], files, ends=1)
@@ -188,7 +204,8 @@ def ik():
     yield Case("ik local-global", ["ik block.yaml --target tip=20.3,, --solver local-global --method gradient --json"],
                s.target(), ends=None)
     yield Case("ik curve", ["ik block.yaml --target tip=20.1,, --start air=40kPa"], s.curved(), ends=None)
-    yield Case("ik workspace", ["workspace block.yaml --samples 9 -o w.csv", f"{run} --workspace w.csv --report r.json"],
+    yield Case("ik workspace", ["workspace block.yaml --samples 9 -o w.csv",
+                                f"{run} --workspace w.csv --report r.json"],
                s.narrow(), ends=None)
 
 
@@ -214,7 +231,8 @@ def follow():
     yield case("resumed interrupted", run, keep_steps("out/report.json", 2), f"{run} --resume")
     yield case("resumed one waypoint", run, keep_steps("out/report.json", 1), f"{run} --resume")
     yield case("resumed torn shape", run, keep_bytes("out/path_0003.vtu", 700), f"{run} --resume")
-    yield case("resumed gradient", f"{run} --method gradient", keep_steps("out/report.json", 3), f"{run} --method gradient --resume")
+    yield case("resumed gradient", f"{run} --method gradient", keep_steps("out/report.json", 3),
+               f"{run} --method gradient --resume")
     yield case("resumed from nothing", f"{run} --resume")
     yield case("checked", run, "fk block.yaml --path out/commands.csv --report check.json")
     yield Case("follow two markers", [prepared[0], marker_path("made.json", "path.csv", "tip", "x"), run],
@@ -222,8 +240,10 @@ def follow():
     yield Case("follow loads", [*prepared, write("block.yaml", s.loaded_scene()), f"{run} --json"], files, ends=None)
     yield Case("follow target shapes", ["follow block.yaml path.csv --marker tip -o out"],
                s.target() | {"path.csv": "x_mm\n20.1\n20.2\n20.3\n"}, ends=None)
-    yield Case("follow metres", [run], s.physical() | {"path.csv": "tip_x_mm,tip_y_mm,tip_z_mm\n0.0205,0.006,0.0062\n"}, ends=1)
-    yield Case("follow workspace", [*prepared, write("block.yaml", s.narrow_scene()), "workspace block.yaml --samples 9 -o w.csv",
+    yield Case("follow metres", [run], s.physical() | {"path.csv": "tip_x_mm,tip_y_mm,tip_z_mm\n0.0205,0.006,0.0062\n"},
+               ends=1)
+    yield Case("follow workspace", [*prepared, write("block.yaml", s.narrow_scene()),
+                                    "workspace block.yaml --samples 9 -o w.csv",
                                     f"{run} --workspace w.csv"], files, ends=None)
 
 
@@ -249,15 +269,20 @@ def workspace():
                s.loaded(low=0), ends=1)
     yield Case("workspace limit json", [f"{run} --samples 9 --json"], s.loaded(low=0), ends=1)
     for solver in ("newton", "local-global"):
-        yield Case(f"workspace target {solver}", [f"{run} --samples 5 --solver {solver} {outputs}"], s.target(), ends=None)
+        yield Case(f"workspace target {solver}", [f"{run} --samples 5 --solver {solver} {outputs}"], s.target(),
+                   ends=None)
     yield Case("workspace resumed complete", [f"{run} --samples 9", f"{run} --samples 9 --resume"], files)
-    yield Case("workspace resumed other marker", [f"{run} --samples 9", f"{run} --samples 9 --marker corner --resume {outputs}"], files)
+    yield Case("workspace resumed other marker", [f"{run} --samples 9",
+                                                  f"{run} --samples 9 --marker corner --resume {outputs}"], files)
     for sampling in ("grid", "sobol", "random"):
         again = f"{run} --samples 16 --sampling {sampling}"
-        yield Case(f"workspace resumed {sampling} interrupted", [again, keep_lines("w.csv", 14), f"{again} --resume"], files)
-        yield Case(f"workspace resumed {sampling} torn", [again, keep_lines("w.csv", 12, "9,1.0"), f"{again} --resume {outputs}"],
+        yield Case(f"workspace resumed {sampling} interrupted", [again, keep_lines("w.csv", 14), f"{again} --resume"],
                    files)
-    yield Case("workspace resumed head only", [f"{run} --samples 9", keep_lines("w.csv", 8), f"{run} --samples 9 --resume"],
+        yield Case(f"workspace resumed {sampling} torn",
+                   [again, keep_lines("w.csv", 12, "9,1.0"), f"{again} --resume {outputs}"],
+                   files)
+    yield Case("workspace resumed head only", [f"{run} --samples 9", keep_lines("w.csv", 8),
+                                               f"{run} --samples 9 --resume"],
                files, ends=None)
     yield Case("workspace resumed from nothing", [f"{run} --samples 4 --resume"], files)
 
@@ -276,146 +301,9 @@ def walk():
     yield Case("walk resumed complete", [f"{run} --cycles 1", f"{run} --cycles 1 --resume"], files)
     yield Case("walk resumed complete json", [f"{run} --cycles 1", f"{run} --cycles 1 --resume --json"], files)
     yield Case("walk resumed more cycles", [f"{run} --cycles 1", f"{run} --cycles 2 --resume"], files)
-    yield Case("walk resumed interrupted", [f"{run} --cycles 2", keep_steps("out/report.json", 4), f"{run} --cycles 2 --resume"], files)
-    yield Case("walk resumed torn shape", [f"{run} --cycles 1", keep_bytes("out/walk_0002.vtu", 500), f"{run} --cycles 1 --resume"],
+    yield Case("walk resumed interrupted", [f"{run} --cycles 2", keep_steps("out/report.json", 4),
+                                            f"{run} --cycles 2 --resume"], files)
+    yield Case("walk resumed torn shape", [f"{run} --cycles 1", keep_bytes("out/walk_0002.vtu", 500),
+                                           f"{run} --cycles 1 --resume"],
                files)
     yield Case("walk resumed from nothing", [f"{run} --cycles 1 --resume"], files)
-
-
-def compare():
-    there, back = s.turning([0, 70, 130, 200, 300, 380, 250], 2), s.turning([0, -30, -60, -90, -120, -150, -200], 0.5)
-    files = {"a.json": there, "b.json": back, "loads.json": s.turning([0, 70, 130, 200, 300, 380, 260], 1, pressure=12.5),
-             "stopped.json": s.turning([0, 10, 20, 30, 40, 50, 60], 1.25, broken=5)}
-    tracks = {"robot.json": s.linear([(1, 1), (1.2, 1), (1.2, 1.3), (1.5, 1.5)]), "camera.csv": s.camera(),
-              "first.json": s.linear([(1, 1), (1.3, 1), (1.6, 1)]), "second.json": s.linear([(1, 1), (1, 1.25), (1, 1.6)]),
-              "robot.csv": "t_s,x_mm,y_mm\n0,0,0\n1,10,0\n2,10,10\n",
-              "film.csv": "t_s,x_mm,y_mm\n0,0,0\n3.25,0,0\n4.25,10,0\n5.25,10,10\n",
-              "solid.csv": "alpha,tip_x_mm,tip_y_mm,tip_z_mm,base_x_mm,base_y_mm\n1,0,5,0,9,9\n2,10,5,-4,9,9\n3,20,5,-8,9,9\n",
-              "flat.csv": "alpha,x_mm,y_mm\n1,0,0\n1.5,5,2\n3,20,8\n",
-              "long.csv": "x_mm,y_mm\n" + "".join(f"{i},{i % 3}\n" for i in range(25))}
-
-    def case(name, command, of):
-        return Case(f"compare {name}", [f"compare {command}"], of, clock=False)
-
-    yield case("reports", "a.json b.json", files)
-    yield case("turns", "a.json b.json --turn begin end --poses 130 350", files)
-    yield case("turns json", "a.json b.json loads.json --turn begin end --poses 130 350 --json", files)
-    yield case("marker", "a.json stopped.json --marker end", files)
-    yield case("loads", "loads.json a.json stopped.json --turn begin end --plot p.svg", files)
-    yield case("json", "loads.json b.json --json", files)
-    yield case("camera", "robot.json camera.csv -o e.csv --plot e.svg", tracks)
-    yield case("camera json", "robot.json camera.csv --json", tracks)
-    yield case("camera aligned", "robot.json camera.csv --align -o e.csv", tracks)
-    yield case("camera arc", "robot.json camera.csv --by arc", tracks)
-    yield case("start", "robot.csv film.csv --start 3.15 --plot p.svg", tracks)
-    yield case("left out", "robot.csv film.csv --start 3.75", tracks)
-    yield case("plane", "solid.csv@tip flat.csv --by alpha --plane x-z -o e.csv", tracks)
-    yield case("marker of a table", "solid.csv flat.csv --marker tip --by waypoint --plane xz", tracks)
-    yield case("sum", "robot.json --sum first.json second.json --json", tracks)
-    yield case("sum aligned", "robot.json camera.csv --align --sum first.json second.json -o e.csv --plot e.svg", tracks)
-    yield case("by a command", "robot.json robot.json --by air2 --json", tracks | {
-        "robot.json": s.linear([(1, 1), (1.2, 1.1), (1.2, 1.3), (1.5, 1.5)])})
-    yield case("long", "long.csv long.csv", tracks)
-    yield Case("compare of fk", ["fk block.yaml --path p.csv --report a.json",
-                                 "fk block.yaml --path p.csv --report b.json --force payload=0,0,-0.1", fixed_seconds("a.json", "b.json"),
-                                 "compare a.json b.json --turn tip corner --plot c.svg", "compare a.json b.json --json"],
-               s.physical() | {"p.csv": BOTH})
-
-
-def calibrate():
-    bar = "examples/two_material_bar"
-    run = f"calibrate material {bar}/table_2_tpu.csv --cells 1"
-    yield Case("calibrate material", [run])
-    yield Case("calibrate material json", [f"{run} --json"])
-    yield Case("calibrate material physical", [f"{run} --formulation physical --height 12 --modulus-b 12 -o m.yaml --residuals r.csv"])
-    yield Case("calibrate material sliding", [f"{run} --grip sliding --width 15 --poisson-ratio 0.4 --law corotational"])
-    yield Case("calibrate material target", [f"{run} --formulation target-shape --try 7.08 --twist {bar}/table_2_twist.csv --json"])
-    yield Case("calibrate material stiffer", [f"{run} --formulation target-shape --stiffer 0.5 --regions hard soft"], ends=None)
-    yield Case("calibrate material files", [f"calibrate material {bar}/specimens.csv --twist {bar}/twist.csv --cells 1 -o m.yaml "
-                                            "--plot p.svg --residuals r.csv"])
-    yield Case("calibrate material no ratio", ["calibrate material s.csv --formulation target-shape --cells 1 -o m.yaml --plot p.svg"],
-               {"s.csv": "l_mm,l1_mm,dl_mm,dl1_mm\n100,50,1,0.2\n100,50,1,0.0000001\n"}, ends=1)
-    tensile = f"calibrate material --tensile {bar}/tensile.csv"
-    yield Case("calibrate tensile", [f"{tensile} -o m.yaml --plot p.svg --residuals r.csv --region all"])
-    yield Case("calibrate tensile json", [f"{tensile} --json"])
-    yield Case("calibrate tensile part", [f"{tensile} --up-to 0.3 --linear-tolerance 3 --json"])
-    for law in ("linear", "neo-hookean", "mooney-rivlin", "yeoh"):
-        yield Case(f"calibrate tensile {law}", [f"{tensile} --law {law} -o m.yaml"])
-    files = s.target() | {"test.csv": s.syringe_test(), "gauge.csv": s.syringe_test("p_gauge_kpa,dv_sy_mm3", 0, 1)}
-    volumes = "--syringe-volume 600mm3 --tube-volume 0.02mL"
-    yield Case("calibrate pressure", [f"calibrate pressure test.csv {volumes} --scene block.yaml -o a.yaml --plot a.svg --table r.csv"], files)
-    yield Case("calibrate pressure json", [f"calibrate pressure test.csv gauge.csv {volumes} --chamber-volume 192mm3 --json"], files)
-    yield Case("calibrate pressure atmosphere", [f"calibrate pressure gauge.csv {volumes} --chamber-volume 0.192mL --atmosphere 99"], files)
-    yield Case("calibrate pressure predicted", [f"calibrate pressure gauge.csv {volumes} --scene block.yaml --predict",
-                                                f"calibrate pressure gauge.csv {volumes} --scene block.yaml --predict --json"],
-               files | {"block.yaml": s.physical_scene()}, ends=None)
-    yield Case("calibrate pressure of a path", [f"calibrate pressure p.csv {volumes} --pressure gauge --scene block.yaml -o air.yaml",
-                                                write("block.yaml", s.target_scene(air="range: [1.0, 2.0], curve: air.yaml")),
-                                                "fk block.yaml --set air=40kPa --report r.json"],
-               files | {"p.csv": s.syringe_test("p_kpa,dv_sy_mm3", 0, 1)})
-    yield Case("calibrate pressure example", [
-        "calibrate pressure examples/three_chamber_actuator/measured/syringe.csv --syringe-volume 60mL --tube-volume 1.2mL "
-        "--scene examples/three_chamber_actuator/three_chamber_actuator.yaml --actuator air1 -o air1.yaml --plot air1.svg --table t.csv"],
-        ends=None)
-    law = "calibrate dea --law neo-hookean --shear-modulus 0.07 --permittivity 4.4 --thickness 0.5"
-    yield Case("calibrate dea law", [f"{law} -o s.yaml --plot s.svg"])
-    yield Case("calibrate dea law json", [f"{law} --json"])
-    yield Case("calibrate dea breakdown", [f"{law} --breakdown-field 20"])
-    yield Case("calibrate dea gent", ["calibrate dea --law gent --shear-modulus 0.045 --stretch-limit 120 --permittivity 4.7 "
-                                      "--thickness 1 --prestretch 2 -o s.yaml --plot s.svg"])
-    yield Case("calibrate dea table", ["calibrate dea skin.csv -o s.yaml --plot s.svg"], {"skin.csv": s.voltage_test()})
-    yield Case("calibrate dea table json", ["calibrate dea skin.csv --json"], {"skin.csv": s.voltage_test()})
-    yield Case("calibrate dea example", ["calibrate dea examples/dea_crawler/measured/voltage.csv -o s.yaml --plot s.svg"])
-
-
-def drive():
-    run = "drive block.yaml commands.csv"
-
-    def case(name, options, of, ends=0):
-        return Case(f"drive {name}", [f"{run} {options}"], of, ends, clock=False)
-
-    yield case("dry run", "--dry-run", s.driven())
-    yield case("gcode", "--gcode out/a.gcode", s.driven())
-    yield case("json", "--gcode a.gcode --return --json", s.driven())
-    yield case("without times", "--dry-run --return", s.driven(commands="tendon\n1\n0.9\n0.95\n"))
-    yield case("drum", "--dry-run --gcode a.gcode", s.driven(
-        "softkin_hardware: 1\nboard: {configure: false}\ntendons:\n  - {actuator: tendon, axis: Y, drum_radius_mm: 6, "
-        "steps_per_mm: 400, direction: -1, slack_offset_mm: 2, length_limits_mm: [10, 24], max_speed_mm_per_s: 12}\n"))
-    yield case("other hardware", "--dry-run --hardware h.yaml", s.driven(**{"h.yaml": s.HARDWARE.replace("axis: X", "axis: A")}))
-    pump = "softkin_hardware: 1\nchambers: [{actuator: air, channel: pump, limits_kPa: [0, 500]}]\n"
-    yield case("schedule", "--schedule out/p.csv --json", s.driven(
-        pump, "t_s,air_kPa\n0,0\n0.5,120\n2,80.25\n", **{"block.yaml": s.loaded_scene()}))
-    both = s.HARDWARE + "chambers: [{actuator: air, limits_kPa: [0, 5000]}]\n"
-    yield case("column of pressures", "--dry-run", s.driven(both, "t_s,air,air_pressure_kPa\n0,1,0\n1,1.2,33\n"))
-    yield Case("drive pressures of fk", ["fk block.yaml --path commands.csv --report r.json", f"{run} --pressures r.json --schedule p.csv"],
-               s.driven(both, "t_s,air\n0,1\n1,1.2\n"))
-
-
-def mesh():
-    flat = s.tetrahedra([(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (8, 8, 0)], [(0, 1, 2, 3), (0, 1, 4, 2)])
-    over = s.tetrahedra([(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (0, 0, 8)], [(0, 1, 2, 3), (0, 1, 2, 4)])
-    hinge = s.tetrahedra([(0, 0, 0), (0, 0, 4), (4, 0, 0), (0, 4, 0), (-4, 0, 0), (0, -4, 0)], [(0, 2, 3, 1), (0, 4, 5, 1)])
-    three = s.tetrahedra([(0, 0, 0), (6, 0, 0), (0, 6, 0), (0, 0, 4), (0, 0, 8), (0, 0, -4)], [(0, 1, 2, 3), (0, 1, 2, 4), (0, 2, 1, 5)])
-    twice = s.tetrahedra([(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, -8)], [(0, 1, 2, 3), (4, 6, 5, 7)])
-    names, vertices, elements = s.cube_parts()
-    loose = s.gmsh(names, vertices + [(3.0 + i, 0, 0) for i in range(7)], elements)
-    # file, its content, exit codes of check
-    meshes = {"cube.msh": (s.cube(), 0), "prism.msh": (s.prism(), 0), "block.msh": (s.block(), 0),
-              "cube2.msh": (s.quadratic(names, vertices, elements), 0),
-              "curved.msh": (s.quadratic(names, vertices, elements, {8: (1, -0.2, 0)}), None),
-              "far.msh": (s.quadratic(names, vertices, elements, {8: (0.3, 0, 0)}), None), "flat.msh": (flat, 1), "over.msh": (over, 1),
-              "hinge.msh": (hinge, 0), "three.msh": (three, 1), "twice.msh": (twice, 0), "loose.msh": (loose, 0),
-              "a.mesh": (s.MEDIT, None), "a.ele": (s.TETGEN["a.ele"], None), "a.inp": (s.ABAQUS, None), "a.vtk": (s.VTK, None),
-              "a.tet": (s.TET["a.tet"], None)}
-    for file, (content, ends) in meshes.items():
-        files = {file: content} | (s.TETGEN if file == "a.ele" else {})
-        yield Case(f"mesh info {file}", [f"mesh info {file} --unit cm", f"mesh info {file} --json"], files)
-        yield Case(f"mesh check {file}", [f"mesh check {file} --json", f"mesh check {file}"], files, ends)
-        yield Case(f"mesh convert {file}", [f"mesh convert {file} a.vtu", f"mesh convert {file} b.msh --json", "mesh info b.msh",
-                                            f"mesh convert {file} c.msh --ascii", "mesh convert a.vtu d.msh", f"mesh convert {file} e.stl"],
-                   files, ends=None)
-    cube = {"cube.msh": s.cube()}
-    scene = "softkin: 1\nunits: {length: cm}\nmesh: {file: cube.msh}\nmaterials: [{shape_ratio: 1}]\nfixed: [{region: %s}]\n"
-    yield Case("mesh check scene", ["mesh check a.yaml --json", "mesh check --scene a.yaml"], cube | {"a.yaml": scene % "base"})
-    yield Case("mesh check loose scene", ["mesh check a.yaml --json", "mesh check a.yaml"], cube | {"a.yaml": scene % "corner"}, ends=1)
-    yield Case("mesh check wrong scene", ["mesh check a.yaml"], cube | {"a.yaml": scene % "nowhere"}, ends=None)

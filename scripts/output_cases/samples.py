@@ -107,7 +107,8 @@ def physical_scene(more="", materials="{youngs_modulus: 1, poisson_ratio: 0.3, l
 
 
 def loaded_scene(more="", low=-100):
-    return physical_scene(more, air=f"control: pressure, range: [{low}, 3000]", tendon="control: tension, range: [0, 100]")
+    return physical_scene(more, air=f"control: pressure, range: [{low}, 3000]",
+                          tendon="control: tension, range: [0, 100]")
 
 
 def narrow_scene():
@@ -168,7 +169,8 @@ def turning(angles, seconds, pressure=None, broken=None):
         air = {"requested": 1 + x, "achieved": 1 + x} | ({} if pressure is None else {"pressure_kPa": pressure})
         steps.append({"actuation": {"air": 1 + x}, "status": "limit" if x == broken else "converged",
                       "seconds": seconds, "markers": {"begin": [x, 0, 0],
-                                                      "end": [x + round(10 * math.cos(a), 9), 0, round(10 * math.sin(a), 9)]},
+                                                      "end": [x + round(10 * math.cos(a), 9), 0,
+                                                              round(10 * math.sin(a), 9)]},
                       "actuators": {"air": air}})
     formulation = "target-shape" if pressure is None else "physical"
     return json.dumps({"formulation": formulation, "solver": {"name": "newton"}, "steps": steps})
