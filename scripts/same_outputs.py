@@ -140,6 +140,8 @@ def check(case, programs, folder, digits, keep):
         left.append(outputs)
         codes.append(code)
     lines = differences(case, *left, digits)
+    lines += [f"  the case is no good: {name}: {text.decode().strip()}" for name, text in left[0].items()
+              if name.endswith(" fails")]
     if case.ends is not None and codes[0] != case.ends:
         last = [text.decode(errors="replace").strip() for name,
                 text in left[0].items() if name.endswith("standard error")]
