@@ -36,7 +36,7 @@ class Case:
 def words_of(command):
     words = shlex.split(command) if isinstance(command, str) else list(command)
     first = set(words[:2]) | ({"predict"} if "--predict" in words else set())
-    if first & THREADS and not {"--threads", "--help"} & set(words):
+    if first & THREADS and "--tensile" not in words and not {"--threads", "--help"} & set(words):
         words += ["--threads", "1"]
     return words
 

@@ -108,7 +108,7 @@ def fk_scenes():
              "  - {name: half, halfspace: {point: [10, 0, 0], normal: [1, 0, 0]}}\n"
              "  - {name: some, vertices: [0, 6, 12]}\n  - {name: few, elements: [0, 1, 2]}\n"
              "  - {name: listed, sidecar: {file: rows.txt, column: 2}}\n")
-    rows = "".join(f"0 {int(i % 7 == 0)}\n" for i in range(270))
+    rows = "".join(f"0, {int(i % 7 == 0)}\n" for i in range(270))
     yield Case("fk regions", ["fk block.yaml --set air=1.1 --report r.json -o s.vtu"], {
         "block.msh": s.block(), "rows.txt": rows,
         "block.yaml": s.physical_scene(extra + "rigid: [box]\n", materials=(
@@ -119,18 +119,12 @@ def fk_scenes():
                                                                                                       "[2, 1.2, 1.2]")})
     yield Case("fk moved support", ["fk block.yaml --report r.json -o s.vtu"], {
         "block.msh": s.block(), "block.yaml": s.physical_scene().replace(
-            "fixed: [{region: base}]", "fixed: [{region: base}, {region: tip, displacement: [1, 0, 0.5]}]")})
+            "fixed: [{region: base}]", "fixed: [{region: base}, {region: tip, displacement: [-0.5, 0, 0.2]}]")})
     yield Case("fk void", ["fk block.yaml --report r.json -o s.vtu"], {
         "block.msh": s.block(), "block.yaml": "softkin: 1\nmesh: {file: block.msh}\nvoid: [chamber]\ngravity: [0, 0, -9.81]\n"
         "materials: [{youngs_modulus: 0.5, poisson_ratio: 0.3, density: 900}]\nfixed: [{region: base}]\n"})
     yield Case("fk nothing but a body", ["fk block.yaml", "fk block.yaml --json"], {
         "block.msh": s.block(), "block.yaml": "softkin: 1\nmesh: {file: block.msh}\nmaterials: [{shape_ratio: 1}]\nfixed: [{region: base}]\n"})
-    for formulation in ("physical", "target-shape"):
-        yield Case(f"fk dea {formulation}",
-                   [f"fk block.yaml --set skin=1.3 --formulation {formulation} --report r.json -o s.vtu"], {
-            "block.msh": s.block(), "block.yaml": "softkin: 1\nmesh: {file: block.msh}\n"
-            "materials: [{youngs_modulus: 1, poisson_ratio: 0.3, shape_ratio: 1}]\nfixed: [{region: base}]\n"
-            "actuators: [{name: skin, kind: dea, region: chamber, range: [0.7, 1.4], prestretch: 1.1}]\n" + s.MARKERS})
     yield Case("fk marker outside", ["fk block.yaml --set air=1.2"], {
         "block.msh": s.block(), "block.yaml": s.target_scene().replace("[20, 12, 12]", "[20.3, 12, 12]")})
     yield Case("fk reversed elements", ["fk block.yaml --set air=1.2 --report r.json"], {
@@ -195,7 +189,7 @@ def ik():
     yield Case("ik out of reach", ["ik block.yaml --target tip=40,6,6 --report r.json --image i.png"], files, ends=1)
     yield Case("ik out of reach, one start", ["ik block.yaml --target tip=40,6,6 --other-starts 0 --json"], files,
                ends=1)
-    yield Case("ik few equilibria", [f"{run} --max-equilibria 2 --report r.json"], files, ends=1)
+    yield Case("ik few equilibria", [f"{run} --max-equilibria 1 --tolerance 1e-9 --report r.json"], files, ends=1)
     yield Case("ik far", ["ik block.yaml --target tip=20000,6000,6000"], files, ends=1)
     yield Case("ik metres", ["ik block.yaml --target tip=0.02,0.006,0.006"], files, ends=1)
     yield Case("ik force", [f"{run} --force payload=0,0,-0.02 --report r.json"], files, ends=None)
@@ -294,7 +288,7 @@ def walk():
     yield Case("walk json", [f"{run} --cycles 1 --json"], files)
     yield Case("walk default cycles", [run], files)
     yield Case("walk too much friction", [f"{run} --cycles 1"], s.walker(
-        feet="feet: [{marker: heel, forward: 90, backward: 90}, {marker: toe, forward: 90, backward: 90}]\n"))
+        feet="feet: [{marker: heel, forward: 90, backward: 90}, {marker: toe, forward: 90, backward: 90}]\n"), ends=1)
     yield Case("walk equal feet", [f"{run} --cycles 1"], s.walker(
         feet="feet: [{marker: heel, forward: 0.1, backward: 0.1}, {marker: toe, forward: 0.1, backward: 0.1}]\n"))
     yield Case("walk without times", [f"{run} --cycles 2"], s.walker(gait="tendon\n0\n2\n0\n"))
