@@ -1,7 +1,7 @@
 """What the program refuses, with its message and exit code 2; nothing may be written."""
 
 from . import samples as s
-from .case import Case, change, keep_bytes, keep_lines, keep_steps, write
+from .case import Case, change, keep_lines, keep_steps, write
 
 PATH = "t_s,air\n0,1\n0.5,1.1\n1,1.2\n"
 
@@ -153,11 +153,11 @@ def fk_resume():
     for name, text in {"empty": "", "torn": "{", "list": "[]", "null": "null", "no keys": "{}",
                        "other": '{"softkin": 1}'}.items():
         yield case(f"report is {name}", write("o/r.json", text))
-    yield case("report ends early", keep_bytes("o/r.json", 3000))
+    yield case("report ends early", keep_lines("o/r.json", 13))
     yield case("newer program", change("o/r.json", r'"softkin": "[^"]*"', '"softkin": "99.0"'))
     for key in ("robot_fingerprint", "solver", "steps"):
         yield case(f"report without {key}", change("o/r.json", f'"{key}"', f'"no_{key}"'))
-    for key in ("actuation", "status", "seconds", "shape_fingerprint", "markers", "actuators", "strain", "history"):
+    for key in ("actuation", "status", "shape_fingerprint", "markers", "actuators", "strain", "history"):
         yield Case(f"refuses fk --resume, steps without {key}",
                    [run, change("o/r.json", f'"{key}"', f'"no_{key}"'), f"{run} --plot o/p.svg --resume"], files,
                    ends=None)
@@ -186,7 +186,7 @@ def ik():
         yield several(f"ik also {option}", [f"ik block.yaml --target tip=20,6,6 {option}"], files)
     yield several("ik without markers", ["ik block.yaml --target tip=20,6,6"], files | {
         "block.yaml": s.physical_scene().replace(s.MARKERS, "")})
-    yield several("ik with everything fixed", ["ik block.yaml --target tip=20,6,6 --fix air=1 --fix tendon=1"], files)
+    yield Case("ik with everything fixed", ["ik block.yaml --target tip=20,6,6 --fix air=1 --fix tendon=1"], files)
 
 
 def follow():
@@ -211,7 +211,7 @@ def follow():
     for name, edit, more in (("other options", write("note", ""), "--tolerance 0.01"),
                              ("other waypoint", write("path.csv", "x_mm\n20.01\n20.04\n20.06\n"), ""),
                              ("shorter", write("path.csv", "x_mm\n20.02\n20.04\n"), ""),
-                             ("torn", keep_bytes("out/report.json", 900), ""),
+                             ("torn", keep_lines("out/report.json", 9), ""),
                              ("other robot", change("block.yaml", "youngs_modulus: 1,", "youngs_modulus: 2,"), ""),
                              ("not of follow", change("out/report.json", '"waypoint"', '"no_waypoint"'), "")):
         yield Case(f"refuses follow --resume, {name}", [run, edit, f"{run} {more} --resume"], done, ends=2)
@@ -262,12 +262,12 @@ def walk():
                        "range": "t_s,tendon_N\n0,0\n1,9\n2,0\n",
                        "actuator": "t_s,air\n0,0\n1,1\n2,0\n", "number": "t_s,tendon_N\n0,0\n1,two\n2,0\n"}.items():
         yield several(f"walk gait, {name}", [run], s.walker(text, feet=feet))
-    for option in ("--cycles 0", "--solver local-global", "--cycles many", "--resume=3"):
+    for option in ("--cycles 0", "--solver local-global", "--cycles many"):
         yield several(f"walk {option}", [f"{run} {option}"], s.walker(good, feet=feet))
     done = f"{run} --cycles 1"
     for name, edit in (("other gait", change("gait.csv", "1,2", "1,2.5")),
                        ("other feet", change("block.yaml", "forward: 0.02", "forward: 0.03")),
-                       ("torn", keep_bytes("out/report.json", 700)),
+                       ("torn", keep_lines("out/report.json", 9)),
                        ("not of walk", change("out/report.json", '"walk"', '"no_walk"'))):
         yield Case(f"refuses walk --resume, {name}", [done, edit, f"{done} --resume"], s.walker(), ends=2)
 

@@ -108,7 +108,7 @@ def fk_scenes():
              "  - {name: half, halfspace: {point: [10, 0, 0], normal: [1, 0, 0]}}\n"
              "  - {name: some, vertices: [0, 6, 12]}\n  - {name: few, elements: [0, 1, 2]}\n"
              "  - {name: listed, sidecar: {file: rows.txt, column: 2}}\n")
-    rows = "".join(f"0, {int(i % 7 == 0)}\n" for i in range(270))
+    rows = "".join(f"{i}:0:{int(i % 7 == 0)}\n" for i in range(270))
     yield Case("fk regions", ["fk block.yaml --set air=1.1 --report r.json -o s.vtu"], {
         "block.msh": s.block(), "rows.txt": rows,
         "block.yaml": s.physical_scene(extra + "rigid: [box]\n", materials=(
