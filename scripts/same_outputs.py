@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+"""Shows that a changed softkin still gives the outputs of an older build.
+
+Runs every case of scripts/output_cases with both programs, each in a fresh folder, and compares standard output,
+standard error, exit codes and all files that are there in the end, byte for byte but for what a clock gives. Needs Python
+alone.
+"""
+
+import argparse
+import concurrent.futures
+import difflib
+import fnmatch
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True
+from output_cases import all_cases
+from output_cases.normal import normal_text, rounded_vtu
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SECONDS = 300  # a command that takes longer is killed, which is a difference
+TEXTS = {".json", ".csv", ".yaml", ".svg", ".gcode", ".pvd", ".txt", ".msh", ".mesh", ".node", ".ele", ".face", ".inp",
+         ".tet"}
+
+
+def copy_examples(case, folder):
+    """Copies what a case names below examples and docs, so that paths are those of the checkout."""
+    named = {match for words in case.words() for match in re.findall(r"examples/\w+|docs/(?:scenes|images/measure)",
+                                                                     words)}
+    if "docs/scenes" in named:
+        named |= {"examples/pneumatic_finger", "examples/two_material_bar"}
+    for name in sorted(named):
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, folder / name)
+
+
+def run_case(program, case, folder):
+    """Everything that the case leaves: by name the bytes of outputs and files, and the last exit code."""
+    folder.mkdir(parents=True)
+    copy_examples(case, folder)
+    for name, content in case.files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    environment = {"PATH": os.environ.get("PATH", ""), "LC_ALL": "C", "HOME": str(folder)}
+    left, code = {}, None
+    for number, step in enumerate(case.steps, 1):
+        if callable(step):
+            try:
+                step(folder)
+            except (OSError, ValueError, KeyError) as error:  # of a file that the command before has not written so
+                left[f"step {number} fails"] = f"{type(error).__name__}: {error}\n".encode()
+            continue
+        title = f"{number}: softkin {' '.join(step)[:100]}"
+        try:
+            ended = subprocess.run([program, *step], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                                   capture_output=True, timeout=SECONDS, check=False)
+            code = ended.returncode
+            left |= {title + " > standard output": ended.stdout, title + " > standard error": ended.stderr}
+        except subprocess.TimeoutExpired:
+            code = "killed"
+        left[title + " > exit code"] = f"{code}\n".encode()
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            left[str(path.relative_to(folder))] = path.read_bytes()
+    here = [(str(folder).encode(), b"FOLDER"), (str(pathlib.Path(program).parent).encode(), b"PROGRAM_FOLDER")]
+    for name, content in left.items():
+        for text, by in here:
+            content = content.replace(text, by)
+        left[name] = content
+    return left, code
+
+
+def comparable(name, content, case, digits):
+    """What has to be the same of an output: a text, or the bytes where there is nothing to be passed over."""
+    suffix = pathlib.Path(name).suffix.lower()
+    if suffix == ".vtu" and digits:
+        return rounded_vtu(content, digits)
+    if suffix in TEXTS or " > " in name:
+        try:
+            return normal_text(content.decode(), case.clock, digits)
+        except UnicodeDecodeError:
+            return content
+    return content
+
+
+def window(line, other):
+    """The part of a line where it differs from the other one."""
+    at = next((i for i, (a, b) in enumerate(zip(line, other)) if a != b), min(len(line), len(other)))
+    start = max(0, at - 60) if len(line) > 160 else 0
+    return ("..." if start else "") + line[start:start + 160] + ("..." if len(line) > start + 160 else "")
+
+
+def shown_difference(old, new, lines=6):
+    if isinstance(old, bytes) or isinstance(new, bytes):
+        return [f"  {len(old)} and {len(new)} bytes that are not the same"]
+    a, b, shown = old.splitlines(), new.splitlines(), []
+    if len(a) + len(b) > 6000:
+        blocks = [("replace", i, i + 1, i, i + 1) for i, pair in enumerate(zip(a, b)) if pair[0] != pair[1]]
+        blocks = blocks or [("replace", len(b), len(a), len(a), len(b))]
+    else:
+        blocks = [o for o in difflib.SequenceMatcher(None, a, b, autojunk=False).get_opcodes() if o[0] != "equal"]
+    for _, i, j, k, m in blocks:
+        for n in range(max(j - i, m - k)):
+            before, after = (a[i + n] if i + n < j else None), (b[k + n] if k + n < m else None)
+            if before is not None:
+                shown.append(f"  -{i + n + 1}: " + window(before, after or ""))
+            if after is not None:
+                shown.append(f"  +{k + n + 1}: " + window(after, before or ""))
+            if len(shown) >= lines:
+                return shown + ["  ..."]
+    return shown or ["  only the ends of lines differ"]
+
+
+def differences(case, old, new, digits):
+    """Lines that tell what is not the same."""
+    lines = []
+    for name in sorted(old.keys() | new.keys()):
+        if name not in old or name not in new:
+            lines.append(f"  {name}: only of the {'old' if name in old else 'new'} program")
+        elif old[name] != new[name]:
+            before, after = (comparable(name, content, case, digits) for content in (old[name], new[name]))
+            if before != after:
+                lines += [f"  {name}:", *("  " + line for line in shown_difference(before, after))]
+    return lines
+
+
+def check(case, programs, folder, digits, keep):
+    """Name of the case, what is wrong with it, and the seconds that the programs took."""
+    left, codes, seconds = [], [], []
+    for program, name in zip(programs, ("old", "new")):  # names of one length: they may stand in tables
+        begin = time.monotonic()
+        outputs, code = run_case(program, case, folder / name)
+        seconds.append(time.monotonic() - begin)
+        left.append(outputs)
+        codes.append(code)
+    lines = differences(case, *left, digits)
+    lines += [f"  the case is no good: {name}: {text.decode().strip()}" for name, text in left[0].items()
+              if name.endswith(" fails")]
+    if case.ends is not None and codes[0] != case.ends:
+        last = [text.decode(errors="replace").strip() for name,
+                text in left[0].items() if name.endswith("standard error")]
+        lines.append(f"  the case is no good: the old program ends with {codes[0]}, not with {case.ends}: {last[-1:]}")
+    if not keep:
+        shutil.rmtree(folder)
+    return case.name, lines, seconds
+
+
+def measures(program):
+    return pathlib.Path(program).with_name("softkin-measure").exists()
+
+
+def chosen_cases(options, programs):
+    cases = [case for case in all_cases() if not options.only or
+             any(fnmatch.fnmatch(case.name, f"*{pattern}*") for pattern in options.only)]
+    if not all(measures(program) for program in programs):
+        left_out = [case for case in cases if case.name.startswith("measure")]
+        cases = [case for case in cases if case not in left_out]
+        if left_out:
+            print(f"left out: {len(left_out)} cases of measure, as softkin-measure is not beside both programs")
+    return cases
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("old", metavar="OLD_PROGRAM")
+    parser.add_argument("new", metavar="NEW_PROGRAM")
+    parser.add_argument("--only", metavar="PATTERN", action="append",
+                        help="cases whose name has this; * and ? stand for any")
+    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="cases at once (default: 1)")
+    parser.add_argument("--keep", metavar="DIR", type=pathlib.Path,
+                        help="keep the folders of all cases here: NUMBER/old and NUMBER/new, numbers as --list says")
+    parser.add_argument("--digits", metavar="N", type=int,
+                        help="round numbers to N significant digits before they are compared")
+    parser.add_argument("--list", action="store_true", help="print the names of the cases and run nothing")
+    parser.add_argument("--slow", metavar="N", type=int, default=0, help="name the N slowest cases")
+    options = parser.parse_args()
+    programs = [str(pathlib.Path(program).resolve()) for program in (options.old, options.new)]
+    cases = chosen_cases(options, programs)
+    if options.list:
+        print(*(f"{number:03d}  {case.name}" for number, case in enumerate(cases)), sep="\n")
+        return 0
+    for program in programs:
+        if not os.access(program, os.X_OK):
+            parser.error(f"{program}: no program")
+    if not cases:
+        parser.error("no case has such a name")
+    if options.keep and options.keep.exists() and any(options.keep.iterdir()):
+        parser.error(f"--keep {options.keep}: is not empty")
+    base = options.keep.resolve() if options.keep else pathlib.Path(tempfile.mkdtemp(prefix="same_outputs_"))
+    wrong, took = 0, []
+    try:
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            def checked(number):
+                return check(cases[number], programs, base / f"{number:03d}", options.digits, options.keep)
+
+            for name, lines, seconds in pool.map(checked, range(len(cases))):
+                print(f"{'differs' if lines else 'OK'}  {name}", *lines, sep="\n", flush=True)
+                wrong += bool(lines)
+                took.append((seconds, name))
+    finally:
+        if not options.keep:
+            shutil.rmtree(base, ignore_errors=True)
+    for seconds, name in sorted(took, reverse=True)[:options.slow]:
+        print(f"{seconds[0]:8.2f} s {seconds[1]:8.2f} s  {name}")
+    old, new = (sum(seconds[i] for seconds, _ in took) for i in (0, 1))
+    print(f"{len(cases)} cases, {wrong} differ; {old:.0f} s of the old program, {new:.0f} s of the new one")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
