@@ -2,12 +2,13 @@
 #include <cmath>
 #include <map>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/vision/gray.hpp>
+#include <softkin/vision/boards.hpp>
+#include <softkin/vision/pixels.hpp>
+#include <softkin/vision/plane_view.hpp>
 #include <softkin/vision/tags.hpp>
 
-namespace softkin {
+namespace softkin::vision {
 
 namespace {
 
@@ -162,4 +163,4 @@ std::vector<std::array<double, 4>> board_squares(const BoardSpec& board) {
   return squares;
 }
 
-}  // namespace softkin
+}  // namespace softkin::vision

@@ -1,20 +1,75 @@
 #include <algorithm>
+#include <cmath>
 #include <opencv2/aruco.hpp>
-#include <opencv2/imgproc.hpp>
-#include <softkin/calibration/quad_edges.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/vision/gray.hpp>
+#include <softkin/vision/pixels.hpp>
 #include <softkin/vision/tags.hpp>
 
-namespace softkin {
+namespace softkin::vision {
 
 namespace {
+
+constexpr double step = 0.5;           // along a profile [px]
+constexpr double least_contrast = 25;  // of 255
+constexpr double end_share = 0.12;     // of an edge: left out at both ends, where blur rounds the corner
 
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
   const auto found = std::find(dictionaries().begin(), dictionaries().end(), name);
   if (found == dictionaries().end())
     throw InvalidInput("no dictionary '" + name + "'" + suggest_name(name, dictionaries()));
   return cv::aruco::getPredefinedDictionary(static_cast<int>(found - dictionaries().begin()));  // in OpenCV's order
+}
+
+/// Where the lines a b and c d cross.
+Vec2 crossing(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const Vec2 u = b - a, v = d - c, w = c - a;
+  return a + (w.x() * v.y() - w.y() * v.x()) / (u.x() * v.y() - u.y() * v.x()) * u;
+}
+
+/// Distance from the middle of a profile at which it passes the level upwards, nearest to the middle.
+std::optional<double> passage(const cv::Mat1f& profile, double reach, double level) {
+  std::optional<double> best;
+  for (int i = 0; i + 1 < profile.cols; ++i) {
+    if (!(profile(i) <= level && profile(i + 1) > level)) continue;
+    const double s = -reach + step * (i + (level - profile(i)) / (profile(i + 1) - profile(i)));
+    if (!best || std::abs(s) < std::abs(*best)) best = s;
+  }
+  return best;
+}
+
+/// An edge as OpenCV has lines: direction and a point on it, distortion taken out.
+std::optional<cv::Vec4f> edge_line(const cv::Mat& gray, const Vec2& from, const Vec2& to, const Vec2& middle,
+                                   double module, const std::optional<Camera>& camera) {
+  const double length = (to - from).norm();
+  Vec2 outwards = Vec2(to.y() - from.y(), from.x() - to.x()) / length;
+  if (outwards.dot(middle - from) > 0) outwards = -outwards;
+  const double depth = 2 * std::abs(outwards.dot(middle - from));  // of the square behind this edge
+  const double reach = std::clamp(0.75 * module * depth, 1.5, 5.0);
+  // profiles across the edge, from inside (dark) outwards
+  cv::Mat1f profiles(std::clamp(static_cast<int>(length), 10, 60), static_cast<int>(2 * reach / step + 1e-9) + 1), mean;
+  const auto place = [&](int i) {
+    return Vec2(from + (end_share + (1 - 2 * end_share) * (i + 0.5) / profiles.rows) * (to - from));
+  };
+  for (int i = 0; i < profiles.rows; ++i)
+    for (int k = 0; k < profiles.cols; ++k)
+      profiles(i, k) = between<float>(gray, place(i) + (step * k - reach) * outwards);
+  // darkest on the inner half and lightest on the outer half: ink and paper, also where the dark border and the margin
+  // are hardly wider than the blur
+  cv::reduce(profiles, mean, 0, cv::REDUCE_AVG);
+  double dark = 0, light = 0;
+  cv::minMaxLoc(mean.colRange(0, (mean.cols + 1) / 2), &dark, nullptr);
+  cv::minMaxLoc(mean.colRange((mean.cols + 1) / 2, mean.cols), nullptr, &light);
+  if (!(light - dark > least_contrast)) return std::nullopt;
+  std::vector<cv::Point2f> points;
+  for (int i = 0; i < profiles.rows; ++i)
+    if (const auto s = passage(profiles.row(i), reach, (dark + light) / 2)) {
+      const Vec2 seen = place(i) + *s * outwards, ideal = camera ? undistorted(*camera, seen) : seen;
+      points.emplace_back(cv::Point2d(ideal.x(), ideal.y()));
+    }
+  if (points.size() < 5) return std::nullopt;
+  cv::Vec4f line;
+  cv::fitLine(points, line, cv::DIST_HUBER, 0.1, 0.001, 0.0001);
+  return line;
 }
 
 }  // namespace
@@ -68,4 +123,29 @@ std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionar
   return tags;
 }
 
-}  // namespace softkin
+std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture, std::array<Vec2, 4> corners, double module,
+                                               const std::optional<Camera>& camera) {
+  const cv::Mat gray = gray_of(picture);
+  std::array<Vec2, 4> ideal;
+  for (int round = 0; round < 2; ++round) {
+    const Vec2 middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+    std::array<std::array<Vec2, 2>, 4> lines;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto line = edge_line(gray, corners[i], corners[(i + 1) % 4], middle, module, camera);
+      if (!line) return std::nullopt;
+      const Vec2 point((*line)[2], (*line)[3]);
+      lines[i] = {point, point + Vec2((*line)[0], (*line)[1])};
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto &before = lines[(i + 3) % 4], &after = lines[i];
+      ideal[i] = crossing(before[0], before[1], after[0], after[1]);
+      const Vec2 seen = camera ? distorted(*camera, ideal[i]) : ideal[i];
+      // a corner that runs away is that of something else
+      if (!((seen - corners[i]).norm() < 5)) return std::nullopt;
+      corners[i] = seen;
+    }
+  }
+  return ideal;
+}
+
+}  // namespace softkin::vision
