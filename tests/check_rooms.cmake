@@ -9,7 +9,7 @@ set(statics_sees core model energy statics)
 set(kinematics_sees core model statics kinematics)
 set(drive_sees core model drive)
 set(calibration_sees core model io statics kinematics calibration)
-set(vision_sees core model io vision)
+set(vision_sees core io vision)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)

@@ -24,12 +24,18 @@ void add_name(std::set<std::string>& names, const std::string& name, const std::
     throw InvalidInput(option + ": there are two markers '" + name + "'; name one: tip=red");
 }
 
+/// "tip=red": a name, if one is given, and what it names.
+std::pair<std::optional<std::string>, std::string> named(const std::string& part) {
+  const std::size_t equals = part.find('=');
+  if (equals == std::string::npos) return {std::nullopt, part};
+  return {part.substr(0, equals), part.substr(equals + 1)};
+}
+
 void read_dots(MeasureRequest& request, const std::string& text, std::set<std::string>& names) {
   std::set<std::string> colours;
   for (const std::string& part : parts_of(text)) {
-    const std::size_t equals = part.find('=');
-    const std::string colour = equals == std::string::npos ? part : part.substr(equals + 1);
-    const std::string name = equals == std::string::npos ? part : part.substr(0, equals);
+    const auto [given, colour] = named(part);
+    const std::string name = given.value_or(colour);
     try {
       request.dots.push_back({name, Colour(colour)});
     } catch (const InvalidInput& error) {
@@ -47,17 +53,15 @@ void read_tags(MeasureRequest& request, const std::string& text, std::set<std::s
     return;
   }
   for (const std::string& part : parts_of(text)) {
-    const std::size_t equals = part.find('=');
-    const std::string number = equals == std::string::npos ? part : part.substr(equals + 1);
-    if (number.empty() || number.size() > 6 || number.find_first_not_of("0123456789") != std::string::npos)
-      throw InvalidInput("--tags: '" + number + "' is no number of a tag");
-    const int tag = std::atoi(number.c_str());
-    if (tag >= dictionary_size(request.dictionary))
+    const auto [given, number] = named(part);
+    const std::optional<int> tag = whole_number(number);
+    if (!tag) throw InvalidInput("--tags: '" + number + "' is no number of a tag");
+    if (*tag >= dictionary_size(request.dictionary))
       throw InvalidInput("--tags: dictionary " + request.dictionary + " has no tag " + number + ", only 0 to " +
                          std::to_string(dictionary_size(request.dictionary) - 1));
-    const std::string name = equals == std::string::npos ? "tag" + std::to_string(tag) : part.substr(0, equals);
+    const std::string name = given.value_or("tag" + std::to_string(*tag));
     add_name(names, name, "--tags");
-    if (!request.tags.emplace(tag, name).second) throw InvalidInput("--tags: tag " + number + " is given twice");
+    if (!request.tags.emplace(*tag, name).second) throw InvalidInput("--tags: tag " + number + " is given twice");
   }
 }
 

@@ -10,15 +10,10 @@ namespace softkin::vision {
 
 namespace {
 
-std::optional<int> whole(const std::string& text) {
-  if (text.empty() || text.size() > 6 || text.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
-  return std::stoi(text);
-}
-
 void read_size(BoardSpec& board, const std::string& part) {
   const std::size_t times = part.find('x');
-  const auto columns = whole(part.substr(0, times)),
-             rows = times == std::string::npos ? std::nullopt : whole(part.substr(times + 1));
+  const auto columns = whole_number(part.substr(0, times)),
+             rows = times == std::string::npos ? std::nullopt : whole_number(part.substr(times + 1));
   if (!columns || !rows || *columns < 1 || *rows < 1 || *columns > 100 || *rows > 100)
     throw InvalidInput("board: '" + part + "' is no number of columns x rows such as 5x4 (at most 100x100)");
   board.columns = *columns;
@@ -37,7 +32,7 @@ void read_key(BoardSpec& board, const std::string& part) {
   if (key == "dictionary") {
     board.dictionary = value;
   } else if (key == "first") {
-    const auto first = whole(value);
+    const auto first = whole_number(value);
     if (!first) throw InvalidInput("board: first='" + value + "' is no whole number");
     board.first = *first;
   } else {
@@ -70,6 +65,11 @@ std::vector<std::string> parts_of(const std::string& text) {
     from = end + 1;
   }
   return parts;
+}
+
+std::optional<int> whole_number(const std::string& text) {
+  if (text.empty() || text.size() > 6 || text.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+  return std::stoi(text);
 }
 
 double parse_length(const std::string& text, const std::string& what) {

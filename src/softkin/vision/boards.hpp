@@ -39,6 +39,9 @@ struct BoardSpec {
 /// The parts between the commas.
 [[nodiscard]] std::vector<std::string> parts_of(const std::string& text);
 
+/// A number of up to six digits.
+[[nodiscard]] std::optional<int> whole_number(const std::string& text);
+
 /// The corner of a grid's tag in the board's frame [mm]; number: from 0 at the top left; corner: 0 top left, then
 /// clockwise.
 [[nodiscard]] Vec2 grid_corner(const BoardSpec& board, int number, int corner);

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/aruco.hpp>
@@ -11,19 +12,16 @@ namespace {
 
 constexpr double step = 0.5;           // along a profile [px]
 constexpr double least_contrast = 25;  // of 255
+constexpr double far_off = 0.5;        // of a line: on something else [px]
 constexpr double end_share = 0.12;     // of an edge: left out at both ends, where blur rounds the corner
+
+using Line = Eigen::Hyperplane<double, 2>;
 
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
   const auto found = std::find(dictionaries().begin(), dictionaries().end(), name);
   if (found == dictionaries().end())
     throw InvalidInput("no dictionary '" + name + "'" + suggest_name(name, dictionaries()));
   return cv::aruco::getPredefinedDictionary(static_cast<int>(found - dictionaries().begin()));  // in OpenCV's order
-}
-
-/// Where the lines a b and c d cross.
-Vec2 crossing(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const Vec2 u = b - a, v = d - c, w = c - a;
-  return a + (w.x() * v.y() - w.y() * v.x()) / (u.x() * v.y() - u.y() * v.x()) * u;
 }
 
 /// Distance from the middle of a profile at which it passes the level upwards, nearest to the middle.
@@ -37,9 +35,9 @@ std::optional<double> passage(const cv::Mat1f& profile, double reach, double lev
   return best;
 }
 
-/// An edge as OpenCV has lines: direction and a point on it, distortion taken out.
-std::optional<cv::Vec4f> edge_line(const cv::Mat& gray, const Vec2& from, const Vec2& to, const Vec2& middle,
-                                   double module, const std::optional<Camera>& camera) {
+/// An edge, distortion taken out.
+std::optional<Line> edge_line(const cv::Mat& gray, const Vec2& from, const Vec2& to, const Vec2& middle, double module,
+                              const std::optional<Camera>& camera) {
   const double length = (to - from).norm();
   Vec2 outwards = Vec2(to.y() - from.y(), from.x() - to.x()) / length;
   if (outwards.dot(middle - from) > 0) outwards = -outwards;
@@ -66,10 +64,37 @@ std::optional<cv::Vec4f> edge_line(const cv::Mat& gray, const Vec2& from, const 
       const Vec2 seen = place(i) + *s * outwards, ideal = camera ? undistorted(*camera, seen) : seen;
       points.emplace_back(cv::Point2d(ideal.x(), ideal.y()));
     }
-  if (points.size() < 5) return std::nullopt;
   cv::Vec4f line;
-  cv::fitLine(points, line, cv::DIST_HUBER, 0.1, 0.001, 0.0001);
-  return line;
+  for (int round = 0; round < 2; ++round) {
+    if (points.size() < 5) return std::nullopt;
+    cv::fitLine(points, line, cv::DIST_L2, 0, 0, 0);
+    std::erase_if(points, [&](const cv::Point2f& p) {
+      return std::abs((p.x - line[2]) * line[1] - (p.y - line[3]) * line[0]) > far_off;
+    });
+  }
+  return Line(Vec2(line[1], -line[0]), Vec2(line[2], line[3]));
+}
+
+std::optional<std::array<Vec2, 4>> refined(const cv::Mat& gray, std::array<Vec2, 4> corners, double module,
+                                           const std::optional<Camera>& camera) {
+  std::array<Vec2, 4> ideal;
+  for (int round = 0; round < 2; ++round) {
+    const Vec2 middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+    std::vector<Line> lines;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto line = edge_line(gray, corners[i], corners[(i + 1) % 4], middle, module, camera);
+      if (!line) return std::nullopt;
+      lines.push_back(*line);
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      ideal[i] = lines[i].intersection(lines[(i + 3) % 4]);
+      const Vec2 seen = camera ? distorted(*camera, ideal[i]) : ideal[i];
+      // a corner that runs away is that of something else
+      if (!((seen - corners[i]).norm() < 5)) return std::nullopt;
+      corners[i] = seen;
+    }
+  }
+  return ideal;
 }
 
 }  // namespace
@@ -100,7 +125,7 @@ std::vector<std::vector<int>> tag_squares(const std::string& dictionary, int num
 }
 
 Vec2 Tag::centre() const {
-  return crossing(corners[0], corners[2], corners[1], corners[3]);
+  return Line::Through(corners[0], corners[2]).intersection(Line::Through(corners[1], corners[3]));
 }
 
 std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionary,
@@ -111,41 +136,22 @@ std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionar
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<int> numbers;
-  cv::aruco::detectMarkers(gray_of(picture), known, corners, numbers, parameters);
+  const cv::Mat gray = gray_of(picture);
+  cv::aruco::detectMarkers(gray, known, corners, numbers, parameters);
   std::vector<Tag> tags;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     std::array<Vec2, 4> rough;
     for (std::size_t k = 0; k < 4; ++k) rough[k] = Vec2(corners[i][k].x, corners[i][k].y);
-    const auto corner = refine_quad(picture, rough, 1.0 / (known->markerSize + 2), camera);
+    const auto corner = refined(gray, rough, 1.0 / (known->markerSize + 2), camera);
     if (corner) tags.push_back({numbers[i], *corner});
   }
   std::stable_sort(tags.begin(), tags.end(), [](const Tag& a, const Tag& b) { return a.number < b.number; });
   return tags;
 }
 
-std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture, std::array<Vec2, 4> corners, double module,
-                                               const std::optional<Camera>& camera) {
-  const cv::Mat gray = gray_of(picture);
-  std::array<Vec2, 4> ideal;
-  for (int round = 0; round < 2; ++round) {
-    const Vec2 middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
-    std::array<std::array<Vec2, 2>, 4> lines;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const auto line = edge_line(gray, corners[i], corners[(i + 1) % 4], middle, module, camera);
-      if (!line) return std::nullopt;
-      const Vec2 point((*line)[2], (*line)[3]);
-      lines[i] = {point, point + Vec2((*line)[0], (*line)[1])};
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      const auto &before = lines[(i + 3) % 4], &after = lines[i];
-      ideal[i] = crossing(before[0], before[1], after[0], after[1]);
-      const Vec2 seen = camera ? distorted(*camera, ideal[i]) : ideal[i];
-      // a corner that runs away is that of something else
-      if (!((seen - corners[i]).norm() < 5)) return std::nullopt;
-      corners[i] = seen;
-    }
-  }
-  return ideal;
+std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture, const std::array<Vec2, 4>& corners,
+                                               double module, const std::optional<Camera>& camera) {
+  return refined(gray_of(picture), corners, module, camera);
 }
 
 }  // namespace softkin::vision

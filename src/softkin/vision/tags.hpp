@@ -40,7 +40,8 @@ struct Tag {
 /// module   width of the dark border by that of the square [-]
 /// camera   its distortion is taken out, so that edges are straight
 /// returns  the corners as a camera without distortion would see them [px]; none where an edge is not to be seen
-[[nodiscard]] std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture, std::array<Vec2, 4> corners,
-                                                             double module, const std::optional<Camera>& camera);
+[[nodiscard]] std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture,
+                                                             const std::array<Vec2, 4>& corners, double module,
+                                                             const std::optional<Camera>& camera);
 
 }  // namespace softkin::vision
