@@ -10,7 +10,7 @@ set(statics_sees core linear model energy statics)
 set(kinematics_sees core model statics kinematics)
 set(drive_sees core model drive)
 set(calibration_sees core model io statics kinematics calibration)
-set(vision_sees core io calibration vision)
+set(vision_sees core io vision)
 
 set(runs_sees core model io statics kinematics runs)
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/vision/camera_fit.hpp>
+#include <softkin/vision/camera.hpp>
 #include <softkin/vision/pictures.hpp>
 #include <softkin/vision/tags.hpp>
 

@@ -12,6 +12,7 @@ namespace {
 
 using namespace softkin;
 using namespace softkin::cli;
+using namespace softkin::vision;
 
 void add_common(CLI::App& command, bool& json, int& threads) {
   command.add_flag("--json", json, "Print JSON; its keys name the units");

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <functional>
-#include <softkin/calibration/specimen.hpp>
 #include <softkin/io/picture/rgb_image.hpp>
+#include <softkin/vision/specimen_edges.hpp>
 
 #include "requests.hpp"
 

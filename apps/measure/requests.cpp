@@ -24,12 +24,18 @@ void add_name(std::set<std::string>& names, const std::string& name, const std::
     throw InvalidInput(option + ": there are two markers '" + name + "'; name one: tip=red");
 }
 
+/// "tip=red": a name, if one is given, and what it names.
+std::pair<std::optional<std::string>, std::string> named(const std::string& part) {
+  const std::size_t equals = part.find('=');
+  if (equals == std::string::npos) return {std::nullopt, part};
+  return {part.substr(0, equals), part.substr(equals + 1)};
+}
+
 void read_dots(MeasureRequest& request, const std::string& text, std::set<std::string>& names) {
   std::set<std::string> colours;
-  for (const std::string& part : split(text, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string colour = equals == std::string::npos ? part : part.substr(equals + 1);
-    const std::string name = equals == std::string::npos ? part : part.substr(0, equals);
+  for (const std::string& part : parts_of(text)) {
+    const auto [given, colour] = named(part);
+    const std::string name = given.value_or(colour);
     try {
       request.dots.push_back({name, Colour(colour)});
     } catch (const InvalidInput& error) {
@@ -46,24 +52,22 @@ void read_tags(MeasureRequest& request, const std::string& text, std::set<std::s
     request.all_tags = true;
     return;
   }
-  for (const std::string& part : split(text, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string number = equals == std::string::npos ? part : part.substr(equals + 1);
-    if (number.empty() || number.size() > 6 || number.find_first_not_of("0123456789") != std::string::npos)
-      throw InvalidInput("--tags: '" + number + "' is no number of a tag");
-    const int tag = std::atoi(number.c_str());
-    if (tag >= dictionary_size(request.dictionary))
+  for (const std::string& part : parts_of(text)) {
+    const auto [given, number] = named(part);
+    const std::optional<int> tag = whole_number(number);
+    if (!tag) throw InvalidInput("--tags: '" + number + "' is no number of a tag");
+    if (*tag >= dictionary_size(request.dictionary))
       throw InvalidInput("--tags: dictionary " + request.dictionary + " has no tag " + number + ", only 0 to " +
                          std::to_string(dictionary_size(request.dictionary) - 1));
-    const std::string name = equals == std::string::npos ? "tag" + std::to_string(tag) : part.substr(0, equals);
+    const std::string name = given.value_or("tag" + std::to_string(*tag));
     add_name(names, name, "--tags");
-    if (!request.tags.emplace(tag, name).second) throw InvalidInput("--tags: tag " + number + " is given twice");
+    if (!request.tags.emplace(*tag, name).second) throw InvalidInput("--tags: tag " + number + " is given twice");
   }
 }
 
 ScaleRequest read_scale(const std::string& text) {
   const std::size_t equals = text.rfind('=');
-  const std::vector<std::string> parts = split(text.substr(0, equals), ',');
+  const std::vector<std::string> parts = parts_of(text.substr(0, equals));
   if (equals == std::string::npos || (parts.size() != 2 && parts.size() != 4))
     throw InvalidInput("--scale '" + text + "': write two markers, a,b=25mm, or two pixels, x1,y1,x2,y2=25mm");
   ScaleRequest scale;
@@ -96,7 +100,7 @@ void read_frame(MeasureRequest& request, const MeasureOptions& options, const st
   request.origin = options.origin;
   if (!options.origin.empty()) check_marker(request, names, options.origin, "--origin");
   if (options.x_axis.empty()) return;
-  const std::vector<std::string> parts = split(options.x_axis, ',');
+  const std::vector<std::string> parts = parts_of(options.x_axis);
   if (parts.size() != 2 || parts[0] == parts[1])
     throw InvalidInput("--x-axis '" + options.x_axis + "': give two markers, a,b; x goes from the first to the second");
   for (const std::string& part : parts) check_marker(request, names, part, "--x-axis");
@@ -118,16 +122,6 @@ void check_whole(const MeasureRequest& request) {
 
 }  // namespace
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, from), text.size());
-    parts.push_back(text.substr(from, end - from));
-    from = end + 1;
-  }
-  return parts;
-}
-
 std::string AngleRequest::name() const {
   std::string name = "angle";
   for (const std::string& marker : markers) name += "_" + marker;
@@ -145,7 +139,7 @@ MeasureRequest understood(const MeasureOptions& options) {
   if (!options.board.empty()) request.board = parse_board(options.board);
   if (!options.scale.empty()) request.scale = read_scale(options.scale);
   if (!options.interface.empty()) {
-    const std::vector<std::string> parts = split(options.interface, ',');
+    const std::vector<std::string> parts = parts_of(options.interface);
     if (parts.size() != 2 || parts[0] == parts[1])
       throw InvalidInput("--interface '" + options.interface + "': give two colours, that at the fixed end first");
     request.interface = {Colour(parts[0]), Colour(parts[1])};
@@ -153,7 +147,7 @@ MeasureRequest understood(const MeasureOptions& options) {
   if (request.scale && !request.scale->pixels)
     for (const std::string& marker : request.scale->markers) check_marker(request, names, marker, "--scale");
   for (const std::string& angle : options.angles) {
-    const std::vector<std::string> parts = split(angle, ',');
+    const std::vector<std::string> parts = parts_of(angle);
     if ((parts.size() != 2 && parts.size() != 4) || parts[0] == parts[1] || (parts.size() == 4 && parts[2] == parts[3]))
       throw InvalidInput("--angle '" + angle + "': give two markers, a,b, or two pairs of them, a,b,c,d");
     for (const std::string& part : parts) check_marker(request, names, part, "--angle");

@@ -3,13 +3,15 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <softkin/calibration/board.hpp>
-#include <softkin/calibration/dots.hpp>
-#include <softkin/calibration/plane_view.hpp>
+#include <softkin/vision/boards.hpp>
+#include <softkin/vision/dots.hpp>
+#include <softkin/vision/plane_view.hpp>
 #include <string>
 #include <vector>
 
 namespace softkin::cli {
+
+using namespace vision;
 
 /// What the user asked for, as typed.
 struct MeasureOptions {
@@ -60,8 +62,5 @@ struct MeasureRequest {
 
 /// throws  InvalidInput naming the option
 [[nodiscard]] MeasureRequest understood(const MeasureOptions& options);
-
-/// The parts between the commas.
-[[nodiscard]] std::vector<std::string> split(const std::string& text, char separator);
 
 }  // namespace softkin::cli

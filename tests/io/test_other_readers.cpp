@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <set>
-#include <softkin/io/gmsh.hpp>
-#include <softkin/io/mesh_io.hpp>
+#include <softkin/io/mesh/gmsh.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <sstream>
 
 #include "io/vtk_files.hpp"

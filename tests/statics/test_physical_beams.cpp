@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <softkin/io/mesh_io.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 
 #include "statics/physical_samples.hpp"
 

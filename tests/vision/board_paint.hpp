@@ -1,9 +1,11 @@
 #pragma once
 
-#include <calibration/rendering.hpp>
-#include <softkin/vision/tags.hpp>
+#include <softkin/vision/boards.hpp>
+#include <vision/rendering.hpp>
 
 namespace softkin::testing {
+
+using namespace vision;
 
 /// A printed board, its lower left corner at a place of the plane [mm].
 class BoardPaint {

@@ -2,7 +2,7 @@
 
 #include <numbers>
 #include <softkin/core/error.hpp>
-#include <softkin/vision/camera_fit.hpp>
+#include <softkin/vision/camera.hpp>
 
 #include "board_paint.hpp"
 
@@ -10,6 +10,7 @@ namespace {
 
 using namespace softkin;
 using namespace softkin::testing;
+using namespace softkin::vision;
 
 const Camera lens{.width = 640,
                   .height = 480,

@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <calibration/rendering.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
-#include <softkin/calibration/dots.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/picture/png.hpp>
+#include <softkin/vision/dots.hpp>
 #include <softkin/vision/pictures.hpp>
+#include <vision/rendering.hpp>
 
 #include "../cli/run_program.hpp"
 
@@ -15,6 +15,7 @@ namespace {
 
 using namespace softkin;
 using namespace softkin::testing;
+using namespace softkin::vision;
 
 std::string message_of(const std::function<void()>& action) {
   try {

@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <softkin/calibration/dots.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/vision/dots.hpp>
+#include <softkin/vision/tags.hpp>
 
 #include "board_paint.hpp"
 
@@ -10,6 +11,7 @@ namespace {
 
 using namespace softkin;
 using namespace softkin::testing;
+using namespace softkin::vision;
 
 const Camera lens{.width = 640,
                   .height = 480,

@@ -2,36 +2,35 @@
 #include <cmath>
 #include <map>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/vision/gray.hpp>
+#include <softkin/vision/boards.hpp>
+#include <softkin/vision/pixels.hpp>
+#include <softkin/vision/plane_view.hpp>
 #include <softkin/vision/tags.hpp>
 
-namespace softkin {
+namespace softkin::vision {
 
 namespace {
 
 constexpr double least_share = 0.4;  // of a board's tags or corners: fewer fix its perspective badly
 
-/// Lower left corner of each tag of a charuco board, in the order of their numbers [mm].
-std::vector<Vec2> charuco_tags(const BoardSpec& board) {
-  std::vector<Vec2> places;
-  const double margin = (board.square - board.tag) / 2;
-  for (int y = board.rows - 1; y >= 0; --y)
-    for (int x = 0; x < board.columns; ++x)
-      if ((x + y) % 2 != 0) places.emplace_back(x * board.square + margin, y * board.square + margin);
-  return places;
+/// Corners of a tag: top left, then clockwise.
+std::array<Vec2, 4> tag_places(const BoardSpec& board, int number) {
+  if (board.kind == BoardSpec::Kind::grid)
+    return {grid_corner(board, number, 0), grid_corner(board, number, 1), grid_corner(board, number, 2),
+            grid_corner(board, number, 3)};
+  const double side = board.tag, margin = (board.square - side) / 2;
+  Vec2 low;
+  for (int i = 0; number >= 0; ++i) {  // every other square, row by row from the top left
+    const int x = i % board.columns, y = board.rows - 1 - i / board.columns;
+    if ((x + y) % 2 != 0 && number-- == 0) low = Vec2(x * board.square + margin, y * board.square + margin);
+  }
+  return {low + Vec2(0, side), low + Vec2(side, side), low + Vec2(side, 0), low};
 }
 
-std::array<Vec2, 4> tag_places(const BoardSpec& board, int number) {
-  std::array<Vec2, 4> places;
-  if (board.kind == BoardSpec::Kind::grid) {
-    for (int k = 0; k < 4; ++k) places[std::size_t(k)] = grid_corner(board, number, k);
-    return places;
-  }
-  const Vec2 low = charuco_tags(board)[std::size_t(number)];
-  const double side = board.tag;
-  return {low + Vec2(0, side), low + Vec2(side, side), low + Vec2(side, 0), low};
+PlanePoint point_of(const cv::Point2f& corner, const Vec2& place, const std::optional<Camera>& camera) {
+  const Vec2 seen(corner.x, corner.y);
+  return {camera ? undistorted(*camera, seen) : seen, place};
 }
 
 [[noreturn]] void refuse(const BoardSpec& board, int found, int all, const char* what) {
@@ -99,10 +98,7 @@ std::vector<PlanePoint> charuco_corners(const RgbImage& picture, const BoardSpec
   cv::cornerSubPix(gray_of(picture), corners, cv::Size(reach, reach), cv::Size(-1, -1),
                    cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 50, 1e-3));
   std::vector<PlanePoint> points;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec2 seen(corners[i].x, corners[i].y);
-    points.push_back({camera ? undistorted(*camera, seen) : seen, places[i]});
-  }
+  for (std::size_t i = 0; i < corners.size(); ++i) points.push_back(point_of(corners[i], places[i], camera));
   // the tags reach farther out than the crossings between squares
   for (const auto& [number, tag] : camera ? tags_on(picture, board, camera) : tags) append(points, board, number, tag);
   return points;
@@ -117,13 +113,10 @@ std::vector<PlanePoint> checker_corners(const RgbImage& picture, const BoardSpec
                        " inner corners of " + std::to_string(board.columns) + " x " + std::to_string(board.rows) +
                        " squares; all of it must be in the picture");
   std::vector<PlanePoint> points;
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) {
-      const cv::Point2f& corner = corners[std::size_t(r * columns + c)];
-      const Vec2 seen(corner.x, corner.y);
-      points.push_back({camera ? undistorted(*camera, seen) : seen,
-                        Vec2((c + 1) * board.square, board.height() - (r + 1) * board.square)});
-    }
+  for (int i = 0; i < rows * columns; ++i) {
+    const Vec2 place((i % columns + 1) * board.square, board.height() - (i / columns + 1) * board.square);
+    points.push_back(point_of(corners[std::size_t(i)], place, camera));
+  }
   return points;
 }
 
@@ -162,4 +155,4 @@ std::vector<std::array<double, 4>> board_squares(const BoardSpec& board) {
   return squares;
 }
 
-}  // namespace softkin
+}  // namespace softkin::vision

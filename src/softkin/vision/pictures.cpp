@@ -12,7 +12,7 @@
 #include <softkin/vision/pictures.hpp>
 #include <utility>
 
-namespace softkin {
+namespace softkin::vision {
 
 namespace {
 
@@ -168,4 +168,4 @@ std::optional<Frame> Film::next() {
   return frame;
 }
 
-}  // namespace softkin
+}  // namespace softkin::vision

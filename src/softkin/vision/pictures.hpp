@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace softkin {
+namespace softkin::vision {
 
 /// Before anything else of this room: threads of OpenCV (0: one a core), and its own messages off.
 void prepare_opencv(int threads);
@@ -55,4 +55,4 @@ class Film {
 /// Is this a film: a folder, or a file with the extension of a video?
 [[nodiscard]] bool is_film(const std::filesystem::path& path);
 
-}  // namespace softkin
+}  // namespace softkin::vision

@@ -2,13 +2,12 @@
 
 #include <array>
 #include <optional>
-#include <softkin/calibration/board.hpp>
-#include <softkin/calibration/plane_view.hpp>
 #include <softkin/io/picture/rgb_image.hpp>
+#include <softkin/vision/camera.hpp>
 #include <string>
 #include <vector>
 
-namespace softkin {
+namespace softkin::vision {
 
 /// A square tag (ArUco) in a picture.
 struct Tag {
@@ -34,14 +33,15 @@ struct Tag {
 [[nodiscard]] std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionary,
                                          const std::optional<Camera>& camera);
 
-/// The corners of a board that a picture shows.
-/// camera  whose distortion is taken out
-/// throws  InvalidInput: not there, too little of it, a tag twice
-[[nodiscard]] std::vector<PlanePoint> find_board(const RgbImage& picture, const BoardSpec& board,
-                                                 const std::optional<Camera>& camera);
+/// Corners of a dark square on light ground, to a few hundredths of a pixel: lines through the places where the picture
+/// is half way between dark and light, which blur does not move, and where these lines cross.
+///
+/// corners  as found roughly, in order around the square [px]
+/// module   width of the dark border by that of the square [-]
+/// camera   its distortion is taken out, so that edges are straight
+/// returns  the corners as a camera without distortion would see them [px]; none where an edge is not to be seen
+[[nodiscard]] std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture,
+                                                             const std::array<Vec2, 4>& corners, double module,
+                                                             const std::optional<Camera>& camera);
 
-/// The dark squares of a board [mm], each lower left corner, then width and height; for printing.
-/// throws  InvalidInput: no such dictionary, or too few tags in it
-[[nodiscard]] std::vector<std::array<double, 4>> board_squares(const BoardSpec& board);
-
-}  // namespace softkin
+}  // namespace softkin::vision

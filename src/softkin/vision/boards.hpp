@@ -1,9 +1,13 @@
 #pragma once
 
-#include <softkin/calibration/camera.hpp>
+#include <array>
+#include <optional>
+#include <softkin/io/picture/rgb_image.hpp>
+#include <softkin/vision/camera.hpp>
 #include <string>
+#include <vector>
 
-namespace softkin {
+namespace softkin::vision {
 
 /// A printed flat pattern of known size.
 ///
@@ -32,8 +36,24 @@ struct BoardSpec {
 /// throws  InvalidInput: no unit, no number, not > 0
 [[nodiscard]] double parse_length(const std::string& text, const std::string& what);
 
+/// The parts between the commas.
+[[nodiscard]] std::vector<std::string> parts_of(const std::string& text);
+
+/// A number of up to six digits.
+[[nodiscard]] std::optional<int> whole_number(const std::string& text);
+
 /// The corner of a grid's tag in the board's frame [mm]; number: from 0 at the top left; corner: 0 top left, then
 /// clockwise.
 [[nodiscard]] Vec2 grid_corner(const BoardSpec& board, int number, int corner);
 
-}  // namespace softkin
+/// The corners of a board that a picture shows.
+/// camera  whose distortion is taken out
+/// throws  InvalidInput: not there, too little of it, a tag twice
+[[nodiscard]] std::vector<PlanePoint> find_board(const RgbImage& picture, const BoardSpec& board,
+                                                 const std::optional<Camera>& camera);
+
+/// The dark squares of a board [mm], each lower left corner, then width and height; for printing.
+/// throws  InvalidInput: no such dictionary, or too few tags in it
+[[nodiscard]] std::vector<std::array<double, 4>> board_squares(const BoardSpec& board);
+
+}  // namespace softkin::vision

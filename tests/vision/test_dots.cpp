@@ -1,14 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <calibration/rendering.hpp>
 #include <numbers>
-#include <softkin/calibration/dots.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/vision/dots.hpp>
+#include <vision/rendering.hpp>
 
 namespace {
 
 using namespace softkin;
 using namespace softkin::testing;
+using namespace softkin::vision;
 
 std::string refusal_of(const RgbImage& picture, const char* colour, const PlaneView& view) {
   try {

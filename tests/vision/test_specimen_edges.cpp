@@ -1,14 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <calibration/rendering.hpp>
 #include <numbers>
-#include <softkin/calibration/specimen.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/vision/specimen_edges.hpp>
+#include <vision/rendering.hpp>
 
 namespace {
 
 using namespace softkin;
 using namespace softkin::testing;
+using namespace softkin::vision;
 
 const Colour a("red"), b("blue");
 

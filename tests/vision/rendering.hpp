@@ -7,13 +7,15 @@
 #include <functional>
 #include <optional>
 #include <random>
-#include <softkin/calibration/camera.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/picture/rgb_image.hpp>
+#include <softkin/vision/camera.hpp>
 #include <string>
 #include <vector>
 
 namespace softkin::testing {
+
+using namespace vision;
 
 /// What an action is refused with.
 inline std::string message_of(const std::function<void()>& action) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <softkin/calibration/colour.hpp>
-#include <softkin/calibration/plane_view.hpp>
+#include <softkin/vision/colour.hpp>
+#include <softkin/vision/plane_view.hpp>
 
-namespace softkin {
+namespace softkin::vision {
 
 /// A straight edge across a specimen.
 struct SpecimenEdge {
@@ -52,4 +52,4 @@ struct Stretch {
   [[nodiscard]] double elasticity_ratio_error() const;
 };
 
-}  // namespace softkin
+}  // namespace softkin::vision

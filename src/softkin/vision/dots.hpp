@@ -1,9 +1,9 @@
 #pragma once
 
-#include <softkin/calibration/colour.hpp>
-#include <softkin/calibration/plane_view.hpp>
+#include <softkin/vision/colour.hpp>
+#include <softkin/vision/plane_view.hpp>
 
-namespace softkin {
+namespace softkin::vision {
 
 /// Where a marker is.
 struct MarkerPlace {
@@ -22,4 +22,4 @@ struct MarkerPlace {
 [[nodiscard]] MarkerPlace find_dot(const RgbImage& picture, const Colour& colour, const PlaneView& view,
                                    const std::string& name);
 
-}  // namespace softkin
+}  // namespace softkin::vision

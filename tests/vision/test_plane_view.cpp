@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <calibration/rendering.hpp>
 #include <fstream>
-#include <softkin/calibration/board.hpp>
-#include <softkin/calibration/plane_view.hpp>
-#include <softkin/calibration/quad_edges.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/vision/boards.hpp>
+#include <softkin/vision/plane_view.hpp>
+#include <softkin/vision/tags.hpp>
+#include <vision/rendering.hpp>
 
 #include "../cli/run_program.hpp"
 
@@ -13,6 +13,7 @@ namespace {
 
 using namespace softkin;
 using namespace softkin::testing;
+using namespace softkin::vision;
 
 const Camera lens{.width = 640,
                   .height = 480,

@@ -1,34 +1,19 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
-#include <softkin/calibration/board.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/length_unit.hpp>
-#include <vector>
+#include <softkin/vision/boards.hpp>
 
-namespace softkin {
+namespace softkin::vision {
 
 namespace {
 
-std::vector<std::string> parts_of(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t end = std::min(text.find(',', from), text.size());
-    parts.push_back(text.substr(from, end - from));
-    from = end + 1;
-  }
-  return parts;
-}
-
-std::optional<int> whole(const std::string& text) {
-  if (text.empty() || text.size() > 6 || text.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
-  return std::atoi(text.c_str());
-}
-
 void read_size(BoardSpec& board, const std::string& part) {
   const std::size_t times = part.find('x');
-  const auto columns = whole(part.substr(0, times)),
-             rows = times == std::string::npos ? std::nullopt : whole(part.substr(times + 1));
+  const auto columns = whole_number(part.substr(0, times)),
+             rows = times == std::string::npos ? std::nullopt : whole_number(part.substr(times + 1));
   if (!columns || !rows || *columns < 1 || *rows < 1 || *columns > 100 || *rows > 100)
     throw InvalidInput("board: '" + part + "' is no number of columns x rows such as 5x4 (at most 100x100)");
   board.columns = *columns;
@@ -44,14 +29,14 @@ void read_key(BoardSpec& board, const std::string& part) {
   if (board.kind == BoardSpec::Kind::checker) keys = {"square"};
   if (std::find(keys.begin(), keys.end(), key) == keys.end())
     throw InvalidInput("board: unknown key '" + key + "'" + suggest_name(key, keys));
-  if (key == "tag") board.tag = parse_length(value, "board: tag");
-  if (key == "gap") board.gap = parse_length(value, "board: gap");
-  if (key == "square") board.square = parse_length(value, "board: square");
-  if (key == "dictionary") board.dictionary = value;
-  if (key == "first") {
-    const auto first = whole(value);
+  if (key == "dictionary") {
+    board.dictionary = value;
+  } else if (key == "first") {
+    const auto first = whole_number(value);
     if (!first) throw InvalidInput("board: first='" + value + "' is no whole number");
     board.first = *first;
+  } else {
+    (key == "tag" ? board.tag : key == "gap" ? board.gap : board.square) = parse_length(value, "board: " + key);
   }
 }
 
@@ -71,6 +56,21 @@ void check(const BoardSpec& board) {
 }
 
 }  // namespace
+
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(',', from), text.size());
+    parts.push_back(text.substr(from, end - from));
+    from = end + 1;
+  }
+  return parts;
+}
+
+std::optional<int> whole_number(const std::string& text) {
+  if (text.empty() || text.size() > 6 || text.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+  return std::stoi(text);
+}
 
 double parse_length(const std::string& text, const std::string& what) {
   char* end = nullptr;
@@ -120,4 +120,4 @@ Vec2 grid_corner(const BoardSpec& board, int number, int corner) {
   return {corner == 1 || corner == 2 ? left + board.tag : left, corner >= 2 ? top - board.tag : top};
 }
 
-}  // namespace softkin
+}  // namespace softkin::vision

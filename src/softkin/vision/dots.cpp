@@ -1,0 +1,174 @@
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/vision/dots.hpp>
+#include <softkin/vision/pixels.hpp>
+
+namespace softkin::vision {
+
+namespace {
+
+constexpr int least_area = 20;                // [px]: a diameter of 5
+constexpr double least_fullness = 0.88;       // a half disc has 0.95
+constexpr double largest_elongation = 3;      // a disc seen at 70 degrees
+constexpr double rival_share = 0.3;           // of the largest dot's area: smaller ones are dirt
+constexpr int blur = 4;                       // the edge of a dot fades within so many pixels
+constexpr int ring = 4;                       // width of the ground looked at around it [px]
+constexpr double most_glare = 0.02;           // of a dot's inner pixels
+constexpr double most_white = 0.7;            // more of it: a ring on paper, not a highlight on a dot
+constexpr double over_exposed_picture = 0.3;  // share of clipped pixels that explains a missing dot
+
+using Rgb3 = Eigen::RowVector3d;
+
+std::string at_pixel(const Vec2& place) {
+  return "(" + std::to_string(std::lround(place.x())) + ", " + std::to_string(std::lround(place.y())) + ")";
+}
+
+std::string percent(double share) {
+  return std::to_string(std::lround(100 * share)) + " %";
+}
+
+/// Some pixels, a row each: (1, x, y) from the dot's centre, and their colours.
+struct Pixels {
+  Eigen::MatrixX3d places, colours;
+
+  template <class Condition>
+  [[nodiscard]] Pixels where(const Condition& condition) const {
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < places.rows(); ++i)
+      if (condition(i)) kept.push_back(i);
+    return {places(kept, Eigen::all), colours(kept, Eigen::all)};
+  }
+};
+
+/// Those of a window that the mask has.
+Pixels pixels_in(const RgbImage& picture, const cv::Rect& window, const cv::Mat& mask, const Vec2& centre) {
+  const cv::Mat3b rgb = mat_of(picture)(window);
+  std::vector<cv::Point> points;
+  cv::findNonZero(mask, points);
+  Pixels pixels{Eigen::MatrixX3d(points.size(), 3), Eigen::MatrixX3d(points.size(), 3)};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const cv::Vec3b& colour = rgb(points[i]);
+    pixels.places.row(row) << 1, window.x + points[i].x - centre.x(), window.y + points[i].y - centre.y();
+    pixels.colours.row(row) << colour[0], colour[1], colour[2];
+  }
+  return pixels;
+}
+
+Rgb3 median(Eigen::MatrixX3d colours) {
+  const Eigen::Index middle = colours.rows() / 2;
+  for (auto channel : colours.colwise()) std::nth_element(channel.begin(), channel.begin() + middle, channel.end());
+  return colours.row(middle);
+}
+
+/// Square of the distance from the centre of an ellipse, whose edge is at 4.
+Eigen::ArrayXd distances(const Pixels& pixels, const Blob& blob) {
+  const auto arms = pixels.places.rightCols<2>();
+  return (arms * blob.spread.inverse()).cwiseProduct(arms).rowwise().sum();
+}
+
+/// Median colour in the middle, where no ground shines through; of the whole blob where that is a ring.
+Rgb3 core_colour(const RgbImage& picture, const Blob& blob) {
+  const Pixels all = pixels_in(picture, blob.box, blob.mask, blob.centre);
+  const Eigen::ArrayXd distance = distances(all, blob);
+  const Pixels core = all.where([&](Eigen::Index i) { return distance[i] <= 1; });
+  return median(core.places.rows() > 0 ? core.colours : all.colours);
+}
+
+/// Colour of the ground as a linear function of the place, for lighting is never even, and covariance of its noise.
+struct Ground {
+  Eigen::Matrix3d fit, noise;
+};
+
+Ground ground_of(const Pixels& ring_pixels) {
+  const Rgb3 middle = median(ring_pixels.colours);
+  const Eigen::MatrixX3d off = (ring_pixels.colours.rowwise() - middle).cwiseAbs();
+  const Rgb3 width = (3 * (1.4826 * median(off)).cwiseMax(3)).array() + 6;
+  // what else lies there, another marker or an edge, is no ground
+  const Pixels ground = ring_pixels.where([&](Eigen::Index i) { return (off.row(i).array() <= width.array()).all(); });
+  Ground result;
+  result.fit = ground.places.colPivHouseholderQr().solve(ground.colours);
+  const Eigen::MatrixX3d miss = ground.colours - ground.places * result.fit;
+  result.noise = miss.transpose() * miss / static_cast<double>(miss.rows());
+  result.noise.diagonal().array() += 1.0 / 12;  // whole numbers
+  return result;
+}
+
+MarkerPlace refined(const RgbImage& picture, const Blob& blob, const PlaneView& view) {
+  const cv::Point reach(blur + ring, blur + ring);
+  const cv::Rect window =
+      cv::Rect(blob.box.tl() - reach, blob.box.br() + reach) & cv::Rect(0, 0, picture.width, picture.height);
+  cv::Mat outside(window.size(), CV_8U, cv::Scalar(255)), distance;  // from the blob, along rows, columns or diagonals
+  outside(blob.box - window.tl()).setTo(0, blob.mask);
+  cv::distanceTransform(outside, distance, cv::DIST_C, 3);
+  const Ground ground =
+      ground_of(pixels_in(picture, window, (distance > blur) & (distance <= blur + ring), blob.centre));
+  const Pixels near = pixels_in(picture, window, distance <= blur, blob.centre);
+  const Rgb3 contrast = core_colour(picture, blob) - ground.fit.row(0);
+  const double size = contrast.squaredNorm();
+  const Eigen::VectorXd shares = (near.colours - near.places * ground.fit) * contrast.transpose() / size;
+  Eigen::MatrixX2d places(shares.size(), 2);
+  Eigen::VectorXd areas(shares.size());
+  for (Eigen::Index i = 0; i < shares.size(); ++i) {
+    const Vec2 seen = blob.centre + near.places.row(i).tail<2>().transpose();
+    places.row(i) = view.to_mm(seen);
+    areas[i] = view.pixel_area(seen);
+  }
+  const double sum = shares.dot(areas);
+  MarkerPlace result;
+  result.place = places.transpose() * shares.cwiseProduct(areas) / sum;
+  result.pixel = view.to_pixel(result.place);
+  const double noise = (contrast * ground.noise).dot(contrast) / (size * size);  // variance of a pixel's share
+  const double arm = areas.cwiseAbs2().dot((places.rowwise() - result.place.transpose()).rowwise().squaredNorm());
+  result.error = std::hypot(std::sqrt(noise * arm / 2) / sum, pixel_error * std::sqrt(view.pixel_area(result.pixel)),
+                            view.error_at(result.pixel));
+  return result;
+}
+
+/// Share of the inner dot that is nearer to white than to the dot's colour: a highlight, which moves the centre.
+double glare(const RgbImage& picture, const Blob& blob) {
+  const double white = (core_colour(picture, blob).minCoeff() + 255) / 2;
+  const Pixels all = pixels_in(picture, blob.box, cv::Mat::ones(blob.box.size(), CV_8U), blob.centre);
+  const auto inner = (distances(all, blob) <= 1.5).eval();  // farther out the ground shines through
+  const auto bright = (all.colours.rowwise().minCoeff().array() > white).eval();
+  return inner.any() ? static_cast<double>((inner && bright).count()) / static_cast<double>(inner.count()) : 0;
+}
+
+}  // namespace
+
+MarkerPlace find_dot(const RgbImage& picture, const Colour& colour, const PlaneView& view, const std::string& name) {
+  const std::string dot = name == colour.name ? "dot '" + name + "'" : colour.name + " dot '" + name + "'";
+  std::vector<Blob> blobs = find_blobs(picture, colour, least_area);
+  const bool white = colour.name == "white";
+  const auto refuse_glare = [&](const Blob& blob) {
+    const double share = white || blob.elongation() > largest_elongation ? 0 : glare(picture, blob);
+    if (share > most_glare && share < most_white)
+      throw InvalidInput(percent(share) + " of " + dot + " at " + at_pixel(blob.centre) +
+                         " is white: it is over-exposed, has a highlight, or is not a full dot");
+  };
+  const std::vector<Blob> all = blobs;
+  std::erase_if(blobs, [](const Blob& blob) {
+    return blob.fullness() < least_fullness || blob.elongation() > largest_elongation;
+  });
+  if (blobs.empty()) {
+    if (!all.empty()) refuse_glare(all[0]);
+    std::string message = "no " + dot + " found";
+    if (!all.empty()) message += ": nothing of this colour is round";
+    const double clipped = clipped_share(picture);
+    if (!white && clipped > over_exposed_picture)
+      message += "; the picture is over-exposed: " + percent(clipped) + " of it is white";
+    throw InvalidInput(message);
+  }
+  if (blobs.size() > 1 && blobs[1].area > rival_share * blobs[0].area)
+    throw InvalidInput("two candidates for " + dot + ": at " + at_pixel(blobs[0].centre) + " and " +
+                       at_pixel(blobs[1].centre) + "; cover one, or give another colour");
+  if (blobs[0].touches_frame(picture, blur))
+    throw InvalidInput(dot + " at " + at_pixel(blobs[0].centre) + " is partly outside the frame");
+  refuse_glare(blobs[0]);
+  return refined(picture, blobs[0], view);
+}
+
+}  // namespace softkin::vision

@@ -1,0 +1,211 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <softkin/core/error.hpp>
+#include <softkin/vision/pixels.hpp>
+#include <softkin/vision/specimen_edges.hpp>
+
+namespace softkin::vision {
+
+namespace {
+
+constexpr int least_area = 100;      // [px]
+constexpr double rival_share = 0.3;  // of the largest part's area
+constexpr int margin = 4;            // to the frame [px]
+constexpr double used_width = 0.7;   // of the specimen: its long edges are rounded by blur
+constexpr double reach = 6;          // of the window around an edge [px]
+constexpr double levels = 3;         // beyond it, where the colours on both sides are read [px]
+constexpr int level_samples = 6;     // there, in each strip
+constexpr double step = 0.5;         // along a strip [px]
+constexpr double degrees = 180 / std::numbers::pi;
+
+Vec2 vec(const cv::Point2d& point) {
+  return {point.x, point.y};
+}
+
+/// The outline of the part of a specimen that has this colour [mm].
+std::vector<cv::Point2f> outline_of(const RgbImage& picture, const Colour& colour, const PlaneView& view) {
+  const std::vector<Blob> blobs = find_blobs(picture, colour, least_area);
+  const std::string part = "part of the specimen that is " + colour.name;
+  if (blobs.empty()) throw InvalidInput("no " + part + " found");
+  if (blobs.size() > 1 && blobs[1].area > rival_share * blobs[0].area)
+    throw InvalidInput("two candidates for the " + part);
+  if (blobs[0].touches_frame(picture, margin)) throw InvalidInput("the " + part + " is partly outside the frame");
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(blobs[0].mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE, blobs[0].box.tl());
+  std::vector<cv::Point2f> outline;
+  for (const cv::Point& pixel : outlines[0]) {
+    const Vec2 place = view.to_mm(vec(pixel));
+    outline.emplace_back(cv::Point2d(place.x(), place.y()));
+  }
+  return outline;
+}
+
+/// The frame of a specimen: along its axis from A to B and across it [mm].
+struct Frame {
+  Vec2 origin, along, across;
+  double half_width = 0;  // that is used
+  double pixel = 0;       // side of a pixel here
+
+  [[nodiscard]] Vec2 place(double s, double t) const { return origin + s * along + t * across; }
+};
+
+Frame frame_of(const cv::Moments& a, const cv::Moments& b, const PlaneView& view) {
+  const double area = a.m00 + b.m00;
+  const Vec2 from_a_to_b = Vec2(b.m10, b.m01) / b.m00 - Vec2(a.m10, a.m01) / a.m00;
+  Frame frame;
+  frame.origin = Vec2(a.m10 + b.m10, a.m01 + b.m01) / area;
+  Eigen::Matrix2d spread;
+  spread << a.m20 + b.m20, a.m11 + b.m11, a.m11 + b.m11, a.m02 + b.m02;
+  spread = spread / area - frame.origin * frame.origin.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
+  frame.along = solver.eigenvectors().col(1);
+  if (frame.along.dot(from_a_to_b) < 0) frame.along = -frame.along;
+  frame.across = Vec2(-frame.along.y(), frame.along.x());
+  if (!(frame.along.dot(from_a_to_b) > 0.5 * from_a_to_b.norm()))
+    throw InvalidInput("the parts of the specimen lie beside each other, not one after the other along its axis");
+  frame.half_width = used_width * std::sqrt(3 * solver.eigenvalues()[0]);
+  frame.pixel = std::sqrt(view.pixel_area(view.to_pixel(frame.origin)));
+  return frame;
+}
+
+/// First and last position of a part along the axis in the middle strips [mm].
+std::pair<double, double> extent(const std::vector<cv::Point2f>& outline, const Frame& frame) {
+  std::vector<double> positions;
+  for (const cv::Point2f& place : outline) {
+    const Vec2 arm = vec(place) - frame.origin;
+    if (std::abs(arm.dot(frame.across)) < 0.3 * frame.half_width + frame.pixel)
+      positions.push_back(arm.dot(frame.along));
+  }
+  if (positions.empty()) throw InvalidInput("the parts of the specimen do not lie on one axis");
+  const auto [first, last] = std::minmax_element(positions.begin(), positions.end());
+  return {*first, *last};
+}
+
+/// A line s = offset + slope t with its standard errors.
+struct LineFit {
+  double offset, slope, offset_error, slope_error;
+};
+
+/// Line through rows of t, s, twice, the second time without what lies far off.
+LineFit line_through(Eigen::MatrixX2d points) {
+  LineFit fit{};
+  for (int round = 0; round < 2; ++round) {
+    Eigen::MatrixX2d rows(points.rows(), 2);
+    rows << Eigen::VectorXd::Ones(points.rows()), points.col(0);
+    const Eigen::Matrix2d inverse = (rows.transpose() * rows).inverse();
+    const Vec2 line = inverse * rows.transpose() * points.col(1);
+    const Eigen::VectorXd miss = points.col(1) - rows * line;
+    const double variance = miss.squaredNorm() / std::max(1.0, static_cast<double>(points.rows()) - 2);
+    fit = {line[0], line[1], std::sqrt(variance * inverse(0, 0)), std::sqrt(variance * inverse(1, 1))};
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < miss.size(); ++i)
+      if (std::abs(miss[i]) <= 3 * std::sqrt(variance)) kept.push_back(i);
+    if (kept.size() < 5) break;
+    points = points(kept, Eigen::all).eval();
+  }
+  return fit;
+}
+
+/// The edge near a position. room: lengths free of other edges on both sides [mm].
+SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const Frame& frame, double position, double room,
+                       const std::string& name) {
+  LineFit fit{position, 0, 0, 0};
+  const double half = std::min(reach * frame.pixel, 0.6 * room), level = levels * frame.pixel;
+  // strips overlap in the pixels that they read; one a pixel keeps their errors nearly independent
+  const int strips = static_cast<int>(2 * frame.half_width / frame.pixel);
+  if (strips < 5 || half < 2 * frame.pixel)
+    throw InvalidInput("the specimen is too small in the picture: its " + name + " cannot be measured");
+  std::vector<double> at;  // along a strip from its middle: the level before, the edge, the level behind
+  const int samples = static_cast<int>(std::ceil(2 * half / (step * frame.pixel)));
+  for (int k = level_samples - 1; k >= 0; --k) at.push_back(-half - level * k / level_samples);
+  for (int k = 0; k < samples; ++k) at.push_back(half * (2 * (k + 0.5) / samples - 1));
+  for (int k = 0; k < level_samples; ++k) at.push_back(half + level * k / level_samples);
+  cv::Mat3f read(strips, static_cast<int>(at.size()));
+  for (int round = 0; round < 3; ++round) {
+    Eigen::MatrixX2d points(strips, 2);
+    for (int i = 0; i < strips; ++i) {
+      const double t = frame.half_width * (2 * (i + 0.5) / strips - 1);
+      points.row(i) << t, fit.offset + fit.slope * t;
+      for (int k = 0; k < read.cols; ++k)
+        read(i, k) = between<cv::Vec3f>(rgb, view.to_pixel(frame.place(points(i, 1) + at[std::size_t(k)], t)));
+    }
+    const cv::Scalar before = cv::mean(read.colRange(0, level_samples));
+    const cv::Scalar contrast = cv::mean(read.colRange(level_samples + samples, read.cols)) - before;
+    const double size = contrast.dot(contrast);
+    if (!(size > 40 * 40))
+      throw InvalidInput("the " + name + " cannot be seen: the colours on both sides of it are nearly the same");
+    for (int i = 0; i < strips; ++i) {
+      // the edge is where the share of what lies behind it says
+      const double share =
+          (cv::mean(read.row(i).colRange(level_samples, level_samples + samples)) - before).dot(contrast) / size;
+      points(i, 1) += half * (1 - 2 * share);
+    }
+    fit = line_through(points);
+    if (!(std::abs(fit.offset - position) < half + level) || !(std::abs(fit.slope) < 1.5))
+      throw InvalidInput("the " + name + " is no straight edge across the specimen");
+  }
+  SpecimenEdge edge;
+  edge.position = fit.offset;
+  edge.place = frame.place(fit.offset, 0);
+  edge.error = std::hypot(fit.offset_error, pixel_error * frame.pixel, view.error_at(view.to_pixel(edge.place)));
+  edge.slant = -std::atan(fit.slope) * degrees;
+  edge.slant_error = fit.slope_error / (1 + fit.slope * fit.slope) * degrees;
+  return edge;
+}
+
+}  // namespace
+
+SpecimenView find_specimen(const RgbImage& picture, const Colour& a, const Colour& b, const PlaneView& view) {
+  const std::vector<cv::Point2f> part_a = outline_of(picture, a, view), part_b = outline_of(picture, b, view);
+  const Frame frame = frame_of(cv::moments(part_a), cv::moments(part_b), view);
+  const auto [first, last_a] = extent(part_a, frame);
+  const auto [first_b, last] = extent(part_b, frame);
+  if (std::abs(first_b - last_a) > 12 * frame.pixel)
+    throw InvalidInput("the parts of the specimen that are " + a.name + " and " + b.name + " do not meet");
+  const double middle = (last_a + first_b) / 2, room = std::min(middle - first, last - middle);
+  const cv::Mat rgb = mat_of(picture);
+  return {.fixed = edge_near(rgb, view, frame, first, room, "fixed end"),
+          .interface = edge_near(rgb, view, frame, middle, room, "interface"),
+          .free = edge_near(rgb, view, frame, last, room, "free end"),
+          .axis = std::atan2(frame.along.y(), frame.along.x()) * degrees};
+}
+
+double SpecimenView::length_error() const {
+  return std::hypot(fixed.error, free.error);
+}
+
+double SpecimenView::interface_error() const {
+  return std::hypot(fixed.error, interface.error);
+}
+
+double Stretch::elongation_error() const {
+  return std::hypot(rest.length_error(), stretched.length_error());
+}
+
+double Stretch::shift_error() const {
+  return std::hypot(rest.interface_error(), stretched.interface_error());
+}
+
+double Stretch::elasticity_ratio() const {
+  return rest.interface_length() * (elongation() - shift()) / ((rest.length() - rest.interface_length()) * shift());
+}
+
+double Stretch::elasticity_ratio_error() const {
+  const double h = 1e-6 * rest.length();
+  double variance = 0;
+  for (SpecimenView Stretch::*const view : {&Stretch::rest, &Stretch::stretched})
+    for (SpecimenEdge SpecimenView::*const edge :
+         {&SpecimenView::fixed, &SpecimenView::interface, &SpecimenView::free}) {
+      Stretch up = *this, down = *this;
+      (up.*view.*edge).position += h;
+      (down.*view.*edge).position -= h;
+      const double slope = (up.elasticity_ratio() - down.elasticity_ratio()) / (2 * h);
+      variance += std::pow(slope * (this->*view.*edge).error, 2);
+    }
+  return std::sqrt(variance);
+}
+
+}  // namespace softkin::vision
