@@ -5,6 +5,7 @@
 
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/findings.hpp>
 #include "mesh_text.hpp"
 #include "terminal.hpp"
 
@@ -77,15 +78,38 @@ std::string command_range(const Actuator& actuator) {
 /// "air reached 1.62 of 1.8, tendon reached 2 N of 3 N".
 std::string reached_text(const Model& model, const StepRecord& step) {
   std::string text;
-  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const auto i = static_cast<Index>(a);
-    const double asked = step.actuation[i], reached = step.shape_actuation.value_or(step.actuation)[i];
-    if (reached == asked) continue;
-    text += (text.empty() ? "" : ", ") + model.actuators[a].name + " reached " +
-            command_text(model.actuators[a], reached) + " of " + command_text(model.actuators[a], asked);
+  for (const auto& [a, reached, asked] : runs::shortfalls(model, step)) {
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    text += (text.empty() ? "" : ", ") + actuator.name + " reached " + command_text(actuator, reached) + " of " +
+            command_text(actuator, asked);
   }
   if (!text.empty()) return text;
   return percent(step.reached.value_or(0)) + " of the loads and displacements were reached";
+}
+
+std::string finding_text(const runs::Finding& finding) {
+  using Kind = runs::Finding::Kind;
+  const std::vector<double>& v = finding.values;
+  switch (finding.kind) {
+    case Kind::strain:
+      return "principal strain of the body: " + percent(v[0]) + " to " + percent(v[1]) +
+             ", 95 % of the volume within " + percent(v[2]);
+    case Kind::beyond_linear_range:
+      return percent(v[0]) + " of region '" + finding.name + "' is strained beyond its linear range of " +
+             percent(v[1]);
+    case Kind::inverted:
+      return "warning: " + counted(static_cast<std::size_t>(v[0]), "element") + (v[0] == 1 ? " is" : " are") +
+             " inverted";
+    case Kind::slack:
+      return "cable '" + finding.name + "' is slack: its path is " + number(v[0], 5) +
+             " of its length at rest, the cable " + number(v[1], 5);
+    case Kind::accuracy:
+      return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
+             number(v[1], 2) + " mm";
+    case Kind::diverged:
+      break;
+  }
+  return "warning: the iteration diverged";
 }
 
 const char* unit_of_measure(const Actuator& actuator) {
@@ -168,26 +192,8 @@ std::string summary(const Model& model, const std::string& solver) {
 
 std::string findings_text(const Model& model, const StepRecord& step) {
   std::string text;
-  const auto say = [&text](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
-  if (!step.strain.shares.empty())
-    say("principal strain of the body: " + percent(step.strain.least) + " to " + percent(step.strain.greatest) +
-        ", 95 % of the volume within " + percent(step.strain.percentile_95));
-  for (const auto& beyond : step.strain.beyond)
-    say(percent(beyond.share) + " of region '" + beyond.region + "' is strained beyond its linear range of " +
-        percent(beyond.linear_range));
-  if (const std::size_t inverted = step.inverted_elements; inverted > 0)
-    say("warning: " + counted(inverted, "element") + (inverted == 1 ? " is" : " are") + " inverted");
-  for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (const ActuatorRecord& actuator = step.actuators[a]; actuator.slack)
-      say("cable '" + model.actuators[a].name + "' is slack: its path is " + number(actuator.achieved, 5) +
-          " of its length at rest, the cable " + number(actuator.requested, 5));
-  const bool physical = model.formulation == Formulation::physical;
-  if (physical && step.status != Status::converged) return text;  // of another shape
-  if (!std::isfinite(step.step_mm) || !std::isfinite(step.estimated_error_mm))
-    say("warning: the iteration diverged");
-  else
-    say("last step of the iteration " + number(step.step_mm, 2) + " mm; estimated distance from the equilibrium " +
-        number(step.estimated_error_mm, 2) + " mm");
+  for (const runs::Finding& finding : runs::findings(model, step))
+    text += (text.empty() ? "" : "\n") + finding_text(finding);
   return text;
 }
 

@@ -8,7 +8,7 @@
 
 #include "drive_samples.hpp"
 
-namespace softkin {
+namespace softkin::drive {
 namespace {
 
 using testing::two_commands;
@@ -36,12 +36,12 @@ double feed_length(const std::map<char, double>& from, const std::map<char, doub
 }
 
 /// Arrivals from the first row on; axes at constant speed.
-std::vector<Arrival> simulate(const drive::GcodeProgram& program, const drive::Motion& motion) {
+std::vector<Arrival> simulate(const GcodeProgram& program, const Motion& motion) {
   Arrival here;
   for (const char axis : program.axes) here.position[axis] = 0;
   std::vector<Arrival> arrivals;
   bool runs = motion.approach.empty();
-  for (const drive::GcodeLine& line : program.lines) {
+  for (const GcodeLine& line : program.lines) {
     if (line.text == "M400") runs = true;
     if (line.text.rfind("G4 P", 0) == 0) here.time_s += std::stod(line.text.substr(4)) / 1000;
     if (line.text.rfind("G1 ", 0) == 0) {
@@ -62,19 +62,19 @@ std::vector<Arrival> simulate(const drive::GcodeProgram& program, const drive::M
 }
 
 struct Planned {
-  drive::Machine machine;
-  drive::Motion motion;
-  drive::GcodeProgram program;
+  Machine machine;
+  Motion motion;
+  GcodeProgram program;
 };
 
-Planned plan(const HardwareSpec& hardware, const drive::Commands& commands, bool return_home = false) {
-  Planned result{drive::assemble(two_tendons(), hardware, commands), {}, {}};
-  result.motion = drive::plan_motion(result.machine, commands, return_home);
-  result.program = drive::make_gcode(result.machine, result.motion);
+Planned plan(const HardwareSpec& hardware, const Commands& commands, bool return_home = false) {
+  Planned result{assemble(two_tendons(), hardware, commands), {}, {}};
+  result.motion = plan_motion(result.machine, commands, return_home);
+  result.program = make_gcode(result.machine, result.motion);
   return result;
 }
 
-void expect_refused(const HardwareSpec& hardware, const drive::Commands& commands, const std::string& part) {
+void expect_refused(const HardwareSpec& hardware, const Commands& commands, const std::string& part) {
   try {
     (void)plan(hardware, commands);
     ADD_FAILURE() << "accepted; expected " << part;
@@ -84,7 +84,7 @@ void expect_refused(const HardwareSpec& hardware, const drive::Commands& command
 }
 
 /// A random walk of both cables, at random times.
-drive::Commands random_walk(unsigned seed, std::size_t rows, double step) {
+Commands random_walk(unsigned seed, std::size_t rows, double step) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> change(-step, step), time(0.2, 1.0);
   std::vector<std::array<double, 2>> ratios{{0.8, 0.7}};
@@ -106,7 +106,7 @@ TEST(Motion, ArrivesAtTheTimesOfTheRows) {
     hardware.tendons[1].drum_radius_mm = 4;
     hardware.tendons[1].steps_per_mm = 400;
     hardware.tendons[0].backlash_mm = 0.4;
-    drive::Commands commands = random_walk(7, 300, 0.05);
+    Commands commands = random_walk(7, 300, 0.05);
     for (std::size_t row = 100; row < 110; ++row) commands.rows[row].actuation[0] = commands.rows[99].actuation[0];
     for (std::size_t row = 120; row < 125; ++row) commands.rows[row].actuation = commands.rows[119].actuation;
     const Planned planned = plan(hardware, commands);
@@ -150,7 +150,7 @@ TEST(Motion, RampsDelayLittle) {
   const Planned planned = plan(two_motors(), two_commands(ratios, times));
   std::vector<double> lengths, feeds;
   double here = planned.motion.approach.empty() ? 0 : static_cast<double>(planned.motion.approach[0].target[0]);
-  for (const drive::Move& move : planned.motion.moves) {
+  for (const Move& move : planned.motion.moves) {
     lengths.push_back((static_cast<double>(move.target[0]) - here) * step_mm);
     feeds.push_back(std::abs(lengths.back()) / move.seconds);
     here = static_cast<double>(move.target[0]);
@@ -174,7 +174,7 @@ TEST(Motion, CableEndsAtTheRightPlaceInSpiteOfBacklash) {
   hardware.tendons[0].direction = -1;
   hardware.tendons[1].drum_radius_mm = 5;
   hardware.tendons[0].slack_offset_mm = 1.5;
-  const drive::Commands commands = random_walk(11, 500, 0.03);
+  const Commands commands = random_walk(11, 500, 0.03);
   const Planned planned = plan(hardware, commands);
   Play a{0.6}, b{1.1};
   const double b_mm = 2 * std::numbers::pi * 5 / 3200 * 80;  // cable per mm of axis
@@ -185,7 +185,7 @@ TEST(Motion, CableEndsAtTheRightPlaceInSpiteOfBacklash) {
   for (const Arrival& arrival : arrivals) {
     a.turn_to(-arrival.position.at('X'));
     b.turn_to(arrival.position.at('Y') * b_mm);
-    const drive::CommandRow& row = commands.rows[arrival.row - 2];
+    const CommandRow& row = commands.rows[arrival.row - 2];
     // half a step; a row whose moves were put off is less than 6 steps away
     EXPECT_NEAR(a.cable, 40 * (1 - row.actuation[0]) + 1.5, 6.5 * step_mm) << "row " << row.line;
     EXPECT_NEAR(b.cable, 60 * (1 - row.actuation[1]), 6.5 * b_mm * step_mm) << "row " << row.line;
@@ -200,7 +200,7 @@ TEST(Motion, ReversalsCostTheBacklash) {
   const Planned planned =
       plan(hardware, two_commands({{0.9, 1}, {0.8, 1}, {0.9, 1}, {0.95, 1}, {0.9, 1}}, {0, 1, 2, 3, 4}));
   std::vector<std::int64_t> steps{planned.motion.approach.at(0).target[0]};
-  for (const drive::Move& move : planned.motion.moves) steps.push_back(move.target[0]);
+  for (const Move& move : planned.motion.moves) steps.push_back(move.target[0]);
   // wound up: 4, 8, 4, 2, 4 mm; where it pays out the motor is 0.5 mm behind
   EXPECT_EQ(steps, (std::vector<std::int64_t>{320, 640, 280, 120, 320}));
 }
@@ -229,7 +229,7 @@ TEST(Motion, RefusesWhatIsOutsideTheLimits) {
 }
 
 /// Is what a refusal says of cable a (24 to 38 mm, 4 mm/s) true of the rows?
-void expect_reason(const drive::Commands& commands, const std::string& message) {
+void expect_reason(const Commands& commands, const std::string& message) {
   if (message.find("tendon 'a'") == std::string::npos) return;
   ASSERT_EQ(message.rfind("commands.csv:", 0), 0u) << message;
   const std::size_t row = std::stoul(message.substr(13)) - 2;
@@ -250,7 +250,7 @@ TEST(Motion, NothingThatIsAcceptedLeavesTheLimits) {
   hardware.tendons[1].backlash_mm = 0.2;
   int accepted = 0, refused = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
-    const drive::Commands commands = random_walk(seed, 2 + seed % 9, 0.01 + 0.0005 * seed);
+    const Commands commands = random_walk(seed, 2 + seed % 9, 0.01 + 0.0005 * seed);
     try {
       const Planned planned = plan(hardware, commands);
       ++accepted;
@@ -303,7 +303,7 @@ TEST(Motion, WithoutTimesMovesTakeAsLongAsTheyNeed) {
   EXPECT_NEAR(planned.motion.moves[0].seconds, 12.0 / 3, 1e-9);  // the farther one of 12 and 6 mm
   EXPECT_FALSE(planned.motion.timed);
   ASSERT_EQ(planned.motion.back.size(), 1u);
-  EXPECT_EQ(planned.motion.back[0].target, (drive::Steps{0, 0}));
+  EXPECT_EQ(planned.motion.back[0].target, (Steps{0, 0}));
 }
 
 TEST(Motion, GoesBackHomeWithTheBacklashTakenUp) {
@@ -311,8 +311,8 @@ TEST(Motion, GoesBackHomeWithTheBacklashTakenUp) {
   hardware.tendons[0].backlash_mm = 0.5;
   const Planned planned = plan(hardware, two_commands({{0.9, 1}}, {0}), true);
   ASSERT_EQ(planned.motion.back.size(), 2u);
-  EXPECT_EQ(planned.motion.back[0].target, (drive::Steps{-40, 0}));  // the cable is home
-  EXPECT_EQ(planned.motion.back[1].target, (drive::Steps{0, 0}));    // and the motor too
+  EXPECT_EQ(planned.motion.back[0].target, (Steps{-40, 0}));  // the cable is home
+  EXPECT_EQ(planned.motion.back[1].target, (Steps{0, 0}));    // and the motor too
   EXPECT_TRUE(planned.motion.moves.empty());
 }
 
@@ -326,7 +326,7 @@ TEST(Gcode, IsWhatMarlinReads) {
   EXPECT_EQ(planned.program.lines[0].text, "G1 X4 Y1.2 F125.2837");  // 60 * sqrt(4^2 + 1.2^2) / 2
   EXPECT_EQ(planned.program.lines[1].text, "G4 P1500");
   EXPECT_EQ(planned.program.lines[0].row, 3u);
-  const std::string text = drive::gcode_text(planned.machine, planned.program);
+  const std::string text = gcode_text(planned.machine, planned.program);
   EXPECT_NE(text.find("G92 X0 Y0\nG1 X4 Y1.2 F125.2837\nG4 P1500\nM400\n"), std::string::npos) << text;
   hardware.configure = false;
   EXPECT_EQ(plan(hardware, two_commands({{1, 1}}, {0})).program.setup,
@@ -334,4 +334,4 @@ TEST(Gcode, IsWhatMarlinReads) {
 }
 
 }  // namespace
-}  // namespace softkin
+}  // namespace softkin::drive

@@ -116,7 +116,13 @@ void Store::write(std::string_view text) {
   refuse("cannot be written: " + why);
 }
 
+std::size_t Store::size() const {
+  const std::lock_guard lock(mutex_);
+  return size_;
+}
+
 void Store::append(std::string_view record) {
+  const std::lock_guard lock(mutex_);
   std::string line(record);
   write(line += '\n');
   ++size_;
@@ -127,12 +133,14 @@ void Store::append(std::string_view record) {
 }
 
 void Store::each(const std::function<bool(std::size_t, std::string_view)>& visit) const {
+  const std::size_t records = size();
   std::size_t number = 0;
-  each_line(file_, head_.size(), [&](std::string_view line, bool) { return number < size_ && visit(number++, line); });
+  each_line(file_, head_.size(),
+            [&](std::string_view line, bool) { return number < records && visit(number++, line); });
 }
 
 void Store::cut(std::size_t records) {
-  if (records >= size_) return;
+  if (records >= size()) return;
   std::size_t bytes = head_.size();
   each([&](std::size_t number, std::string_view record) {
     if (number < records) bytes += record.size() + 1;
@@ -140,6 +148,7 @@ void Store::cut(std::size_t records) {
   });
   if (::ftruncate(file_, static_cast<off_t>(bytes)) != 0)
     refuse(std::string("cannot be written: ") + std::strerror(errno));
+  const std::lock_guard lock(mutex_);
   bytes_ = bytes;
   size_ = records;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -24,8 +25,8 @@ class Store {
 
   /// The lines of the head as they are on disk; of a resumed file as many as head has.
   [[nodiscard]] const std::string& head() const { return head_; }
-  [[nodiscard]] std::size_t size() const { return size_; }  // records
-  [[nodiscard]] bool was_torn() const { return torn_; }     // found so, and mended
+  [[nodiscard]] std::size_t size() const;                // records
+  [[nodiscard]] bool was_torn() const { return torn_; }  // found so, and mended
 
   /// Adds a record, a line without its end. throws InvalidInput where the disk has no room; the file is as before
   void append(std::string_view record);
@@ -45,6 +46,7 @@ class Store {
   [[noreturn]] void refuse(const std::string& why) const;
   void write(std::string_view text);
 
+  mutable std::mutex mutex_;
   std::filesystem::path path_;
   std::string head_;
   int file_ = -1;

@@ -4,12 +4,12 @@
 #include <random>
 #include <softkin/linear/block_matrix.hpp>
 
-namespace softkin {
+namespace softkin::linear {
 
 namespace {
 
 struct Sample {
-  linear::Cliques cliques;
+  Cliques cliques;
   LargeVector<double> slots;
   Eigen::MatrixXd dense;
 };
@@ -42,7 +42,7 @@ Sample random_cliques(Index vertices, int count, unsigned seed) {
   return sample;
 }
 
-Eigen::MatrixXd dense_of(const linear::BlockPattern& pattern, const LargeVector<double>& blocks) {
+Eigen::MatrixXd dense_of(const BlockPattern& pattern, const LargeVector<double>& blocks) {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * pattern.vertices(), 3 * pattern.vertices());
   pattern.each([&](std::int64_t entry, Index row, Index column) {
     EXPECT_LE(column, row);
@@ -61,7 +61,7 @@ TEST(BlockMatrix, GathersAndMultipliesAsADenseMatrixDoes) {
   Team alone(1), pair(2);
   for (const auto& [vertices, count] : {std::pair<Index, int>{1, 1}, {1, 3}, {6, 4}, {40, 60}, {200, 30}}) {
     const Sample sample = random_cliques(vertices, count, static_cast<unsigned>(vertices + count));
-    const linear::BlockPattern pattern(vertices, sample.cliques);
+    const BlockPattern pattern(vertices, sample.cliques);
     LargeVector<double> blocks, shared;
     pattern.gather(sample.slots, blocks, alone);
     pattern.gather(sample.slots, shared, pair);
@@ -83,9 +83,9 @@ TEST(BlockMatrix, GathersAndMultipliesAsADenseMatrixDoes) {
 }
 
 TEST(BlockMatrix, VerticesOfNoCliqueHaveNoEntries) {
-  linear::Cliques cliques;
+  Cliques cliques;
   cliques.add(std::vector<Index>{3, 1});
-  const linear::BlockPattern pattern(5, cliques);
+  const BlockPattern pattern(5, cliques);
   EXPECT_EQ(pattern.entries(), 3);
   Team alone(1);
   LargeVector<double> blocks;
@@ -100,7 +100,7 @@ TEST(BlockMatrix, VerticesOfNoCliqueHaveNoEntries) {
 
 TEST(BlockMatrix, NoVertexAtAll) {
   Team alone(1);
-  const linear::BlockPattern pattern(0, {});
+  const BlockPattern pattern(0, {});
   LargeVector<double> blocks;
   pattern.gather({}, blocks, alone);
   Points product;
@@ -108,4 +108,4 @@ TEST(BlockMatrix, NoVertexAtAll) {
   EXPECT_EQ(product.rows(), 0);
 }
 
-}  // namespace softkin
+}  // namespace softkin::linear

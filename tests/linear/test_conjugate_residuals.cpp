@@ -4,7 +4,7 @@
 #include <limits>
 #include <softkin/linear/conjugate_residuals.hpp>
 
-namespace softkin {
+namespace softkin::linear {
 
 namespace {
 
@@ -31,7 +31,7 @@ TEST(ConjugateResiduals, SolvesAsADenseFactorDoes) {
       const Eigen::MatrixXd matrix = near_identity(size, apart), right = Eigen::MatrixXd::Random(size, 3);
       Eigen::MatrixXd left = right, x;
       int columns = 0;
-      const linear::Remainder remainder = linear::conjugate_residuals(Counting{matrix, &columns}, 1e-12, 60, left, x);
+      const Remainder remainder = conjugate_residuals(Counting{matrix, &columns}, 1e-12, 60, left, x);
       EXPECT_LE(remainder.left, 1e-12);
       EXPECT_LT((x - matrix.partialPivLu().solve(right)).norm(), 1e-11 * right.norm());
       EXPECT_LT((left - (right - matrix * x)).norm(), 1e-13 * right.norm());
@@ -53,12 +53,12 @@ TEST(ConjugateResiduals, SharesDirections) {
   right.col(2) = matrix * right.col(0);
   Eigen::MatrixXd left = right;
   int together = 0, alone = 0;
-  EXPECT_LE(linear::conjugate_residuals(Counting{matrix, &together}, 1e-12, 60, left, x).left, 1e-12);
+  EXPECT_LE(conjugate_residuals(Counting{matrix, &together}, 1e-12, 60, left, x).left, 1e-12);
   EXPECT_EQ(x.col(1).norm(), 0);
   EXPECT_LT((x.col(2) - right.col(0)).norm(), 1e-11);
   for (const int column : {0, 2}) {
     Eigen::MatrixXd one = right.col(column);
-    EXPECT_LE(linear::conjugate_residuals(Counting{matrix, &alone}, 1e-12, 60, one, x).left, 1e-12);
+    EXPECT_LE(conjugate_residuals(Counting{matrix, &alone}, 1e-12, 60, one, x).left, 1e-12);
   }
   EXPECT_LT(together, 0.8 * alone);
 }
@@ -68,19 +68,19 @@ TEST(ConjugateResiduals, SaysSoWhereItFails) {
   matrix.row(4).setZero();
   Eigen::MatrixXd left = Eigen::MatrixXd::Random(20, 2);
   int columns = 0;
-  EXPECT_GT(linear::conjugate_residuals(Counting{matrix, &columns}, 1e-10, 100, left, x).left, 1e-3);
+  EXPECT_GT(conjugate_residuals(Counting{matrix, &columns}, 1e-10, 100, left, x).left, 1e-3);
   EXPECT_TRUE(x.allFinite());
   matrix(4, 4) = std::numeric_limits<double>::quiet_NaN();
   left.setRandom();
-  const linear::Remainder remainder = linear::conjugate_residuals(Counting{matrix, &columns}, 1e-10, 100, left, x);
+  const Remainder remainder = conjugate_residuals(Counting{matrix, &columns}, 1e-10, 100, left, x);
   EXPECT_FALSE(remainder.left <= 1e-10);
   EXPECT_TRUE(x.allFinite());
   // no rounds are wasted where they will not do
   const Eigen::MatrixXd hard = near_identity(400, 0.95);
   columns = 0;
   left = Eigen::MatrixXd::Random(400, 1);
-  EXPECT_GT(linear::conjugate_residuals(Counting{hard, &columns}, 1e-10, 20, left, x).left, 1e-10);
+  EXPECT_GT(conjugate_residuals(Counting{hard, &columns}, 1e-10, 20, left, x).left, 1e-10);
   EXPECT_LT(columns, 5);
 }
 
-}  // namespace softkin
+}  // namespace softkin::linear

@@ -7,7 +7,7 @@
 #include <softkin/linear/ordering.hpp>
 #include <softkin/linear/sparse_ldlt.hpp>
 
-namespace softkin {
+namespace softkin::linear {
 
 namespace {
 
@@ -29,12 +29,12 @@ Links grid_links(int nx, int ny, int nz) {
 
 /// A random symmetric block matrix in its elimination order, and the same one dense.
 struct Sample {
-  linear::BlockColumns pattern;
+  BlockColumns pattern;
   LargeVector<double> values;
   Eigen::MatrixXd dense;
 };
 
-void append_column(linear::BlockColumns& pattern, Index column, const std::set<Index>& below) {
+void append_column(BlockColumns& pattern, Index column, const std::set<Index>& below) {
   std::vector<Index> rows{column};
   rows.insert(rows.end(), below.begin(), below.end());
   for (const Index row : rows) {
@@ -45,16 +45,16 @@ void append_column(linear::BlockColumns& pattern, Index column, const std::set<I
   pattern.starts.push_back(static_cast<Index>(pattern.rows.size()));
 }
 
-linear::BlockColumns ordered_pattern(const std::vector<Index>& widths, const Links& links) {
+BlockColumns ordered_pattern(const std::vector<Index>& widths, const Links& links) {
   const Index nodes = static_cast<Index>(widths.size());
   std::vector<Eigen::Triplet<double>> entries;
   for (Index node = 0; node < nodes; ++node) entries.emplace_back(node, node, 1.0);
   for (const auto& [a, b] : links) entries.emplace_back(std::max(a, b), std::min(a, b), 1.0);
   Eigen::SparseMatrix<double> graph(nodes, nodes);
   graph.setFromTriplets(entries.begin(), entries.end());
-  const linear::Ordering ordering = linear::nested_dissection(graph);
+  const Ordering ordering = nested_dissection(graph);
   std::vector<Index> place(static_cast<std::size_t>(nodes));
-  linear::BlockColumns pattern;
+  BlockColumns pattern;
   pattern.pieces = ordering.pieces;
   for (Index k = 0; k < nodes; ++k) {
     place[ordering.order[k]] = k;
@@ -71,7 +71,7 @@ linear::BlockColumns ordered_pattern(const std::vector<Index>& widths, const Lin
 Sample make_sample(const std::vector<Index>& widths, const Links& links, double negative_share, unsigned seed) {
   Sample sample;
   sample.pattern = ordered_pattern(widths, links);
-  const linear::BlockColumns& p = sample.pattern;
+  const BlockColumns& p = sample.pattern;
   sample.values.resize(static_cast<std::size_t>(p.offsets.back()));
   sample.dense = Eigen::MatrixXd::Zero(p.size(), p.size());
   std::mt19937 engine(seed);
@@ -128,8 +128,8 @@ TEST(SparseLdlt, SolvesAndCountsAsADenseFactorDoes) {
   Team alone(1);
   for (const double negative_share : {0.0, 0.3})
     for (const Sample& sample : samples(negative_share)) {
-      linear::SparseLdlt factor(sample.pattern);
-      const linear::SparseLdlt::Pivots pivots = factor.factorise(sample.values, 1e-12, alone);
+      SparseLdlt factor(sample.pattern);
+      const SparseLdlt::Pivots pivots = factor.factorise(sample.values, 1e-12, alone);
       const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sample.dense).eigenvalues();
       EXPECT_EQ(pivots.negative, (eigenvalues.array() < 0).count());
       EXPECT_EQ(pivots.replaced, 0);
@@ -150,7 +150,7 @@ TEST(SparseLdlt, FactorisesAgain) {
   const std::vector<Index> widths = mixed_widths(180, 1);
   const Sample first = make_sample(widths, grid_links(9, 5, 4), 0.3, 1),
                second = make_sample(widths, grid_links(9, 5, 4), 0, 2);
-  linear::SparseLdlt used(first.pattern), fresh(first.pattern);
+  SparseLdlt used(first.pattern), fresh(first.pattern);
   (void)used.factorise(first.values, 1e-12, alone);
   EXPECT_EQ(used.factorise(second.values, 1e-12, alone).negative, 0);
   (void)fresh.factorise(second.values, 1e-12, alone);
@@ -166,13 +166,13 @@ TEST(SparseLdlt, ResultDoesNotDependOnThreads) {
   Team alone(1), pair(2), trio(3);
   const Eigen::MatrixXd right = random_matrix(sample.pattern.size(), 2);
   Eigen::MatrixXd one = right;
-  linear::SparseLdlt factor(sample.pattern);
-  const linear::SparseLdlt::Pivots pivots = factor.factorise(sample.values, 1e-12, alone);
+  SparseLdlt factor(sample.pattern);
+  const SparseLdlt::Pivots pivots = factor.factorise(sample.values, 1e-12, alone);
   factor.solve(one, alone);
   EXPECT_LT((sample.dense * one - right).norm(), 1e-10 * right.norm());
   for (Team* team : {&pair, &trio}) {
     Eigen::MatrixXd more = right;
-    linear::SparseLdlt again(sample.pattern);
+    SparseLdlt again(sample.pattern);
     EXPECT_EQ(again.factorise(sample.values, 1e-12, *team).negative, pivots.negative);
     again.solve(more, *team);
     EXPECT_EQ(one, more);
@@ -184,8 +184,8 @@ TEST(SparseLdlt, SmallPivotsAreReplaced) {
   Team alone(1);
   Sample sample = make_sample({2}, {}, 0, 5);
   std::fill(sample.values.begin(), sample.values.end(), 1.0);
-  linear::SparseLdlt factor(sample.pattern);
-  const linear::SparseLdlt::Pivots pivots = factor.factorise(sample.values, 1e-8, alone);
+  SparseLdlt factor(sample.pattern);
+  const SparseLdlt::Pivots pivots = factor.factorise(sample.values, 1e-8, alone);
   EXPECT_EQ(pivots.replaced, 1);
   EXPECT_EQ(pivots.negative, 1);
   Eigen::MatrixXd x = random_matrix(2, 1);
@@ -195,10 +195,10 @@ TEST(SparseLdlt, SmallPivotsAreReplaced) {
 
 TEST(SparseLdlt, NothingToSolve) {
   Team alone(1);
-  linear::SparseLdlt factor{linear::BlockColumns{}};
+  SparseLdlt factor{BlockColumns{}};
   EXPECT_EQ(factor.factorise({}, 1e-12, alone).negative, 0);
   Eigen::MatrixXd empty(0, 1);
   factor.solve(empty, alone);
 }
 
-}  // namespace softkin
+}  // namespace softkin::linear

@@ -4,7 +4,7 @@
 #include <random>
 #include <softkin/linear/front_kernel.hpp>
 
-namespace softkin {
+namespace softkin::linear {
 
 namespace {
 
@@ -27,14 +27,14 @@ struct Factored {
 
 /// The upper triangle and the rows beyond `size` hold rubbish, as they do when fronts share their memory.
 Factored factored(const Eigen::MatrixXd& matrix, Index pivots, double least, Team& team) {
-  const Index size = static_cast<Index>(matrix.rows()), stride = linear::front_stride(size);
-  std::vector<double> front(static_cast<std::size_t>(stride) * size + linear::front_slack, 1e3);
+  const Index size = static_cast<Index>(matrix.rows()), stride = front_stride(size);
+  std::vector<double> front(static_cast<std::size_t>(stride) * size + front_slack, 1e3);
   Eigen::Map<Eigen::MatrixXd> view(front.data(), stride, size);
   view.topRows(size).triangularView<Eigen::Lower>() = matrix;
   Factored result;
   result.diagonal.resize(pivots);
-  linear::FrontWork work;
-  result.negative = linear::factor_front(front.data(), size, pivots, least, result.diagonal.data(), work, team);
+  FrontWork work;
+  result.negative = factor_front(front.data(), size, pivots, least, result.diagonal.data(), work, team);
   result.lower = Eigen::MatrixXd::Zero(size, pivots);
   result.lower.triangularView<Eigen::StrictlyLower>() = Eigen::MatrixXd(view.topLeftCorner(size, pivots));
   result.lower.diagonal().setOnes();
@@ -100,4 +100,4 @@ TEST(FrontKernel, SmallPivotsAreReplaced) {
   EXPECT_EQ(factored(matrix, 5, 1e-6, alone).diagonal[2], -1e-6);
 }
 
-}  // namespace softkin
+}  // namespace softkin::linear

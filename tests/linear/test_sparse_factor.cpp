@@ -6,7 +6,7 @@
 #include <softkin/linear/ordering.hpp>
 #include <softkin/linear/sparse_factor.hpp>
 
-namespace softkin {
+namespace softkin::linear {
 
 namespace {
 
@@ -52,14 +52,14 @@ TEST(SparseFactor, SolvesAsADenseFactorDoes) {
     const Eigen::MatrixXd expected = dense.ldlt().solve(right);
     Points solution = right;
     Team alone(1);
-    linear::SparseFactor(matrix).solve(solution, alone);
+    SparseFactor(matrix).solve(solution, alone);
     EXPECT_NEAR((solution - expected).norm(), 0, 1e-11 * expected.norm());
   }
 }
 
 TEST(SparseFactor, ResultDoesNotDependOnThreads) {
   const auto matrix = grid_matrix(30, 6, 6, 7);
-  const linear::SparseFactor factor(matrix);
+  const SparseFactor factor(matrix);
   Points one = random_points(static_cast<Index>(matrix.rows())), two = one, three = one;
   Team alone(1), pair(2), trio(3);
   factor.solve(one, alone);
@@ -72,12 +72,12 @@ TEST(SparseFactor, ResultDoesNotDependOnThreads) {
 TEST(SparseFactor, RefusesAnIndefiniteMatrix) {
   Eigen::SparseMatrix<double> matrix = grid_matrix(4, 3, 3, 1);
   matrix.coeffRef(5, 5) = -1;
-  EXPECT_THROW(linear::SparseFactor{matrix}, InvalidInput);
+  EXPECT_THROW(SparseFactor{matrix}, InvalidInput);
 }
 
 TEST(Ordering, IsAPermutationWhosePiecesAreIndependent) {
   const auto matrix = grid_matrix(20, 5, 5, 1);
-  const linear::Ordering ordering = linear::nested_dissection(matrix);
+  const Ordering ordering = nested_dissection(matrix);
   const Index n = static_cast<Index>(matrix.rows());
   std::vector<int> seen(n, 0);
   std::vector<Index> piece(n, -1);
@@ -93,4 +93,4 @@ TEST(Ordering, IsAPermutationWhosePiecesAreIndependent) {
       EXPECT_TRUE(piece[it.row()] < 0 || piece[j] < 0 || piece[it.row()] == piece[j]);
 }
 
-}  // namespace softkin
+}  // namespace softkin::linear
