@@ -189,7 +189,7 @@ TEST(Trajectory, StartsWhereItIsTold) {
   const auto from_near = follow_path(robot.model, robot.statics, path, near);
   EXPECT_LE(from_near[0].equilibria, 2);
   EXPECT_LT(from_near[0].equilibria, from_rest[0].equilibria);
-  EXPECT_LE((from_near[0].actuation - turn(0)).norm(), 1e-4);
+  EXPECT_LE((from_near[0].equilibrium.actuation - turn(0)).norm(), 1e-4);
 }
 
 TEST(Trajectory, AlgorithmTwoFollowsToo) {
