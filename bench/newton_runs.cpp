@@ -94,7 +94,7 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
   const double begin = now();
   const Model model = compile(spec);
   const target_shape::System system(model);
-  const GlobalStep global(model, system.global_matrix());
+  const supports::GlobalStep global(model, system.global_matrix());
   Team team(options.threads);
   Run run;
   run.setup = now() - begin;

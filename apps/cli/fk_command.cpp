@@ -10,9 +10,10 @@
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/report_head.hpp>
 #include <softkin/runs/shape_files.hpp>
+#include <softkin/runs/step_tables.hpp>
 
 #include "command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
@@ -96,7 +97,7 @@ class FkRun {
         job_(model, statics, steps, options.path, options.statics()),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
              runs::report_head(model, options.scene, options.statics()), {}),
-        table_(model, steps.size()) {}
+        table_(runs::table_of_steps(model, steps.size())) {}
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
@@ -126,7 +127,7 @@ class FkRun {
       };
       if (interrupted() || run_.advance(go_on) != runs::Advance::made) return false;
       line.clear();
-      say(table_.row(run_.done() - 1, run_.last()));
+      say(table_.line(runs::row_of(model_, run_.done() - 1, run_.last())));
     }
     return true;
   }
@@ -210,7 +211,7 @@ class FkRun {
   const FkOptions& options_;
   runs::PathJob job_;
   runs::Run<StepRecord> run_;
-  StepTable table_;
+  Table table_;
 };
 
 std::vector<ActuationStep> asked_steps(const Model& model, const FkOptions& options) {

@@ -17,7 +17,7 @@
 #include "ik_goals.hpp"
 #include "ik_options.hpp"
 #include "ik_table.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
 #include "terminal.hpp"

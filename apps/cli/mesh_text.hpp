@@ -1,36 +1,18 @@
 #pragma once
 
-#include <cstddef>
 #include <nlohmann/json.hpp>
-#include <softkin/core/text.hpp>
-#include <softkin/core/types.hpp>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <softkin/io/plain_text.hpp>
+
+#include "printing.hpp"
 
 namespace softkin::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// "(x, y, z) mm"; what is 1e-12 of the largest coordinate or less counts as 0.
-[[nodiscard]] std::string point_text(const Vec3& point);
-[[nodiscard]] Json point_json(const Vec3& point);
-
-/// A name out of a file, safe to print on a terminal.
-[[nodiscard]] std::string printable(const std::string& name);
-
 /// Rows as lines with aligned columns. alignment: 'l' or 'r' for each column; every row has as many cells.
 [[nodiscard]] std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows,
                                                const std::string& alignment);
 
-/// The first lines, at most so many, and what was left out: "... and N more".
-[[nodiscard]] std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most);
-
-[[nodiscard]] std::string joined(const std::vector<std::string>& lines, const std::string& indent);
-
-// Throw InvalidInput where standard output cannot be written.
-void print(const std::string& text);
-void print_piece(std::string_view text);  // without a flush
 void print(const Json& json);
 
 }  // namespace softkin::cli

@@ -5,26 +5,26 @@
 #include <softkin/model/mesh/mesh_check.hpp>
 #include <vector>
 
-namespace softkin::cli {
+namespace softkin {
 
-enum class Severity { remark, warning, error };
+enum class MeshSeverity { remark, warning, error };
 
 /// One place of a finding: elements, or vertices (of a face or an edge, too), numbered from 0.
-struct Place {
+struct MeshPlace {
   std::vector<Index> tetrahedra, prisms, vertices;
   Vec3 position;  // mean [mm]
 };
 
 /// One kind of finding, also where there is none of it (count 0).
-struct Finding {
+struct MeshFinding {
   const char* kind;     // "degenerate_elements"
   const char* meaning;  // for people: what it is or does
-  Severity severity;
+  MeshSeverity severity;
   std::size_t count = 0;
-  std::vector<Place> first;  // at most five
+  std::vector<MeshPlace> first;  // at most five
 };
 
 /// Every kind that a mesh of its order can be checked for, worst first.
-[[nodiscard]] std::vector<Finding> findings_of(const Mesh& mesh, const MeshCheck& check);
+[[nodiscard]] std::vector<MeshFinding> findings_of(const Mesh& mesh, const MeshCheck& check);
 
-}  // namespace softkin::cli
+}  // namespace softkin

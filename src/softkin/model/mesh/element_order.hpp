@@ -7,8 +7,17 @@
 
 namespace softkin {
 
+/// 1 or 2
+[[nodiscard]] int order_of(const Mesh& mesh);
+
 /// Why a mesh of so many tetrahedra, of which so many are of order 2, and prisms cannot be read or written, or "".
 [[nodiscard]] std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std::size_t prisms);
+
+/// An edge of tetrahedra of order 2: its ends, ascending, and the node on it.
+using EdgeWithNode = std::array<Index, 3>;
+
+/// Every edge with its node, once, by ascending ends; one that has several nodes is there as often. Order 1: none.
+[[nodiscard]] std::vector<EdgeWithNode> edges_with_nodes(const Mesh& mesh);
 
 /// A triangle of order 2: its corners, then the nodes on its edges 01, 12, 20.
 using QuadraticTriangle = std::array<Index, 6>;

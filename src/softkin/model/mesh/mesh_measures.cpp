@@ -1,16 +1,13 @@
-#include "mesh_measures.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/model/mesh/mesh_measures.hpp>
 #include <utility>
 
-#include "mesh_text.hpp"
-
-namespace softkin::cli {
+namespace softkin {
 
 namespace {
 
@@ -115,14 +112,6 @@ void add_to_parts(const Mesh& mesh, const std::vector<Element>& elements, const 
 
 }  // namespace
 
-int order_of(const Mesh& mesh) {
-  return mesh.edge_nodes.empty() ? 1 : 2;
-}
-
-std::string tetrahedra_text(std::size_t count, int order) {
-  return counted(count, "tetrahedron", "tetrahedra") + (order == 2 ? " of order 2" : "");
-}
-
 MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   MeshMeasures measures;
   measures.order = order_of(mesh);
@@ -165,4 +154,4 @@ std::vector<PartMeasures> measure_parts(const Mesh& mesh, const MeshCheck& check
   return parts;
 }
 
-}  // namespace softkin::cli
+}  // namespace softkin

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace softkin::cli {
+namespace softkin {
 
 struct RegionMeasures {
   std::string name;
@@ -16,7 +16,7 @@ struct RegionMeasures {
   double measure = 0;        // dimension 3: volume [mm^3], 2: area [mm^2]
 };
 
-/// What `mesh info` tells. Reversed elements count with their volume as if they were not; sizes and quality of elements
+/// Counts and sizes of a mesh. Reversed elements count with their volume as if they were not; sizes and quality of elements
 /// of order 2 are those of their corners.
 struct MeshMeasures {
   int order = 1;
@@ -28,12 +28,6 @@ struct MeshMeasures {
   double edge_length[3] = {};  // least, median, most [mm]
   std::vector<RegionMeasures> regions;
 };
-
-/// 1 or 2
-[[nodiscard]] int order_of(const Mesh& mesh);
-
-/// "24 tetrahedra of order 2"
-[[nodiscard]] std::string tetrahedra_text(std::size_t count, int order);
 
 /// mesh in mm, with an element. check: of the mesh.
 [[nodiscard]] MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check);
@@ -55,4 +49,4 @@ template <class Vertices>
   return sum / static_cast<double>(vertices.size());
 }
 
-}  // namespace softkin::cli
+}  // namespace softkin

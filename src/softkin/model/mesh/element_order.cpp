@@ -1,41 +1,19 @@
 #include <algorithm>
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/model/mesh/boundary.hpp>
-#include <tuple>
+#include <softkin/model/mesh/element_order.hpp>
 #include <utility>
 
 namespace softkin {
 
 namespace {
 
-/// Edges of tetrahedra of order 2 with the nodes on them.
-class EdgeTable {
- public:
-  explicit EdgeTable(const Mesh& mesh) {
-    rows_.reserve(6 * mesh.edge_nodes.size());
-    for (std::size_t e = 0; e < mesh.edge_nodes.size(); ++e)
-      for (std::size_t k = 0; k < 6; ++k) {
-        const auto& [a, b] = tetrahedron_edges[k];
-        rows_.push_back(row(mesh.tetrahedra[e][static_cast<std::size_t>(a)],
-                            mesh.tetrahedra[e][static_cast<std::size_t>(b)], mesh.edge_nodes[e][k]));
-      }
-    std::sort(rows_.begin(), rows_.end());
-  }
-
-  /// -1 where no tetrahedron has the edge.
-  [[nodiscard]] Index node_on(Index a, Index b) const {
-    const auto found = std::lower_bound(rows_.begin(), rows_.end(), row(a, b, -1));
-    const bool has = found != rows_.end() && row(a, b, std::get<2>(*found)) == *found;
-    return has ? std::get<2>(*found) : -1;
-  }
-
- private:
-  using Row = std::tuple<Index, Index, Index>;  // corners, ascending; node
-
-  static Row row(Index a, Index b, Index node) { return {std::min(a, b), std::max(a, b), node}; }
-
-  std::vector<Row> rows_;
-};
+/// -1 where no tetrahedron has the edge.
+Index node_on(const std::vector<EdgeWithNode>& edges, Index a, Index b) {
+  const EdgeWithNode first{std::min(a, b), std::max(a, b), -1};
+  const auto found = std::lower_bound(edges.begin(), edges.end(), first);
+  const bool has = found != edges.end() && (*found)[0] == first[0] && (*found)[1] == first[1];
+  return has ? (*found)[2] : -1;
+}
 
 Index node_between(const Tetrahedron& corners, const EdgeNodes& nodes, Index a, Index b) {
   for (std::size_t k = 0; k < 6; ++k) {
@@ -48,6 +26,10 @@ Index node_between(const Tetrahedron& corners, const EdgeNodes& nodes, Index a, 
 
 }  // namespace
 
+int order_of(const Mesh& mesh) {
+  return mesh.edge_nodes.empty() ? 1 : 2;
+}
+
 std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std::size_t prisms) {
   if (quadratic == 0) return "";
   if (quadratic != tetrahedra)
@@ -56,13 +38,27 @@ std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std
   return "";
 }
 
+std::vector<EdgeWithNode> edges_with_nodes(const Mesh& mesh) {
+  std::vector<EdgeWithNode> edges;
+  edges.reserve(6 * mesh.edge_nodes.size());
+  for (std::size_t t = 0; t < mesh.edge_nodes.size(); ++t)
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Index a = mesh.tetrahedra[t][static_cast<std::size_t>(tetrahedron_edges[k][0])];
+      const Index b = mesh.tetrahedra[t][static_cast<std::size_t>(tetrahedron_edges[k][1])];
+      edges.push_back({std::min(a, b), std::max(a, b), mesh.edge_nodes[t][k]});
+    }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
 std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh) {
   if (mesh.edge_nodes.empty()) return {};
-  const EdgeTable edges(mesh);
+  const std::vector<EdgeWithNode> edges = edges_with_nodes(mesh);
   std::vector<QuadraticTriangle> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles) {
-    triangles.push_back({a, b, c, edges.node_on(a, b), edges.node_on(b, c), edges.node_on(c, a)});
+    triangles.push_back({a, b, c, node_on(edges, a, b), node_on(edges, b, c), node_on(edges, c, a)});
     if (std::count(triangles.back().begin(), triangles.back().end(), -1) > 0) return {};
   }
   return triangles;
