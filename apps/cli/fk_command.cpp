@@ -3,6 +3,7 @@
 #include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/model/names.hpp>
@@ -149,7 +150,11 @@ class FkRun {
 
   void write_plot() {
     std::vector<StepRecord> steps;
-    run_.log().each([&](std::size_t, const StepRecord& step) { steps.push_back(step); });
+    run_.log().each([&](std::size_t, StepRecord step) {
+      step.history = {};  // most of a record, and not drawn
+      step.strain = {};
+      steps.push_back(std::move(step));
+    });
     const std::string title = fs::path(options_.scene).filename().string() + ": " +
                               formulation_name(model_.formulation) + ", " + options_.solver_name;
     write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
@@ -183,20 +188,18 @@ class FkRun {
   }
 
   [[nodiscard]] int judge() {
-    int code = done;
-    for (const Status status : {Status::not_converged, Status::limit}) {
+    struct Ended {
       std::vector<std::size_t> numbers;
       StepRecord last;
-      run_.log().each([&](std::size_t number, const StepRecord& step) {
-        if (step.status != status) return;
-        numbers.push_back(number);
-        last = step;
-      });
-      if (numbers.empty()) continue;
-      code = not_converged;
-      complain(status, numbers, last);
-    }
-    return code;
+    };
+    std::map<Status, Ended> all;
+    run_.log().each([&](std::size_t number, const StepRecord& step) {
+      if (step.status == Status::converged) return;
+      all[step.status].numbers.push_back(number);
+      all[step.status].last = step;
+    });
+    for (const auto& [status, ended] : all) complain(status, ended.numbers, ended.last);
+    return all.empty() ? done : not_converged;
   }
 
   /// Tells which steps ended so, and of the last of them how.

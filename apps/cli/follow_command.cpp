@@ -14,6 +14,7 @@
 #include <softkin/runs/report_head.hpp>
 #include <softkin/runs/run_tables.hpp>
 #include <softkin/runs/step_tables.hpp>
+#include <softkin/runs/workspace_file.hpp>
 
 #include "command.hpp"
 #include "method_options.hpp"
@@ -22,7 +23,6 @@
 #include "solve_options.hpp"
 #include "step_text.hpp"
 #include "terminal.hpp"
-#include "workspace_start.hpp"
 
 namespace softkin::cli {
 
@@ -231,7 +231,7 @@ int run_follow(const FollowOptions& options) {
   check_outputs(outputs, inputs);
   TrajectoryOptions trajectory = options.trajectory();
   if (!options.workspace.empty())
-    trajectory.start = nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
+    trajectory.start = runs::nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
   line.show(-1, "assembling");
   const Statics statics(model);
   line.clear();

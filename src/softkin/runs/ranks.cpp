@@ -1,21 +1,20 @@
-#include "workspace_ranks.hpp"
-
+#include <algorithm>
 #include <cstdlib>
 #include <softkin/core/error.hpp>
+#include <softkin/runs/ranks.hpp>
+#include <utility>
 
 #ifdef SOFTKIN_MPI
 #include <mpi.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <mutex>
 #include <thread>
 #include <vector>
 #endif
 
-namespace softkin::cli {
+namespace softkin::runs {
 
 namespace {
 
@@ -27,6 +26,28 @@ int launched() {
 }
 
 }  // namespace
+
+FileDesk::FileDesk(const WorkspacePlan& plan, WorkspaceFile& file, std::function<bool()> go_on,
+                   std::function<void()> kept)
+    : plan_(plan), file_(file), go_on_(std::move(go_on)), kept_(std::move(kept)) {}
+
+std::optional<GroupTask> FileDesk::take() {
+  const std::lock_guard lock(mutex_);
+  while (next_ < plan_.groups.size() && go_on_()) {
+    GroupTask task{static_cast<Index>(next_), {}};
+    for (const Index sample : plan_.groups[next_]) task.known.push_back(file_.known(sample));
+    ++next_;
+    if (!std::all_of(task.known.begin(), task.known.end(), [](const auto& known) { return known.has_value(); }))
+      return task;
+  }
+  return std::nullopt;
+}
+
+void FileDesk::keep(const WorkspaceSample& sample) {
+  const std::lock_guard lock(mutex_);
+  file_.add(sample);
+  kept_();
+}
 
 #ifndef SOFTKIN_MPI
 
@@ -276,4 +297,4 @@ void Ranks::share(const Model& model, const WorkspacePlan& plan, GroupDesk* desk
 
 #endif
 
-}  // namespace softkin::cli
+}  // namespace softkin::runs

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <softkin/kinematics/workspace.hpp>
+#include <softkin/runs/workspace_file.hpp>
 #include <string>
 
-namespace softkin::cli {
+namespace softkin::runs {
 
 /// The processes of mpirun that share a workspace, or this one alone. Rank 0 hands out groups of samples, keeps what is
 /// made of them, and alone reads and writes the files of the workspace.
@@ -39,4 +42,22 @@ class Ranks {
 /// The failure of another rank, which tells of it.
 struct Silence {};
 
-}  // namespace softkin::cli
+/// Groups that have something left, and the file that keeps what is made of them.
+class FileDesk : public GroupDesk {
+ public:
+  /// All must outlive it. go_on: false ends it before the next group; kept: after every sample, by one thread at a time
+  FileDesk(const WorkspacePlan& plan, WorkspaceFile& file, std::function<bool()> go_on, std::function<void()> kept);
+
+  [[nodiscard]] std::optional<GroupTask> take() override;
+  void keep(const WorkspaceSample& sample) override;
+
+ private:
+  const WorkspacePlan& plan_;
+  WorkspaceFile& file_;
+  std::function<bool()> go_on_;
+  std::function<void()> kept_;
+  std::mutex mutex_;
+  std::size_t next_ = 0;  // group
+};
+
+}  // namespace softkin::runs
