@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
