@@ -71,7 +71,7 @@ int main(int argc, char** argv) try {
   double farthest = 0;
   for (int tick = 0; tick < ticks; ++tick) {
     const auto begin = std::chrono::steady_clock::now();
-    const double wanted = rest + 4 * (1 - std::cos(0.02 * tick));  // mm, up to 8 and back
+    const double wanted = rest + 2.5 * (1 - std::cos(0.02 * tick));  // mm, up to 5 and back
     // how the tip answers to the cable here, from the factor that the last solve left behind
     const softkin::Sensitivity sensitivity = statics.sensitivity(now.state, options);
     const double slope = softkin::jacobian(model, sensitivity, {0})(2, 0);

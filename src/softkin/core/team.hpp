@@ -70,7 +70,7 @@ class TeamPool {
   /// For one user at a time, as a Team is; goes back by itself, before the pool ends.
   using Lent = std::unique_ptr<Team, GiveBack>;
 
-  /// A team of this size, as Team's; one is made where none is idle, so that there are as many as were ever lent at
+  /// A team of so many threads, >= 1; one is made where none is idle, so that there are as many as were ever lent at
   /// once. May be called on several threads at once.
   [[nodiscard]] Lent lend(int threads);
 
