@@ -10,7 +10,7 @@ endif
 export CTEST_OUTPUT_ON_FAILURE = 1
 
 cores := $(shell nproc)
-sources = $(shell find src apps bench tests -name '*.cpp' -o -name '*.hpp')
+sources = $(shell find src apps bench tests examples -name '*.cpp' -o -name '*.hpp')
 example := examples/pneumatic_finger
 # without `large`, which takes long and up to 24 GiB
 BENCH ?= iteration factor tracking newton
