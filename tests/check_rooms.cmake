@@ -12,7 +12,7 @@ set(drive_sees core model drive)
 set(calibration_sees core model io statics kinematics calibration)
 set(vision_sees core io vision)
 
-set(runs_sees core model io statics kinematics runs)
+set(runs_sees core model io statics kinematics drive runs)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)

@@ -142,11 +142,11 @@ TEST(Machine, DrumsTurn) {
 }
 
 TEST(Machine, RefusesWhatDoesNotFit) {
-  const auto refused = [](const Model& model, const HardwareSpec& hardware, drive::Commands commands,
+  const auto refused = [](const Model& model, const HardwareSpec& hardware, Commands commands,
                           const std::string& part) {
     expect_refused([&] { (void)drive::assemble(model, hardware, commands); }, part);
   };
-  const drive::Commands commands = two_commands({{1, 1}});
+  const Commands commands = two_commands({{1, 1}});
   HardwareSpec hardware = two_motors();
   hardware.tendons[1].actuator = "bb";
   refused(two_tendons(), hardware, commands, "hardware.yaml:4: the scene has no actuator 'bb'; did you mean 'b'?");
@@ -176,7 +176,7 @@ TEST(PressureSchedule, FollowsTheCommandsWithinLimits) {
   hardware.file = "hardware.yaml";
   hardware.chambers = {{{"hardware.yaml", 3}, "air", "pump1", std::array<double, 2>{-10, 60}},
                        {{"hardware.yaml", 4}, "tail", {}, {}}};
-  drive::Commands commands{"commands.csv", {true, true}, {false, true}, {}};
+  Commands commands{"commands.csv", {true, true}, {false, true}, {}};
   for (int i = 0; i < 3; ++i)
     commands.rows.push_back({Eigen::Vector2d(20 * i - 5, 1 + 0.1 * i), Eigen::Vector2d(0, 7.5 * i), 0.5 * i,
                              static_cast<std::size_t>(i + 2)});
@@ -189,7 +189,7 @@ TEST(PressureSchedule, FollowsTheCommandsWithinLimits) {
                  "commands.csv:3: chamber 'air': pressure 60.5 kPa is above its limit of 60 kPa (hardware.yaml:3)");
   commands.rows[1].actuation[0] = -10.5;
   expect_refused([&] { (void)drive::plan_pressures(machine, commands); }, "is below its limit of -10 kPa");
-  for (drive::CommandRow& row : commands.rows) row.time_s.reset();
+  for (CommandRow& row : commands.rows) row.time_s.reset();
   expect_refused([&] { (void)drive::plan_pressures(machine, commands); }, "commands.csv: has no column t_s [s]");
 }
 

@@ -22,7 +22,7 @@ drive::GcodeProgram sample_program(std::size_t moves) {
     ratios.push_back({0.75 + 0.2 * std::cos(0.9 * t), 0.75 + 0.2 * std::cos(0.7 * t)});
     times.push_back(t);
   }
-  const drive::Commands commands = testing::two_commands(ratios, times);
+  const Commands commands = testing::two_commands(ratios, times);
   const drive::Machine machine = drive::assemble(testing::two_tendons(), testing::two_motors(), commands);
   drive::GcodeProgram program = drive::make_gcode(machine, drive::plan_motion(machine, commands, false));
   for (drive::GcodeLine& line : program.lines) line.patience_s = 0;  // the board of the tests needs no time to move

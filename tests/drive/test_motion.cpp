@@ -67,14 +67,14 @@ struct Planned {
   drive::GcodeProgram program;
 };
 
-Planned plan(const HardwareSpec& hardware, const drive::Commands& commands, bool return_home = false) {
+Planned plan(const HardwareSpec& hardware, const Commands& commands, bool return_home = false) {
   Planned result{drive::assemble(two_tendons(), hardware, commands), {}, {}};
   result.motion = drive::plan_motion(result.machine, commands, return_home);
   result.program = drive::make_gcode(result.machine, result.motion);
   return result;
 }
 
-void expect_refused(const HardwareSpec& hardware, const drive::Commands& commands, const std::string& part) {
+void expect_refused(const HardwareSpec& hardware, const Commands& commands, const std::string& part) {
   try {
     (void)plan(hardware, commands);
     ADD_FAILURE() << "accepted; expected " << part;
@@ -84,7 +84,7 @@ void expect_refused(const HardwareSpec& hardware, const drive::Commands& command
 }
 
 /// A random walk of both cables, at random times.
-drive::Commands random_walk(unsigned seed, std::size_t rows, double step) {
+Commands random_walk(unsigned seed, std::size_t rows, double step) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> change(-step, step), time(0.2, 1.0);
   std::vector<std::array<double, 2>> ratios{{0.8, 0.7}};
@@ -106,7 +106,7 @@ TEST(Motion, ArrivesAtTheTimesOfTheRows) {
     hardware.tendons[1].drum_radius_mm = 4;
     hardware.tendons[1].steps_per_mm = 400;
     hardware.tendons[0].backlash_mm = 0.4;
-    drive::Commands commands = random_walk(7, 300, 0.05);
+    Commands commands = random_walk(7, 300, 0.05);
     for (std::size_t row = 100; row < 110; ++row) commands.rows[row].actuation[0] = commands.rows[99].actuation[0];
     for (std::size_t row = 120; row < 125; ++row) commands.rows[row].actuation = commands.rows[119].actuation;
     const Planned planned = plan(hardware, commands);
@@ -174,7 +174,7 @@ TEST(Motion, CableEndsAtTheRightPlaceInSpiteOfBacklash) {
   hardware.tendons[0].direction = -1;
   hardware.tendons[1].drum_radius_mm = 5;
   hardware.tendons[0].slack_offset_mm = 1.5;
-  const drive::Commands commands = random_walk(11, 500, 0.03);
+  const Commands commands = random_walk(11, 500, 0.03);
   const Planned planned = plan(hardware, commands);
   Play a{0.6}, b{1.1};
   const double b_mm = 2 * std::numbers::pi * 5 / 3200 * 80;  // cable per mm of axis
@@ -185,7 +185,7 @@ TEST(Motion, CableEndsAtTheRightPlaceInSpiteOfBacklash) {
   for (const Arrival& arrival : arrivals) {
     a.turn_to(-arrival.position.at('X'));
     b.turn_to(arrival.position.at('Y') * b_mm);
-    const drive::CommandRow& row = commands.rows[arrival.row - 2];
+    const CommandRow& row = commands.rows[arrival.row - 2];
     // half a step; a row whose moves were put off is less than 6 steps away
     EXPECT_NEAR(a.cable, 40 * (1 - row.actuation[0]) + 1.5, 6.5 * step_mm) << "row " << row.line;
     EXPECT_NEAR(b.cable, 60 * (1 - row.actuation[1]), 6.5 * b_mm * step_mm) << "row " << row.line;
@@ -229,7 +229,7 @@ TEST(Motion, RefusesWhatIsOutsideTheLimits) {
 }
 
 /// Is what a refusal says of cable a (24 to 38 mm, 4 mm/s) true of the rows?
-void expect_reason(const drive::Commands& commands, const std::string& message) {
+void expect_reason(const Commands& commands, const std::string& message) {
   if (message.find("tendon 'a'") == std::string::npos) return;
   ASSERT_EQ(message.rfind("commands.csv:", 0), 0u) << message;
   const std::size_t row = std::stoul(message.substr(13)) - 2;
@@ -250,7 +250,7 @@ TEST(Motion, NothingThatIsAcceptedLeavesTheLimits) {
   hardware.tendons[1].backlash_mm = 0.2;
   int accepted = 0, refused = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
-    const drive::Commands commands = random_walk(seed, 2 + seed % 9, 0.01 + 0.0005 * seed);
+    const Commands commands = random_walk(seed, 2 + seed % 9, 0.01 + 0.0005 * seed);
     try {
       const Planned planned = plan(hardware, commands);
       ++accepted;

@@ -54,4 +54,9 @@ std::string excerpt(std::string_view text) {
   return "'" + shown + (end < text.size() ? "..." : "") + "'";
 }
 
+std::string printable(const std::string& name) {
+  const bool plain = find_unprintable(name) == std::string::npos && name.find_first_of("\t\r\n") == std::string::npos;
+  return plain ? name : excerpt(name);
+}
+
 }  // namespace softkin

@@ -12,4 +12,7 @@ namespace softkin {
 /// The beginning of text in single quotes, safe to print whatever text holds; for messages.
 [[nodiscard]] std::string excerpt(std::string_view text);
 
+/// A name out of a file, safe to print on one line: as it is where it is plain, else excerpt.
+[[nodiscard]] std::string printable(const std::string& name);
+
 }  // namespace softkin
