@@ -2,6 +2,7 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <softkin/io/scanner.hpp>
 
 namespace softkin::cli {
 
@@ -16,6 +17,22 @@ void add_calibrate(CLI::App& app, Run& run) {
   add_calibrate_material(calibrate, run);
   add_calibrate_pressure(calibrate, run);
   add_calibrate_dea(calibrate, run);
+}
+
+CLI::Validator positive_number() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (parse_real(text, value) && value > 0) return "";
+    return "must be a finite number above 0, not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
+std::string written_text(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string text;
+  for (const auto& [what, file] : files)
+    if (!file.empty()) text += what + ": " + file + "\n";
+  return text;
 }
 
 }  // namespace softkin::cli

@@ -1,19 +1,18 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
+#include <cmath>
 #include <memory>
-#include <softkin/calibration/dielectric.hpp>
+#include <softkin/calibration/curve_report.hpp>
 #include <softkin/calibration/voltage.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/actuator_tests.hpp>
 
-#include <softkin/io/output_files.hpp>
 #include "calibrate_command.hpp"
-#include "calibrate_curve.hpp"
-#include "terminal.hpp"
+#include "mesh_text.hpp"
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
@@ -28,28 +27,16 @@ struct DeaOptions {
   std::optional<double> permittivity, thickness_mm, shear_modulus_MPa, prestretch, stretch_limit, breakdown_kV_mm;
   std::string output, plot;
   bool json = false;
-
-  [[nodiscard]] std::vector<Output> outputs() const {
-    std::vector<Output> outputs;
-    for (const auto& [option, file] : {std::pair{"--output", output}, {"--plot", plot}})
-      if (!file.empty()) outputs.push_back({option, file, 0});
-    return outputs;
-  }
 };
 
-/// A curve and what is to be told of it.
+/// A curve and what is told of it.
 struct DeaResult {
-  FittedCurve fitted;
-  std::string head, text;
-  Json json = Json::object();
+  calibration::FittedCurve fitted;
+  std::string head;
+  std::optional<calibration::DielectricCurve> computed{};
 };
 
-FittedCurve curve_of(const DeaOptions& options, CurveBranch loading) {
-  const std::string name = options.output.empty() ? "of the elastomer" : options.output;
-  return {{name, CurveInput::voltage, 100, "", std::move(loading), std::nullopt}, {}, {}, {}};
-}
-
-DeaResult measured(const DeaOptions& options) {
+DeaResult measured(const DeaOptions& options, const std::string& name) {
   std::vector<VoltageRun> runs;
   std::string head;
   for (const std::string& file : options.tests) {
@@ -64,14 +51,7 @@ DeaResult measured(const DeaOptions& options) {
     if (std::abs(samples.rest_ratios[r] - 1) > rest_remark)
       head += runs[r].file + ", " + runs[r].name + ": area ratio without voltage " + number(samples.rest_ratios[r], 5) +
               "; the others are taken over it\n";
-  calibration::CurveFit fit = calibration::fit_curve(samples.samples);
-  DeaResult result{curve_of(options, std::move(fit.loading)), head, "", {{"tests", options.tests}}};
-  result.fitted.curve.unloading = std::move(fit.unloading);
-  result.fitted.loading = fit.loading_quality;
-  result.fitted.unloading = fit.unloading_quality;
-  result.fitted.samples = std::move(samples.samples);
-  result.text = quality_text(result.fitted);
-  return result;
+  return {calibration::fitted_curve(name, CurveInput::voltage, 100, std::move(samples.samples)), head};
 }
 
 calibration::Dielectric elastomer_of(const DeaOptions& options) {
@@ -105,54 +85,46 @@ std::string pull_in_text(const calibration::Dielectric& d, const calibration::Pu
          " kV/mm; beyond it no equilibrium follows\n";
 }
 
-DeaResult computed(const DeaOptions& options) {
+DeaResult computed(const DeaOptions& options, const std::string& name) {
   const calibration::Dielectric d = elastomer_of(options);
   const calibration::DielectricCurve curve =
       calibration::dielectric_curve(d, curve_points, options.breakdown_kV_mm.value_or(0));
-  DeaResult result{curve_of(options, {MonotoneCurve(curve.voltages, curve.area_ratios), {}}),
-                   elastomer_text(options, d), "", Json::object()};
-  result.fitted.curve.end = curve.broken_down ? "breakdown" : curve.pull_in ? "pull-in" : "the limit of the chains";
-  result.head += curve.pull_in ? pull_in_text(d, *curve.pull_in)
-                               : "no pull-in: the voltage rises up to 95 % of the limit of the chains\n";
+  std::string head = elastomer_text(options, d);
+  head += curve.pull_in ? pull_in_text(d, *curve.pull_in)
+                        : "no pull-in: the voltage rises up to 95 % of the limit of the chains\n";
   if (curve.broken_down)
-    result.head += "breakdown field of " + number(*options.breakdown_kV_mm) + " kV/mm reached at " +
-                   number(curve.voltages.back(), 5) + " kV, " + (curve.pull_in ? "before pull-in" : "and") +
-                   ": the curve ends there\n";
+    head += "breakdown field of " + number(*options.breakdown_kV_mm) + " kV/mm reached at " +
+            number(curve.voltages.back(), 5) + " kV, " + (curve.pull_in ? "before pull-in" : "and") +
+            ": the curve ends there\n";
   else
-    result.head += "true field at the end of the curve: " + number(curve.end_field_kV_mm, 4) + " kV/mm" +
-                   (options.breakdown_kV_mm ? "" : " (no --breakdown-field given: not checked)") + "\n";
-  result.json["pull_in"] = curve.pull_in ? Json{{"voltage_kV", curve.pull_in->voltage_kV},
-                                                {"stretch", curve.pull_in->stretch},
-                                                {"field_kV_mm", curve.pull_in->field_kV_mm}}
-                                         : Json();
-  result.json["broken_down"] = curve.broken_down;
-  result.json["end_field_kV_mm"] = curve.end_field_kV_mm;
-  return result;
+    head += "true field at the end of the curve: " + number(curve.end_field_kV_mm, 4) + " kV/mm" +
+            (options.breakdown_kV_mm ? "" : " (no --breakdown-field given: not checked)") + "\n";
+  const std::string end = curve.broken_down ? "breakdown" : curve.pull_in ? "pull-in" : "the limit of the chains";
+  const CurveBranch branch{MonotoneCurve(curve.voltages, curve.area_ratios), {}};
+  return {{{name, CurveInput::voltage, 100, end, branch, std::nullopt}}, head, curve};
 }
 
 int calibrate_dea(const DeaOptions& options) {
-  check_ending("--output", options.output, ".yaml");
-  check_ending("--plot", options.plot, ".svg");
-  check_outputs(options.outputs(), {options.tests.begin(), options.tests.end()});
-  const DeaResult result = options.tests.empty() ? computed(options) : measured(options);
-  const OutputFolders folders(options.outputs());
+  check_extension("--output", options.output, {{".yaml", ""}});
+  check_extension("--plot", options.plot, {{".svg", ""}});
+  const std::vector<Output> outputs = asked_outputs({{"--output", options.output}, {"--plot", options.plot}});
+  check_outputs(outputs, {options.tests.begin(), options.tests.end()});
+  const std::string name = options.output.empty() ? "of the elastomer" : options.output;
+  const auto [fitted, head, computed_curve] = options.tests.empty() ? computed(options, name) : measured(options, name);
+  const OutputFolders folders(outputs);
   if (!options.output.empty())
-    write_file(options.output,
-               actuator_curve_text(result.fitted.curve, "made by softkin calibrate dea from:\n" + result.head));
-  if (!options.plot.empty()) write_svg(options.plot, curve_plot(result.fitted, "area ratio by voltage"));
+    write_file(options.output, actuator_curve_text(fitted.curve, "made by softkin calibrate dea from:\n" + head));
+  if (!options.plot.empty()) write_svg(options.plot, calibration::curve_plot(fitted, "area ratio by voltage"));
   if (options.json) {
-    Json json{{"softkin", SOFTKIN_VERSION}};
-    json.update(result.json);
-    json.update(curve_json(result.fitted));
-    print(json);
+    print(calibration::dea_json(options.tests, fitted, computed_curve ? &*computed_curve : nullptr));
     return done;
   }
-  std::string text = result.head + result.text + "\n" + curve_table(result.fitted);
+  std::string text =
+      head + (computed_curve ? "" : calibration::quality_text(fitted)) + "\n" + calibration::curve_text(fitted.curve);
   if (!options.output.empty())
     text += "\ncurve: " + options.output + " (name it in the scene: curve: FILE; then --set skin=" +
-            number(0.5 * result.fitted.curve.loading.ratio.x().back(), 2) + "kV)\n";
-  if (!options.plot.empty()) text += "plot: " + options.plot + "\n";
-  print(text);
+            number(0.5 * fitted.curve.loading.ratio.x().back(), 2) + "kV)\n";
+  print(text + written_text({{"plot", options.plot}}));
   return done;
 }
 

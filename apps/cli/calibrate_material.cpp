@@ -1,20 +1,49 @@
-#include "calibrate_material.hpp"
-
+#include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <memory>
-#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <set>
+#include <softkin/calibration/specimen_report.hpp>
+#include <softkin/calibration/tensile_report.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
+#include <softkin/io/table/material_tables.hpp>
+#include <softkin/model/names.hpp>
 
 #include "calibrate_command.hpp"
+#include "mesh_text.hpp"
+#include "solve_options.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
 
 namespace {
 
-using Shared = std::shared_ptr<MaterialOptions>;
+/// What `softkin calibrate material` was asked for. An empty text: not given.
+struct MaterialOptions {
+  calibration::SpecimenTask task;
+  calibration::TensileTask tensile;
+  std::string fragment, plot, residuals;  // outputs
+  std::string formulation;                // empty: both
+  std::string law;                        // empty: neo-hookean, or with --tensile the one that fits
+  std::string grip = "clamped";
+  std::vector<std::string> regions{"A", "B"};
+  bool json = false;
+  std::set<std::string> given;  // options that the user gave
+
+  [[nodiscard]] std::vector<Output> outputs() const {
+    return asked_outputs({{"--output", fragment}, {"--plot", plot}, {"--residuals", residuals}});
+  }
+  /// " (default)" where the option was not given.
+  [[nodiscard]] std::string unless_given(const std::string& option) const {
+    return given.contains(option) ? "" : " (default)";
+  }
+};
 
 /// A finite number, low < x < high, or also equal to them where closed.
 CLI::Validator real_number(double low, double high, bool low_too = false, bool high_too = false) {
@@ -29,125 +58,82 @@ CLI::Validator real_number(double low, double high, bool low_too = false, bool h
   return CLI::Validator(check, "");
 }
 
-CLI::Validator positive() {
-  return real_number(0, 1e9);
-}
-
 void add_inputs(CLI::App& command, MaterialOptions& options) {
-  command
-      .add_option(
-          "SPECIMENS", options.specimens,
-          "Stretched bars of two materials, a row each: l_mm, l1_mm, dl_mm,\ndl1_mm; force_n and area_mm2 where "
-          "measured")
-      ->type_name("F.csv");
-  command
-      .add_option("--tensile", options.tensile,
-                  "In place of SPECIMENS: the tensile test of one material, columns\nstrain or strain_percent, and "
-                  "stress_mpa; both nominal")
-      ->type_name("F.csv");
-  command
-      .add_option("--twist", options.twist,
-                  "With SPECIMENS, to validate: l_mm, l1_mm, twist_deg of the free\nend; interface_deg where measured")
-      ->type_name("F.csv");
+  add_value(
+      command, "SPECIMENS", options.task.file, "F.csv",
+      "Stretched bars of two materials, a row each: l_mm, l1_mm, dl_mm,\ndl1_mm; force_n and area_mm2 where measured");
+  add_value(command, "--tensile", options.tensile.file, "F.csv",
+            "In place of SPECIMENS: the tensile test of one material, columns\nstrain or strain_percent, and "
+            "stress_mpa; both nominal");
+  add_value(command, "--twist", options.task.twist_file, "F.csv",
+            "With SPECIMENS, to validate: l_mm, l1_mm, twist_deg of the free\nend; interface_deg where measured");
 }
 
 void add_outputs(CLI::App& command, MaterialOptions& options) {
-  command.add_option("-o,--output", options.fragment, "The materials, to paste into a scene; printed in any case")
-      ->type_name("F.yaml");
-  command.add_option("--plot", options.plot, "Measured and fitted")->type_name("F.svg");
-  command.add_option("--residuals", options.residuals, "Measured, fitted and their difference, a row each")
-      ->type_name("F.csv");
+  add_value(command, "-o,--output", options.fragment, "F.yaml",
+            "The materials, to paste into a scene; printed in any case");
+  add_value(command, "--plot", options.plot, "F.svg", "Measured and fitted");
+  add_value(command, "--residuals", options.residuals, "F.csv", "Measured, fitted and their difference, a row each");
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
 }
 
 void add_set_up(CLI::App& command, MaterialOptions& options) {
-  calibration::SpecimenOptions& s = options.specimen;
-  command
-      .add_option("--formulation", options.formulation,
-                  "physical: E_A / E_B; target-shape: R_omega (Fang et al. 2020);\ndefault: both")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"physical", "target-shape"}).description(""));
-  command.add_option("--width", s.width_mm, "Of the specimens' cross-section [mm] (default: 20)")
-      ->type_name("MM")
-      ->check(positive());
-  command.add_option("--height", s.height_mm, "Of the specimens' cross-section [mm] (default: 10)")
-      ->type_name("MM")
-      ->check(positive());
-  command
-      .add_option("--grip", options.grip,
-                  "clamped (default): the ends keep their cross-section; sliding:\nthey are free to contract")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"clamped", "sliding"}).description(""));
-  command.add_option("--poisson-ratio", s.poisson_ratio, "Of the physical materials, -1 < NU < 0.5 (default: 0.45)")
-      ->type_name("NU")
-      ->check(real_number(-1, 0.5));
-  command
-      .add_option("--stiffer", s.stiffer_shape_ratio,
-                  "R_omega of the stiffer material, 0 < R <= 1 (default: 1);\n(1 - 2 NU) / (1 + NU) has its Poisson's "
-                  "ratio")
-      ->type_name("R")
-      ->check(real_number(0, 1, false, true));
-  command
-      .add_option("--cells", s.cells,
-                  "Of the simulated specimens' mesh, across their height\n(default: 3 physical, 4 target-shape)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 40).description(""));
-  command.add_option("--modulus-b", options.modulus_b, "Young's modulus of B, where no force was measured [MPa]")
-      ->type_name("MPA")
-      ->check(positive());
-  command.add_option("--try", options.tried, "Look at this R_omega A / R_omega B too, found elsewhere; repeatable")
-      ->type_name("RATIO")
+  calibration::SpecimenOptions& s = options.task.options;
+  add_value(command, "--formulation", options.formulation, "NAME",
+            "physical: E_A / E_B; target-shape: R_omega (Fang et al. 2020);\ndefault: both",
+            one_of({"physical", "target-shape"}));
+  add_value(command, "--width", s.width_mm, "MM", "Of the specimens' cross-section [mm] (default: 20)",
+            real_number(0, 1e9));
+  add_value(command, "--height", s.height_mm, "MM", "Of the specimens' cross-section [mm] (default: 10)",
+            real_number(0, 1e9));
+  add_value(command, "--grip", options.grip, "NAME",
+            "clamped (default): the ends keep their cross-section; sliding:\nthey are free to contract",
+            one_of({"clamped", "sliding"}));
+  add_value(command, "--poisson-ratio", s.poisson_ratio, "NU",
+            "Of the physical materials, -1 < NU < 0.5 (default: 0.45)", real_number(-1, 0.5));
+  add_value(command, "--stiffer", s.stiffer_shape_ratio, "R",
+            "R_omega of the stiffer material, 0 < R <= 1 (default: 1);\n(1 - 2 NU) / (1 + NU) has its Poisson's ratio",
+            real_number(0, 1, false, true));
+  add_value(command, "--cells", s.cells, "N",
+            "Of the simulated specimens' mesh, across their height\n(default: 3 physical, 4 target-shape)",
+            CLI::Range(1, 40).description(""));
+  add_value(command, "--modulus-b", options.task.modulus_b, "MPA",
+            "Young's modulus of B, where no force was measured [MPa]", real_number(0, 1e9));
+  add_value(command, "--try", options.task.tried, "RATIO",
+            "Look at this R_omega A / R_omega B too, found elsewhere; repeatable", real_number(1e-4, 1e4, true, true))
       ->expected(1)
-      ->take_all()
-      ->check(real_number(1e-4, 1e4, true, true));
-  command.add_option("--regions", options.regions, "Names of A and B in the scene (default: A B)")
-      ->type_name("A B")
-      ->expected(2);
-  command.add_option("--threads", s.statics.threads, "0: as many as the machine has (default)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 512).description(""));
+      ->take_all();
+  add_value(command, "--regions", options.regions, "A B", "Names of A and B in the scene (default: A B)")->expected(2);
+  add_value(command, "--threads", s.statics.threads, "N", "0: as many as the machine has (default)",
+            CLI::Range(0, 512).description(""));
 }
 
 void add_tensile(CLI::App& command, MaterialOptions& options) {
-  command
-      .add_option(
-          "--law", options.law,
-          "Of the simulated specimens: neo-hookean (default), corotational,\nst-venant-kirchhoff; with --tensile, "
-          "of the scene: linear,\nneo-hookean, mooney-rivlin, yeoh (default: the fewest constants\nthat are off "
-          "by 1 % of the largest stress at most (rms), else\nthe best)")
-      ->type_name("NAME");
-  command
-      .add_option(
-          "--linear-tolerance", options.tolerance_percent,
-          "--tensile: the linear range ends where a stress is off the line\nthrough the origin by more than this "
-          "share of the line's stress\nat the end [%] (default: 5)")
-      ->type_name("PERCENT")
-      ->check(real_number(0, 100));
-  command
-      .add_option("--up-to", options.most_strain, "--tensile: strain up to which laws are fitted [-] (default: all)")
-      ->type_name("STRAIN")
-      ->check(real_number(0, 15));
-  command
-      .add_option("--region", options.region, "--tensile: name of the material's region in the scene (default: body)")
-      ->type_name("NAME");
+  add_value(command, "--law", options.law, "NAME",
+            "Of the simulated specimens: neo-hookean (default), corotational,\nst-venant-kirchhoff; with --tensile, of "
+            "the scene: linear,\nneo-hookean, mooney-rivlin, yeoh (default: the fewest constants\nthat are off by 1 % "
+            "of the largest stress at most (rms), else\nthe best)");
+  add_value(command, "--linear-tolerance", options.tensile.tolerance_percent, "PERCENT",
+            "--tensile: the linear range ends where a stress is off the line\nthrough the origin by more than this "
+            "share of the line's stress\nat the end [%] (default: 5)",
+            real_number(0, 100));
+  add_value(command, "--up-to", options.tensile.most_strain, "STRAIN",
+            "--tensile: strain up to which laws are fitted [-] (default: all)", real_number(0, 15));
+  add_value(command, "--region", options.tensile.region, "NAME",
+            "--tensile: name of the material's region in the scene (default: body)");
 }
 
-Law law_of(const std::string& name) {
-  if (name == "corotational") return Law::corotational;
-  if (name == "st-venant-kirchhoff") return Law::st_venant_kirchhoff;
-  return Law::neo_hookean;
-}
-
-void check_extension(const std::string& option, const std::string& file, const std::string& extension) {
+void must_end_in(const std::string& option, const std::string& file, const std::string& extension) {
   if (!file.empty() && lower_extension(file) != extension)
     throw CLI::ValidationError(option, "must end in " + extension);
 }
 
 void check_law(const MaterialOptions& options, const std::vector<std::string>& known) {
   if (options.law.empty() || std::find(known.begin(), known.end(), options.law) != known.end()) return;
-  throw CLI::ValidationError("--law", "'" + options.law + "' is none of those that " +
-                                          (options.tensile.empty() ? "take E and nu" : "a tensile test is fitted by") +
-                                          suggest_name(options.law, known));
+  throw CLI::ValidationError("--law",
+                             "'" + options.law + "' is none of those that " +
+                                 (options.tensile.file.empty() ? "take E and nu" : "a tensile test is fitted by") +
+                                 suggest_name(options.law, known));
 }
 
 void check_belonging(const MaterialOptions& options, const std::vector<std::string>& foreign, const char* why) {
@@ -163,14 +149,14 @@ void check_names(const std::vector<std::string>& names, const char* option) {
 }
 
 void check(MaterialOptions& options) {
-  if (options.specimens.empty() == options.tensile.empty())
+  if (options.task.file.empty() == options.tensile.file.empty())
     throw CLI::ValidationError("SPECIMENS, --tensile", "give one of the two");
-  check_extension("--output", options.fragment, ".yaml");
-  check_extension("--plot", options.plot, ".svg");
-  check_extension("--residuals", options.residuals, ".csv");
+  must_end_in("--output", options.fragment, ".yaml");
+  must_end_in("--plot", options.plot, ".svg");
+  must_end_in("--residuals", options.residuals, ".csv");
   check_names(options.regions, "--regions");
-  check_names({options.region}, "--region");
-  if (!options.tensile.empty()) {
+  check_names({options.tensile.region}, "--region");
+  if (!options.tensile.file.empty()) {
     check_law(options, {"linear", "neo-hookean", "mooney-rivlin", "yeoh"});
     return check_belonging(options,
                            {"--twist", "--formulation", "--width", "--height", "--grip", "--stiffer", "--cells",
@@ -182,33 +168,125 @@ void check(MaterialOptions& options) {
   if (options.formulation == "physical")
     check_belonging(options, {"--stiffer", "--try"}, "is of target shapes: it does not go with --formulation physical");
   if (options.regions[0] == options.regions[1]) throw CLI::ValidationError("--regions", "the two are one");
-  options.specimen.grip = options.grip == "sliding" ? calibration::Grip::sliding : calibration::Grip::clamped;
-  options.specimen.law = law_of(options.law);
+}
+
+/// What the simulations take as given, with " (default)" where the user did not say it.
+std::vector<std::string> set_up_lines(const MaterialOptions& options) {
+  const calibration::SpecimenOptions& s = options.task.options;
+  const bool own_size = options.given.contains("--width") && options.given.contains("--height");
+  std::vector<std::string> lines{"cross-section " + number(s.width_mm) + " x " + number(s.height_mm) + " mm" +
+                                     (own_size ? "" : options.unless_given("--width")),
+                                 "ends " + options.grip + options.unless_given("--grip")};
+  const auto cells = [&](Formulation formulation) {
+    return std::to_string(calibration::cells_across(s, formulation)) + " cells across the height" +
+           options.unless_given("--cells");
+  };
+  if (options.task.physical)
+    lines.push_back(std::string("physical: law ") + law_name(s.law) + options.unless_given("--law") +
+                    ", Poisson's ratio " + number(s.poisson_ratio) + options.unless_given("--poisson-ratio") + ", " +
+                    cells(Formulation::physical));
+  if (options.task.target_shape)
+    lines.push_back("target-shape: R_omega " + number(s.stiffer_shape_ratio, 4) + " of the stiffer material" +
+                    options.unless_given("--stiffer") + ", " + cells(Formulation::target_shape));
+  return lines;
+}
+
+/// The tasks as the options have them.
+void take(MaterialOptions& options) {
+  calibration::SpecimenTask& task = options.task;
+  task.options.grip = options.grip == "sliding" ? calibration::Grip::sliding : calibration::Grip::clamped;
+  for (const Law law : {Law::corotational, Law::st_venant_kirchhoff})
+    if (options.law == law_name(law)) task.options.law = law;
+  task.physical = options.formulation != "target-shape";
+  task.target_shape = options.formulation != "physical";
+  task.regions = {options.regions[0], options.regions[1]};
+  task.set_up = set_up_lines(options);
+  options.tensile.law = options.law;
+  options.tensile.poisson_ratio = task.options.poisson_ratio;
+}
+
+void check_forces(const MaterialOptions& options, const std::vector<StretchedSpecimen>& specimens) {
+  const bool any_force =
+      std::any_of(specimens.begin(), specimens.end(), [](const auto& s) { return s.force_n.has_value(); });
+  if (any_force && options.task.modulus_b)
+    throw InvalidInput("--modulus-b is for specimens without a force, but " + options.task.file +
+                       " has a column of it: leave out one of the two");
+  if (!options.task.target_shape && !options.fragment.empty() && !any_force && !options.task.modulus_b)
+    throw InvalidInput("--output " + options.fragment + ": materials of the physical formulation need a modulus; " +
+                       options.task.file + " has no column force_n: add it, or give --modulus-b");
+}
+
+/// A force belongs to an area; that of the file and that of the simulation should be one.
+void remark_on_area(const calibration::SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens) {
+  constexpr double most = 0.05;
+  const double simulated = task.options.width_mm * task.options.height_mm;
+  for (const StretchedSpecimen& s : specimens)
+    if (s.area_mm2 && std::abs(*s.area_mm2 / simulated - 1) > most) {
+      std::fprintf(stderr,
+                   "softkin: %s:%zu: note: the area is %s mm^2, but the simulated cross-section has %s; --width and "
+                   "--height set it\n",
+                   task.file.c_str(), s.line, number(*s.area_mm2).c_str(), number(simulated).c_str());
+      return;
+    }
+}
+
+void write(const MaterialOptions& options, const std::string& fragment, const Plot& plot, const Table& residuals) {
+  if (!options.fragment.empty()) write_file(options.fragment, fragment);
+  if (!options.plot.empty()) write_svg(options.plot, plot);
+  if (!options.residuals.empty()) write_file(options.residuals, residuals.csv());
+}
+
+std::string files_text(const MaterialOptions& options) {
+  return written_text({{"materials", options.fragment}, {"plot", options.plot}, {"residuals", options.residuals}});
+}
+
+int calibrate_specimens(const MaterialOptions& options) {
+  const calibration::SpecimenTask& task = options.task;
+  std::vector<StretchedSpecimen> specimens = read_stretched_specimens(task.file);
+  std::vector<TwistedSpecimen> twists;
+  std::vector<std::filesystem::path> inputs{task.file};
+  if (!task.twist_file.empty()) {
+    twists = read_twisted_specimens(task.twist_file);
+    inputs.emplace_back(task.twist_file);
+  }
+  check_forces(options, specimens);
+  check_outputs(options.outputs(), inputs);
+  const OutputFolders folders(options.outputs());
+  remark_on_area(task, specimens);
+  ProgressLine line;
+  const calibration::SpecimenResults results =
+      calibration::evaluate(task, std::move(specimens), std::move(twists),
+                            [&](const std::string& what, double share) { line.show(share, what); });
+  line.clear();
+  const std::string failure = calibration::failure(task, results);
+  if (failure.empty())
+    write(options, specimens_fragment(task, results), specimens_plot(task, results), residual_table(results));
+  print(options.json ? specimens_json(task, results)
+                     : specimens_text(task, results) + (failure.empty() ? files_text(options) : ""));
+  if (failure.empty()) return done;
+  std::fprintf(stderr, "softkin: %s%s\n", failure.c_str(), options.outputs().empty() ? "" : "; no file was written");
+  return not_converged;
+}
+
+int calibrate_tensile(const MaterialOptions& options) {
+  const calibration::TensileTask& task = options.tensile;
+  TensileCurve curve = read_tensile_curve(task.file);
+  check_outputs(options.outputs(), {task.file});
+  const calibration::TensileResults results = calibration::evaluate(task, std::move(curve));
+  const OutputFolders folders(options.outputs());
+  write(options, tensile_fragment(task, results), tensile_plot(task, results), residual_table(results));
+  const std::vector<double>& strain = results.curve.strain;
+  print(options.json
+            ? tensile_json(task, results)
+            : task.file + ": " + counted(strain.size(), "point") + " up to a strain of " + number(strain.back(), 4) +
+                  "; Poisson's ratio " + number(task.poisson_ratio) + options.unless_given("--poisson-ratio") +
+                  ", tolerance " + number(task.tolerance_percent) + " %" + options.unless_given("--linear-tolerance") +
+                  ", laws up to a strain of " + number(task.most_strain > 0 ? task.most_strain : strain.back(), 4) +
+                  options.unless_given("--up-to") + "\n\n" + tensile_text(task, results) + files_text(options));
+  return done;
 }
 
 }  // namespace
-
-std::vector<Output> MaterialOptions::outputs() const {
-  std::vector<Output> all;
-  const auto add = [&](const char* option, const std::string& file) {
-    if (!file.empty()) all.push_back({option, file, 0});
-  };
-  add("--output", fragment);
-  add("--plot", plot);
-  add("--residuals", residuals);
-  return all;
-}
-
-std::vector<std::filesystem::path> MaterialOptions::inputs() const {
-  std::vector<std::filesystem::path> all;
-  for (const std::string& file : {specimens, twist, tensile})
-    if (!file.empty()) all.push_back(file);
-  return all;
-}
-
-std::string MaterialOptions::unless_given(const std::string& option) const {
-  return given.contains(option) ? "" : " (default)";
-}
 
 void add_calibrate_material(CLI::App& calibrate, Run& run) {
   const auto options = std::make_shared<MaterialOptions>();
@@ -229,7 +307,10 @@ void add_calibrate_material(CLI::App& calibrate, Run& run) {
     for (const CLI::Option* option : command.get_options())
       if (option->count() > 0) options->given.insert(option->get_name());
     check(*options);
-    run = [options] { return options->tensile.empty() ? calibrate_specimens(*options) : calibrate_tensile(*options); };
+    take(*options);
+    run = [options] {
+      return options->tensile.file.empty() ? calibrate_specimens(*options) : calibrate_tensile(*options);
+    };
   });
 }
 

@@ -1,18 +1,19 @@
-#include "calibrate_pressure.hpp"
-
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <softkin/calibration/curve_report.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
-#include <softkin/io/scanner.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/actuator_tests.hpp>
 
-#include "calibrate_curve.hpp"
-#include "calibrate_modulus.hpp"
-#include "command.hpp"
+#include "calibrate_command.hpp"
+#include "mesh_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 
@@ -22,81 +23,71 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double mm3_per_ml = 1000;
 constexpr double rest_tolerance = 0.005;  // of the atmosphere, beyond which a sensor's rest is remarked on
 
-/// Scene and chamber of the options.
-class Robot {
- public:
-  Robot(const PressureOptions& options, std::vector<fs::path>& inputs) {
-    if (options.scene.empty()) return;
-    SolveOptions robot;
-    robot.scene = options.scene;
-    inputs.emplace_back(options.scene);
-    spec_ = asked_spec(robot, inputs);
-    chamber_ = chamber_of(options.actuator);
-    const Model model = compile(*spec_);
-    volume_mm3_ = model.actuators[chamber_].rest_measure;
-  }
-
-  [[nodiscard]] const std::optional<RobotSpec>& spec() const { return spec_; }
-  [[nodiscard]] const std::string& actuator() const { return spec_->actuators[chamber_].name; }
-  [[nodiscard]] double volume_mm3() const { return volume_mm3_; }
-
- private:
-  [[nodiscard]] std::size_t chamber_of(const std::string& asked) const {
-    std::vector<std::string> names;
-    std::size_t chamber = 0;
-    for (std::size_t a = 0; a < spec_->actuators.size(); ++a) {
-      if (spec_->actuators[a].kind != ActuatorKind::pneumatic) continue;
-      names.push_back(spec_->actuators[a].name);
-      if (names.back() == asked || asked.empty()) chamber = a;
-    }
-    if (names.empty()) throw InvalidInput({spec_->name}, "the scene has no pneumatic actuator");
-    if (asked.empty() && names.size() > 1)
-      throw InvalidInput({spec_->name},
-                         "the scene has several pneumatic actuators: say by --actuator which one was "
-                         "tested" +
-                             suggest_name("", names));
-    if (!asked.empty() && std::find(names.begin(), names.end(), asked) == names.end())
-      throw InvalidInput("--actuator " + excerpt(asked) + ": no such pneumatic actuator" + suggest_name(asked, names));
-    return chamber;
-  }
-
-  std::optional<RobotSpec> spec_;
-  std::size_t chamber_ = 0;
-  double volume_mm3_ = 0;
+/// What the user asks of `softkin calibrate pressure`. An empty text: not given.
+struct PressureOptions {
+  std::vector<std::string> tests;
+  std::string scale;   // absolute or gauge
+  SolveOptions robot;  // scene alone
+  std::string actuator;
+  std::string chamber, tube, syringe;  // volumes with their unit
+  std::optional<double> atmosphere_kPa;
+  std::string output, table, plot;
+  bool predict = false, json = false;
+  int threads = 0;
 };
+
+/// The chamber that was tested.
+std::size_t chamber_of(const RobotSpec& spec, const std::string& asked) {
+  std::vector<std::string> names;
+  std::size_t chamber = 0;
+  for (std::size_t a = 0; a < spec.actuators.size(); ++a) {
+    if (spec.actuators[a].kind != ActuatorKind::pneumatic) continue;
+    names.push_back(spec.actuators[a].name);
+    if (names.back() == asked || asked.empty()) chamber = a;
+  }
+  if (names.empty()) throw InvalidInput({spec.name}, "the scene has no pneumatic actuator");
+  if (asked.empty() && names.size() > 1)
+    throw InvalidInput(
+        {spec.name},
+        "the scene has several pneumatic actuators: say by --actuator which one was tested" + suggest_name("", names));
+  if (!asked.empty() && std::find(names.begin(), names.end(), asked) == names.end())
+    throw InvalidInput("--actuator " + excerpt(asked) + ": no such pneumatic actuator" + suggest_name(asked, names));
+  return chamber;
+}
 
 class PressureRun {
  public:
   explicit PressureRun(const PressureOptions& options)
-      : options_(options), inputs_(options.tests.begin(), options.tests.end()), robot_(options, inputs_) {
-    check_outputs(options.outputs(), inputs_);
+      : options_(options), inputs_(options.tests.begin(), options.tests.end()) {
+    if (!options.robot.scene.empty()) read_robot();
+    outputs_ = asked_outputs({{"--output", options.output}, {"--table", options.table}, {"--plot", options.plot}});
+    check_outputs(outputs_, inputs_);
     read_setup();
-    read_runs();
-    samples_ = calibration::chamber_ratios(setup_, runs_);
-    fit();
+    const std::vector<SyringeRun> runs = read_runs();
+    samples_ = calibration::chamber_ratios(setup_, runs);
+    std::vector<calibration::CurveSample> samples;
+    for (const calibration::SyringeSample& each : samples_) samples.push_back(each.sample);
+    fitted_ = calibration::fitted_curve(options.output.empty() ? "of the test" : options.output, CurveInput::pressure,
+                                        setup_.atmosphere_kPa, std::move(samples));
+    for (const SyringeRun& run : runs) remark_on_rest(run);
   }
 
   int run() {
-    const OutputFolders folders(options_.outputs());
-    ModulusReport physics;
+    const OutputFolders folders(outputs_);
+    std::optional<calibration::PressureComparison> physics;
     if (options_.predict) {
       ProgressLine line;
       line.show(-1, "solving the physical formulation");
       catch_interrupt();
-      physics = compare_with_physics(*robot_.spec(), robot_.actuator(), fitted_->curve, options_.threads);
+      physics = calibration::compare_with_physics(*spec_, actuator_, fitted_->curve, options_.threads,
+                                                  [](const Progress&) { return !interrupted(); });
     }
     write();
-    if (options_.json) {
-      Json json = this->json();
-      if (options_.predict) json["physical"] = physics.json;
-      print(json);
-    } else {
-      print(text() + (options_.predict ? physics.text : "") + files());
-    }
-    if (physics.complete) return done;
+    print(options_.json ? calibration::pressure_json(options_.tests, setup_, *fitted_, physics ? &*physics : nullptr)
+                        : text(physics));
+    if (!physics || physics->is_complete()) return done;
     std::fprintf(stderr, "softkin: the physical formulation has no equilibrium at some of the ratios\n");
     return not_converged;
   }
@@ -104,49 +95,44 @@ class PressureRun {
  private:
   void say(const std::string& line) { head_ += line + "\n"; }
 
+  void read_robot() {
+    inputs_.emplace_back(options_.robot.scene);
+    spec_ = asked_spec(options_.robot, inputs_);
+    const std::size_t chamber = chamber_of(*spec_, options_.actuator);
+    actuator_ = spec_->actuators[chamber].name;
+    volume_mm3_ = compile(*spec_).actuators[chamber].rest_measure;
+  }
+
   void read_setup() {
     setup_.atmosphere_kPa = options_.atmosphere_kPa.value_or(setup_.atmosphere_kPa);
-    setup_.syringe_mm3 = volume_of("--syringe-volume", options_.syringe);
-    setup_.tube_mm3 = options_.tube.empty() ? 0 : volume_of("--tube-volume", options_.tube);
+    setup_.syringe_mm3 = read_volume("--syringe-volume", options_.syringe);
+    setup_.tube_mm3 = options_.tube.empty() ? 0 : read_volume("--tube-volume", options_.tube);
     const bool given = !options_.chamber.empty();
-    if (!given && !robot_.spec())
+    if (!given && !spec_)
       throw InvalidInput(
-          "the chamber's volume at rest is not known: give --scene SCENE, whose mesh has it, or "
-          "--chamber-volume");
-    setup_.chamber_mm3 = given ? volume_of("--chamber-volume", options_.chamber) : robot_.volume_mm3();
+          "the chamber's volume at rest is not known: give --scene SCENE, whose mesh has it, or --chamber-volume");
+    setup_.chamber_mm3 = given ? read_volume("--chamber-volume", options_.chamber) : volume_mm3_;
     say("chamber " + number(setup_.chamber_mm3) + " mm^3 at rest" +
-        (given ? "" : " (actuator " + robot_.actuator() + " of " + options_.scene + ")") + ", tube " +
+        (given ? "" : " (actuator " + actuator_ + " of " + options_.robot.scene + ")") + ", tube " +
         number(setup_.tube_mm3) + " mm^3" + (options_.tube.empty() ? " (default)" : "") + ", syringe " +
         number(setup_.syringe_mm3) + " mm^3");
     say("atmosphere " + number(setup_.atmosphere_kPa) + " kPa" +
         (options_.atmosphere_kPa ? "" : " (default, as in the paper's Eq. (19))"));
   }
 
-  void read_runs() {
+  [[nodiscard]] std::vector<SyringeRun> read_runs() {
+    std::vector<SyringeRun> all;
     std::optional<PressureScale> scale;
     if (!options_.scale.empty()) scale = options_.scale == "absolute" ? PressureScale::absolute : PressureScale::gauge;
     for (const std::string& file : options_.tests) {
       const std::vector<SyringeRun> runs = read_syringe_runs(file, scale);
-      const bool absolute = runs.front().scale == PressureScale::absolute;
       std::size_t rows = 0;
       for (const SyringeRun& run : runs) rows += run.rows.size();
       say(file + ": " + counted(runs.size(), "run") + ", " + counted(rows, "row") + ", " +
-          (absolute ? "absolute" : "gauge") + " pressures");
-      runs_.insert(runs_.end(), runs.begin(), runs.end());
+          (runs.front().scale == PressureScale::absolute ? "absolute" : "gauge") + " pressures");
+      all.insert(all.end(), runs.begin(), runs.end());
     }
-  }
-
-  void fit() {
-    std::vector<calibration::CurveSample> samples;
-    for (const calibration::SyringeSample& each : samples_) samples.push_back(each.sample);
-    calibration::CurveFit fit = calibration::fit_curve(samples);
-    const std::string name = options_.output.empty() ? "of the test" : options_.output;
-    fitted_ = FittedCurve{
-        {name, CurveInput::pressure, setup_.atmosphere_kPa, "", std::move(fit.loading), std::move(fit.unloading)},
-        fit.loading_quality,
-        fit.unloading_quality,
-        std::move(samples)};
-    for (const SyringeRun& run : runs_) remark_on_rest(run);
+    return all;
   }
 
   /// By Eq. (19) the ratio is 1 at rest only where the sensor then reads the atmosphere.
@@ -158,81 +144,98 @@ class PressureRun {
           " kPa: if the sensor is right, give --atmosphere " + number(*rest, 5));
   }
 
-  [[nodiscard]] std::string text() const {
-    return head_ + quality_text(*fitted_) + "\n" + curve_table(*fitted_) + "\n";
-  }
-
-  [[nodiscard]] std::string files() const {
-    std::string text;
+  [[nodiscard]] std::string text(const std::optional<calibration::PressureComparison>& physics) const {
+    const ActuatorCurve& curve = fitted_->curve;
+    std::string text = head_ + calibration::quality_text(*fitted_) + "\n" + calibration::curve_text(curve) + "\n";
+    if (physics) text += calibration::comparison_text(*physics, curve, *spec_);
     if (!options_.output.empty())
       text += "curve: " + options_.output + " (name it in the scene: curve: FILE; then --set " +
-              (robot_.spec() ? robot_.actuator() : "air") + "=" +
-              number(0.5 * fitted_->curve.loading.ratio.x().back(), 2) + "kPa)\n";
-    if (!options_.table.empty()) text += "rows: " + options_.table + "\n";
-    if (!options_.plot.empty()) text += "plot: " + options_.plot + "\n";
-    return text;
-  }
-
-  [[nodiscard]] Json json() const {
-    Json json{
-        {"softkin", SOFTKIN_VERSION},        {"tests", options_.tests},     {"atmosphere_kPa", setup_.atmosphere_kPa},
-        {"chamber_mm3", setup_.chamber_mm3}, {"tube_mm3", setup_.tube_mm3}, {"syringe_mm3", setup_.syringe_mm3}};
-    json.update(curve_json(*fitted_));
-    return json;
-  }
-
-  [[nodiscard]] std::string rows_csv() const {
-    std::string text = "p_gauge_kpa,p_abs_kpa,ratio,unloading,sweep,run,line\n";
-    for (const calibration::SyringeSample& each : samples_)
-      text += number(each.sample.input, 10) + "," + number(each.sample.input + setup_.atmosphere_kPa, 10) + "," +
-              number(each.sample.ratio, 10) + "," + (each.sample.branch == Branch::unloading ? "1" : "0") + "," +
-              std::to_string(each.sample.repeat) + "," + std::to_string(each.run) + "," + std::to_string(each.line) +
-              "\n";
-    return text;
+              (spec_ ? actuator_ : "air") + "=" + number(0.5 * curve.loading.ratio.x().back(), 2) + "kPa)\n";
+    return text + written_text({{"rows", options_.table}, {"plot", options_.plot}});
   }
 
   void write() const {
     if (!options_.output.empty())
       write_file(options_.output,
                  actuator_curve_text(fitted_->curve, "made by softkin calibrate pressure from:\n" + head_));
-    if (!options_.table.empty()) write_file(options_.table, rows_csv());
-    if (!options_.plot.empty()) write_svg(options_.plot, curve_plot(*fitted_, "volume ratio by Eq. (19)"));
+    if (!options_.table.empty()) write_file(options_.table, calibration::syringe_table(setup_, samples_).csv());
+    if (!options_.plot.empty()) write_svg(options_.plot, calibration::curve_plot(*fitted_, "volume ratio by Eq. (19)"));
   }
 
   const PressureOptions& options_;
   std::vector<fs::path> inputs_;
-  Robot robot_;
+  std::vector<Output> outputs_;
+  std::optional<RobotSpec> spec_;
+  std::string actuator_;
+  double volume_mm3_ = 0;
   calibration::SyringeSetup setup_;
-  std::vector<SyringeRun> runs_;
   std::vector<calibration::SyringeSample> samples_;
-  std::optional<FittedCurve> fitted_;
+  std::optional<calibration::FittedCurve> fitted_;
   std::string head_;
 };
 
+void add_test(CLI::App& command, PressureOptions& options) {
+  add_value(command, "TESTS", options.tests, "F.csv",
+            "Syringe tests: columns p_abs_kpa or p_gauge_kpa (p_kpa with\n--pressure), dv_sy_mm3 or dv_sy_ml (air "
+            "pushed out of the syringe\nsince the start), and if you like run and t_s")
+      ->required();
+  add_value(command, "--pressure", options.scale, "SCALE", "Of column p_kpa: absolute (above vacuum) or gauge",
+            one_of({"absolute", "gauge"}));
+  add_value(command, "--scene", options.robot.scene, "SCENE",
+            "The robot; its mesh gives the chamber's volume at rest, V_c0");
+  add_value(command, "--actuator", options.actuator, "NAME",
+            "With --scene: the chamber that was tested (default: the only one)");
+  add_value(command, "--chamber-volume", options.chamber, "VOLUME",
+            "V_c0, in place of that of the mesh, with its unit: 21mL");
+  add_value(command, "--syringe-volume", options.syringe, "VOLUME",
+            "V_sy0, air in the syringe at the start: 60mL, 60000mm3")
+      ->required();
+  add_value(command, "--tube-volume", options.tube, "VOLUME", "V_t, air in tubes and sensor (default: 0)");
+  add_value(command, "--atmosphere", options.atmosphere_kPa, "KPA",
+            "Pressure of the air around, absolute [kPa] (default: 100, as in\nthe paper)", positive_number());
+}
+
+void add_results(CLI::App& command, PressureOptions& options) {
+  add_value(command, "-o,--output", options.output, "F.yaml", "The curve, for key 'curve' of the scene's actuator");
+  add_value(command, "--table", options.table, "F.csv", "Volume ratio of every row");
+  add_value(command, "--plot", options.plot, "F.svg", "Rows and both branches");
+  command.add_flag("--predict", options.predict,
+                   "With --scene: the pressures of the physical formulation beside\nthe measured ones, and the factor "
+                   "of Young's modulus between them");
+  add_value(command, "--threads", options.threads, "N", "Of --predict; 0: as many as the machine has (default)",
+            CLI::Range(0, 512).description(""));
+  command.add_flag("--json", options.json, "Print JSON; its keys name the units");
+}
+
+void check(const PressureOptions& options) {
+  check_extension("--output", options.output, {{".yaml", ""}});
+  check_extension("--table", options.table, {{".csv", ""}});
+  check_extension("--plot", options.plot, {{".svg", ""}});
+  if (options.predict && options.robot.scene.empty())
+    throw CLI::ValidationError("--predict", "give --scene too, whose robot is to be predicted");
+  if (!options.actuator.empty() && options.robot.scene.empty())
+    throw CLI::ValidationError("--actuator", "give --scene too, whose actuator it is");
+}
+
 }  // namespace
 
-std::vector<Output> PressureOptions::outputs() const {
-  std::vector<Output> outputs;
-  for (const auto& [option, file] : {std::pair{"--output", output}, {"--table", table}, {"--plot", plot}})
-    if (!file.empty()) outputs.push_back({option, file, 0});
-  return outputs;
-}
-
-double volume_of(const char* option, const std::string& text) {
-  const std::string name = std::string(option) + " " + excerpt(text) + ": ";
-  for (const auto& [unit, factor] :
-       {std::pair{"mm3", 1.0}, {"mL", mm3_per_ml}, {"ml", mm3_per_ml}, {"cm3", mm3_per_ml}}) {
-    if (!text.ends_with(unit)) continue;
-    std::string digits = text.substr(0, text.size() - std::string(unit).size());
-    if (digits.ends_with(' ')) digits.pop_back();
-    double value = 0;
-    if (parse_real(digits, value) && value >= 0) return factor * value;
-  }
-  throw InvalidInput(name + "must be a volume with its unit, mm3, mL or cm3, such as 12.5mL");
-}
-
-int calibrate_pressure(const PressureOptions& options) {
-  return PressureRun(options).run();
+void add_calibrate_pressure(CLI::App& calibrate, Run& run) {
+  const auto options = std::make_shared<PressureOptions>();
+  CLI::App& command = *calibrate.add_subcommand(
+      "pressure", "Volume ratio of a chamber by its pressure, from a syringe test (Fang et al. 2020, Eq. (19))");
+  add_test(command, *options);
+  add_results(command, *options);
+  command.footer(
+      "Rows are in the order of time; where the syringe turns, loading becomes unloading. Exit code: 0 done, 1 the\n"
+      "physical formulation has no equilibrium at some ratio, 2 bad usage or bad input.\nExample:\n"
+      "  softkin calibrate pressure syringe.csv --scene finger.yaml --syringe-volume 60mL --tube-volume 1.2mL -o "
+      "air.yaml");
+  command.callback([&run, options] {
+    run = [options] {
+      check(*options);
+      return PressureRun(*options).run();
+    };
+  });
 }
 
 }  // namespace softkin::cli

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
 #include <functional>
+#include <string>
 
 namespace softkin::cli {
 
@@ -10,6 +12,13 @@ enum ExitCode : int { done = 0, not_converged = 1, bad_input = 2 };
 
 /// The subcommand that the user chose, set while the command line is parsed; returns the exit code.
 using Run = std::function<int()>;
+
+/// An option with a value; type: what stands for the value in the help.
+template <class Value>
+CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const char* type,
+                       const std::string& what, const CLI::Validator& check = {}) {
+  return command.add_option(name, value, what)->type_name(type)->check(check);
+}
 
 void add_calibrate(CLI::App& app, Run& run);
 void add_compare(CLI::App& app, Run& run);

@@ -1,19 +1,24 @@
+#include <signal.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
 #include <softkin/io/scene/hardware.hpp>
+#include <softkin/io/stream_log.hpp>
+#include <softkin/io/table/commands.hpp>
+#include <softkin/io/table/table.hpp>
+#include <softkin/runs/drive_report.hpp>
 
 #include "command.hpp"
-#include "drive_commands.hpp"
-#include "drive_options.hpp"
-#include "drive_stream.hpp"
-#include "drive_text.hpp"
 #include "mesh_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
@@ -24,25 +29,251 @@ namespace fs = std::filesystem;
 
 namespace {
 
-DrivePlan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs) {
+constexpr int lowest_baud = 1200, highest_baud = 4'000'000;
+
+/// What the user asks of `softkin drive`. An empty file name: not given.
+struct DriveOptions {
+  SolveOptions robot;  // scene alone
+  std::string commands, hardware, pressures;
+  std::string gcode, schedule, log;  // to write
+  std::string port;
+  int baud = 115200;
+  double boot_wait_s = 3;
+  bool dry_run = false, return_home = false, json = false;
+
+  /// As given, or that of the scene's name: finger.yaml has finger.hardware.yaml.
+  [[nodiscard]] fs::path hardware_file() const {
+    return hardware.empty() ? fs::path(robot.scene).replace_extension(".hardware.yaml") : fs::path(hardware);
+  }
+};
+
+CLI::Validator baud_rate() {
+  const auto check = [](const std::string& text) -> std::string {
+    std::int64_t value = 0;
+    if (parse_integer(text, value) && value >= lowest_baud && value <= highest_baud) return "";
+    return "must be an integer from " + std::to_string(lowest_baud) + " to " + std::to_string(highest_baud) +
+           " baud, not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator seconds() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (parse_real(text, value) && value >= 0 && value <= 600) return "";
+    return "must be 0 to 600 s, not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
+void add_outputs(CLI::App& command, DriveOptions& options) {
+  command.add_flag("--dry-run", options.dry_run, "Print what would be sent, and send nothing");
+  add_value(command, "--gcode", options.gcode, "F.gcode", "Write the tendons' moves for Marlin");
+  add_value(command, "--schedule", options.schedule, "F.csv", "Write the chambers' pressures over time (t_s, air_kPa)");
+  add_value(command, "--port", options.port, "/dev/ttyUSB0", "Send the moves to the board at this serial port");
+  add_value(command, "--baud", options.baud, "N", "Rate of the port (default: 115200; many boards have 250000)",
+            baud_rate());
+  add_value(command, "--boot-wait", options.boot_wait_s, "S",
+            "Wait so long before the first line [s]: many boards boot when\ntheir port is opened (default: 3)",
+            seconds());
+  add_value(command, "--log", options.log, "F", "With --port: every line sent and received, with its time");
+}
+
+void add_options(CLI::App& command, DriveOptions& options) {
+  add_scene(command, options.robot);
+  add_value(command, "COMMANDS", options.commands, "F.csv",
+            "What follow writes (commands.csv) and fk --path reads: a column\nper actuator, t_s for the times [s]; "
+            "without times the motors go\nat the hardware's approach speed")
+      ->required();
+  add_value(command, "--hardware", options.hardware, "F.yaml",
+            "Motors and regulators (docs/drive.md); default: that of the\nscene's name, finger.hardware.yaml beside "
+            "finger.yaml");
+  add_value(
+      command, "--pressures", options.pressures, "F.json",
+      "Report of the run that made the commands (follow, fk): the\npressures of chambers that are commanded by volume");
+  command.add_flag("--return", options.return_home, "After the last row go back home, for the next run");
+  add_outputs(command, options);
+  command.add_flag("--json", options.json, "Print a report instead of the tables");
+}
+
+void check_usage(const DriveOptions& options) {
+  if (options.dry_run && !options.port.empty())
+    throw InvalidInput("--dry-run sends nothing, and --port sends: give one of them");
+  if (!options.log.empty() && options.port.empty())
+    throw InvalidInput("--log is of what is sent and received: it needs --port");
+  if (!options.dry_run && options.port.empty() && options.gcode.empty() && options.schedule.empty())
+    throw InvalidInput(
+        "nothing is to be done: give --dry-run (print), --gcode F, --schedule F.csv (write) or --port (send)");
+}
+
+Column words(const std::string& title, bool left) {
+  return {.key = title, .left = left};
+}
+
+std::string range(double low, double high) {
+  return decimal(low, 2) + " to " + decimal(high, 2);
+}
+
+std::string tendon_table(const drive::Plan& plan) {
+  Table table{{words("tendon", true), words("axis", true), words("length [mm]", false), words("limits [mm]", false),
+               words("steps from home", false), words("drum turns", false), words("speed [mm/s]", false),
+               words("limit [mm/s]", false)}};
+  for (std::size_t i = 0; i < plan.machine.tendons.size(); ++i) {
+    const drive::Tendon& tendon = plan.machine.tendons[i];
+    const drive::TendonUse use = drive::use_of(plan, i);
+    table.rows.push_back({printable(tendon.name), std::string(1, tendon.axis), range(use.shortest_mm, use.longest_mm),
+                          range(tendon.shortest_mm, tendon.longest_mm),
+                          std::to_string(use.lowest) + " to " + std::to_string(use.highest),
+                          use.turns ? decimal(*use.turns, 2) : "-", decimal(use.fastest_mm_per_s, 2),
+                          decimal(tendon.max_speed_mm_per_s, 2)});
+  }
+  return joined(table.lines(), "");
+}
+
+std::string chamber_table(const drive::Plan& plan) {
+  Table table{
+      {words("chamber", true), words("channel", true), words("pressure [kPa]", false), words("limits [kPa]", false)}};
+  for (std::size_t i = 0; i < plan.machine.chambers.size(); ++i) {
+    const drive::Chamber& chamber = plan.machine.chambers[i];
+    const auto [low, high] = drive::pressure_range(plan, i);
+    table.rows.push_back({printable(chamber.name), printable(chamber.channel), range(low, high),
+                          range(chamber.low_kpa, chamber.high_kpa)});
+  }
+  return joined(table.lines(), "");
+}
+
+std::string times_text(const drive::Plan& plan) {
+  std::string text = counted(plan.commands.rows.size(), "row");
+  if (plan.motion.timed)
+    text += ", " + number(*plan.commands.rows.back().time_s - *plan.commands.rows.front().time_s, 6) + " s";
+  else if (!plan.machine.tendons.empty())
+    text += " without times: " + number(plan.motion.seconds, 4) + " s at the approach speed of " +
+            number(plan.machine.approach_speed_mm_per_s) + " mm/s";
+  if (plan.machine.tendons.empty()) return text;
+  text += ", after an approach of " + number(drive::seconds_of(plan.motion.approach), 4) + " s from home";
+  if (!plan.motion.back.empty())
+    text += "; the way back home takes " + number(drive::seconds_of(plan.motion.back), 4) + " s";
+  return text + "; " + counted(plan.program.lines.size(), "line") + " of G-code";
+}
+
+std::string plan_text(const drive::Plan& plan) {
+  std::string text = "hardware: " + plan.machine.file + "\n";
+  for (const std::string& line : plan.machine.defaults) text += "default: " + printable(line) + "\n";
+  if (!plan.machine.tendons.empty()) text += tendon_table(plan);
+  if (!plan.machine.chambers.empty()) text += chamber_table(plan);
+  return text + times_text(plan) + "\n";
+}
+
+std::string dry_text(const drive::Plan& plan) {
+  std::string text;
+  if (!plan.machine.tendons.empty()) text += "\n" + drive::gcode_text(plan.machine, plan.program);
+  if (!plan.machine.chambers.empty()) text += "\n" + drive::schedule_csv(plan.schedule);
+  return text;
+}
+
+volatile sig_atomic_t stop_count = 0, pause_asked = 0;
+
+void on_stop(int signal_number) {
+  stop_count = stop_count + 1;
+  if (stop_count < 3) return;
+  ::signal(signal_number, SIG_DFL);
+  ::raise(signal_number);
+}
+
+void on_pause(int) {
+  pause_asked = !pause_asked;
+}
+
+void catch_signals() {
+  struct sigaction action = {};
+  action.sa_flags = SA_RESTART;
+  action.sa_handler = on_stop;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = on_pause;
+  sigaction(SIGTSTP, &action, nullptr);
+}
+
+drive::Order order_of_user() {
+  if (stop_count > 1) return drive::Order::quick_stop;
+  if (stop_count > 0) return drive::Order::stop;
+  return pause_asked ? drive::Order::pause : drive::Order::go;
+}
+
+/// Sends a program to the board at the port. Ctrl-C stops after the moves that the board has, a second one at once,
+/// a third one ends the program; Ctrl-Z pauses and goes on.
+///
+/// throws  InvalidInput where the log cannot be opened
+drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& options,
+                                  const drive::GcodeProgram& program) {
+  std::optional<StreamLog> log;
+  if (!options.log.empty())
+    log.emplace(options.log, [&](const std::string& why) {
+      std::fprintf(stderr, "softkin: warning: --log %s: %s\n", options.log.c_str(), why.c_str());
+    });
+  catch_signals();
+  ProgressLine line;
+  const double begin = seconds_now();
+  bool was_paused = false;
+  drive::LinkHooks hooks;
+  hooks.order = [&] {
+    const drive::Order order = order_of_user();
+    if ((order == drive::Order::pause) != was_paused) {
+      was_paused = !was_paused;
+      line.clear();
+      std::fprintf(stderr, was_paused ? "softkin: paused: Ctrl-Z goes on, Ctrl-C stops\n" : "softkin: goes on\n");
+    }
+    return order;
+  };
+  if (log) hooks.log = [&](char kind, const std::string& text) { log->add(kind, text); };
+  hooks.progress = [&](std::size_t lines) {
+    line.show(static_cast<double>(lines) / static_cast<double>(program.lines.size()),
+              std::to_string(lines) + "/" + std::to_string(program.lines.size()) + " lines, " +
+                  duration(seconds_now() - begin) + "; Ctrl-C stops, Ctrl-Z pauses");
+  };
+  drive::LinkOptions link;
+  link.boot_s = options.boot_wait_s;
+  return drive::stream(port, program, link, hooks);
+}
+
+/// How a stream ended, in full sentences: which lines were executed, and is the position known.
+std::string stream_text(const DriveOptions& options, const drive::GcodeProgram& program,
+                        const drive::StreamReport& report) {
+  std::string text = report.message;
+  const auto row_of = [&](std::size_t line) {
+    const std::size_t row = program.lines[line - 1].row;
+    return row > 0 ? " (" + options.commands + ":" + std::to_string(row) + ")" : "";
+  };
+  if (report.end != drive::StreamEnd::finished) {
+    text += "; the board accepted " + (report.acknowledged > 0 ? "lines up to " + std::to_string(report.acknowledged) +
+                                                                     row_of(report.acknowledged)
+                                                               : std::string("no line"));
+    text += " of " + std::to_string(report.lines);
+    if (report.sent > report.acknowledged) text += ", and perhaps those up to " + std::to_string(report.sent);
+  }
+  if (report.position_known) {
+    text += "; the motors stand at";
+    for (std::size_t i = 0; i < report.position.size(); ++i)
+      text += std::string(" ") + program.axes[i] + " " + decimal(report.position[i], 3);
+    text += " mm";
+  } else if (report.sent > 0) {
+    text += "; bring the motors home by hand before the next run";
+  }
+  return text;
+}
+
+drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs) {
   const Model model = asked_robot(options.robot, inputs);
-  DrivePlan plan;
-  plan.commands = read_commands(model, options.commands, options.pressures);
+  Commands commands = read_commands(model, options.commands, options.pressures);
   const fs::path hardware = options.hardware_file();
   if (options.hardware.empty() && !fs::exists(hardware))
     throw InvalidInput({hardware.string()},
                        "no such file; describe motors and regulators there (docs/drive.md), or name the file with "
                        "--hardware");
-  plan.machine = drive::assemble(model, read_hardware(hardware), plan.commands);
-  plan.schedule = drive::plan_pressures(plan.machine, plan.commands);
-  if (!plan.machine.tendons.empty()) {
-    plan.motion = drive::plan_motion(plan.machine, plan.commands, options.return_home);
-    plan.program = drive::make_gcode(plan.machine, plan.motion);
-  }
-  return plan;
+  return drive::make_plan(model, read_hardware(hardware), std::move(commands), options.return_home);
 }
 
-void check_asked(const DriveOptions& options, const DrivePlan& plan) {
+void check_asked(const DriveOptions& options, const drive::Plan& plan) {
   if (plan.machine.tendons.empty())
     for (const auto& [option, value] : {std::pair{"--gcode", options.gcode}, std::pair{"--port", options.port}})
       if (!value.empty()) throw InvalidInput(std::string(option) + " " + value + ": there is no tendon to move");
@@ -50,16 +281,9 @@ void check_asked(const DriveOptions& options, const DrivePlan& plan) {
     throw InvalidInput("--schedule " + options.schedule + ": " + options.commands + " commands no chamber");
 }
 
-void write_files(const DriveOptions& options, const DrivePlan& plan) {
+void write_files(const DriveOptions& options, const drive::Plan& plan) {
   if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
   if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
-}
-
-std::string dry_text(const DrivePlan& plan) {
-  std::string text;
-  if (!plan.machine.tendons.empty()) text += "\n" + drive::gcode_text(plan.machine, plan.program);
-  if (!plan.machine.chambers.empty()) text += "\n" + drive::schedule_csv(plan.schedule);
-  return text;
 }
 
 int run_drive(const DriveOptions& options) {
@@ -68,32 +292,27 @@ int run_drive(const DriveOptions& options) {
   if (!options.pressures.empty()) inputs.emplace_back(options.pressures);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const DrivePlan plan = plan_of(options, inputs);
+  const drive::Plan plan = plan_of(options, inputs);
   line.clear();
   check_asked(options, plan);
-  check_outputs(options.outputs(), inputs);
-  const OutputFolders folders(options.outputs());
+  const std::vector<Output> outputs =
+      asked_outputs({{"--gcode", options.gcode}, {"--schedule", options.schedule}, {"--log", options.log}});
+  check_outputs(outputs, inputs);
+  const OutputFolders folders(outputs);
   std::optional<drive::SerialPort> port;  // before anything is written
   if (!options.port.empty()) port.emplace(options.port, options.baud);
   if (!options.json) print(plan_text(plan) + (options.dry_run ? dry_text(plan) : ""));
   write_files(options, plan);
-  Json json = {{"softkin", SOFTKIN_VERSION}, {"scene", options.robot.scene}, {"commands", options.commands}};
-  json.update(plan_json(plan));
-  if (options.dry_run && !plan.machine.tendons.empty()) json["gcode"] = drive::gcode_text(plan.machine, plan.program);
-  if (options.dry_run && !plan.machine.chambers.empty()) json["schedule"] = drive::schedule_csv(plan.schedule);
-  int code = done;
-  if (port) {
-    const drive::StreamReport report = send_to_board(*port, options, plan.program);
-    const std::string text = stream_text(options, plan.program, report);
-    code = report.end == drive::StreamEnd::finished ? done : not_converged;
-    json["stream"] = stream_json(plan.program, report);
-    if (code != done)
-      std::fprintf(stderr, "softkin: %s\n", text.c_str());
-    else if (!options.json)
-      print(text + "\n");
-  }
-  if (options.json) print(json);
-  return code;
+  std::optional<drive::StreamReport> sent;
+  if (port) sent = send_to_board(*port, options, plan.program);
+  const bool failed = sent && sent->end != drive::StreamEnd::finished;
+  const std::string text = sent ? stream_text(options, plan.program, *sent) + "\n" : "";
+  if (failed)
+    std::fprintf(stderr, "softkin: %s", text.c_str());
+  else if (!options.json)
+    print(text);
+  if (options.json) print(runs::drive_report(options.robot.scene, plan, options.dry_run, sent ? &*sent : nullptr));
+  return failed ? not_converged : done;
 }
 
 }  // namespace

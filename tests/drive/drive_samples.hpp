@@ -35,11 +35,11 @@ inline HardwareSpec two_motors() {
 }
 
 /// Ratios of two cables, a row each, at so many seconds (none: no times); lines 2, 3, ...
-inline drive::Commands two_commands(const std::vector<std::array<double, 2>>& ratios,
+inline Commands two_commands(const std::vector<std::array<double, 2>>& ratios,
                                     const std::vector<double>& times = {}) {
-  drive::Commands commands{"commands.csv", {true, true}, {false, false}, {}};
+  Commands commands{"commands.csv", {true, true}, {false, false}, {}};
   for (std::size_t i = 0; i < ratios.size(); ++i) {
-    drive::CommandRow row;
+    CommandRow row;
     row.actuation = Eigen::Vector2d(ratios[i][0], ratios[i][1]);
     row.pressures_kpa = Eigen::VectorXd::Zero(2);
     if (!times.empty()) row.time_s = times[i];

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <softkin/calibration/pressure_check.hpp>
 #include <softkin/core/error.hpp>
@@ -14,6 +15,41 @@ double misfit(const std::vector<double>& measured, const std::vector<double>& pr
     size += measured[i] * measured[i];
   }
   return size > 0 ? std::sqrt(difference / size) : 0;
+}
+
+Index index_of(const RobotSpec& spec, const std::string& name) {
+  for (std::size_t a = 0; a < spec.actuators.size(); ++a)
+    if (spec.actuators[a].name == name) return static_cast<Index>(a);
+  throw InvalidInput("no actuator '" + name + "'");
+}
+
+/// The chamber's volume is controlled up to the highest ratio; the other chambers are open.
+void prepare(RobotSpec& spec, std::size_t chamber, double highest) {
+  spec.formulation = Formulation::physical;
+  for (std::size_t a = 0; a < spec.actuators.size(); ++a) {
+    ActuatorSpec& each = spec.actuators[a];
+    if (each.kind != ActuatorKind::pneumatic) continue;
+    each.curve.reset();
+    each.branch = Branch::loading;
+    const bool tested = a == chamber;
+    each.control = tested ? Control::ratio : Control::load;
+    each.low = tested ? 1 : 0;
+    each.high = tested ? highest : 0;
+    each.rest = tested ? 1 : 0;
+  }
+}
+
+/// Of the ratios that both know; none where these are fewer than two.
+std::optional<ModulusCheck> check_branch(const MonotoneCurve& branch, const std::vector<double>& ratios,
+                                         const std::vector<std::optional<double>>& pressures) {
+  std::vector<double> measured, predicted;
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    if (!pressures[i] || ratios[i] < branch.y().front() || ratios[i] > branch.y().back()) continue;
+    measured.push_back(branch.inverse(ratios[i]));
+    predicted.push_back(*pressures[i]);
+  }
+  if (measured.size() < 2) return std::nullopt;
+  return check_modulus(measured, predicted);
 }
 
 }  // namespace
@@ -55,6 +91,32 @@ ModulusCheck check_modulus(const std::vector<double>& measured, const std::vecto
   if (!(square > 0)) throw InvalidInput("no pressure is predicted that could be compared");
   const double factor = product / square;
   return {factor, misfit(measured, predicted, 1), misfit(measured, predicted, factor)};
+}
+
+bool PressureComparison::is_complete() const {
+  return std::all_of(predicted.begin(), predicted.end(), [](const auto& pressure) { return pressure.has_value(); });
+}
+
+std::vector<std::pair<Branch, ModulusCheck>> PressureComparison::branches() const {
+  std::vector<std::pair<Branch, ModulusCheck>> all;
+  if (loading) all.emplace_back(Branch::loading, *loading);
+  if (unloading) all.emplace_back(Branch::unloading, *unloading);
+  return all;
+}
+
+PressureComparison compare_with_physics(RobotSpec spec, const std::string& actuator, const ActuatorCurve& curve,
+                                        int threads, const ProgressCallback& progress) {
+  constexpr int compared = 8;  // ratios
+  const double low = std::max(1.0, curve.loading.ratio.y().front()), high = curve.loading.ratio.y().back();
+  if (!(high > 1)) throw InvalidInput("--predict compares ratios above 1, and the loading branch has none");
+  const Index chamber = index_of(spec, actuator);
+  prepare(spec, static_cast<std::size_t>(chamber), high);
+  PressureComparison result{actuator, {}, {}, {}, {}};
+  for (int i = 1; i <= compared; ++i) result.ratios.push_back(i == compared ? high : low + (high - low) * i / compared);
+  result.predicted = predicted_pressures(compile(spec), chamber, result.ratios, threads, progress);
+  result.loading = check_branch(curve.loading.ratio, result.ratios, result.predicted);
+  if (curve.unloading) result.unloading = check_branch(curve.unloading->ratio, result.ratios, result.predicted);
+  return result;
 }
 
 }  // namespace softkin::calibration

@@ -3,6 +3,9 @@
 #include <optional>
 #include <softkin/core/progress.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/model/robot_spec.hpp>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace softkin::calibration {
@@ -30,5 +33,26 @@ struct ModulusCheck {
 /// measured, predicted  as many, of the same ratios [kPa]
 /// throws               InvalidInput where nothing is predicted to resist
 [[nodiscard]] ModulusCheck check_modulus(const std::vector<double>& measured, const std::vector<double>& predicted);
+
+/// Pressures of a measured curve beside those that a scene's physical formulation predicts.
+struct PressureComparison {
+  std::string actuator;
+  std::vector<double> ratios;
+  std::vector<std::optional<double>> predicted;    // per ratio [kPa]; none: no equilibrium
+  std::optional<ModulusCheck> loading, unloading;  // none: the branch and the prediction share fewer than two ratios
+
+  [[nodiscard]] bool is_complete() const;
+  /// Those that there are.
+  [[nodiscard]] std::vector<std::pair<Branch, ModulusCheck>> branches() const;
+};
+
+/// Inflates a chamber by volume, the others open, to even ratios of the curve.
+///
+/// spec    of the scene; solved in the physical formulation
+/// throws  InvalidInput as compile() does, where the scene has no elastic constants; a loading branch without ratios
+///         above 1
+[[nodiscard]] PressureComparison compare_with_physics(RobotSpec spec, const std::string& actuator,
+                                                      const ActuatorCurve& curve, int threads,
+                                                      const ProgressCallback& progress = {});
 
 }  // namespace softkin::calibration

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/drive/commands.hpp>
+#include <softkin/model/commands.hpp>
 #include <softkin/model/hardware_spec.hpp>
 #include <softkin/model/model.hpp>
 

@@ -369,4 +369,26 @@ StreamReport stream(SerialPort& port, const GcodeProgram& program, const LinkOpt
   return Session(port, program, options, hooks).run();
 }
 
+const char* name_of(StreamEnd end) {
+  switch (end) {
+    case StreamEnd::finished:
+      return "finished";
+    case StreamEnd::stopped:
+      return "stopped";
+    case StreamEnd::quick_stopped:
+      return "quick stopped";
+    case StreamEnd::rebooted:
+      return "rebooted";
+    case StreamEnd::halted:
+      return "halted";
+    case StreamEnd::wrong_position:
+      return "wrong position";
+    case StreamEnd::port_lost:
+      return "port lost";
+    case StreamEnd::no_answer:
+      break;
+  }
+  return "no answer";
+}
+
 }  // namespace softkin::drive

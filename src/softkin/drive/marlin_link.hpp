@@ -30,6 +30,9 @@ enum class StreamEnd {
   port_lost
 };
 
+/// "finished", "quick stopped", ...
+[[nodiscard]] const char* name_of(StreamEnd end);
+
 /// How a stream ended. Lines are those of the program, counted from 1. Lines up to `acknowledged` were accepted by the
 /// board; those after it up to `sent` perhaps. Accepted moves have been executed where the position is known; else the
 /// last of them, which the board had planned ahead, perhaps not.

@@ -1,4 +1,7 @@
 #include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
 #include <softkin/io/table/actuator_tests.hpp>
 #include <softkin/io/table/run_table.hpp>
 
@@ -63,6 +66,18 @@ std::vector<VoltageRun> read_voltage_runs(const std::filesystem::path& path) {
     }
   }
   return runs;
+}
+
+double read_volume(const std::string& option, const std::string& text) {
+  constexpr double mm3_per_ml = 1000;
+  for (const std::string unit : {"mm3", "mL", "ml", "cm3"}) {
+    if (!text.ends_with(unit)) continue;
+    std::string digits = text.substr(0, text.size() - unit.size());
+    if (digits.ends_with(' ')) digits.pop_back();
+    double value = 0;
+    if (parse_real(digits, value) && value >= 0) return unit == "mm3" ? value : mm3_per_ml * value;
+  }
+  throw InvalidInput(option + " " + excerpt(text) + ": must be a volume with its unit, mm3, mL or cm3, such as 12.5mL");
 }
 
 }  // namespace softkin

@@ -4,6 +4,7 @@
 #include <optional>
 #include <softkin/model/syringe_run.hpp>
 #include <softkin/model/voltage_run.hpp>
+#include <string>
 
 namespace softkin {
 
@@ -20,5 +21,8 @@ namespace softkin {
 ///
 /// throws  InvalidInput naming file and line: other columns or units, voltages below 0, ratios not above 0
 [[nodiscard]] std::vector<VoltageRun> read_voltage_runs(const std::filesystem::path& path);
+
+/// "12.5mL", "800 mm3" or "60cm3" in mm^3. Throws InvalidInput, naming the option, on anything else.
+[[nodiscard]] double read_volume(const std::string& option, const std::string& text);
 
 }  // namespace softkin

@@ -1,20 +1,18 @@
-#include "drive_commands.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/plain_text.hpp>
+#include <softkin/io/table/actuation_path.hpp>
+#include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/csv.hpp>
 
-#include <softkin/io/table/actuation_path.hpp>
-#include <softkin/model/names.hpp>
-#include "mesh_text.hpp"
-#include "terminal.hpp"
-
-namespace softkin::cli {
+namespace softkin {
 
 namespace {
+
+using Json = nlohmann::json;
 
 constexpr const char* pressure_end = "_pressure_kPa";
 
@@ -30,7 +28,7 @@ class Reader {
     commands_.pressure_known.assign(model.actuators.size(), false);
   }
 
-  drive::Commands read(const std::string& report) {
+  Commands read(const std::string& report) {
     take_pressures();
     for (const std::string& column : table_.columns)
       if (const auto a = actuator_of_column(model_, column)) commands_.commanded[static_cast<std::size_t>(*a)] = true;
@@ -97,7 +95,7 @@ class Reader {
 
   void take_step(const std::string& file, const Json& step, std::size_t index,
                  const std::vector<std::size_t>& chambers) {
-    drive::CommandRow& row = commands_.rows[index];
+    CommandRow& row = commands_.rows[index];
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
       const double asked = step.at("actuation").at(model_.actuators[a].name).get<double>();
       const double here = row.actuation[static_cast<Index>(a)];
@@ -117,14 +115,14 @@ class Reader {
 
   const Model& model_;
   CsvTable table_;
-  drive::Commands commands_;
+  Commands commands_;
   std::vector<Eigen::VectorXd> pressures_;  // per row
 };
 
 }  // namespace
 
-drive::Commands read_commands(const Model& model, const std::string& file, const std::string& report) {
+Commands read_commands(const Model& model, const std::string& file, const std::string& report) {
   return Reader(model, file).read(report);
 }
 
-}  // namespace softkin::cli
+}  // namespace softkin

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace softkin::drive {
+namespace softkin {
 
 /// One row of a file of commands.
 struct CommandRow {
@@ -23,4 +23,4 @@ struct Commands {
   std::vector<CommandRow> rows;
 };
 
-}  // namespace softkin::drive
+}  // namespace softkin

@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/calibration/curve_report.hpp>
+#include <softkin/calibration/report_parts.hpp>
+
+namespace softkin::calibration {
+
+namespace {
+
+constexpr int table_rows = 10;
+constexpr int drawn_points = 200;
+
+std::string unit(const ActuatorCurve& curve) {
+  return unit_of_input(curve.input) + 1;
+}
+
+const char* input_name(const ActuatorCurve& curve) {
+  return curve.input == CurveInput::pressure ? "gauge pressure" : "voltage";
+}
+
+const char* ratio_name(const ActuatorCurve& curve) {
+  return curve.input == CurveInput::pressure ? "volume ratio" : "area ratio";
+}
+
+bool holds(const std::vector<double>& ascending, double value) {
+  return value >= ascending.front() && value <= ascending.back();
+}
+
+/// Spread at a place of the branch, straight between points.
+double spread_at(const CurveBranch& branch, double input) {
+  const std::vector<double>& x = branch.ratio.x();
+  const auto i =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), input) - x.begin()));
+  const double share = (input - x[i - 1]) / (x[i] - x[i - 1]);
+  return (1 - share) * branch.spread[i - 1] + share * branch.spread[i];
+}
+
+std::vector<double> even(double low, double high, int count) {
+  std::vector<double> values;
+  for (int i = 0; i <= count; ++i) values.push_back(i == count ? high : low + (high - low) * i / count);
+  return values;
+}
+
+/// The branches that the curve has, with their names.
+std::vector<std::pair<std::string, const CurveBranch*>> branches(const ActuatorCurve& curve) {
+  std::vector<std::pair<std::string, const CurveBranch*>> all{{"loading", &curve.loading}};
+  if (curve.unloading) all.emplace_back("unloading", &*curve.unloading);
+  return all;
+}
+
+Cell input_cell(const MonotoneCurve& branch, double ratio) {
+  return holds(branch.y(), ratio) ? Cell(branch.inverse(ratio)) : Cell("-");
+}
+
+std::string branch_quality(const std::string& name, const CurveBranch& branch, const BranchQuality& quality,
+                           const ActuatorCurve& curve) {
+  const std::vector<double>&x = branch.ratio.x(), &y = branch.ratio.y();
+  std::string text = name + ": " + counted(quality.repeats, "sweep") + ", " + counted(quality.samples, "row") + ", " +
+                     counted(x.size(), "point") + "; " + number(x.front(), 5) + " to " + number(x.back(), 5) + " " +
+                     unit(curve) + ", ratio " + number(y.front(), 5) + " to " + number(y.back(), 5) +
+                     " [-]; rows off the curve by " + number(quality.rms, 2) + " rms, " + number(quality.largest, 2) +
+                     " at most";
+  text += quality.mean_error ? "; mean of the sweeps known to +- " + number(*quality.mean_error, 2)
+                             : "; one sweep: its repeatability is not known";
+  if (quality.pooled > 0)
+    text += "; " + counted(quality.pooled, "point") + " pooled, where the ratio fell while the input rose";
+  return text + "\n";
+}
+
+PlotSeries branch_series(const CurveBranch& branch, const std::string& label, int style) {
+  PlotSeries series;
+  series.label = label;
+  series.marks = false;
+  series.style = style;
+  series.x = even(branch.ratio.x().front(), branch.ratio.x().back(), drawn_points);
+  for (const double x : series.x) series.y.push_back(branch.ratio.value(x));
+  return series;
+}
+
+PlotSeries sample_series(const FittedCurve& fitted, const std::string& branch, int style) {
+  PlotSeries series;
+  series.label = branch + ", rows";
+  series.line = false;
+  series.style = style;
+  series.mark_radius = 2;
+  for (const CurveSample& sample : fitted.samples) {
+    if (branch_name(sample.branch) != branch) continue;
+    series.x.push_back(sample.input);
+    series.y.push_back(sample.ratio);
+  }
+  return series;
+}
+
+Json branch_json(const CurveBranch& branch, const BranchQuality& quality, const char* key) {
+  Json json{{key, branch.ratio.x()}, {"ratio", branch.ratio.y()}};
+  if (!branch.spread.empty()) json["spread"] = branch.spread;
+  if (quality.samples == 0) return json;
+  json.update({{"sweeps", quality.repeats},
+               {"rows", quality.samples},
+               {"rms", quality.rms},
+               {"largest", quality.largest},
+               {"mean_error", or_null(quality.mean_error)},
+               {"pooled_points", quality.pooled}});
+  return json;
+}
+
+Json curve_json(const FittedCurve& fitted) {
+  const char* key = fitted.curve.input == CurveInput::pressure ? "gauge_pressure_kPa" : "voltage_kV";
+  Json json{{"loading", branch_json(fitted.curve.loading, fitted.loading, key)}};
+  json["unloading"] = fitted.curve.unloading ? branch_json(*fitted.curve.unloading, fitted.unloading, key) : Json();
+  if (!fitted.curve.end.empty()) json["end"] = fitted.curve.end;
+  return json;
+}
+
+Json comparison_json(const PressureComparison& comparison) {
+  Json json{{"ratio", comparison.ratios}, {"predicted_kPa", Json::array()}};
+  for (const std::optional<double>& pressure : comparison.predicted) json["predicted_kPa"].push_back(or_null(pressure));
+  for (const auto& [branch, check] : comparison.branches())
+    json[branch_name(branch)] = {
+        {"factor", check.factor}, {"misfit_before", check.misfit_before}, {"misfit_after", check.misfit_after}};
+  return json;
+}
+
+Table comparison_table(const PressureComparison& comparison, const ActuatorCurve& curve) {
+  Table table;
+  table.columns.push_back(significant("volume ratio", "-", 5));
+  for (const auto& [name, branch] : branches(curve)) table.columns.push_back(decimals(name, "kPa", 2));
+  table.columns.push_back(decimals("predicted", "kPa", 2));
+  for (std::size_t i = 0; i < comparison.ratios.size(); ++i) {
+    Row& row = table.rows.emplace_back(Row{comparison.ratios[i]});
+    for (const auto& [name, branch] : branches(curve)) row.push_back(input_cell(branch->ratio, comparison.ratios[i]));
+    row.push_back(comparison.predicted[i] ? Cell(*comparison.predicted[i]) : Cell("no equilibrium"));
+  }
+  return table;
+}
+
+/// What to write into the scene: the loading branch is what a robot under slow inflation follows.
+std::string suggestions(double factor, const RobotSpec& spec) {
+  std::string text;
+  for (const MaterialSpec& material : spec.materials) {
+    if (!material.elastic) continue;
+    text += "suggestion: material '" + material.region + "': ";
+    if (const auto& modulus = material.elastic->youngs_modulus)
+      text += "youngs_modulus " + number(*modulus) + " -> " + number(factor * *modulus, 4) + " MPa (loading)\n";
+    else
+      text += "its moduli times " + number(factor, 4) + " (loading)\n";
+  }
+  const bool pushed = std::any_of(spec.forces.begin(), spec.forces.end(),
+                                  [](const ForceSpec& force) { return force.force != Vec3(0, 0, 0); });
+  if (pushed || spec.gravity != Vec3(0, 0, 0))
+    text += "note: weight and forces act too, which do not grow with the moduli: repeat this with the new ones\n";
+  return text;
+}
+
+}  // namespace
+
+FittedCurve fitted_curve(const std::string& name, CurveInput input, double atmosphere_kPa,
+                         std::vector<CurveSample> samples) {
+  CurveFit fit = fit_curve(samples);
+  return {{name, input, atmosphere_kPa, "", std::move(fit.loading), std::move(fit.unloading)},
+          fit.loading_quality,
+          fit.unloading_quality,
+          std::move(samples)};
+}
+
+std::string quality_text(const FittedCurve& fitted) {
+  const std::string loading = branch_quality("loading", fitted.curve.loading, fitted.loading, fitted.curve);
+  if (!fitted.curve.unloading) return loading + "unloading: no row; the curve has the loading branch alone\n";
+  return loading + branch_quality("unloading", *fitted.curve.unloading, fitted.unloading, fitted.curve);
+}
+
+Table ratio_table(const ActuatorCurve& curve) {
+  Table table{{significant(input_name(curve), unit(curve), 5)}};
+  double low = curve.loading.ratio.x().front(), high = curve.loading.ratio.x().back();
+  for (const auto& [name, branch] : branches(curve)) {
+    table.columns.push_back(decimals(name, "-", 4));
+    if (!branch->spread.empty()) table.columns.push_back(decimals("+-", "", 4));
+    low = std::min(low, branch->ratio.x().front());
+    high = std::max(high, branch->ratio.x().back());
+  }
+  if (curve.unloading) table.columns.push_back(decimals("difference", "-", 4));
+  for (const double input : even(low, high, table_rows)) {
+    Row& row = table.rows.emplace_back(Row{input});
+    bool all = true;
+    for (const auto& [name, branch] : branches(curve)) {
+      const bool inside = holds(branch->ratio.x(), input);
+      all = all && inside;
+      row.push_back(inside ? Cell(branch->ratio.value(input)) : Cell("-"));
+      if (!branch->spread.empty()) row.push_back(inside ? Cell(spread_at(*branch, input)) : Cell("-"));
+    }
+    if (curve.unloading)
+      row.push_back(all ? Cell(curve.unloading->ratio.value(input) - curve.loading.ratio.value(input)) : Cell("-"));
+  }
+  return table;
+}
+
+Table input_table(const ActuatorCurve& curve) {
+  Table table{{significant(ratio_name(curve), "-", 5)}};
+  for (const auto& [name, branch] : branches(curve)) table.columns.push_back(decimals(name, unit(curve), 3));
+  for (const double ratio : even(curve.loading.ratio.y().front(), curve.loading.ratio.y().back(), table_rows)) {
+    Row& row = table.rows.emplace_back(Row{ratio});
+    for (const auto& [name, branch] : branches(curve)) row.push_back(input_cell(branch->ratio, ratio));
+  }
+  return table;
+}
+
+std::string curve_text(const ActuatorCurve& curve) {
+  return text_of(ratio_table(curve)) + "\n" + text_of(input_table(curve));
+}
+
+Plot curve_plot(const FittedCurve& fitted, const std::string& title) {
+  PlotPanel panel;
+  panel.x.label = std::string(input_name(fitted.curve)) + " [" + unit(fitted.curve) + "]";
+  panel.y.label = std::string(ratio_name(fitted.curve)) + " [-]";
+  int style = 0;
+  for (const auto& [name, branch] : branches(fitted.curve)) {
+    PlotSeries rows = sample_series(fitted, name, style);
+    if (!rows.x.empty()) panel.series.push_back(std::move(rows));
+    panel.series.push_back(branch_series(*branch, name, style++));
+  }
+  Plot plot;
+  plot.title = title;
+  plot.panel_height = 420;
+  plot.rows = {{panel}};
+  return plot;
+}
+
+Table syringe_table(const SyringeSetup& setup, const std::vector<SyringeSample>& samples) {
+  Table table = csv_table({"p_gauge_kpa", "p_abs_kpa", "ratio", "unloading", "sweep", "run", "line"});
+  for (const SyringeSample& each : samples)
+    table.rows.push_back({ten_digits(each.sample.input), ten_digits(each.sample.input + setup.atmosphere_kPa),
+                          ten_digits(each.sample.ratio), count_cell(each.sample.branch == Branch::unloading ? 1 : 0),
+                          count_cell(each.sample.repeat), count_cell(each.run), count_cell(each.line)});
+  return table;
+}
+
+std::string comparison_text(const PressureComparison& comparison, const ActuatorCurve& curve, const RobotSpec& spec) {
+  const auto percent = [](double share) { return number(100 * share, 3) + " %"; };
+  std::string text = "gauge pressures of the physical formulation of " + spec.name + ", " + comparison.actuator +
+                     " inflated, other chambers open:\n" + text_of(comparison_table(comparison, curve));
+  for (const auto& [branch, check] : comparison.branches())
+    text += std::string(branch_name(branch)) + ": measured = " + number(check.factor, 4) +
+            " x predicted; they differ by " + percent(check.misfit_before) + " rms, with the factor by " +
+            percent(check.misfit_after) + "\n";
+  if (!comparison.branches().empty()) text += suggestions(comparison.branches().front().second.factor, spec);
+  return text;
+}
+
+std::string pressure_json(const std::vector<std::string>& tests, const SyringeSetup& setup, const FittedCurve& fitted,
+                          const PressureComparison* comparison) {
+  Json json{{"softkin", SOFTKIN_VERSION},
+            {"tests", tests},
+            {"atmosphere_kPa", setup.atmosphere_kPa},
+            {"chamber_mm3", setup.chamber_mm3},
+            {"tube_mm3", setup.tube_mm3},
+            {"syringe_mm3", setup.syringe_mm3}};
+  json.update(curve_json(fitted));
+  if (comparison != nullptr) json["physical"] = comparison_json(*comparison);
+  return text_of(json);
+}
+
+std::string dea_json(const std::vector<std::string>& tests, const FittedCurve& fitted,
+                     const DielectricCurve* computed) {
+  Json json{{"softkin", SOFTKIN_VERSION}};
+  if (computed == nullptr) {
+    json["tests"] = tests;
+  } else {
+    json["pull_in"] = Json();
+    if (const std::optional<PullIn>& at = computed->pull_in)
+      json["pull_in"] = {{"voltage_kV", at->voltage_kV}, {"stretch", at->stretch}, {"field_kV_mm", at->field_kV_mm}};
+    json["broken_down"] = computed->broken_down;
+    json["end_field_kV_mm"] = computed->end_field_kV_mm;
+  }
+  json.update(curve_json(fitted));
+  return text_of(json);
+}
+
+}  // namespace softkin::calibration

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <softkin/calibration/ratio_fit.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
+#include <softkin/io/table/table.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin::calibration {
+
+/// What is asked of specimens of two materials.
+struct SpecimenTask {
+  std::string file, twist_file;     // of the specimens, for messages
+  std::vector<std::string> set_up;  // what the simulations take as given, a line each, to be told
+  SpecimenOptions options;
+  bool physical = true, target_shape = true;     // formulations to fit
+  std::vector<double> tried;                     // target-shape: R_omega A / R_omega B to look at beside the fit
+  std::optional<double> modulus_b;               // [MPa], where no force was measured
+  std::array<std::string, 2> regions{"A", "B"};  // of the scene
+};
+
+/// The tests simulated with one formulation, at the ratio that fits best or at one given.
+struct SimulatedTests {
+  std::string name;             // "physical", "target-shape", "R_A / R_B 2"
+  std::optional<RatioFit> fit;  // none: the ratio was given
+  double ratio = 1;
+  std::vector<SpecimenResponse> stretched, twisted;  // twisted: empty where no ratio fits
+
+  [[nodiscard]] bool is(Formulation formulation) const { return fit && fit->formulation == formulation; }
+};
+
+struct SpecimenResults {
+  std::vector<StretchedSpecimen> specimens;
+  std::vector<TwistedSpecimen> twists;
+  RatioEstimate rod;  // Eq. (16)
+  std::optional<Moduli> rod_moduli;
+  std::vector<SimulatedTests> simulated;  // physical, target-shape, then the ratios to look at
+
+  /// Null where it was not asked for.
+  [[nodiscard]] const RatioFit* fit(Formulation formulation) const;
+};
+
+/// Fits the ratios by simulated tests. progress: what is simulated, and the share of it that is done.
+/// throws  InvalidInput as fit_ratio does
+[[nodiscard]] SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen> specimens,
+                                       std::vector<TwistedSpecimen> twists,
+                                       const std::function<void(const std::string&, double)>& progress = {});
+
+/// The first simulation that is not converged, in words; empty: all are.
+[[nodiscard]] std::string failure(const SpecimenTask& task, const SpecimenResults& results);
+
+// The results, for people and programs. Files have no part of them where a simulation is not converged.
+
+[[nodiscard]] Table stretch_table(const SpecimenResults& results);
+[[nodiscard]] Table twist_table(const SpecimenResults& results);
+[[nodiscard]] std::string specimens_text(const SpecimenTask& task, const SpecimenResults& results);
+[[nodiscard]] std::string specimens_json(const SpecimenTask& task, const SpecimenResults& results);
+[[nodiscard]] Plot specimens_plot(const SpecimenTask& task, const SpecimenResults& results);
+[[nodiscard]] Table residual_table(const SpecimenResults& results);
+/// The materials of a scene, YAML.
+[[nodiscard]] std::string specimens_fragment(const SpecimenTask& task, const SpecimenResults& results);
+
+}  // namespace softkin::calibration

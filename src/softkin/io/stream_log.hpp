@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace softkin {
+
+/// A file of what is sent and received: every line with the time of day (UTC) and the seconds since the beginning;
+/// written at once.
+class StreamLog {
+ public:
+  /// failed  told once, why a line could not be written: motors that move are not stopped for a full disk
+  /// throws  InvalidInput naming the option where the file cannot be opened
+  StreamLog(const std::string& path, std::function<void(const std::string&)> failed);
+
+  void add(char kind, std::string text);
+
+ private:
+  std::unique_ptr<FILE, int (*)(FILE*)> file_;
+  std::function<void(const std::string&)> failed_;  // empty: told
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace softkin
