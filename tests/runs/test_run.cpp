@@ -129,12 +129,12 @@ class PathRun : public ::testing::Test {
   /// Makes so many records.
   void make(std::size_t count, bool finish, const std::string& head = "") {
     PathJob job = path_job();
-    Run<StepRecord> run = path_run(job, head);
+    runs::Run<StepRecord> run = path_run(job, head);
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(run.advance({}), Advance::made);
     if (finish) run.finish();
   }
   [[nodiscard]] PathJob path_job() const { return {model_, statics_, steps_, "path.csv", testing::one_thread()}; }
-  [[nodiscard]] Run<StepRecord> path_run(PathJob& job, const std::string& head = "") const {
+  [[nodiscard]] runs::Run<StepRecord> path_run(PathJob& job, const std::string& head = "") const {
     return {model_,
             job,
             {folder_ / "r.json", folder_ / "s.pvd"},
@@ -144,7 +144,7 @@ class PathRun : public ::testing::Test {
   /// What resume says, and how many records it finds.
   [[nodiscard]] std::pair<std::string, std::size_t> resumed() const {
     PathJob job = path_job();
-    Run<StepRecord> run = path_run(job);
+    runs::Run<StepRecord> run = path_run(job);
     std::string remark;
     run.resume(remark);
     return {remark, run.done()};
@@ -211,7 +211,7 @@ TEST_F(PathRun, RefusesRecordsThatAreNotItsOwn) {
 TEST_F(PathRun, InterruptedWhileItRepeatsKeepsWhatIsThere) {
   make(3, false);
   PathJob job = path_job();
-  Run<StepRecord> run = path_run(job);
+  runs::Run<StepRecord> run = path_run(job);
   std::string remark;
   run.resume(remark);
   EXPECT_EQ(run.advance([](const Progress&) { return false; }), Advance::interrupted);
