@@ -11,7 +11,7 @@
 #include <softkin/io/table/actuator_tests.hpp>
 
 #include "calibrate_command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "solve_options.hpp"
 
 namespace softkin::cli {

@@ -1,4 +1,4 @@
-#include "mesh_text.hpp"
+#include "report_text.hpp"
 
 #include <softkin/io/json_text.hpp>
 #include <softkin/io/table/table.hpp>

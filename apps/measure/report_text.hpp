@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <softkin/io/plain_text.hpp>
 
-#include "printing.hpp"
+#include "cli/printing.hpp"
 
 namespace softkin::cli {
 
