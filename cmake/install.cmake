@@ -2,9 +2,12 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/softkin)
 
-# headers that need a library beyond Eigen stay here: they are the library's own
+# Not the library's own headers: those that need a library beyond Eigen, and those with vectors of eight numbers, which
+# a program built for another processor would pass in other registers.
+set(own energy linear physical target_shape supports vision vtu_document.hpp records_json.hpp)
+list(TRANSFORM own REPLACE "(.+)" "PATTERN;\\1;EXCLUDE")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/softkin DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp
-        PATTERN vision EXCLUDE PATTERN vtu_document.hpp EXCLUDE PATTERN records_json.hpp EXCLUDE)
+        ${own})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(TARGETS softkin_settings softkin_core softkin_linear softkin_model softkin_io softkin_energy softkin_statics

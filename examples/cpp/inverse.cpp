@@ -22,11 +22,14 @@ int main(int argc, char** argv) try {
 
   softkin::InverseOptions options;
   options.tolerance_mm = 1e-2;
+  int told = 0;
+  const auto progress = [&](const softkin::Progress& now) {
+    if (now.iteration > told) std::printf("  %d equilibria, %.4f mm away\n", now.iteration, now.step_mm);
+    told = now.iteration;
+    return true;  // false stops the search
+  };
   const softkin::InverseResult found =
-      softkin::solve_inverse(model, statics, {{goal}}, statics.rest(), options, [](const softkin::Progress& progress) {
-        std::printf("  %d equilibria, %.4f mm away\n", progress.iteration, progress.step_mm);
-        return true;  // false stops the search
-      });
+      softkin::solve_inverse(model, statics, {{goal}}, statics.rest(), options, progress);
 
   std::printf("%s: %.4f mm away after %d equilibria, %.3f s\n", softkin::name_of(found.status), found.errors_mm[0],
               found.equilibria, found.seconds);
