@@ -155,7 +155,9 @@ TEST(FkResume, KilledAtAnyMoment) {
     if (folder.reported() == steps) fs::remove_all(folder / "out");
     {
       StartedProgram program(folder, folder.arguments({"--resume"}));
-      std::this_thread::sleep_for(std::chrono::microseconds(random() % 60000));
+      const std::size_t until = std::min<std::size_t>(steps, folder.reported() + random() % 12);
+      (void)program.wait_until([&] { return folder.reported() >= until; });
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
       program.send(SIGKILL);
       (void)program.wait();
     }
