@@ -8,9 +8,11 @@ last row, and the peak of its memory; with the report alone, with a plot, with t
 import argparse
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 sys.dont_write_bytecode = True
@@ -25,24 +27,35 @@ def processor_seconds(process):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def watch(process, peaks):
+    """Appends the peak of its memory so far [kiB] until it ends. That of wait4 would count the Python that it was forked from."""
+    while found := re.search(r"VmHWM:\s+(\d+)", pathlib.Path(f"/proc/{process.pid}/status").read_text()):
+        peaks.append(int(found[1]))
+        time.sleep(0.02)
+
+
 def measure(program, rows, options, folder):
     """Seconds per row of the first and the last tenth, after the last row, peak of memory [MiB], seconds of the clock."""
     small_robot.write(folder, rows)
     words = [program, "fk", "bend.yaml", "--path", "path.csv", "--threads", "1", *options]
     begin = time.monotonic()
     process = subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, pipesize=4096)
-    marks, at = {}, 0
+    marks, at, peaks = {}, 0, []
+    watcher = threading.Thread(target=watch, args=(process, peaks))
+    watcher.start()
     for line in process.stdout:
         if line.split()[:1] == [str(at).encode()]:
             at += 1
             if at in (1, rows // 10, rows - rows // 10, rows):
                 marks[at] = processor_seconds(process)
+    watcher.join()
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0 or at != rows:
         sys.exit(f"long_path: {' '.join(words)}: status {status} after {at} of {rows} rows")
     end = usage.ru_utime + usage.ru_stime
     first, last = marks[rows // 10] - marks[1], marks[rows] - marks[rows - rows // 10]
-    return first / (rows // 10 - 1), last / (rows // 10), end - marks[rows], usage.ru_maxrss / 1024, time.monotonic() - begin
+    return (first / (rows // 10 - 1), last / (rows // 10), end - marks[rows], max(peaks) / 1024,
+            time.monotonic() - begin)
 
 
 def main():
@@ -57,7 +70,7 @@ def main():
             with tempfile.TemporaryDirectory() as folder:
                 first, last, end, memory, seconds = measure(os.path.abspath(asked.program), rows, FORMS[form],
                                                             pathlib.Path(folder))
-            print(f"{rows:8} {form:18} {1e3 * first:10.3f} {1e3 * last:10.3f} {last / first:6.2f} {end:8.1f} "
+            print(f"{rows:8} {form:18} {1e3 * first:10.3f} {1e3 * last:10.3f} {last / first if first else float('nan'):6.2f} {end:8.1f} "
                   f"{seconds:9.1f} {memory:7.1f}", flush=True)
 
 
