@@ -29,7 +29,7 @@ FactorTimes time_softkin(PhysicalParts& parts, const Eigen::SparseMatrix<double>
   const Eigen::VectorXd b = Eigen::VectorXd::Ones(matrix.rows());
   Eigen::MatrixXd x;
   double begin = now();
-  SparseLdlt factor(parts.pattern());
+  linear::SparseLdlt factor(parts.pattern());
   times.analyse = now() - begin;
   std::vector<double> factors, solves;
   for (int i = 0; i < repeat; ++i) {

@@ -41,7 +41,7 @@ double now() {
 }
 
 struct Followed {
-  std::vector<FollowedWaypoint> waypoints;
+  std::vector<InverseResult> waypoints;
   double seconds = 0;
   bool whole = true;  // not stopped by the limit
 
@@ -82,7 +82,8 @@ TrajectoryOptions trajectory(const Method& method, Solver solver, const Options&
 Actuation sample_near(const Model& model, const Statics& statics, const MarkerPath& path, const Options& options) {
   constexpr double steps = 10;
   MarkerPath begin{path.markers, path.axes, {path.waypoints.front()}};
-  Actuation near = follow_path(model, statics, begin, trajectory(methods[0], Solver::newton, options)).at(0).actuation;
+  Actuation near =
+      follow_path(model, statics, begin, trajectory(methods[0], Solver::newton, options)).at(0).equilibrium.actuation;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const double low = model.actuators[a].low, width = model.actuators[a].high - low;
     double& value = near[static_cast<Index>(a)];
@@ -94,8 +95,8 @@ Actuation sample_near(const Model& model, const Statics& statics, const MarkerPa
 void print_row(const Method& method, const Followed& found, const Followed& newton, std::size_t asked) {
   double worst = 0, equilibria = 0;
   std::size_t missed = 0;
-  for (const FollowedWaypoint& each : found.waypoints) {
-    worst = std::max(worst, each.error_mm);
+  for (const InverseResult& each : found.waypoints) {
+    worst = std::max(worst, each.errors_mm.maxCoeff());
     equilibria += each.equilibria;
     missed += each.status == InverseStatus::reached ? 0 : 1;
   }

@@ -22,7 +22,7 @@ Vec3 vector_of(const double (&values)[3]) {
   return {values[0], values[1], values[2]};
 }
 
-void target_shape::store(const Vec3& vector, double (&values)[3]) {
+void store(const Vec3& vector, double (&values)[3]) {
   std::copy(vector.begin(), vector.end(), values);
 }
 
@@ -47,7 +47,7 @@ Answers answer(const FingerSource& source, FingerKind kind, const std::vector<do
     target.degrees = shape.degrees;
     target.ratio = shape.ratio;
     target.pressure_kpa = shape.pressure;
-    target_shape::store(shape.tip, target.tip);
+    store(shape.tip, target.tip);
     answers.farthest_degrees = shape.degrees;
   }
   const EmbeddedPoint& marker = model.markers[0].point;
@@ -56,7 +56,7 @@ Answers answer(const FingerSource& source, FingerKind kind, const std::vector<do
     answers.marker_vertex[i] = marker.vertices[i];
     answers.marker_weight[i] = marker.weights[i];
   }
-  target_shape::store(marker.at(model.rest), answers.marker_rest);
+  store(marker.at(model.rest), answers.marker_rest);
   answers.seconds = now() - begin;
   return answers;
 }
@@ -94,7 +94,7 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
   const double begin = now();
   const Model model = compile(spec);
   const target_shape::System system(model);
-  const GlobalStep global(model, system.global_matrix());
+  const supports::GlobalStep global(model, system.global_matrix());
   Team team(options.threads);
   Run run;
   run.setup = now() - begin;

@@ -66,7 +66,7 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   });
 
   physical::Body elastic(model_);
-  Cliques cliques;
+  linear::Cliques cliques;
   elastic.add_cliques(cliques);
   physical::Body::Scratch scratch = elastic.make_scratch();
   LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()));
@@ -80,7 +80,7 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
 }
 
 Eigen::SparseMatrix<double> PhysicalParts::matrix() const {
-  const BlockColumns& columns = pattern();
+  const linear::BlockColumns& columns = pattern();
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(work_.values.size());
   for (Index node = 0; node < columns.nodes(); ++node)

@@ -28,13 +28,13 @@ class PhysicalParts {
   [[nodiscard]] Index unknowns() const { return work_.factor.size(); }
 
   /// The last stiffness, lower triangle in elimination order, as softkin's factorisation takes it.
-  [[nodiscard]] const BlockColumns& pattern() const { return system_.freedoms().columns(); }
+  [[nodiscard]] const linear::BlockColumns& pattern() const { return system_.freedoms().columns(); }
   [[nodiscard]] const LargeVector<double>& values() const { return work_.values; }
   [[nodiscard]] Eigen::SparseMatrix<double> matrix() const;
   /// Was it made positive definite element by element?
   [[nodiscard]] bool projected() const { return projected_; }
   [[nodiscard]] Team& team() { return team_; }
-  [[nodiscard]] SparseLdlt& factor() { return work_.factor; }
+  [[nodiscard]] linear::SparseLdlt& factor() { return work_.factor; }
 
  private:
   int factorise();

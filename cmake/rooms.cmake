@@ -1,26 +1,36 @@
-# Compiler settings of every target, and one static library per room.
+# How every target of this project is compiled, what its users are told, and one static library per room.
 
-add_library(softkin_settings INTERFACE)
-target_include_directories(softkin_settings INTERFACE ${PROJECT_SOURCE_DIR}/src)
-target_compile_options(softkin_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -fno-math-errno
-                       -ffp-contract=fast)
+# For this project alone: nothing of it reaches whoever links softkin.
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Werror -fno-math-errno -ffp-contract=fast)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(softkin_settings INTERFACE -Wno-psabi)  # no vector type crosses a library boundary
+  add_compile_options(-Wno-psabi)  # no vector type crosses a library boundary
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # gcc 12 reports its own AVX-512 header and std::string
-    target_compile_options(softkin_settings INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict
-                           -Wno-array-bounds -Wno-stringop-overflow)
+    add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds
+                        -Wno-stringop-overflow)
   endif()
 endif()
-target_compile_definitions(softkin_settings INTERFACE SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
-target_link_libraries(softkin_settings INTERFACE Eigen3::Eigen Threads::Threads)
-if(SOFTKIN_NATIVE)
-  target_compile_options(softkin_settings INTERFACE -march=native)
+add_compile_definitions(SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
+if(SOFTKIN_ARCH)
+  add_compile_options(-march=${SOFTKIN_ARCH})
+elseif(SOFTKIN_NATIVE)
+  add_compile_options(-march=native)
 endif()
 if(SOFTKIN_SANITIZE)
-  target_compile_options(softkin_settings INTERFACE -fsanitize=${SOFTKIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(softkin_settings INTERFACE -fsanitize=${SOFTKIN_SANITIZE})
+  add_compile_options(-fsanitize=${SOFTKIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${SOFTKIN_SANITIZE})
 endif()
+
+# What users get too. Eigen chooses by -march how it aligns, and with it how it allocates and frees: a matrix of a room
+# built for AVX-512 would crash a user's program built for any x86-64. So both are told one alignment. Of those that
+# suit every machine (16 and 64) 64 it is: sums of vectors that begin between two packets would depend on the address.
+add_library(softkin_settings INTERFACE)
+set_target_properties(softkin_settings PROPERTIES EXPORT_NAME settings)
+target_include_directories(softkin_settings INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                           $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_compile_features(softkin_settings INTERFACE cxx_std_20)
+target_compile_definitions(softkin_settings INTERFACE EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=64)
+target_link_libraries(softkin_settings INTERFACE Eigen3::Eigen Threads::Threads)
 
 # softkin_precompile(TARGET [headers...]): what nearly every file of the target reads, read once
 function(softkin_precompile target)
@@ -35,5 +45,6 @@ function(softkin_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   add_library(softkin_${name} STATIC ${sources})
   target_link_libraries(softkin_${name} PUBLIC softkin_settings ${ARGN})
+  set_target_properties(softkin_${name} PROPERTIES EXPORT_NAME ${name})
   softkin_precompile(softkin_${name})
 endfunction()

@@ -9,10 +9,9 @@ set(energy_sees core energy)
 set(statics_sees core linear model energy statics)
 set(kinematics_sees core model statics kinematics)
 set(drive_sees core model drive)
-set(calibration_sees core model io statics kinematics calibration)
-set(vision_sees core io vision)
-
 set(runs_sees core model io statics kinematics drive runs)
+set(calibration_sees core model io statics kinematics runs calibration)
+set(vision_sees core io vision)
 
 file(GLOB rooms RELATIVE ${SOURCE} ${SOURCE}/*)
 set(count 0)

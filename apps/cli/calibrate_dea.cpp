@@ -7,7 +7,7 @@
 #include <softkin/io/table/actuator_curve_file.hpp>
 
 #include "calibrate_command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "solve_options.hpp"
 
 namespace softkin::cli {

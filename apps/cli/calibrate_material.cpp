@@ -16,7 +16,7 @@
 #include <softkin/model/names.hpp>
 
 #include "calibrate_command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 

@@ -12,7 +12,7 @@
 #include <softkin/io/table/actuator_tests.hpp>
 
 #include "calibrate_command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 

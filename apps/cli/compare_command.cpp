@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
+#include <softkin/calibration/path_report.hpp>
+#include <softkin/calibration/path_tracks.hpp>
+#include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/plot/svg_plot.hpp>
-
 #include <softkin/io/output_files.hpp>
+#include <softkin/runs/report_comparison.hpp>
+
 #include "command.hpp"
-#include "compare_paths.hpp"
-#include "compare_table.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
+#include "solve_options.hpp"
 
 namespace softkin::cli {
 
@@ -32,30 +33,57 @@ struct CompareOptions {
     return asked || std::any_of(reports.begin(), reports.end(),
                                 [](const std::string& file) { return lower_extension(file) != ".json"; });
   }
+  [[nodiscard]] std::vector<Output> outputs() const { return asked_outputs({{"--output", output}, {"--plot", plot}}); }
+  /// The files themselves, without markers.
+  [[nodiscard]] std::vector<std::filesystem::path> inputs() const {
+    std::vector<std::filesystem::path> inputs(sum.begin(), sum.end());
+    for (const std::string& file : reports) {
+      inputs.emplace_back(file);
+      inputs.emplace_back(file.substr(0, file.rfind('@')));
+    }
+    return inputs;
+  }
 };
 
-int compare_paths_of(const CompareOptions& options) {
-  return compare_tracks({options.reports, options.sum, options.marker, options.by, options.plane, options.output,
-                         options.plot, options.start, options.align, options.json});
+int compare_steps(const CompareOptions& options) {
+  check_outputs(options.outputs(), options.inputs());
+  const runs::ReportComparison found =
+      runs::compare_reports(options.reports, options.marker, options.turn, options.poses);
+  const OutputFolders folders(options.outputs());
+  if (!options.plot.empty()) write_svg(options.plot, found.plot());
+  if (options.json) {
+    print(found.json() + "\n");
+    return done;
+  }
+  std::string text;
+  for (std::size_t p = 0; p < found.paths.size(); ++p)
+    text += std::to_string(p + 1) + ": " + found.paths[p].method + " (" + found.paths[p].file + ")\n";
+  print(text + joined(found.steps().lines(), "") + "\n" + joined(found.times().lines(), "") +
+        (options.plot.empty() ? "" : "plot: " + options.plot + "\n"));
+  return done;
 }
 
-int compare(const CompareOptions& options) {
-  if (options.of_paths()) return compare_paths_of(options);
-  std::vector<ReportedPath> paths;
-  for (const std::string& file : options.reports) {
-    paths.push_back(read_reported_path(file));
-    check_same_steps(paths.front(), paths.back());
+int compare_paths(const CompareOptions& options) {
+  check_outputs(options.outputs(), options.inputs());
+  calibration::PathRequest request{options.reports, options.sum, options.marker, options.by, {}, options.start};
+  if (!options.plane.empty()) request.plane = calibration::parse_plane(options.plane);
+  const calibration::PathReport report =
+      calibration::path_report(calibration::read_tracks(request), options.by, options.align);
+  const OutputFolders folders(options.outputs());
+  if (!options.output.empty()) write_file(options.output, report.errors().csv());
+  if (!options.plot.empty()) write_svg(options.plot, report.plot());
+  if (options.json) {
+    print(report.json() + "\n");
+    return done;
   }
-  const std::vector<Output> outputs =
-      options.plot.empty() ? std::vector<Output>() : std::vector<Output>{{"--plot", options.plot}};
-  check_outputs(outputs, {options.reports.begin(), options.reports.end()});
-  const Comparison comparison(std::move(paths), options.marker, options.turn, options.poses);
-  const OutputFolders folders(outputs);
-  if (!options.plot.empty()) write_svg(options.plot, comparison.plot());
-  if (options.json)
-    print(comparison.json());
-  else
-    print(comparison.text() + (options.plot.empty() ? "" : "plot: " + options.plot + "\n"));
+  const Table waypoints = report.waypoints();
+  std::string text = joined(report.heads(), "") + joined(waypoints.lines(), "");
+  if (const std::size_t all = report.tracks[0].points.size(); waypoints.rows.size() < all)
+    text += std::to_string(waypoints.rows.size()) + " of " + counted(all, "waypoint") + " shown; all: -o F.csv\n";
+  text += "\n" + joined(report.summary().lines(), "");
+  if (!options.output.empty()) text += "errors: " + options.output + "\n";
+  if (!options.plot.empty()) text += "plot: " + options.plot + "\n";
+  print(text);
   return done;
 }
 
@@ -140,7 +168,7 @@ void add_compare(CLI::App& app, Run& run) {
       "  softkin compare camera.csv predicted.json --marker tip --plane xz --align --plot errors.svg");
   command.callback([&run, options] {
     check(*options);
-    run = [options] { return compare(*options); };
+    run = [options] { return options->of_paths() ? compare_paths(*options) : compare_steps(*options); };
   });
 }
 

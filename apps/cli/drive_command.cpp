@@ -19,7 +19,7 @@
 #include <softkin/runs/drive_report.hpp>
 
 #include "command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 

@@ -3,6 +3,7 @@
 #include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/model/names.hpp>
@@ -10,9 +11,10 @@
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/report_head.hpp>
 #include <softkin/runs/shape_files.hpp>
+#include <softkin/runs/step_tables.hpp>
 
 #include "command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
@@ -96,7 +98,7 @@ class FkRun {
         job_(model, statics, steps, options.path, options.statics()),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
              runs::report_head(model, options.scene, options.statics()), {}),
-        table_(model, steps.size()) {}
+        table_(runs::table_of_steps(model, steps.size())) {}
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
@@ -126,7 +128,7 @@ class FkRun {
       };
       if (interrupted() || run_.advance(go_on) != runs::Advance::made) return false;
       line.clear();
-      say(table_.row(run_.done() - 1, run_.last()));
+      say(table_.line(runs::row_of(model_, run_.done() - 1, run_.last())));
     }
     return true;
   }
@@ -148,7 +150,11 @@ class FkRun {
 
   void write_plot() {
     std::vector<StepRecord> steps;
-    run_.log().each([&](std::size_t, const StepRecord& step) { steps.push_back(step); });
+    run_.log().each([&](std::size_t, StepRecord step) {
+      step.history = {};  // most of a record, and not drawn
+      step.strain = {};
+      steps.push_back(std::move(step));
+    });
     const std::string title = fs::path(options_.scene).filename().string() + ": " +
                               formulation_name(model_.formulation) + ", " + options_.solver_name;
     write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
@@ -182,20 +188,18 @@ class FkRun {
   }
 
   [[nodiscard]] int judge() {
-    int code = done;
-    for (const Status status : {Status::not_converged, Status::limit}) {
+    struct Ended {
       std::vector<std::size_t> numbers;
       StepRecord last;
-      run_.log().each([&](std::size_t number, const StepRecord& step) {
-        if (step.status != status) return;
-        numbers.push_back(number);
-        last = step;
-      });
-      if (numbers.empty()) continue;
-      code = not_converged;
-      complain(status, numbers, last);
-    }
-    return code;
+    };
+    std::map<Status, Ended> all;
+    run_.log().each([&](std::size_t number, const StepRecord& step) {
+      if (step.status == Status::converged) return;
+      all[step.status].numbers.push_back(number);
+      all[step.status].last = step;
+    });
+    for (const auto& [status, ended] : all) complain(status, ended.numbers, ended.last);
+    return all.empty() ? done : not_converged;
   }
 
   /// Tells which steps ended so, and of the last of them how.
@@ -210,7 +214,7 @@ class FkRun {
   const FkOptions& options_;
   runs::PathJob job_;
   runs::Run<StepRecord> run_;
-  StepTable table_;
+  Table table_;
 };
 
 std::vector<ActuationStep> asked_steps(const Model& model, const FkOptions& options) {

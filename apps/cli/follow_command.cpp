@@ -13,16 +13,16 @@
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/report_head.hpp>
 #include <softkin/runs/run_tables.hpp>
+#include <softkin/runs/step_tables.hpp>
+#include <softkin/runs/workspace_file.hpp>
 
-#include "columns.hpp"
 #include "command.hpp"
-#include "mesh_text.hpp"
 #include "method_options.hpp"
+#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
 #include "terminal.hpp"
-#include "workspace_start.hpp"
 
 namespace softkin::cli {
 
@@ -99,30 +99,6 @@ void check_usage(const FollowOptions& options) {
   check_solver(options);
 }
 
-/// The waypoints on the terminal, a row each as they come.
-class FollowTable {
- public:
-  FollowTable(const Model& model, std::size_t waypoints) {
-    columns_.add("waypoint", std::to_string(waypoints).size());
-    for (const Actuator& actuator : model.actuators) columns_.add_command(actuator);
-    columns_.add("error [mm]", 10);
-    columns_.add("equilibria", 10);
-    columns_.add("time [s]", 8);
-  }
-  [[nodiscard]] std::string header() const { return columns_.header() + "status"; }
-  [[nodiscard]] std::string row(std::size_t waypoint, const WaypointRecord& done) const {
-    std::vector<std::string> cells{std::to_string(waypoint)};
-    for (const double value : done.actuation) cells.push_back(Columns::command(value));
-    cells.push_back(number(done.error_mm, 2));
-    cells.push_back(std::to_string(done.equilibria));
-    cells.push_back(decimal(done.seconds, 2));
-    return columns_.row(cells) + name_of(done.end);
-  }
-
- private:
-  Columns columns_;
-};
-
 /// "55 waypoints, 55 reached to 0.001 mm: error at most 3.2e-04 mm, ...".
 std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm) {
   double worst = 0, errors = 0, equilibria = 0, seconds = 0;
@@ -176,7 +152,7 @@ class FollowRun {
         job_(model, statics, path, options.path, trajectory),
         run_(model, job_, {options.file("report.json"), options.file("path.pvd")},
              runs::follow_head(model, options.scene, trajectory), {"follow"}),
-        table_(model, path.waypoints.size()) {}
+        table_(runs::table_of_waypoints(model, path.waypoints.size())) {}
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "waypoint", options_.json);
@@ -211,7 +187,7 @@ class FollowRun {
       };
       if (interrupted() || run_.advance(go_on) != runs::Advance::made) return false;
       line.clear();
-      say(table_.row(run_.done() - 1, run_.last()));
+      say(table_.line(runs::row_of(run_.done() - 1, run_.last())));
     }
     return true;
   }
@@ -238,7 +214,7 @@ class FollowRun {
   double reach_mm_;
   runs::FollowJob job_;
   runs::Run<WaypointRecord> run_;
-  FollowTable table_;
+  Table table_;
 };
 
 int run_follow(const FollowOptions& options) {
@@ -255,7 +231,7 @@ int run_follow(const FollowOptions& options) {
   check_outputs(outputs, inputs);
   TrajectoryOptions trajectory = options.trajectory();
   if (!options.workspace.empty())
-    trajectory.start = nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
+    trajectory.start = runs::nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
   line.show(-1, "assembling");
   const Statics statics(model);
   line.clear();

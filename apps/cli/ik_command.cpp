@@ -13,15 +13,15 @@
 #include <softkin/model/names.hpp>
 #include <softkin/runs/inverse_report.hpp>
 #include <softkin/runs/shape_files.hpp>
+#include <softkin/runs/workspace_file.hpp>
 #include "command.hpp"
 #include "ik_goals.hpp"
 #include "ik_options.hpp"
 #include "ik_table.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
 #include "terminal.hpp"
-#include "workspace_start.hpp"
 
 namespace softkin::cli {
 
@@ -48,8 +48,8 @@ Search asked_search(const Model& model, const IkOptions& options) {
     if (fix[a] && (start[a] || prefer[a]))
       throw InvalidInput("--fix " + model.actuators[a].name + ": this actuator does not change, so it takes no --" +
                          (start[a] ? "start" : "prefer"));
-  search.start =
-      options.workspace.empty() ? model.rest_actuation() : nearest_actuation(model, options.workspace, search.goals);
+  search.start = options.workspace.empty() ? model.rest_actuation()
+                                           : runs::nearest_actuation(model, options.workspace, search.goals);
   search.start = with_settings(with_settings(search.start, start), fix);
   search.inverse = options.inverse();
   search.inverse.preferred = with_settings(search.start, prefer);

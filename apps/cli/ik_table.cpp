@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <softkin/io/table/settings.hpp>
+#include <softkin/io/table/table.hpp>
 #include <softkin/model/names.hpp>
-#include "mesh_text.hpp"
-#include "terminal.hpp"
+#include "printing.hpp"
 
 namespace softkin::cli {
 
@@ -69,28 +69,33 @@ std::string ends_text(const Model& model, const InverseResult& found) {
 
 std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goals, const InverseResult& found,
                      const runs::StepRecord& step) {
+  constexpr auto decimals = Column::Form::decimals;
+  Table actuators{{{.title = "actuator", .left = true},
+                   {.title = "command", .digits = value_decimals, .form = decimals},
+                   {.left = true},
+                   {.title = "range"},
+                   {.title = "achieved [-]", .digits = value_decimals, .form = decimals},
+                   {.title = "load"}}};
   const bool curves = std::any_of(model.actuators.begin(), model.actuators.end(),
                                   [](const Actuator& actuator) { return actuator.curve.has_value(); });
-  std::vector<std::vector<std::string>> rows{{"actuator", "command", "", "range", "achieved [-]", "load"}};
-  if (curves) rows[0].emplace_back("by curve");
+  if (curves) actuators.columns.push_back({.title = "by curve"});
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     const runs::ActuatorRecord& record = step.actuators[a];
-    rows.push_back({actuator.name, decimal(record.requested, value_decimals), bracketed_unit(actuator),
-                    number(actuator.low) + " to " + number(actuator.high),
-                    std::isfinite(record.achieved) ? decimal(record.achieved, value_decimals) : "unknown",
-                    load_text(model, actuator, record)});
-    if (curves) rows.back().push_back(curve_input_text(actuator, record));
+    actuators.rows.push_back({actuator.name, record.requested, bracketed_unit(actuator),
+                              number(actuator.low) + " to " + number(actuator.high), record.achieved,
+                              load_text(model, actuator, record)});
+    if (curves) actuators.rows.back().emplace_back(curve_input_text(actuator, record));
   }
-  std::vector<std::string> lines = aligned(rows, curves ? "lrlrrrr" : "lrlrrr");
-  rows = {{"marker", "asked", "found", "error [mm]"}};
+  Table reached{{{.title = "marker", .left = true},
+                 {.title = "asked"},
+                 {.title = "found"},
+                 {.title = "error", .unit = "mm", .digits = 2}}};
   for (std::size_t i = 0; i < goals.size(); ++i)
-    rows.push_back({goals[i].name, asked_text(goals[i].goal),
-                    found_text(model, goals[i].goal, found.equilibrium.state.positions),
-                    number(found.errors_mm[static_cast<Index>(i)], 2)});
-  const std::vector<std::string> more = aligned(rows, "lrrr");
-  lines.insert(lines.end(), more.begin(), more.end());
-  return joined(lines, "");
+    reached.rows.push_back({goals[i].name, asked_text(goals[i].goal),
+                            found_text(model, goals[i].goal, found.equilibrium.state.positions),
+                            found.errors_mm[static_cast<Index>(i)]});
+  return joined(actuators.lines(), "") + joined(reached.lines(), "");
 }
 
 std::string ik_summary(const InverseResult& found) {

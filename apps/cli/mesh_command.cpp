@@ -1,23 +1,172 @@
-#include "mesh_command.hpp"
-
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
+#include <algorithm>
 #include <memory>
 #include <softkin/io/mesh/length_unit.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/mesh_report.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/table/table.hpp>
 
 #include "command.hpp"
+#include "printing.hpp"
 
 namespace softkin::cli {
 
 namespace {
 
-constexpr double largest_coordinate = 1e60;  // [mm]; its cube, times any number of elements, is a finite number
+constexpr std::size_t most_regions = 40, most_parts = 20, most_notes = 20, most_losses = 20;
 
-using Shared = std::shared_ptr<MeshOptions>;
+const Column left{.left = true}, right;
+
+struct MeshOptions {
+  std::string input;   // a mesh; for check also a scene
+  std::string output;  // convert
+  std::string unit = "mm";
+  bool json = false, ascii = false;
+};
+
+Row region_row(const RegionMeasures& region) {
+  Row row{printable(region.name), std::to_string(region.dimension) + "D", "",
+          counted(region.vertices, "vertex", "vertices"), ""};
+  if (region.dimension < 2) return row;
+  row[2] = counted(region.cells, region.dimension == 3 ? "element" : "face");
+  row[4] = number(region.measure) + (region.dimension == 3 ? " mm^3" : " mm^2");
+  return row;
+}
+
+std::string text_of(const MeshInfo& info) {
+  const MeshMeasures& m = info.measures;
+  const Vec3 size = m.high - m.low;
+  const Table table{{left, left},
+                    {{"file", info.file + " (" + mesh_form(info.file) + ", lengths in " + info.unit + ")"},
+                     {"vertices", std::to_string(m.vertices)},
+                     {"elements", tetrahedra_text(m.tetrahedra, m.order) + ", " + counted(m.prisms, "prism") + " in " +
+                                      counted(m.parts, "part")},
+                     {"surface cells", counted(m.triangles, "triangle") + ", " + counted(m.quads, "quad")},
+                     {"bounding box", point_text(m.low) + " to " + point_text(m.high)},
+                     {"size", number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " mm"},
+                     {"volume", number(m.volume) + " mm^3"},
+                     {"boundary area", number(m.boundary) + " mm^2"},
+                     {"quality", "min " + number(m.quality[0], 3) + ", 1st percentile " + number(m.quality[1], 3) +
+                                     ", median " + number(m.quality[2], 3) + " (1: regular, 0: flat)"},
+                     {"edge lengths", "min " + number(m.edge_length[0], 4) + ", median " + number(m.edge_length[1], 4) +
+                                          ", max " + number(m.edge_length[2], 4) + " mm"},
+                     {"regions", std::to_string(m.regions.size())}}};
+  Table regions{{left, left, right, right, right}};
+  for (const RegionMeasures& region : m.regions) regions.rows.push_back(region_row(region));
+  return joined(table.body(), "") + joined(cut(regions.body(), most_regions), "  ");
+}
+
+std::string words(const MeshFinding& finding) {
+  std::string text = finding.kind;
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+void name(const std::vector<Index>& indices, const char* one, const char* many, std::string& text) {
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    text += text.empty() ? "" : i == 0 ? " and " : ", ";
+    if (i == 0) text += std::string(indices.size() == 1 ? one : many) + " ";
+    text += std::to_string(indices[i]);
+  }
+}
+
+std::string text_of(const MeshPlace& place) {
+  std::string text;
+  name(place.tetrahedra, "tetrahedron", "tetrahedra", text);
+  name(place.prisms, "prism", "prisms", text);
+  name(place.vertices, "vertex", "vertices", text);
+  return text + " at " + point_text(place.position);
+}
+
+std::string text_of(const std::vector<MeshFinding>& findings) {
+  Table table{{left, left, right, left}};
+  for (const MeshFinding& finding : findings)
+    table.rows.push_back({finding.count == 0 ? "ok" : name_of(finding.severity), words(finding),
+                          static_cast<std::int64_t>(finding.count), finding.count == 0 ? "" : finding.meaning});
+  const std::vector<std::string> lines = table.body();
+  std::string text;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += lines[i] + "\n";
+    for (const MeshPlace& place : findings[i].first) text += "    " + text_of(place) + "\n";
+    const std::size_t more = findings[i].count - findings[i].first.size();
+    if (more > 0) text += "    ... and " + std::to_string(more) + " more\n";
+  }
+  return text;
+}
+
+std::string parts_text(const MeshVerdict& verdict) {
+  Table table{{right, right, left}};
+  for (const PartMeasures& part : verdict.parts)
+    table.rows.push_back({counted(part.vertices, "vertex", "vertices"), number(part.volume) + " mm^3",
+                          "centroid " + point_text(part.centroid)});
+  const char* hint = verdict.scene               ? ""
+                     : verdict.parts.size() == 1 ? ": a scene must hold it"
+                                                 : ": a scene must hold each";
+  return counted(verdict.parts.size(), "part") + " connected through elements" + hint + "\n" +
+         joined(cut(table.body(), most_parts), "    ");
+}
+
+std::string text_of(const SceneVerdict& scene) {
+  if (scene.error) return "scene refused: " + *scene.error + "\n";
+  return "scene compiles" + std::string(scene.notes.empty() ? "\n" : ", and notes:\n") +
+         joined(cut(scene.notes, most_notes), "    ");
+}
+
+std::string judgement(const MeshVerdict& verdict) {
+  std::string errors = verdict.scene && verdict.scene->error ? "the scene is refused" : "", warnings;
+  for (const MeshFinding& finding : verdict.findings) {
+    if (finding.count == 0 || finding.severity == MeshSeverity::remark) continue;
+    std::string& text = finding.severity == MeshSeverity::error ? errors : warnings;
+    text += (text.empty() ? "" : ", ") + words(finding) + " (" + std::to_string(finding.count) + ")";
+  }
+  if (!errors.empty()) return "not usable: " + errors + "\n";
+  return "usable" + (warnings.empty() ? "" : ", but look at: " + warnings) + "\n";
+}
+
+std::string text_of(const MeshVerdict& verdict) {
+  return verdict.file + ": " + counted(verdict.vertices, "vertex", "vertices") + ", " +
+         tetrahedra_text(verdict.tetrahedra, verdict.order) + ", " + counted(verdict.prisms, "prism") +
+         ", each numbered from 0\n" + text_of(verdict.findings) + parts_text(verdict) +
+         (verdict.scene ? text_of(*verdict.scene) : "") + judgement(verdict);
+}
+
+std::string text_of(const MeshConversion& result) {
+  std::string text = "wrote " + result.output + " (" + mesh_form(result.output) +
+                     "): " + counted(result.vertices, "vertex", "vertices");
+  if (result.facets > 0)
+    text += ", " + counted(result.facets, "facet") + " of the boundary\n";
+  else
+    text += ", " + tetrahedra_text(result.tetrahedra, result.order) + ", " + counted(result.prisms, "prism") + ", " +
+            counted(result.regions.size(), "region") + "\n";
+  if (result.not_kept.empty()) return text;
+  return text + "not kept:\n" + joined(cut(result.not_kept, most_losses), "    ");
+}
+
+template <class Result>
+void show(const Result& result, const MeshOptions& options) {
+  print(options.json ? to_json(result) + "\n" : text_of(result));
+}
+
+int run_info(const MeshOptions& options) {
+  show(mesh_info(options.input, options.unit), options);
+  return done;
+}
+
+int run_check(const MeshOptions& options) {
+  const MeshVerdict verdict = mesh_verdict(options.input, options.unit);
+  show(verdict, options);
+  return verdict.usable() ? done : not_converged;  // 1: not what was hoped for, yet the input could be read
+}
+
+int run_convert(const MeshOptions& options) {
+  show(convert_mesh(options.input, options.output, options.ascii), options);
+  return done;
+}
 
 void add_unit(CLI::App& command, MeshOptions& options) {
   command.add_option("--unit", options.unit, "Unit of the file's lengths: mm, cm, m, um, in (default: mm)")
@@ -41,7 +190,7 @@ void add_info(CLI::App& mesh, Run& run) {
       "Box, volume and area are those of the elements, reversed ones included; volume, area, quality and edge lengths "
       "of order 2 are those of the corners.\n"
       "Example:\n  softkin mesh info finger.msh --unit cm");
-  command.callback([&run, options] { run = [options] { return mesh_info(*options); }; });
+  command.callback([&run, options] { run = [options] { return run_info(*options); }; });
 }
 
 void check_check(const CLI::App& command, MeshOptions& options, const std::string& scene) {
@@ -72,7 +221,7 @@ void add_check(CLI::App& mesh, Run& run) {
       "Examples:\n  softkin mesh check finger.msh\n  softkin mesh check finger.yaml --json");
   command.callback([&run, &command, options, scene] {
     check_check(command, *options, *scene);
-    run = [options] { return mesh_check(*options); };
+    run = [options] { return run_check(*options); };
   });
 }
 
@@ -92,28 +241,11 @@ void add_convert(CLI::App& mesh, Run& run) {
   command.callback([&run, options] {
     if (options->ascii && lower_extension(options->output) != ".msh")
       throw CLI::ValidationError("--ascii", "only a .msh can be written as text, not " + options->output);
-    run = [options] { return mesh_convert(*options); };
+    run = [options] { return run_convert(*options); };
   });
 }
 
 }  // namespace
-
-bool is_scene(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  return extension == ".yaml" || extension == ".yml";
-}
-
-void refuse_huge(const Mesh& mesh, const std::string& file) {
-  if (!(mesh.vertices.cwiseAbs().maxCoeff() <= largest_coordinate))
-    throw InvalidInput({file}, "the mesh's coordinates are too large: above 1e60 mm");
-}
-
-Mesh read_mesh_in_mm(const MeshOptions& options) {
-  Mesh mesh = read_mesh(options.input);
-  mesh.vertices *= mm_per(options.unit);
-  refuse_huge(mesh, options.input);
-  return mesh;
-}
 
 void add_mesh(CLI::App& app, Run& run) {
   CLI::App& mesh = *app.add_subcommand("mesh", "Look at a mesh, check it, convert it");

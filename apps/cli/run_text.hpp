@@ -4,7 +4,7 @@
 #include <softkin/runs/job.hpp>
 #include <string>
 
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {

@@ -3,38 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <softkin/core/text.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
-#include "mesh_text.hpp"
-#include "terminal.hpp"
+#include <softkin/runs/findings.hpp>
 
 namespace softkin::cli {
 
 namespace {
-
-constexpr std::size_t longest_name = 24;
-constexpr std::size_t load_width = 12;
-constexpr int value_decimals = 4;  // of ratios and loads
-
-std::string right(const std::string& text, std::size_t width) {
-  const std::size_t shown = characters(text);
-  return std::string(shown < width ? width - shown : 0, ' ') + text;
-}
-
-/// Where bytes of text hold so many characters.
-std::size_t offset_of(const std::string& text, std::size_t character) {
-  std::size_t at = 0;
-  while (at < text.size() && characters(text.substr(0, at + 1)) <= character) ++at;
-  return at;
-}
-
-/// A long name keeps its beginning and its end, which often is a number.
-std::string short_name(const std::string& name) {
-  const std::size_t length = characters(name);
-  if (length <= longest_name) return name;
-  const std::size_t half = longest_name / 2 - 1;
-  return name.substr(0, offset_of(name, half)) + ".." + name.substr(offset_of(name, length - half));
-}
 
 std::string grouped(std::size_t count) {
   std::string text = std::to_string(count);
@@ -44,16 +20,6 @@ std::string grouped(std::size_t count) {
 
 std::string percent(double share) {
   return decimal(100 * share, 1) + " %";
-}
-
-/// "pressure [kPa]" or "tension [N]" where the robot answers with one, else "".
-std::string load_header(const Model& model, const Actuator& actuator) {
-  if (model.formulation != Formulation::physical || actuator.kind == ActuatorKind::dea) return "";
-  return actuator.kind == ActuatorKind::cable ? "tension [N]" : "pressure [kPa]";
-}
-
-std::string fixed_or_unknown(double value) {
-  return std::isfinite(value) ? decimal(value, value_decimals) : "unknown";
 }
 
 /// The materials' laws, each once.
@@ -77,15 +43,38 @@ std::string command_range(const Actuator& actuator) {
 /// "air reached 1.62 of 1.8, tendon reached 2 N of 3 N".
 std::string reached_text(const Model& model, const StepRecord& step) {
   std::string text;
-  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const auto i = static_cast<Index>(a);
-    const double asked = step.actuation[i], reached = step.shape_actuation.value_or(step.actuation)[i];
-    if (reached == asked) continue;
-    text += (text.empty() ? "" : ", ") + model.actuators[a].name + " reached " +
-            command_text(model.actuators[a], reached) + " of " + command_text(model.actuators[a], asked);
+  for (const auto& [a, reached, asked] : runs::shortfalls(model, step)) {
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    text += (text.empty() ? "" : ", ") + actuator.name + " reached " + command_text(actuator, reached) + " of " +
+            command_text(actuator, asked);
   }
   if (!text.empty()) return text;
   return percent(step.reached.value_or(0)) + " of the loads and displacements were reached";
+}
+
+std::string finding_text(const runs::Finding& finding) {
+  using Kind = runs::Finding::Kind;
+  const std::vector<double>& v = finding.values;
+  switch (finding.kind) {
+    case Kind::strain:
+      return "principal strain of the body: " + percent(v[0]) + " to " + percent(v[1]) +
+             ", 95 % of the volume within " + percent(v[2]);
+    case Kind::beyond_linear_range:
+      return percent(v[0]) + " of region '" + finding.name + "' is strained beyond its linear range of " +
+             percent(v[1]);
+    case Kind::inverted:
+      return "warning: " + counted(static_cast<std::size_t>(v[0]), "element") + (v[0] == 1 ? " is" : " are") +
+             " inverted";
+    case Kind::slack:
+      return "cable '" + finding.name + "' is slack: its path is " + number(v[0], 5) +
+             " of its length at rest, the cable " + number(v[1], 5);
+    case Kind::accuracy:
+      return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
+             number(v[1], 2) + " mm";
+    case Kind::diverged:
+      break;
+  }
+  return "warning: the iteration diverged";
 }
 
 const char* unit_of_measure(const Actuator& actuator) {
@@ -93,63 +82,6 @@ const char* unit_of_measure(const Actuator& actuator) {
 }
 
 }  // namespace
-
-StepTable::StepTable(const Model& model, std::size_t steps) : model_(model) {
-  decimals_ = std::clamp(5 - static_cast<int>(std::floor(std::log10(model.diagonal_mm))), 1, 9);
-  const double farthest = model.rest.cwiseAbs().maxCoeff() + model.diagonal_mm;
-  length_width_ = std::max(length_width_, decimal(-farthest, decimals_).size());
-  add("step", std::to_string(steps).size());
-  for (const Actuator& actuator : model.actuators) {
-    const std::size_t width =
-        std::max(decimal(actuator.high, value_decimals).size(), decimal(actuator.low, value_decimals).size());
-    add(short_name(actuator.name) + " " + bracketed_unit(actuator), width);
-    add("achieved [-]", width);
-    if (const std::string load = load_header(model, actuator); !load.empty()) add(load, load_width);
-    if (actuator.curve) add("by curve [" + std::string(unit_of_input(actuator.curve->input) + 1) + "]", load_width);
-  }
-  for (const Marker& marker : model.markers) add(short_name(marker.name) + " x, y, z [mm]", 3 * length_width_ + 2);
-  add("iterations", 7);
-  add("time [s]", 8);
-}
-
-void StepTable::add(const std::string& header, std::size_t width) {
-  headers_.push_back(header);
-  widths_.push_back(std::max(width, characters(header)));
-}
-
-std::string StepTable::line(const std::vector<std::string>& cells) const {
-  std::string line;
-  for (std::size_t i = 0; i < widths_.size(); ++i) line += right(cells[i], widths_[i]) + "  ";
-  return line + cells.back();
-}
-
-std::string StepTable::header() const {
-  std::vector<std::string> cells = headers_;
-  cells.emplace_back("status");
-  return line(cells);
-}
-
-std::string StepTable::row(std::size_t number_of_step, const StepRecord& step) const {
-  std::vector<std::string> cells{std::to_string(number_of_step)};
-  for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-    const Actuator& actuator = model_.actuators[a];
-    const ActuatorRecord& record = step.actuators[a];
-    cells.push_back(fixed_or_unknown(record.requested));
-    cells.push_back(fixed_or_unknown(record.achieved));
-    if (!load_header(model_, actuator).empty())
-      cells.push_back(record.slack ? "slack" : fixed_or_unknown(record.multiplier));
-    if (actuator.curve) cells.push_back(record.by_curve ? fixed_or_unknown(*record.by_curve) : "outside");
-  }
-  for (const Vec3& marker : step.markers) {
-    std::string point;
-    for (const double x : marker) point += (point.empty() ? "" : " ") + right(decimal(x, decimals_), length_width_);
-    cells.push_back(point);
-  }
-  cells.push_back(std::to_string(step.iterations));
-  cells.push_back(decimal(step.seconds, 2));
-  cells.emplace_back(name_of(step.status));
-  return line(cells);
-}
 
 std::string summary(const Model& model, const std::string& solver) {
   std::string text = grouped(static_cast<std::size_t>(model.rest.rows())) + " vertices";
@@ -168,26 +100,8 @@ std::string summary(const Model& model, const std::string& solver) {
 
 std::string findings_text(const Model& model, const StepRecord& step) {
   std::string text;
-  const auto say = [&text](const std::string& line) { text += (text.empty() ? "" : "\n") + line; };
-  if (!step.strain.shares.empty())
-    say("principal strain of the body: " + percent(step.strain.least) + " to " + percent(step.strain.greatest) +
-        ", 95 % of the volume within " + percent(step.strain.percentile_95));
-  for (const auto& beyond : step.strain.beyond)
-    say(percent(beyond.share) + " of region '" + beyond.region + "' is strained beyond its linear range of " +
-        percent(beyond.linear_range));
-  if (const std::size_t inverted = step.inverted_elements; inverted > 0)
-    say("warning: " + counted(inverted, "element") + (inverted == 1 ? " is" : " are") + " inverted");
-  for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (const ActuatorRecord& actuator = step.actuators[a]; actuator.slack)
-      say("cable '" + model.actuators[a].name + "' is slack: its path is " + number(actuator.achieved, 5) +
-          " of its length at rest, the cable " + number(actuator.requested, 5));
-  const bool physical = model.formulation == Formulation::physical;
-  if (physical && step.status != Status::converged) return text;  // of another shape
-  if (!std::isfinite(step.step_mm) || !std::isfinite(step.estimated_error_mm))
-    say("warning: the iteration diverged");
-  else
-    say("last step of the iteration " + number(step.step_mm, 2) + " mm; estimated distance from the equilibrium " +
-        number(step.estimated_error_mm, 2) + " mm");
+  for (const runs::Finding& finding : runs::findings(model, step))
+    text += (text.empty() ? "" : "\n") + finding_text(finding);
   return text;
 }
 

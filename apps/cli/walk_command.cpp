@@ -11,10 +11,10 @@
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/report_head.hpp>
 #include <softkin/runs/run_tables.hpp>
+#include <softkin/runs/step_tables.hpp>
 
-#include "columns.hpp"
 #include "command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
@@ -28,7 +28,7 @@ using runs::WalkRecord;
 namespace {
 
 constexpr double same_stride_mm = 1e-4;
-constexpr int length_decimals = 4, force_decimals = 6;
+constexpr int length_decimals = 4;
 
 /// What the user asks of `softkin walk`.
 struct WalkOptions : SolveOptions, RunOptions {
@@ -74,36 +74,6 @@ void check_usage(const WalkOptions& options) {
   check_solver(options);
 }
 
-/// The steps on the terminal, a row each as they come.
-class WalkTable {
- public:
-  explicit WalkTable(const Model& model) : model_(model) {
-    columns_.add("cycle", 5);
-    columns_.add("t [s]", 7);
-    for (const Actuator& actuator : model.actuators) columns_.add_command(actuator);
-    for (std::size_t foot = 0; foot < 2; ++foot) columns_.add(foot_name(model, foot) + " [mm]", 10);
-    columns_.add("travel [mm]", 10);
-    if (has_friction()) columns_.add("friction [N]", 12);
-  }
-  [[nodiscard]] std::string header() const { return columns_.header() + "slides"; }
-  [[nodiscard]] std::string row(const WalkRecord& step) const {
-    const WalkStep& walk = step.walk;
-    std::vector<std::string> cells{std::to_string(step.cycle)};
-    cells.push_back(step.time_s ? number(*step.time_s) : "-");
-    for (const double value : step.actuation) cells.push_back(Columns::command(value));
-    for (const double place : {walk.rear_mm, walk.front_mm, walk.travel_mm})
-      cells.push_back(decimal(place, length_decimals));
-    if (has_friction()) cells.push_back(decimal(walk.friction_N, force_decimals));
-    return columns_.row(cells) + runs::sliding_text(model_, walk.sliding);
-  }
-
- private:
-  [[nodiscard]] bool has_friction() const { return model_.formulation == Formulation::physical; }
-
-  const Model& model_;
-  Columns columns_;
-};
-
 /// "stride: 5.12 mm per cycle from cycle 2 on".
 std::string stride_text(const std::vector<double>& strides) {
   const double last = strides.back();
@@ -127,7 +97,7 @@ class WalkRun {
         run_(model, job_, {options.file("report.json"), options.file("walk.pvd")},
              runs::walk_head(model, options.scene, options.statics(), options.gait, options.cycles, walker.direction()),
              {"feet"}),
-        table_(model) {}
+        table_(runs::table_of_walk(model)) {}
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
@@ -158,7 +128,7 @@ class WalkRun {
       const runs::Advance end = interrupted() ? runs::Advance::interrupted : run_.advance(go_on);
       if (end != runs::Advance::made) return end;
       line.clear();
-      say(table_.row(run_.last()));
+      say(table_.line(runs::row_of(model_, run_.last())));
     }
     return runs::Advance::made;
   }
@@ -191,7 +161,7 @@ class WalkRun {
   const WalkOptions& options_;
   runs::WalkJob job_;
   runs::Run<WalkRecord> run_;
-  WalkTable table_;
+  Table table_;
 };
 
 int run_walk(const WalkOptions& options) {

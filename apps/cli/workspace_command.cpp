@@ -3,21 +3,20 @@
 #include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
-#include <mutex>
-#include <softkin/kinematics/workspace.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/runs/ranks.hpp>
+#include <softkin/runs/reach.hpp>
 #include <thread>
 
-#include <softkin/io/output_files.hpp>
 #include "command.hpp"
-#include "mesh_text.hpp"
+#include "printing.hpp"
+#include "run_text.hpp"
 #include "solve_options.hpp"
 #include "step_text.hpp"
 #include "terminal.hpp"
-#include "workspace_columns.hpp"
-#include "workspace_file.hpp"
-#include "workspace_outputs.hpp"
-#include "workspace_ranks.hpp"
 
 namespace softkin::cli {
 
@@ -25,80 +24,129 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Groups that have something left, and the file that keeps what is made of them.
-class FileDesk : public GroupDesk {
- public:
-  FileDesk(const WorkspacePlan& plan, WorkspaceFile& file)
-      : plan_(plan), file_(file), before_(file.done()), start_(seconds_now()) {
-    show();
+constexpr std::int64_t most_samples = 100'000'000;
+
+/// What the user asks of `softkin workspace`. An empty file name: not given.
+struct WorkspaceOptions : SolveOptions, RunOptions {
+  std::string output, cloud, hull, plot;
+  std::string marker;  // that cloud, hull and plot show; empty: the first
+  Index samples = 0;
+  std::string sampling = "grid";
+  std::optional<std::uint64_t> seed;
+
+  [[nodiscard]] std::vector<Output> outputs() const {
+    return asked_outputs({{"--output", output}, {"--cloud", cloud}, {"--hull", hull}, {"--plot", plot}});
   }
-
-  std::optional<GroupTask> take() override {
-    const std::lock_guard lock(mutex_);
-    for (; next_ < plan_.groups.size() && !interrupted(); ++next_) {
-      GroupTask task{static_cast<Index>(next_), {}};
-      bool anything = false;
-      for (const Index sample : plan_.groups[next_]) {
-        task.known.push_back(file_.known(sample));
-        anything = anything || !task.known.back();
-      }
-      if (!anything) continue;
-      ++next_;
-      return task;
-    }
-    return std::nullopt;
+  [[nodiscard]] Sampling kind() const {
+    return sampling == "grid" ? Sampling::grid : sampling == "sobol" ? Sampling::sobol : Sampling::random;
   }
-
-  void keep(const WorkspaceSample& sample) override {
-    const std::lock_guard lock(mutex_);
-    file_.add(sample);
-    show();
-  }
-
-  void end_progress() { line_.clear(); }
-
- private:
-  void show() {
-    const double done = file_.done(), all = plan_.samples(), made = done - before_, elapsed = seconds_now() - start_;
-    std::string text =
-        std::to_string(file_.done()) + "/" + std::to_string(plan_.samples()) + " samples, " + duration(elapsed);
-    if (made > 0) text += ", " + duration(elapsed * (all - done) / made) + " left";
-    const Index missed = file_.done() - file_.count(Status::converged);
-    if (missed > 0) text += ", " + std::to_string(missed) + " without an equilibrium";
-    line_.show(done / all, text);
-  }
-
-  const WorkspacePlan& plan_;
-  WorkspaceFile& file_;
-  std::mutex mutex_;
-  std::size_t next_ = 0;  // group
-  Index before_;          // samples
-  double start_;          // [s]
-  ProgressLine line_;
 };
 
+void add_files(CLI::App& command, WorkspaceOptions& options) {
+  add_scene(command, options);
+  command
+      .add_option("-o,--output", options.output,
+                  "A row per sample: actuation, markers [mm], tensions [N] and\npressures [kPa], status; grows while "
+                  "samples are solved")
+      ->type_name("F.csv")
+      ->required();
+  command.add_option("--cloud", options.cloud, "The marker at every sample, with actuation and loads, for\nParaView")
+      ->type_name("F.vtu");
+  command.add_option("--hull", options.hull, "Convex hull of the marker's positions; its volume is printed")
+      ->type_name("F");
+  command.add_option("--plot", options.plot, "The marker's positions, seen along the axes")->type_name("F.svg");
+  command
+      .add_option("--marker", options.marker,
+                  "The marker that --cloud, --hull and --plot show (default: the\nscene's first); the CSV has all")
+      ->type_name("NAME");
+}
+
+void add_sampling(CLI::App& command, WorkspaceOptions& options) {
+  command
+      .add_option("--samples", options.samples,
+                  "How many actuations, inside the ranges of the actuators; a grid\ntakes the nearest number that "
+                  "fills it")
+      ->type_name("N")
+      ->required()
+      ->check(integer_from(1, most_samples));
+  command
+      .add_option("--sampling", options.sampling,
+                  "grid (default): as many values for every actuator, ends\nincluded; sobol: a low-discrepancy "
+                  "sequence; random: uniform")
+      ->type_name("NAME")
+      ->check(one_of({"grid", "sobol", "random"}));
+  command.add_option("--seed", options.seed, "Of --sampling random (default: 0)")
+      ->type_name("S")
+      ->check(integer_from(0, std::numeric_limits<std::int64_t>::max()));
+}
+
+void check_usage(const WorkspaceOptions& options) {
+  check_solver(options);
+  check_extension("--output", options.output, {{".csv", ""}});
+  check_extension("--cloud", options.cloud, {{".vtu", ""}});
+  check_extension("--hull", options.hull, {{".vtu", ""}, {".stl", ""}});
+  check_extension("--plot", options.plot, {{".svg", ""}});
+  if (options.seed && options.kind() != Sampling::random)
+    throw InvalidInput("--seed is the seed of random samples: it needs --sampling random");
+}
+
+/// What a hull is called, and its measure.
+std::string hull_text(const Hull& hull) {
+  const std::string thick = number(hull.extents[0], 4) + " x " + number(hull.extents[1], 4) + " x " +
+                            number(hull.extents[2], 2) + " mm along its principal axes";
+  switch (hull.shape) {
+    case HullShape::solid:
+      return number(hull.volume, 6) + " mm^3, " + thick;
+    case HullShape::flat:
+      return "flat, without a volume: " + number(hull.area, 6) + " mm^2, " + thick;
+    case HullShape::line:
+      return "none: the positions are on a line of " + number(hull.extents[0], 6) + " mm";
+    case HullShape::point:
+      break;
+  }
+  return "none: the marker does not move";
+}
+
+bool has_triangles(const runs::Reach& reach) {
+  return reach.hull && !reach.hull->triangles.empty();
+}
+
+/// "tip reaches x 20.1 to 118.3, ... mm", the hull and the files, a line each.
+std::string reach_text(const runs::Reach& reach, const WorkspaceOptions& options) {
+  if (reach.samples.empty()) return "no sample has an equilibrium: nothing to show\nsamples: " + options.output;
+  std::string text = reach.marker + " reaches";
+  for (int axis = 0; axis < 3; ++axis)
+    text += std::string(axis > 0 ? ", " : " ") + axis_names[axis] + " " +
+            decimal(reach.positions.col(axis).minCoeff(), 2) + " to " +
+            decimal(reach.positions.col(axis).maxCoeff(), 2);
+  text += " mm";
+  if (reach.hull) text += "\nconvex hull of the reach: " + hull_text(*reach.hull);
+  text += "\nsamples: " + options.output;
+  if (!options.cloud.empty()) text += "\ncloud: " + options.cloud + " (open it in ParaView)";
+  if (has_triangles(reach)) text += "\nhull: " + options.hull;
+  if (!options.plot.empty()) text += "\nplot: " + options.plot;
+  return text;
+}
+
 /// What all ranks know.
-struct Job {
+struct Asked {
   Model model;
   SamplingOptions sampling;
   WorkspacePlan plan;
   WorkspaceHead head;
   std::vector<fs::path> inputs;
-};
 
-Job read_job(const WorkspaceOptions& options) {
-  Job job;
-  job.inputs = {options.scene};
-  job.model = asked_robot(options, job.inputs);
-  (void)shown_marker(job.model, options.marker);
-  job.sampling = {options.kind(), options.samples, options.seed.value_or(0)};
-  if (job.sampling.kind == Sampling::grid)
-    job.sampling.samples = static_cast<Index>(std::llround(
-        std::pow(nearest_grid(job.model, options.samples), static_cast<double>(varied_actuators(job.model).size()))));
-  job.plan = plan_workspace(job.model, job.sampling);
-  job.head = workspace_head(job.model, job.sampling, options.solver_name);
-  return job;
-}
+  explicit Asked(const WorkspaceOptions& options) : inputs{options.scene} {
+    model = asked_robot(options, inputs);
+    (void)runs::shown_marker(model, options.marker);
+    sampling = {options.kind(), options.samples, options.seed.value_or(0)};
+    if (sampling.kind == Sampling::grid)
+      sampling.samples = static_cast<Index>(std::llround(
+          std::pow(nearest_grid(model, options.samples), static_cast<double>(varied_actuators(model).size()))));
+    plan = plan_workspace(model, sampling);
+    head = runs::workspace_head(model, sampling, options.statics());
+  }
+};
 
 int thread_count(int asked) {
   return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -106,19 +154,18 @@ int thread_count(int asked) {
 
 class WorkspaceRun {
  public:
-  WorkspaceRun(const WorkspaceOptions& options, const Job& job, const Ranks& ranks)
-      : options_(options), job_(job), ranks_(ranks), columns_(workspace_columns(job.model)) {}
+  WorkspaceRun(const WorkspaceOptions& options, const Asked& asked, const runs::Ranks& ranks)
+      : options_(options), asked_(asked), ranks_(ranks), columns_(runs::workspace_columns(asked.model)) {}
 
   /// Rank 0: before anything is written.
   void begin() {
-    check_outputs(options_.outputs(), job_.inputs);
+    check_outputs(options_.outputs(), asked_.inputs);
     folders_.emplace(options_.outputs());
-    file_.emplace(options_.output, job_.head, columns_, job_.plan, options_.resume);
+    file_.emplace(options_.output, asked_.head, columns_, asked_.plan, options_.resume);
     if (options_.resume) remove_torn_files(options_.outputs());
-    say(options_.scene + ": " + summary(job_.model, options_.solver_name));
-    std::string text = counted(static_cast<std::size_t>(job_.sampling.samples), "sample") + ", " +
-                       sampling_text(job_.model, job_.sampling);
-    if (job_.sampling.samples != options_.samples)
+    say(options_.scene + ": " + summary(asked_.model, options_.solver_name));
+    std::string text = samples_text() + ", " + runs::sampling_text(asked_.model, asked_.sampling);
+    if (asked_.sampling.samples != options_.samples)
       text += "; the full grid nearest to " + std::to_string(options_.samples);
     say(text);
     if (ranks_.size() > 1) say(std::to_string(ranks_.size()) + " ranks");
@@ -129,10 +176,10 @@ class WorkspaceRun {
     const double start = seconds_now();
     solve();
     if (!ranks_.leads()) return done;
-    if (!file_->complete()) return stopped();
-    file_->finish();
-    WorkspaceReach reach(job_.model, read_workspace(options_.output, columns_).samples, options_);
-    reach.write();
+    if (!file_->complete())
+      return tell_stopped(static_cast<std::size_t>(file_->done()), samples(), "sample", options_.output, true);
+    const runs::Reach reach = runs::reach_of(asked_.model, file_->finish(), options_.marker, !options_.hull.empty());
+    if (!reach.samples.empty()) write(reach);
     tell(reach, seconds_now() - start);
     return judge();
   }
@@ -142,94 +189,104 @@ class WorkspaceRun {
     if (!options_.json) print(line + "\n");
   }
 
+  [[nodiscard]] std::size_t samples() const { return static_cast<std::size_t>(asked_.plan.samples()); }
+  [[nodiscard]] std::string samples_text() const { return counted(samples(), "sample"); }
+
   void say_resumed() const {
     if (file_->was_torn()) say("the last row was torn and is solved again");
     if (file_->done() == 0) return say("nothing to resume: starting with the first sample");
-    const std::string count = std::to_string(file_->done()) + " of " + std::to_string(job_.plan.samples());
+    const std::string count = std::to_string(file_->done()) + " of " + std::to_string(samples());
     say(count +
         (file_->complete() ? " samples were done before: nothing is left" : " samples were done before: going on"));
   }
 
   void solve() {
-    std::optional<FileDesk> desk;
-    if (ranks_.leads()) desk.emplace(job_.plan, *file_);
+    ProgressLine line;
+    std::optional<runs::FileDesk> desk;
+    if (ranks_.leads()) {
+      const auto show = [&, before = file_->done(), start = seconds_now()] { show_progress(line, before, start); };
+      desk.emplace(
+          asked_.plan, *file_, [] { return !interrupted(); }, show);
+      show();
+    }
     const auto work = [&](GroupDesk& groups) {
       if (ranks_.size() == 1 && file_->complete()) return;
-      const Statics assembled(job_.model);
-      solve_groups(job_.model, assembled, job_.plan, options_.statics(), thread_count(options_.threads), groups,
+      const Statics assembled(asked_.model);
+      solve_groups(asked_.model, assembled, asked_.plan, options_.statics(), thread_count(options_.threads), groups,
                    [](const Progress&) { return !interrupted(); });
     };
-    ranks_.share(job_.model, job_.plan, desk ? &*desk : nullptr, work);
-    if (desk) desk->end_progress();
+    ranks_.share(asked_.model, asked_.plan, desk ? &*desk : nullptr, work);
   }
 
-  void tell(const WorkspaceReach& reach, double seconds) const {
-    const Index converged = file_->count(Status::converged), limit = file_->count(Status::limit);
-    if (options_.json) {
-      nlohmann::ordered_json json;
-      json["softkin"] = SOFTKIN_VERSION;
-      json["scene"] = options_.scene;
-      for (const auto& [key, value] : job_.head)
-        if (key == "robot" || key == "solver" || key == "sampling") json[key] = value;
-      json["samples"] = job_.plan.samples();
-      json["converged"] = converged;
-      json["limit"] = limit;
-      json["not_converged"] = file_->count(Status::not_converged);
-      reach.add_to(json);
-      json["seconds"] = seconds;
-      return print(json);
-    }
-    say(std::to_string(converged) + " of " + counted(static_cast<std::size_t>(job_.plan.samples()), "sample") +
-        " converged; " + duration(seconds));
-    say(reach.text());
+  /// before: samples that were done at the start [s]
+  void show_progress(ProgressLine& line, Index before, double start) const {
+    const double now = file_->done(), all = asked_.plan.samples(), made = now - before;
+    const double elapsed = seconds_now() - start;
+    std::string text =
+        std::to_string(file_->done()) + "/" + std::to_string(samples()) + " samples, " + duration(elapsed);
+    if (made > 0) text += ", " + duration(elapsed * (all - now) / made) + " left";
+    const Index missed = file_->done() - file_->count(Status::converged);
+    if (missed > 0) text += ", " + std::to_string(missed) + " without an equilibrium";
+    line.show(now / all, text);
   }
 
-  [[nodiscard]] int stopped() const {
-    const std::string text = "interrupted after " + std::to_string(file_->done()) + " of " +
-                             counted(static_cast<std::size_t>(job_.plan.samples()), "sample") + "; they are in " +
-                             options_.output + ", the same command with --resume goes on";
-    std::fprintf(stderr, "softkin: %s\n", text.c_str());
-    return not_converged;
+  void write(const runs::Reach& reach) const {
+    if (!options_.cloud.empty()) runs::write_cloud(options_.cloud, asked_.model, reach);
+    if (has_triangles(reach)) runs::write_hull(options_.hull, *reach.hull);
+    if (!options_.plot.empty()) write_svg(options_.plot, runs::plot_of_reach(reach));
+  }
+
+  void tell(const runs::Reach& reach, double seconds) const {
+    const Index converged = file_->count(Status::converged);
+    if (options_.json)
+      return print(runs::workspace_summary(options_.scene, asked_.head, reach,
+                                           {{"samples", asked_.plan.samples()},
+                                            {"converged", converged},
+                                            {"limit", file_->count(Status::limit)},
+                                            {"not_converged", file_->count(Status::not_converged)}},
+                                           seconds) +
+                   "\n");
+    say(std::to_string(converged) + " of " + samples_text() + " converged; " + duration(seconds));
+    say(reach_text(reach, options_));
   }
 
   [[nodiscard]] int judge() const {
     const auto complain = [&](Status status, const char* what) {
       if (const Index count = file_->count(status); count > 0)
-        std::fprintf(stderr, "softkin: %d of %d samples %s (status %s); they are rows without values\n", count,
-                     job_.plan.samples(), what, workspace_status(status));
+        std::fprintf(stderr, "softkin: %d of %zu samples %s (status %s); they are rows without values\n", count,
+                     samples(), what, workspace_status(status));
     };
     complain(Status::limit, "have no equilibrium that could be followed to");
     complain(Status::not_converged, "did not converge");
-    return file_->count(Status::converged) == job_.plan.samples() ? done : not_converged;
+    return file_->count(Status::converged) == asked_.plan.samples() ? done : not_converged;
   }
 
   const WorkspaceOptions& options_;
-  const Job& job_;
-  const Ranks& ranks_;
+  const Asked& asked_;
+  const runs::Ranks& ranks_;
   WorkspaceColumns columns_;
   std::optional<OutputFolders> folders_;
-  std::optional<WorkspaceFile> file_;
+  std::optional<runs::WorkspaceFile> file_;
 };
 
 int run_workspace(const WorkspaceOptions& options) {
-  const Ranks ranks;
+  const runs::Ranks ranks;
   try {
-    std::optional<Job> job;
-    std::optional<WorkspaceRun> run;
+    std::optional<Asked> asked;
     ranks.together([&] {
       check_usage(options);
-      job = read_job(options);
+      asked.emplace(options);
     });
     std::string text;
-    for (const auto& [key, value] : job->head) text += key + ": " + value + "\n";
+    for (const auto& [key, value] : asked->head) text += key + ": " + value + "\n";
     ranks.agree_on(text);
-    run.emplace(options, *job, ranks);
+    WorkspaceRun run(options, *asked, ranks);
     catch_interrupt();
     ranks.together([&] {
-      if (ranks.leads()) run->begin();
+      if (ranks.leads()) run.begin();
     });
-    return run->run();
-  } catch (const Silence&) {
+    return run.run();
+  } catch (const runs::Silence&) {
     return bad_input;
   }
 }
@@ -239,7 +296,13 @@ int run_workspace(const WorkspaceOptions& options) {
 void add_workspace(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("workspace", "Workspace: the equilibria of many actuations, and their reach");
   const auto options = std::make_shared<WorkspaceOptions>();
-  add_options(*command, *options);
+  add_files(*command, *options);
+  add_sampling(*command, *options);
+  add_force(*command, *options);
+  add_solver(*command, *options, "--tolerance",
+             "Samples solved at once, each on one thread; 0: as many as the\nmachine has (default); under mpirun: "
+             "of each rank");
+  add_run(*command, *options, "Go on where the same command was interrupted or killed", "Print a summary as JSON");
   command->footer(
       "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 some samples have no "
       "equilibrium\n"

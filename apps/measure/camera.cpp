@@ -7,9 +7,9 @@
 
 #include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
-#include "cli/mesh_text.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"
+#include "report_text.hpp"
 
 namespace softkin::cli {
 

@@ -3,10 +3,10 @@
 
 #include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
-#include "cli/mesh_text.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"
 #include "measurer.hpp"
+#include "report_text.hpp"
 #include "tables.hpp"
 
 namespace softkin::cli {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "cli/mesh_text.hpp"
 #include "cli/terminal.hpp"
+#include "report_text.hpp"
 
 namespace softkin::cli {
 

@@ -27,7 +27,7 @@ TensileCurve curve_of(double end, int points, const Stress& stress, double noise
 }
 
 /// Energy of an incompressible law under tension [MPa].
-double energy(const calibration::IncompressibleLaw& law, double strain) {
+double energy_density(const calibration::IncompressibleLaw& law, double strain) {
   const double s = 1 + strain, e1 = s * s + 2 / s - 3, e2 = 2 * s + 1 / (s * s) - 3;
   return law.c10 * e1 + law.c01 * e2 + law.c20 * e1 * e1 + law.c30 * e1 * e1 * e1;
 }
@@ -73,7 +73,7 @@ TEST(Uniaxial, StressIsTheSlopeOfTheEnergy) {
     for (const double strain : {-0.4, 0.1, 0.8, 2.0}) {
       const double h = 1e-5;
       EXPECT_NEAR(calibration::uniaxial_stress(law, strain),
-                  (energy(law, strain + h) - energy(law, strain - h)) / (2 * h), 1e-6);
+                  (energy_density(law, strain + h) - energy_density(law, strain - h)) / (2 * h), 1e-6);
       EXPECT_NEAR(calibration::uniaxial_stress(law, 1e-7) / 1e-7, law.youngs_modulus(), 1e-5);
     }
 }

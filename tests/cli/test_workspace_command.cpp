@@ -224,6 +224,28 @@ TEST(WorkspaceCommand, InterruptedItTellsHowToGoOn) {
   expect_refusal(folder, joined(options, {"--resume"}), "its ranges is");
 }
 
+TEST(WorkspaceCommand, GoesOnOnlyWithTheSameSolverOptions) {
+  const ReachFolder folder;
+  const std::vector<std::string> few{"--samples", "4", "--resume"};
+  ASSERT_EQ(folder.run({"--samples", "4"}).exit_code, 0);
+  EXPECT_EQ(lines_of(folder.text())[3], "# solver: newton");
+  expect_refusal(folder, joined(few, {"--tolerance", "1e-7"}),
+                 "its solver is 'newton', not 'newton, tolerance 1e-07 mm'");
+  expect_refusal(folder, joined(few, {"--max-iterations", "70"}), "not 'newton, at most 70 iterations'");
+  const std::vector<std::string> other{"--tolerance", "1e-07", "--max-iterations", "70"};
+  ASSERT_EQ(folder.run(joined({"--samples", "4"}, other)).exit_code, 0);
+  EXPECT_EQ(lines_of(folder.text())[3], "# solver: newton, tolerance 1e-07 mm, at most 70 iterations");
+  EXPECT_EQ(folder.run(joined(few, other)).exit_code, 0);
+  expect_refusal(folder, few, "its solver is 'newton, tolerance 1e-07 mm, at most 70 iterations', not 'newton'");
+  expect_refusal(folder, {"--samples", "4", "--anderson", "3"}, "it needs --solver local-global");
+
+  const ReachFolder target(block_scene());
+  const std::vector<std::string> local{"--samples", "3", "--solver", "local-global"};
+  ASSERT_EQ(target.run(joined(local, {"--anderson", "3"})).exit_code, 0);
+  EXPECT_EQ(lines_of(target.text())[3], "# solver: local-global, anderson 3");
+  expect_refusal(target, joined(local, {"--resume"}), "its solver is 'local-global, anderson 3', not 'local-global'");
+}
+
 TEST(WorkspaceCommand, TwoAtOnceOnOneFileAreRefused) {
   const ReachFolder folder;
   const std::vector<std::string> options{"--samples", "3000", "--sampling", "sobol", "--threads", "1", "--resume"};

@@ -46,4 +46,21 @@ TEST(Team, ResultsOfALoopAreSeenByTheNext) {
   for (const std::int64_t value : values) EXPECT_EQ(value, 501);
 }
 
+TEST(TeamPool, LendsATeamAgain) {
+  TeamPool pool;
+  const Team* first = nullptr;
+  {
+    const TeamPool::Lent pair = pool.lend(2), other = pool.lend(2);
+    EXPECT_EQ(pair->size(), 2);
+    EXPECT_NE(pair.get(), other.get());
+    first = pair.get();
+  }
+  const TeamPool::Lent trio = pool.lend(3), one = pool.lend(2), two = pool.lend(2);
+  EXPECT_EQ(trio->size(), 3);
+  EXPECT_TRUE(one.get() == first || two.get() == first);
+  std::atomic<int> sum{0};
+  two->each(100, [&](Index i) { sum += i; });
+  EXPECT_EQ(sum, 4950);
+}
+
 }  // namespace softkin

@@ -8,7 +8,7 @@
 
 #include "drive_samples.hpp"
 
-namespace softkin {
+namespace softkin::drive {
 namespace {
 
 using testing::two_commands;
@@ -112,9 +112,9 @@ TEST_F(HardwareFile, RefusesByLine) {
 }
 
 TEST(Machine, UsesDefaultsAndSaysSo) {
-  const drive::Machine machine = drive::assemble(two_tendons(), two_motors(), two_commands({{1, 1}}));
+  const Machine machine = assemble(two_tendons(), two_motors(), two_commands({{1, 1}}));
   ASSERT_EQ(machine.tendons.size(), 2u);
-  const drive::Tendon& a = machine.tendons[0];
+  const Tendon& a = machine.tendons[0];
   EXPECT_EQ(a.rest_length_mm, 40);
   EXPECT_EQ(a.shortest_mm, 20);
   EXPECT_EQ(a.longest_mm, 40);
@@ -134,7 +134,7 @@ TEST(Machine, DrumsTurn) {
   hardware.tendons[0].steps_per_mm = 25;
   hardware.tendons[0].direction = -1;
   hardware.tendons[0].slack_offset_mm = 3;
-  const drive::Tendon a = drive::assemble(two_tendons(), hardware, two_commands({{1, 1}})).tendons[0];
+  const Tendon a = assemble(two_tendons(), hardware, two_commands({{1, 1}})).tendons[0];
   EXPECT_DOUBLE_EQ(a.wound_mm(30), 13);  // 40 at rest, 3 slack
   const double turn_mm = 2 * std::numbers::pi * 6;
   EXPECT_NEAR(a.steps(turn_mm), -3200, 1e-9);  // whatever the board calls a mm
@@ -144,7 +144,7 @@ TEST(Machine, DrumsTurn) {
 TEST(Machine, RefusesWhatDoesNotFit) {
   const auto refused = [](const Model& model, const HardwareSpec& hardware, Commands commands,
                           const std::string& part) {
-    expect_refused([&] { (void)drive::assemble(model, hardware, commands); }, part);
+    expect_refused([&] { (void)assemble(model, hardware, commands); }, part);
   };
   const Commands commands = two_commands({{1, 1}});
   HardwareSpec hardware = two_motors();
@@ -180,18 +180,17 @@ TEST(PressureSchedule, FollowsTheCommandsWithinLimits) {
   for (int i = 0; i < 3; ++i)
     commands.rows.push_back({Eigen::Vector2d(20 * i - 5, 1 + 0.1 * i), Eigen::Vector2d(0, 7.5 * i), 0.5 * i,
                              static_cast<std::size_t>(i + 2)});
-  const drive::Machine machine = drive::assemble(model, hardware, commands);
+  const Machine machine = assemble(model, hardware, commands);
   EXPECT_EQ(machine.defaults.back(), "chamber 'tail': channel 'tail', limits_kPa [0, 100]");
-  EXPECT_EQ(drive::schedule_csv(drive::plan_pressures(machine, commands)),
-            "t_s,pump1_kPa,tail_kPa\n0,-5,0\n0.5,15,7.5\n1,35,15\n");
+  EXPECT_EQ(schedule_csv(plan_pressures(machine, commands)), "t_s,pump1_kPa,tail_kPa\n0,-5,0\n0.5,15,7.5\n1,35,15\n");
   commands.rows[1].actuation[0] = 60.5;
-  expect_refused([&] { (void)drive::plan_pressures(machine, commands); },
+  expect_refused([&] { (void)plan_pressures(machine, commands); },
                  "commands.csv:3: chamber 'air': pressure 60.5 kPa is above its limit of 60 kPa (hardware.yaml:3)");
   commands.rows[1].actuation[0] = -10.5;
-  expect_refused([&] { (void)drive::plan_pressures(machine, commands); }, "is below its limit of -10 kPa");
+  expect_refused([&] { (void)plan_pressures(machine, commands); }, "is below its limit of -10 kPa");
   for (CommandRow& row : commands.rows) row.time_s.reset();
-  expect_refused([&] { (void)drive::plan_pressures(machine, commands); }, "commands.csv: has no column t_s [s]");
+  expect_refused([&] { (void)plan_pressures(machine, commands); }, "commands.csv: has no column t_s [s]");
 }
 
 }  // namespace
-}  // namespace softkin
+}  // namespace softkin::drive

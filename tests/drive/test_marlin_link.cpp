@@ -7,14 +7,14 @@
 #include "drive_samples.hpp"
 #include "faulty_marlin.hpp"
 
-namespace softkin {
+namespace softkin::drive {
 namespace {
 
 using testing::FaultyMarlin;
 using testing::LineFaults;
 
 /// A program of so many moves, within the limits of the machine, no two neighbours alike.
-drive::GcodeProgram sample_program(std::size_t moves) {
+GcodeProgram sample_program(std::size_t moves) {
   std::vector<std::array<double, 2>> ratios;
   std::vector<double> times;
   for (std::size_t i = 0; i <= moves; ++i) {
@@ -23,16 +23,16 @@ drive::GcodeProgram sample_program(std::size_t moves) {
     times.push_back(t);
   }
   const Commands commands = testing::two_commands(ratios, times);
-  const drive::Machine machine = drive::assemble(testing::two_tendons(), testing::two_motors(), commands);
-  drive::GcodeProgram program = drive::make_gcode(machine, drive::plan_motion(machine, commands, false));
-  for (drive::GcodeLine& line : program.lines) line.patience_s = 0;  // the board of the tests needs no time to move
+  const Machine machine = assemble(testing::two_tendons(), testing::two_motors(), commands);
+  GcodeProgram program = make_gcode(machine, plan_motion(machine, commands, false));
+  for (GcodeLine& line : program.lines) line.patience_s = 0;  // the board of the tests needs no time to move
   program.drain_s = 0;
   return program;
 }
 
 /// So short that what is lost costs little.
-drive::LinkOptions quick_options() {
-  drive::LinkOptions options;
+LinkOptions quick_options() {
+  LinkOptions options;
   options.timeout_s = 0.002;
   options.quiet_s = 0.0004;
   options.boot_s = 0;
@@ -42,10 +42,10 @@ drive::LinkOptions quick_options() {
 }
 
 /// The places that the program leads to, each different from the one before.
-std::vector<FaultyMarlin::Position> expected_motions(const drive::GcodeProgram& program) {
+std::vector<FaultyMarlin::Position> expected_motions(const GcodeProgram& program) {
   std::vector<FaultyMarlin::Position> motions;
   std::vector<double> here = program.start;
-  for (const drive::GcodeLine& line : program.lines) {
+  for (const GcodeLine& line : program.lines) {
     if (line.position == here) continue;
     here = line.position;
     motions.emplace_back();
@@ -55,7 +55,7 @@ std::vector<FaultyMarlin::Position> expected_motions(const drive::GcodeProgram& 
 }
 
 /// Are the first `count` motions those of the program, in order, each once?
-void expect_prefix(const FaultyMarlin& board, const drive::GcodeProgram& program, std::size_t count) {
+void expect_prefix(const FaultyMarlin& board, const GcodeProgram& program, std::size_t count) {
   const auto expected = expected_motions(program);
   ASSERT_LE(count, expected.size());
   for (std::size_t i = 0; i < count; ++i)
@@ -63,12 +63,12 @@ void expect_prefix(const FaultyMarlin& board, const drive::GcodeProgram& program
       ASSERT_NEAR(board.motions()[i].at(axis), value, 1e-5) << "motion " << i << " of axis " << axis;
 }
 
-drive::StreamReport stream_to(FaultyMarlin& board, const drive::GcodeProgram& program,
-                              const drive::LinkOptions& options, const drive::LinkHooks& hooks = {}) {
-  drive::StreamReport report;
+StreamReport stream_to(FaultyMarlin& board, const GcodeProgram& program, const LinkOptions& options,
+                       const LinkHooks& hooks = {}) {
+  StreamReport report;
   {
-    drive::SerialPort port(board.port(), 115200);
-    report = drive::stream(port, program, options, hooks);
+    SerialPort port(board.port(), 115200);
+    report = stream(port, program, options, hooks);
   }
   board.end();
   return report;
@@ -77,15 +77,15 @@ drive::StreamReport stream_to(FaultyMarlin& board, const drive::GcodeProgram& pr
 TEST(MarlinLink, HundredThousandLinesOverABadLine) {
   LineFaults faults;
   faults.share = 0.01;
-  const drive::GcodeProgram program = sample_program(102'000);
+  const GcodeProgram program = sample_program(102'000);
   ASSERT_GE(program.lines.size(), 100'000u);
   FaultyMarlin board(faults);
   const auto begin = std::chrono::steady_clock::now();
-  const drive::StreamReport report = stream_to(board, program, quick_options());
+  const StreamReport report = stream_to(board, program, quick_options());
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   std::printf("%zu lines in %.1f s: %ld faults, %ld lines refused, %zu asked for again, %zu timeouts\n", report.lines,
               seconds.count(), board.faults_made(), board.refused(), report.resends, report.timeouts);
-  EXPECT_EQ(report.end, drive::StreamEnd::finished) << report.message;
+  EXPECT_EQ(report.end, StreamEnd::finished) << report.message;
   EXPECT_TRUE(report.position_known);
   EXPECT_EQ(report.acknowledged, program.lines.size());
   EXPECT_GT(board.faults_made(), 1500);
@@ -99,15 +99,15 @@ TEST(MarlinLink, HundredThousandLinesOverABadLine) {
 }
 
 TEST(MarlinLink, CleanLineNeedsEachLineOnce) {
-  const drive::GcodeProgram program = sample_program(500);
+  const GcodeProgram program = sample_program(500);
   for (const bool advanced : {false, true}) {
     LineFaults faults;
     faults.advanced_ok = advanced;
     FaultyMarlin board(faults);
-    drive::LinkOptions options = quick_options();
+    LinkOptions options = quick_options();
     options.timeout_s = 5;
-    const drive::StreamReport report = stream_to(board, program, options);
-    EXPECT_EQ(report.end, drive::StreamEnd::finished) << report.message;
+    const StreamReport report = stream_to(board, program, options);
+    EXPECT_EQ(report.end, StreamEnd::finished) << report.message;
     EXPECT_EQ(report.resends + report.timeouts, 0u);
     EXPECT_EQ(board.refused(), 0);
     // M110, the setup, every line, and M400; M114 before and after
@@ -119,7 +119,7 @@ TEST(MarlinLink, CleanLineNeedsEachLineOnce) {
 }
 
 TEST(MarlinLink, WorseLinesOfAllKinds) {
-  const drive::GcodeProgram program = sample_program(400);
+  const GcodeProgram program = sample_program(400);
   for (unsigned seed = 1; seed <= 10; ++seed) {
     LineFaults faults;
     faults.share = 0.08;
@@ -128,15 +128,15 @@ TEST(MarlinLink, WorseLinesOfAllKinds) {
     faults.ok_after_resend = seed % 3 / 2.0;
     faults.advanced_ok = seed % 2 == 0;
     FaultyMarlin board(faults);
-    const drive::StreamReport report = stream_to(board, program, quick_options());
+    const StreamReport report = stream_to(board, program, quick_options());
     expect_prefix(board, program, board.motions().size());
-    EXPECT_EQ(report.end, drive::StreamEnd::finished) << "seed " << seed << ": " << report.message;
+    EXPECT_EQ(report.end, StreamEnd::finished) << "seed " << seed << ": " << report.message;
     EXPECT_EQ(board.motions().size(), expected_motions(program).size()) << "seed " << seed;
   }
 }
 
 TEST(MarlinLink, RebootEndsTheStreamAndMovesNothingMore) {
-  const drive::GcodeProgram program = sample_program(300);
+  const GcodeProgram program = sample_program(300);
   for (unsigned seed = 1; seed <= 10; ++seed) {
     LineFaults faults;
     faults.share = 0.02;
@@ -144,8 +144,8 @@ TEST(MarlinLink, RebootEndsTheStreamAndMovesNothingMore) {
     faults.silent_reboot = seed % 2 == 0;
     faults.reboot_after_moves = 20 * seed;
     FaultyMarlin board(faults);
-    const drive::StreamReport report = stream_to(board, program, quick_options());
-    EXPECT_EQ(report.end, drive::StreamEnd::rebooted) << "seed " << seed << ": " << report.message;
+    const StreamReport report = stream_to(board, program, quick_options());
+    EXPECT_EQ(report.end, StreamEnd::rebooted) << "seed " << seed << ": " << report.message;
     EXPECT_FALSE(report.position_known);
     EXPECT_NE(report.message.find("position is unknown"), std::string::npos) << report.message;
     EXPECT_EQ(board.motions().size(), static_cast<std::size_t>(faults.reboot_after_moves));
@@ -156,12 +156,12 @@ TEST(MarlinLink, RebootEndsTheStreamAndMovesNothingMore) {
 }
 
 TEST(MarlinLink, StopsByOrderWithTheLastMoveDone) {
-  const drive::GcodeProgram program = sample_program(2000);
+  const GcodeProgram program = sample_program(2000);
   FaultyMarlin board;
-  drive::LinkHooks hooks;
-  hooks.order = [&board] { return board.moves() < 50 ? drive::Order::go : drive::Order::stop; };
-  const drive::StreamReport report = stream_to(board, program, quick_options(), hooks);
-  EXPECT_EQ(report.end, drive::StreamEnd::stopped);
+  LinkHooks hooks;
+  hooks.order = [&board] { return board.moves() < 50 ? Order::go : Order::stop; };
+  const StreamReport report = stream_to(board, program, quick_options(), hooks);
+  EXPECT_EQ(report.end, StreamEnd::stopped);
   EXPECT_TRUE(report.position_known);
   EXPECT_EQ(report.acknowledged, report.sent);
   EXPECT_LT(board.motions().size(), 60u);
@@ -172,38 +172,38 @@ TEST(MarlinLink, StopsByOrderWithTheLastMoveDone) {
 }
 
 TEST(MarlinLink, PausesAndGoesOn) {
-  const drive::GcodeProgram program = sample_program(100);
+  const GcodeProgram program = sample_program(100);
   FaultyMarlin board;
   int asked = 0;
   long at_pause = -1, after_pause = -1;
-  drive::LinkHooks hooks;
+  LinkHooks hooks;
   hooks.order = [&] {
-    if (board.moves() < 30 || asked >= 10) return drive::Order::go;
+    if (board.moves() < 30 || asked >= 10) return Order::go;
     if (asked++ == 2) at_pause = board.moves();  // the line in flight has ended by now
     if (asked == 10) after_pause = board.moves();
-    return drive::Order::pause;
+    return Order::pause;
   };
-  const drive::StreamReport report = stream_to(board, program, quick_options(), hooks);
-  EXPECT_EQ(report.end, drive::StreamEnd::finished);
+  const StreamReport report = stream_to(board, program, quick_options(), hooks);
+  EXPECT_EQ(report.end, StreamEnd::finished);
   EXPECT_GE(at_pause, 30);
   EXPECT_EQ(at_pause, after_pause);
   EXPECT_EQ(board.motions().size(), expected_motions(program).size());
 }
 
 TEST(MarlinLink, QuickStopLosesThePosition) {
-  const drive::GcodeProgram program = sample_program(2000);
+  const GcodeProgram program = sample_program(2000);
   FaultyMarlin board;
-  drive::LinkHooks hooks;
-  hooks.order = [&board] { return board.moves() < 50 ? drive::Order::go : drive::Order::quick_stop; };
-  drive::StreamReport report;
+  LinkHooks hooks;
+  hooks.order = [&board] { return board.moves() < 50 ? Order::go : Order::quick_stop; };
+  StreamReport report;
   {
-    drive::SerialPort port(board.port(), 115200);
-    report = drive::stream(port, program, quick_options(), hooks);
+    SerialPort port(board.port(), 115200);
+    report = stream(port, program, quick_options(), hooks);
     for (int i = 0; i < 1000 && board.moves() == 0; ++i) ::usleep(1000);
     ::usleep(20000);
   }
   board.end();
-  EXPECT_EQ(report.end, drive::StreamEnd::quick_stopped);
+  EXPECT_EQ(report.end, StreamEnd::quick_stopped);
   EXPECT_FALSE(report.position_known);
   EXPECT_EQ(board.quick_stops(), 2);
   EXPECT_NE(report.message.find("position is unknown"), std::string::npos);
@@ -211,14 +211,14 @@ TEST(MarlinLink, QuickStopLosesThePosition) {
 }
 
 TEST(MarlinLink, MuteBoardsEndTheStream) {
-  const drive::GcodeProgram program = sample_program(100);
-  drive::LinkOptions options = quick_options();
+  const GcodeProgram program = sample_program(100);
+  LinkOptions options = quick_options();
   options.attempts = 5;
   LineFaults faults;
   faults.mute_after_moves = 30;
   FaultyMarlin board(faults);
-  const drive::StreamReport report = stream_to(board, program, options);
-  EXPECT_EQ(report.end, drive::StreamEnd::no_answer);
+  const StreamReport report = stream_to(board, program, options);
+  EXPECT_EQ(report.end, StreamEnd::no_answer);
   EXPECT_FALSE(report.position_known);
   EXPECT_EQ(board.motions().size(), 30u);
   EXPECT_EQ(report.acknowledged, 30u);  // approach, M400, then 28 moves; the next was executed, and nobody knows
@@ -228,48 +228,48 @@ TEST(MarlinLink, MuteBoardsEndTheStream) {
   dead.share = 1;
   FaultyMarlin noise(dead);
   options.attempts = 3;
-  const drive::StreamReport none = stream_to(noise, program, options);
-  EXPECT_EQ(none.end, drive::StreamEnd::no_answer);
+  const StreamReport none = stream_to(noise, program, options);
+  EXPECT_EQ(none.end, StreamEnd::no_answer);
   EXPECT_EQ(none.sent, 0u);
   EXPECT_TRUE(noise.motions().empty());
   EXPECT_NE(none.message.find("nothing was moved"), std::string::npos) << none.message;
 }
 
 TEST(MarlinLink, PulledCableEndsTheStream) {
-  const drive::GcodeProgram program = sample_program(50'000);
+  const GcodeProgram program = sample_program(50'000);
   FaultyMarlin board;
-  drive::StreamReport report;
+  StreamReport report;
   {
-    drive::SerialPort port(board.port(), 115200);
+    SerialPort port(board.port(), 115200);
     std::thread hand([&board] {
       while (board.moves() < 100) ::usleep(500);
       board.unplug();
     });
-    report = drive::stream(port, program, quick_options());
+    report = stream(port, program, quick_options());
     hand.join();
   }
-  EXPECT_EQ(report.end, drive::StreamEnd::port_lost) << report.message;
+  EXPECT_EQ(report.end, StreamEnd::port_lost) << report.message;
   EXPECT_FALSE(report.position_known);
   expect_prefix(board, program, board.motions().size());
 }
 
 TEST(MarlinLink, BoardsThatAreNotWhereTheyShouldBeAreNoticed) {
-  const drive::GcodeProgram program = sample_program(100);
-  drive::LinkOptions options = quick_options();
+  const GcodeProgram program = sample_program(100);
+  LinkOptions options = quick_options();
   options.timeout_s = 1;
   LineFaults endstops;
   endstops.clamp = [](double x) { return std::min(x, 5.0); };
   FaultyMarlin clamped(endstops);
-  const drive::StreamReport report = stream_to(clamped, program, options);
-  EXPECT_EQ(report.end, drive::StreamEnd::wrong_position);
+  const StreamReport report = stream_to(clamped, program, options);
+  EXPECT_EQ(report.end, StreamEnd::wrong_position);
   EXPECT_NE(report.message.find("the board reports X 5.00 mm instead of"), std::string::npos) << report.message;
   EXPECT_FALSE(report.position_known);
 
   LineFaults one_axis;
   one_axis.axes = "X";
   FaultyMarlin small(one_axis);
-  const drive::StreamReport missing = stream_to(small, program, options);
-  EXPECT_EQ(missing.end, drive::StreamEnd::wrong_position);
+  const StreamReport missing = stream_to(small, program, options);
+  EXPECT_EQ(missing.end, StreamEnd::wrong_position);
   EXPECT_NE(missing.message.find("the board has no axis Y, before anything was moved"), std::string::npos);
   EXPECT_TRUE(small.motions().empty());
 }
@@ -277,7 +277,7 @@ TEST(MarlinLink, BoardsThatAreNotWhereTheyShouldBeAreNoticed) {
 TEST(MarlinLink, RefusesPorts) {
   const auto refused = [](const std::string& path, int baud, const std::string& part) {
     try {
-      const drive::SerialPort port(path, baud);
+      const SerialPort port(path, baud);
       ADD_FAILURE() << "accepted " << path;
     } catch (const InvalidInput& error) {
       EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
@@ -288,36 +288,36 @@ TEST(MarlinLink, RefusesPorts) {
 }
 
 TEST(MarlinLink, NumbersAndChecksums) {
-  EXPECT_EQ(drive::numbered_line(3, "T0"), "N3 T0*57");  // the example of the RepRap documentation
-  const std::string line = drive::numbered_line(10001, "G1 X1.5 F300");
+  EXPECT_EQ(numbered_line(3, "T0"), "N3 T0*57");  // the example of the RepRap documentation
+  const std::string line = numbered_line(10001, "G1 X1.5 F300");
   unsigned char all = 0;
   for (const char c : line.substr(0, line.find('*'))) all = static_cast<unsigned char>(all ^ c);
   EXPECT_EQ(line.substr(line.find('*') + 1), std::to_string(all));
 }
 
 TEST(MarlinAnswer, KnowsWhatMarlinSays) {
-  using Kind = drive::MarlinAnswer::Kind;
-  const auto kind = [](const char* line) { return drive::parse_answer(line).kind; };
+  using Kind = MarlinAnswer::Kind;
+  const auto kind = [](const char* line) { return parse_answer(line).kind; };
   EXPECT_EQ(kind("ok"), Kind::ok);
-  EXPECT_EQ(drive::parse_answer("ok N123 P15 B3").number, 123);
-  EXPECT_EQ(drive::parse_answer("ok T:20.1 /0.0").number, std::nullopt);
+  EXPECT_EQ(parse_answer("ok N123 P15 B3").number, 123);
+  EXPECT_EQ(parse_answer("ok T:20.1 /0.0").number, std::nullopt);
   EXPECT_EQ(kind("okok"), Kind::other);
-  EXPECT_EQ(drive::parse_answer("Resend: 12").number, 12);
-  EXPECT_EQ(drive::parse_answer("rs 12").number, 12);
+  EXPECT_EQ(parse_answer("Resend: 12").number, 12);
+  EXPECT_EQ(parse_answer("rs 12").number, 12);
   for (const char* line : {"Resend: ", "Resend: 1x", "Resend: -3", "Resend: 99999999999999999999"})
     EXPECT_EQ(kind(line), Kind::other) << line;
   EXPECT_EQ(kind("start"), Kind::started);
   EXPECT_EQ(kind("started"), Kind::other);
   EXPECT_EQ(kind("echo:busy: processing"), Kind::busy);
   EXPECT_EQ(kind("Error:Printer halted. kill() called!"), Kind::halted);
-  EXPECT_EQ(drive::parse_answer("Error:checksum mismatch, Last Line: 41").number, 41);
+  EXPECT_EQ(parse_answer("Error:checksum mismatch, Last Line: 41").number, 41);
   const std::string error = "Error:Line Number is not Last Line Number+1, Last Line: 41";
   for (std::size_t i = 6; i < error.size(); ++i) {  // one damaged byte is no fault of the board
     std::string damaged = error;
     damaged[i] = '#';
     EXPECT_EQ(kind(damaged.c_str()), Kind::line_error) << damaged;
   }
-  const drive::MarlinAnswer position = drive::parse_answer("X:1.50 Y:-2.00 Z:0.00 E:0.00 Count X:120 Y:-160 Z:0");
+  const MarlinAnswer position = parse_answer("X:1.50 Y:-2.00 Z:0.00 E:0.00 Count X:120 Y:-160 Z:0");
   EXPECT_EQ(position.kind, Kind::position);
   ASSERT_EQ(position.position.size(), 4u);
   EXPECT_EQ(position.position[1].first, 'Y');
@@ -327,4 +327,4 @@ TEST(MarlinAnswer, KnowsWhatMarlinSays) {
 }
 
 }  // namespace
-}  // namespace softkin
+}  // namespace softkin::drive

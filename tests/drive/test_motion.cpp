@@ -8,7 +8,7 @@
 
 #include "drive_samples.hpp"
 
-namespace softkin {
+namespace softkin::drive {
 namespace {
 
 using testing::two_commands;
@@ -36,12 +36,12 @@ double feed_length(const std::map<char, double>& from, const std::map<char, doub
 }
 
 /// Arrivals from the first row on; axes at constant speed.
-std::vector<Arrival> simulate(const drive::GcodeProgram& program, const drive::Motion& motion) {
+std::vector<Arrival> simulate(const GcodeProgram& program, const Motion& motion) {
   Arrival here;
   for (const char axis : program.axes) here.position[axis] = 0;
   std::vector<Arrival> arrivals;
   bool runs = motion.approach.empty();
-  for (const drive::GcodeLine& line : program.lines) {
+  for (const GcodeLine& line : program.lines) {
     if (line.text == "M400") runs = true;
     if (line.text.rfind("G4 P", 0) == 0) here.time_s += std::stod(line.text.substr(4)) / 1000;
     if (line.text.rfind("G1 ", 0) == 0) {
@@ -62,15 +62,15 @@ std::vector<Arrival> simulate(const drive::GcodeProgram& program, const drive::M
 }
 
 struct Planned {
-  drive::Machine machine;
-  drive::Motion motion;
-  drive::GcodeProgram program;
+  Machine machine;
+  Motion motion;
+  GcodeProgram program;
 };
 
 Planned plan(const HardwareSpec& hardware, const Commands& commands, bool return_home = false) {
-  Planned result{drive::assemble(two_tendons(), hardware, commands), {}, {}};
-  result.motion = drive::plan_motion(result.machine, commands, return_home);
-  result.program = drive::make_gcode(result.machine, result.motion);
+  Planned result{assemble(two_tendons(), hardware, commands), {}, {}};
+  result.motion = plan_motion(result.machine, commands, return_home);
+  result.program = make_gcode(result.machine, result.motion);
   return result;
 }
 
@@ -150,7 +150,7 @@ TEST(Motion, RampsDelayLittle) {
   const Planned planned = plan(two_motors(), two_commands(ratios, times));
   std::vector<double> lengths, feeds;
   double here = planned.motion.approach.empty() ? 0 : static_cast<double>(planned.motion.approach[0].target[0]);
-  for (const drive::Move& move : planned.motion.moves) {
+  for (const Move& move : planned.motion.moves) {
     lengths.push_back((static_cast<double>(move.target[0]) - here) * step_mm);
     feeds.push_back(std::abs(lengths.back()) / move.seconds);
     here = static_cast<double>(move.target[0]);
@@ -200,7 +200,7 @@ TEST(Motion, ReversalsCostTheBacklash) {
   const Planned planned =
       plan(hardware, two_commands({{0.9, 1}, {0.8, 1}, {0.9, 1}, {0.95, 1}, {0.9, 1}}, {0, 1, 2, 3, 4}));
   std::vector<std::int64_t> steps{planned.motion.approach.at(0).target[0]};
-  for (const drive::Move& move : planned.motion.moves) steps.push_back(move.target[0]);
+  for (const Move& move : planned.motion.moves) steps.push_back(move.target[0]);
   // wound up: 4, 8, 4, 2, 4 mm; where it pays out the motor is 0.5 mm behind
   EXPECT_EQ(steps, (std::vector<std::int64_t>{320, 640, 280, 120, 320}));
 }
@@ -303,7 +303,7 @@ TEST(Motion, WithoutTimesMovesTakeAsLongAsTheyNeed) {
   EXPECT_NEAR(planned.motion.moves[0].seconds, 12.0 / 3, 1e-9);  // the farther one of 12 and 6 mm
   EXPECT_FALSE(planned.motion.timed);
   ASSERT_EQ(planned.motion.back.size(), 1u);
-  EXPECT_EQ(planned.motion.back[0].target, (drive::Steps{0, 0}));
+  EXPECT_EQ(planned.motion.back[0].target, (Steps{0, 0}));
 }
 
 TEST(Motion, GoesBackHomeWithTheBacklashTakenUp) {
@@ -311,8 +311,8 @@ TEST(Motion, GoesBackHomeWithTheBacklashTakenUp) {
   hardware.tendons[0].backlash_mm = 0.5;
   const Planned planned = plan(hardware, two_commands({{0.9, 1}}, {0}), true);
   ASSERT_EQ(planned.motion.back.size(), 2u);
-  EXPECT_EQ(planned.motion.back[0].target, (drive::Steps{-40, 0}));  // the cable is home
-  EXPECT_EQ(planned.motion.back[1].target, (drive::Steps{0, 0}));    // and the motor too
+  EXPECT_EQ(planned.motion.back[0].target, (Steps{-40, 0}));  // the cable is home
+  EXPECT_EQ(planned.motion.back[1].target, (Steps{0, 0}));    // and the motor too
   EXPECT_TRUE(planned.motion.moves.empty());
 }
 
@@ -326,7 +326,7 @@ TEST(Gcode, IsWhatMarlinReads) {
   EXPECT_EQ(planned.program.lines[0].text, "G1 X4 Y1.2 F125.2837");  // 60 * sqrt(4^2 + 1.2^2) / 2
   EXPECT_EQ(planned.program.lines[1].text, "G4 P1500");
   EXPECT_EQ(planned.program.lines[0].row, 3u);
-  const std::string text = drive::gcode_text(planned.machine, planned.program);
+  const std::string text = gcode_text(planned.machine, planned.program);
   EXPECT_NE(text.find("G92 X0 Y0\nG1 X4 Y1.2 F125.2837\nG4 P1500\nM400\n"), std::string::npos) << text;
   hardware.configure = false;
   EXPECT_EQ(plan(hardware, two_commands({{1, 1}}, {0})).program.setup,
@@ -334,4 +334,4 @@ TEST(Gcode, IsWhatMarlinReads) {
 }
 
 }  // namespace
-}  // namespace softkin
+}  // namespace softkin::drive

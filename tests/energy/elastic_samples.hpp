@@ -6,7 +6,7 @@
 #include <softkin/energy/elastic.hpp>
 #include <vector>
 
-namespace softkin {
+namespace softkin::energy {
 
 template <int K>
 using Nodes = Eigen::Matrix<double, K, 3>;
@@ -48,7 +48,7 @@ class Random {
   }
   Mat3 rotation() { return Eigen::Quaterniond(normal(), normal(), normal(), normal()).normalized().toRotationMatrix(); }
   /// Three unequal stretches of 0.6 to 1.7 in random directions; the last one mirrored if asked.
-  Mat3 energy::deformation(bool mirrored) {
+  Mat3 deformation(bool mirrored) {
     const Vec3 s(between(1.3, 1.7), between(0.9, 1.2), between(0.6, 0.8) * (mirrored ? -1 : 1));
     return rotation() * s.asDiagonal() * rotation();
   }
@@ -73,45 +73,39 @@ Nodes<K> sample_rest(Random& random, double distortion = 0.1) {
   return p + distortion * random.matrix<Nodes<K>>();
 }
 
-inline void set_lane(energy::Pack3& pack3, int lane, const Vec3& value) {
+inline void set_lane(Pack3& pack3, int lane, const Vec3& value) {
   pack3.x[lane] = value.x();
   pack3.y[lane] = value.y();
   pack3.z[lane] = value.z();
 }
 
-inline Vec3 get_lane(const energy::Pack3& pack3, int lane) {
+inline Vec3 get_lane(const Pack3& pack3, int lane) {
   return {pack3.x[lane], pack3.y[lane], pack3.z[lane]};
 }
 
 template <int K, int Q>
-void set_lane(energy::ElasticBlock<K, Q>& block, int lane, const energy::ElasticRest<K, Q>& rest) {
+void set_lane(ElasticBlock<K, Q>& block, int lane, const ElasticRest<K, Q>& rest) {
   for (int q = 0; q < Q; ++q) {
     block.volume[q][lane] = rest.volume[q];
     for (int a = 0; a < K; ++a) set_lane(block.slope[q][a], lane, rest.slope[q].row(a).transpose());
   }
 }
 
-inline void set_law(energy::LawBlock& block, const ElasticLaw& law) {
-  block = {law.law,
-           energy::pack(law.mu),
-           energy::pack(law.lambda),
-           energy::pack(law.c10),
-           energy::pack(law.c01),
-           energy::pack(law.c20),
-           energy::pack(law.c30),
-           energy::pack(law.bulk)};
+inline void set_law(LawBlock& block, const ElasticLaw& law) {
+  block = {law.law,       pack(law.mu),  pack(law.lambda), pack(law.c10),
+           pack(law.c01), pack(law.c20), pack(law.c30),    pack(law.bulk)};
 }
 
 /// Eight elements at rest and the shapes that they now have.
 template <int K, int Q>
 struct Sample {
-  energy::ElasticBlock<K, Q> block;
-  std::vector<Nodes<K>> rest{energy::lanes}, current{energy::lanes};
+  ElasticBlock<K, Q> block;
+  std::vector<Nodes<K>> rest{lanes}, current{lanes};
 
   void set(int lane, const Nodes<K>& rest_nodes, const Nodes<K>& nodes) {
     rest[lane] = rest_nodes;
     current[lane] = nodes;
-    set_lane(block, lane, energy::elastic_rest(rest_nodes));
+    set_lane(block, lane, elastic_rest(rest_nodes));
   }
 };
 
@@ -120,7 +114,7 @@ template <int K, int Q>
 Sample<K, Q> random_sample(Law law, Random& random, bool mirrored = false, double noise = 0.05) {
   Sample<K, Q> sample;
   set_law(sample.block.law, sample_law(law));
-  for (int l = 0; l < energy::lanes; ++l) {
+  for (int l = 0; l < lanes; ++l) {
     const Nodes<K> rest = sample_rest<K>(random, K == 10 ? 0.04 : 0.1);
     const Nodes<K> moved = rest * random.deformation(mirrored && l % 2).transpose();
     const Nodes<K> shaken = moved + noise * random.matrix<Nodes<K>>();
@@ -130,22 +124,22 @@ Sample<K, Q> random_sample(Law law, Random& random, bool mirrored = false, doubl
 }
 
 template <int K>
-void pack_nodes(const std::vector<Nodes<K>>& nodes, energy::Shape<K>& shape) {
-  for (int l = 0; l < energy::lanes; ++l)
+void pack_nodes(const std::vector<Nodes<K>>& nodes, Shape<K>& shape) {
+  for (int l = 0; l < lanes; ++l)
     for (int a = 0; a < K; ++a) set_lane(shape[a], l, nodes[l].row(a).transpose());
 }
 
 template <int K, int Q>
-energy::ElasticForce<K> force_of(const energy::ElasticBlock<K, Q>& block, const std::vector<Nodes<K>>& current) {
-  energy::Shape<K> shape;
+ElasticForce<K> force_of(const ElasticBlock<K, Q>& block, const std::vector<Nodes<K>>& current) {
+  Shape<K> shape;
   pack_nodes<K>(current, shape);
-  energy::ElasticForce<K> out;
-  energy::elastic_force(block, shape, out);
+  ElasticForce<K> out;
+  elastic_force(block, shape, out);
   return out;
 }
 
 template <int K>
-Nodes<K> gradient_of(const energy::ElasticForce<K>& force, int lane) {
+Nodes<K> gradient_of(const ElasticForce<K>& force, int lane) {
   Nodes<K> g;
   for (int a = 0; a < K; ++a) g.row(a) = get_lane(force.gradient[a], lane).transpose();
   return g;
@@ -153,14 +147,14 @@ Nodes<K> gradient_of(const energy::ElasticForce<K>& force, int lane) {
 
 /// Full matrices, node by node, of all lanes.
 template <int K, int Q>
-std::vector<Eigen::MatrixXd> stiffness_of(const energy::ElasticBlock<K, Q>& block, const std::vector<Nodes<K>>& current,
+std::vector<Eigen::MatrixXd> stiffness_of(const ElasticBlock<K, Q>& block, const std::vector<Nodes<K>>& current,
                                           bool projected = false) {
-  energy::Shape<K> shape;
+  Shape<K> shape;
   pack_nodes<K>(current, shape);
-  energy::ElasticStiffness<K> out;
-  energy::elastic_stiffness(block, shape, projected, out);
-  std::vector<Eigen::MatrixXd> k(energy::lanes, Eigen::MatrixXd::Zero(3 * K, 3 * K));
-  for (int l = 0; l < energy::lanes; ++l)
+  ElasticStiffness<K> out;
+  elastic_stiffness(block, shape, projected, out);
+  std::vector<Eigen::MatrixXd> k(lanes, Eigen::MatrixXd::Zero(3 * K, 3 * K));
+  for (int l = 0; l < lanes; ++l)
     for (int a = 0, ab = 0; a < K; ++a)
       for (int b = 0; b <= a; ++b, ++ab) {
         Mat3 part;
@@ -171,4 +165,4 @@ std::vector<Eigen::MatrixXd> stiffness_of(const energy::ElasticBlock<K, Q>& bloc
   return k;
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -6,7 +6,7 @@
 
 #include "elastic_samples.hpp"
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -25,7 +25,7 @@ Eigen::MatrixX3d assemble(const ElasticLaw& law, const Eigen::MatrixX3d& rest, c
   for (const std::array<int, K>& element : elements) {
     Sample<K, Q> sample;
     set_law(sample.block.law, law);
-    for (int l = 0; l < energy::lanes; ++l) sample.set(l, rest(element, Eigen::all), current(element, Eigen::all));
+    for (int l = 0; l < lanes; ++l) sample.set(l, rest(element, Eigen::all), current(element, Eigen::all));
     const Nodes<K> gradient = gradient_of(force_of(sample.block, sample.current), 5);
     for (int a = 0; a < K; ++a) total.row(element[a]) += gradient.row(a);
   }
@@ -64,8 +64,7 @@ TYPED_TEST(ElasticElements, SlopesReproduceLinearFieldsAndVolumesAreScaledBySize
   Random random(1);
   for (int round = 0; round < 20; ++round) {
     const Nodes<K> rest = sample_rest<K>(random, K == 10 ? 0.04 : 0.1);
-    const energy::ElasticRest<K, Q> element = energy::elastic_rest(rest),
-                                    twice = energy::elastic_rest(Nodes<K>(2 * rest));
+    const ElasticRest<K, Q> element = elastic_rest(rest), twice = elastic_rest(Nodes<K>(2 * rest));
     for (int q = 0; q < Q; ++q) {
       const Mat3 identity = rest.transpose() * element.slope[q];
       EXPECT_LT((identity - Mat3::Identity()).norm(), 1e-13);
@@ -79,10 +78,10 @@ TEST(ElasticRest, VolumesAddUpToTheElements) {
   Random random(2);
   const Nodes<4> t = sample_rest<4>(random);
   const double expected = Mat3(t.bottomRows<3>().rowwise() - t.row(0)).determinant() / 6;
-  EXPECT_NEAR(energy::elastic_rest(t).volume[0], expected, 1e-13);
+  EXPECT_NEAR(elastic_rest(t).volume[0], expected, 1e-13);
 
   const Nodes<10> straight = sample_rest<10>(random, 0);
-  const auto quadratic = energy::elastic_rest(straight);
+  const auto quadratic = elastic_rest(straight);
   const double corners = Mat3(straight.middleRows<3>(1).rowwise() - straight.row(0)).determinant() / 6;
   for (const double v : quadratic.volume) EXPECT_NEAR(v, corners / 4, 1e-13);
 
@@ -97,7 +96,7 @@ TEST(ElasticRest, VolumesAddUpToTheElements) {
     flux += (six(i, j, j + 3) + six(i, j + 3, i + 3) + six(i, j, i + 3) + six(j, j + 3, i + 3)) / 2;
   }
   double sum = 0;
-  for (const double v : energy::elastic_rest(p).volume) sum += v;
+  for (const double v : elastic_rest(p).volume) sum += v;
   EXPECT_NEAR(sum, flux / 6, 1e-12);
 }
 
@@ -118,7 +117,7 @@ TEST(ElasticRest, QuadraticTetrahedronReproducesQuadraticFields) {
     Nodes<10> current = rest * linear.transpose();
     for (int a = 0; a < 10; ++a)
       for (int i = 0; i < 3; ++i) current(a, i) += rest.row(a).dot(rest.row(a) * quadratic[i]);
-    const auto element = energy::elastic_rest(rest);
+    const auto element = elastic_rest(rest);
     for (int q = 0; q < 4; ++q) {
       // 0.58541020 and 0.13819660: the rule of C3D10
       Eigen::RowVector4d l = Eigen::RowVector4d::Constant((5 - std::sqrt(5.0)) / 20);
@@ -161,7 +160,7 @@ TEST(ElasticRest, EnergyOfASmallQuadraticDisplacementIsIntegratedExactly) {
   const double volume = Mat3(rest.middleRows<3>(1).rowwise() - rest.row(0)).determinant() / 6;
   Sample<10, 4> sample;
   set_law(sample.block.law, sample_law(Law::st_venant_kirchhoff));
-  for (int l = 0; l < energy::lanes; ++l) sample.set(l, rest, current);
+  for (int l = 0; l < lanes; ++l) sample.set(l, rest, current);
   const double energy = force_of(sample.block, sample.current).energy[0];
   EXPECT_NEAR(energy / (volume * mean), 1, 1e-5);  // small is not zero
   EXPECT_GT(energy, 0);
@@ -225,13 +224,13 @@ TEST(ElasticRest, ElementsWithoutVolumeAreRefusedByName) {
   Random random(8);
   Nodes<10> folded = sample_rest<10>(random, 0);
   folded.row(4) += 3 * (folded.row(3) - folded.row(0));
-  EXPECT_THROW((void)energy::elastic_rest(mirrored), InvalidInput);
-  EXPECT_THROW((void)energy::elastic_rest(layer), InvalidInput);
-  EXPECT_THROW((void)energy::elastic_rest(folded), InvalidInput);
-  EXPECT_THROW((void)energy::elastic_rest(Nodes<4>(mirrored * std::nan(""))), InvalidInput);
-  EXPECT_THROW((void)energy::layer_frame(Nodes<6>(Nodes<6>::Zero())), InvalidInput);
+  EXPECT_THROW((void)elastic_rest(mirrored), InvalidInput);
+  EXPECT_THROW((void)elastic_rest(layer), InvalidInput);
+  EXPECT_THROW((void)elastic_rest(folded), InvalidInput);
+  EXPECT_THROW((void)elastic_rest(Nodes<4>(mirrored * std::nan(""))), InvalidInput);
+  EXPECT_THROW((void)layer_frame(Nodes<6>(Nodes<6>::Zero())), InvalidInput);
   try {
-    (void)energy::elastic_rest(flat);
+    (void)elastic_rest(flat);
     FAIL();
   } catch (const InvalidInput& error) {
     EXPECT_NE(std::string(error.what()).find("(1.000000, 2.000000, 3.000000)"), std::string::npos) << error.what();
@@ -244,7 +243,7 @@ TEST(LayerFrame, ThirdAxisIsTheCommonNormalFromBottomToTop) {
   layer << 0, 0, 0, 2, 0, 0, 0, 1, 0, 0.1, 0.2, 0.3, 2.1, 0.2, 0.3, 0.1, 1.2, 0.3;
   for (int round = 0; round < 10; ++round) {
     const Mat3 r = random.rotation();
-    const Mat3 frame = energy::layer_frame(Nodes<6>(layer * r.transpose()));
+    const Mat3 frame = layer_frame(Nodes<6>(layer * r.transpose()));
     EXPECT_LT((frame.transpose() * frame - Mat3::Identity()).norm(), 1e-14);
     EXPECT_NEAR(frame.determinant(), 1, 1e-14);
     EXPECT_LT((frame.col(2) - r.col(2)).norm(), 1e-14);
@@ -252,7 +251,7 @@ TEST(LayerFrame, ThirdAxisIsTheCommonNormalFromBottomToTop) {
   Nodes<6> wedge = layer;  // the mean of both normals
   wedge.bottomRows<3>() << 0, 0, 1, 2, 0, 1, 0, 1, 1.5;
   const Vec3 expected = (Vec3(0, 0, 2) + Vec3(0, -1, 2)).normalized();
-  EXPECT_LT((energy::layer_frame(wedge).col(2) - expected).norm(), 1e-14);
+  EXPECT_LT((layer_frame(wedge).col(2) - expected).norm(), 1e-14);
 }
 
 /// F = F_e F_a with F_a in the slopes: the stretched shape F_a X is free of stress.
@@ -262,18 +261,18 @@ TYPED_TEST(ElasticElements, ActiveStretchInTheSlopesMovesTheRestState) {
   const Mat3 active = Vec3(1.3, 1.3, 1 / 1.69).asDiagonal();
   for (const Law law : all_laws) {
     auto sample = random_sample<K, Q>(law, random);
-    for (int l = 0; l < energy::lanes; ++l) {
-      energy::ElasticRest<K, Q> element = energy::elastic_rest(sample.rest[l]);
+    for (int l = 0; l < lanes; ++l) {
+      ElasticRest<K, Q> element = elastic_rest(sample.rest[l]);
       for (auto& slope : element.slope) slope = (slope * active.inverse()).eval();
       set_lane(sample.block, l, element);
       sample.current[l] = sample.rest[l] * active * random.rotation();
     }
-    const energy::ElasticForce<K> force = force_of(sample.block, sample.current);
-    for (int l = 0; l < energy::lanes; ++l) {
+    const ElasticForce<K> force = force_of(sample.block, sample.current);
+    for (int l = 0; l < lanes; ++l) {
       EXPECT_NEAR(force.energy[l], 0, 1e-13);
       EXPECT_LT(gradient_of(force, l).norm(), 1e-13);
     }
   }
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

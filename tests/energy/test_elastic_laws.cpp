@@ -4,7 +4,7 @@
 
 #include "elastic_samples.hpp"
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -20,7 +20,7 @@ Nodes<4> unit_tetrahedron() {
 Mat3 stress_at(const ElasticLaw& law, const Mat3& f) {
   Sample<4, 1> sample;
   set_law(sample.block.law, law);
-  for (int l = 0; l < energy::lanes; ++l) sample.set(l, unit_tetrahedron(), unit_tetrahedron() * f.transpose());
+  for (int l = 0; l < lanes; ++l) sample.set(l, unit_tetrahedron(), unit_tetrahedron() * f.transpose());
   const Nodes<4> gradient = gradient_of(force_of(sample.block, sample.current), 3);
   const Mat3 nominal = 6 * gradient.bottomRows<3>().transpose();
   return nominal * f.transpose() / f.determinant();
@@ -28,7 +28,7 @@ Mat3 stress_at(const ElasticLaw& law, const Mat3& f) {
 
 /// Stiffness of linear elasticity, sum of volume B^T D B in Voigt's notation.
 template <int K, int Q>
-Eigen::MatrixXd linear_stiffness(const energy::ElasticRest<K, Q>& rest, double youngs_modulus, double poisson_ratio) {
+Eigen::MatrixXd linear_stiffness(const ElasticRest<K, Q>& rest, double youngs_modulus, double poisson_ratio) {
   const double e = youngs_modulus, nu = poisson_ratio;
   Eigen::Matrix<double, 6, 6> d = Eigen::Matrix<double, 6, 6>::Zero();
   d.topLeftCorner<3, 3>().setConstant(nu);
@@ -61,9 +61,9 @@ TYPED_TEST(ElasticLaws, RestStateWhereverItIsTurnedHasNoEnergyAndNoForce) {
   Random random(1);
   for (const Law law : all_laws) {
     auto sample = random_sample<K, TypeParam::Q>(law, random);
-    for (int l = 0; l < energy::lanes; ++l) sample.current[l] = sample.rest[l] * random.rotation().transpose();
-    const energy::ElasticForce<K> force = force_of(sample.block, sample.current);
-    for (int l = 0; l < energy::lanes; ++l) {
+    for (int l = 0; l < lanes; ++l) sample.current[l] = sample.rest[l] * random.rotation().transpose();
+    const ElasticForce<K> force = force_of(sample.block, sample.current);
+    for (int l = 0; l < lanes; ++l) {
       EXPECT_NEAR(force.energy[l], 0, 1e-13);
       EXPECT_LT(gradient_of(force, l).norm(), 1e-13);
       EXPECT_FALSE(force.inverted[l]);
@@ -78,14 +78,13 @@ TYPED_TEST(ElasticLaws, RigidMotionKeepsTheEnergyAndTurnsForceAndStiffness) {
     const auto sample = random_sample<K, TypeParam::Q>(law, random);
     auto moved = sample;
     const Mat3 r = random.rotation();
-    for (int l = 0; l < energy::lanes; ++l)
+    for (int l = 0; l < lanes; ++l)
       moved.current[l] = (sample.current[l] * r.transpose()).rowwise() + Eigen::RowVector3d(30, -20, 50);
-    const energy::ElasticForce<K> before = force_of(sample.block, sample.current),
-                                  after = force_of(moved.block, moved.current);
+    const ElasticForce<K> before = force_of(sample.block, sample.current), after = force_of(moved.block, moved.current);
     const auto stiff = stiffness_of(sample.block, sample.current), turned = stiffness_of(moved.block, moved.current);
     Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(3 * K, 3 * K);
     for (int a = 0; a < K; ++a) turn.block<3, 3>(3 * a, 3 * a) = r;
-    for (int l = 0; l < energy::lanes; ++l) {
+    for (int l = 0; l < lanes; ++l) {
       EXPECT_NEAR(after.energy[l], before.energy[l], 1e-11 * before.energy[l]);
       const Nodes<K> expected = gradient_of(before, l) * r.transpose();
       EXPECT_LT((gradient_of(after, l) - expected).norm(), 1e-11 * expected.norm());
@@ -103,8 +102,8 @@ TYPED_TEST(ElasticLaws, StiffnessAtRestIsThatOfLinearElasticity) {
     const auto sample = random_sample<K, TypeParam::Q>(law, random);
     for (const bool projected : {false, true}) {
       const auto k = stiffness_of(sample.block, sample.rest, projected);
-      for (int l = 0; l < energy::lanes; ++l) {
-        const Eigen::MatrixXd expected = linear_stiffness(energy::elastic_rest(sample.rest[l]), e, nu);
+      for (int l = 0; l < lanes; ++l) {
+        const Eigen::MatrixXd expected = linear_stiffness(elastic_rest(sample.rest[l]), e, nu);
         EXPECT_LT((k[l] - expected).norm(), 1e-13 * expected.norm()) << "law " << static_cast<int>(law);
       }
     }
@@ -119,13 +118,13 @@ TYPED_TEST(ElasticLaws, ResultsAreTheSameInEveryLane) {
     const bool mirrored = !forbids_inversion(law);
     auto all = random_sample<K, TypeParam::Q>(law, random, mirrored, 0.02);
     const Nodes<K> rest = all.rest[1], current = all.current[1];
-    const energy::ElasticForce<K> force = force_of(all.block, all.current);
+    const ElasticForce<K> force = force_of(all.block, all.current);
     const Eigen::MatrixXd stiffness = stiffness_of(all.block, all.current)[1];
     const Eigen::MatrixXd projected = stiffness_of(all.block, all.current, true)[1];
-    for (int l = 0; l < energy::lanes; ++l) {
+    for (int l = 0; l < lanes; ++l) {
       auto other = random_sample<K, TypeParam::Q>(law, random, mirrored, 0.02);
       other.set(l, rest, current);
-      const energy::ElasticForce<K> again = force_of(other.block, other.current);
+      const ElasticForce<K> again = force_of(other.block, other.current);
       EXPECT_NEAR(again.energy[l], force.energy[1], 1e-13 * force.energy[1]);
       EXPECT_EQ(again.inverted[l], force.inverted[1]);
       EXPECT_LT((gradient_of(again, l) - gradient_of(force, 1)).norm(), 1e-13 * gradient_of(force, 1).norm());
@@ -141,13 +140,12 @@ TYPED_TEST(ElasticLaws, EmptyLanesGiveZero) {
   Random random(5);
   for (const Law law : all_laws) {
     auto sample = random_sample<K, Q>(law, random);
-    energy::ElasticRest<K, Q> none;
+    ElasticRest<K, Q> none;
     for (int q = 0; q < Q; ++q) none.slope[q].setZero(), none.volume[q] = 0;
     set_lane(sample.block, 6, none);
-    energy::LawBlock& constants = sample.block.law;
-    for (energy::Pack* p : {&constants.mu, &constants.lambda, &constants.c10, &constants.c01, &constants.bulk})
-      (*p)[6] = 0;
-    const energy::ElasticForce<K> force = force_of(sample.block, sample.current);
+    LawBlock& constants = sample.block.law;
+    for (Pack* p : {&constants.mu, &constants.lambda, &constants.c10, &constants.c01, &constants.bulk}) (*p)[6] = 0;
+    const ElasticForce<K> force = force_of(sample.block, sample.current);
     EXPECT_EQ(force.energy[6], 0);
     EXPECT_EQ(gradient_of(force, 6).norm(), 0);
     EXPECT_FALSE(force.inverted[6]);
@@ -165,7 +163,7 @@ TYPED_TEST(ElasticLaws, HopelessElementsAreMarkedAndFinite) {
     for (const Vec3& s : stretches) {
       auto sample = random_sample<K, TypeParam::Q>(law, random);
       sample.current[2] = sample.rest[2] * s.asDiagonal();
-      const energy::ElasticForce<K> force = force_of(sample.block, sample.current);
+      const ElasticForce<K> force = force_of(sample.block, sample.current);
       if (s.prod() < 0 || s.norm() == 0) {
         EXPECT_TRUE(force.inverted[2]);
       }
@@ -233,7 +231,7 @@ TEST(ElasticStress, EnergyFromThePrincipalStretches) {
     const auto expect = [&](const ElasticLaw& law, double expected) {
       Sample<4, 1> sample;
       set_law(sample.block.law, law);
-      for (int l = 0; l < energy::lanes; ++l) sample.set(l, unit_tetrahedron(), unit_tetrahedron() * f.transpose());
+      for (int l = 0; l < lanes; ++l) sample.set(l, unit_tetrahedron(), unit_tetrahedron() * f.transpose());
       EXPECT_NEAR(6 * force_of(sample.block, sample.current).energy[0], expected, 1e-13 * (1 + expected));
     };
     const double mu = sample_mu, lambda = sample_lambda;
@@ -250,4 +248,4 @@ TEST(ElasticStress, EnergyFromThePrincipalStretches) {
   }
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -4,7 +4,7 @@
 
 #include "elastic_samples.hpp"
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -15,12 +15,12 @@ TYPED_TEST_SUITE(ElasticProjected, Kinds);
 
 /// d^2W/dF^2 (entry (i, k) of F at 3 k + i), from the exact stiffness of the tetrahedron whose slopes at nodes 1 to 3
 /// are the unit vectors.
-Eigen::MatrixXd second_derivative(const energy::LawBlock& law, const Mat3& f) {
+Eigen::MatrixXd second_derivative(const LawBlock& law, const Mat3& f) {
   Nodes<4> unit;
   unit << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
   Sample<4, 1> sample;
   sample.block.law = law;
-  for (int l = 0; l < energy::lanes; ++l) sample.set(l, unit, unit * f.transpose());
+  for (int l = 0; l < lanes; ++l) sample.set(l, unit, unit * f.transpose());
   return 6 * stiffness_of(sample.block, sample.current)[0].bottomRightCorner<9, 9>();
 }
 
@@ -33,7 +33,7 @@ Eigen::MatrixXd nearest_semidefinite(const Eigen::MatrixXd& a, bool& definite) {
 /// The projected stiffness by brute force; definite: nothing was projected.
 template <int K, int Q>
 Eigen::MatrixXd brute_force(const Sample<K, Q>& sample, int lane, bool& definite) {
-  const energy::ElasticRest<K, Q> rest = energy::elastic_rest(sample.rest[lane]);
+  const ElasticRest<K, Q> rest = elastic_rest(sample.rest[lane]);
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * K, 3 * K);
   definite = true;
   for (int q = 0; q < Q; ++q) {
@@ -51,10 +51,10 @@ Eigen::MatrixXd brute_force(const Sample<K, Q>& sample, int lane, bool& definite
 template <int K, int Q>
 Sample<K, Q> mixed_sample(Law law, Random& random, bool mirrored) {
   auto sample = random_sample<K, Q>(law, random, mirrored, 0.02);
-  for (int l = 0; l < energy::lanes; l += 3)
+  for (int l = 0; l < lanes; l += 3)
     sample.current[l] =
         sample.rest[l] * Vec3(0.5, 0.6, 0.75).asDiagonal() * random.rotation() + 0.02 * random.matrix<Nodes<K>>();
-  for (int l = 1; l < energy::lanes; l += 3)
+  for (int l = 1; l < lanes; l += 3)
     sample.current[l] =
         sample.rest[l] * Vec3(1.02, 1.03, 1.05).asDiagonal() * random.rotation() + 0.002 * random.matrix<Nodes<K>>();
   return sample;
@@ -71,7 +71,7 @@ TYPED_TEST(ElasticProjected, IsTheNearestSemidefiniteOneAtEveryPoint) {
       const auto sample = mixed_sample<K, TypeParam::Q>(law, random, round % 2 && !forbids_inversion(law));
       const auto exact = stiffness_of(sample.block, sample.current);
       const auto projected = stiffness_of(sample.block, sample.current, true);
-      for (int l = 0; l < energy::lanes; ++l) {
+      for (int l = 0; l < lanes; ++l) {
         bool definite;
         const Eigen::MatrixXd expected = brute_force(sample, l, definite);
         EXPECT_LT((projected[l] - expected).norm(), 1e-11 * expected.norm()) << "law " << static_cast<int>(law);
@@ -97,7 +97,7 @@ TYPED_TEST(ElasticProjected, HasNoNegativeEigenvalue) {
       const auto sample = mixed_sample<K, TypeParam::Q>(law, random, round % 2 && !forbids_inversion(law));
       const auto exact = stiffness_of(sample.block, sample.current);
       const auto projected = stiffness_of(sample.block, sample.current, true);
-      for (int l = 0; l < energy::lanes; ++l) {
+      for (int l = 0; l < lanes; ++l) {
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(projected[l], Eigen::EigenvaluesOnly);
         EXPECT_GT(eigen.eigenvalues()[0], -1e-13 * eigen.eigenvalues()[3 * K - 1]);
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> indefinite(exact[l], Eigen::EigenvaluesOnly);
@@ -108,4 +108,4 @@ TYPED_TEST(ElasticProjected, HasNoNegativeEigenvalue) {
   }
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

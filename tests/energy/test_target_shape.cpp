@@ -6,7 +6,7 @@
 #include <random>
 #include <softkin/energy/target_shape.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -43,13 +43,12 @@ Points_<K> base_shape() {
 }
 
 template <int K>
-void set(energy::Shape<K>& shape, const Points_<K>& points) {
-  for (int i = 0; i < K; ++i)
-    shape[i] = {energy::pack(points(i, 0)), energy::pack(points(i, 1)), energy::pack(points(i, 2))};
+void set(Shape<K>& shape, const Points_<K>& points) {
+  for (int i = 0; i < K; ++i) shape[i] = {pack(points(i, 0)), pack(points(i, 1)), pack(points(i, 2))};
 }
 
 template <int K>
-Points_<K> get(const energy::Shape<K>& shape, int lane = 0) {
+Points_<K> get(const Shape<K>& shape, int lane = 0) {
   Points_<K> points;
   for (int i = 0; i < K; ++i) points.row(i) << shape[i].x[lane], shape[i].y[lane], shape[i].z[lane];
   return points;
@@ -65,14 +64,14 @@ double volume_of(const Points_<4>& p) {
 }
 
 template <int K>
-energy::BodyBlock<K> body(const Points_<K>& rest, double ratio, double weight) {
-  energy::BodyBlock<K> block;
+BodyBlock<K> body(const Points_<K>& rest, double ratio, double weight) {
+  BodyBlock<K> block;
   set<K>(block.rest, centred<K>(rest));
-  energy::Shape<K> shape;
+  Shape<K> shape;
   set<K>(shape, rest);
-  block.volume = energy::volume(shape);
-  block.weight = energy::pack(weight);
-  block.shape_ratio = energy::pack(ratio);
+  block.volume = volume(shape);
+  block.weight = pack(weight);
+  block.shape_ratio = pack(ratio);
   block.blended = ratio < 1;
   return block;
 }
@@ -84,41 +83,41 @@ struct Result {
 };
 
 template <int K>
-Result<K> evaluate(const energy::BodyBlock<K>& block, const Points_<K>& current) {
-  energy::Shape<K> shape;
+Result<K> evaluate(const BodyBlock<K>& block, const Points_<K>& current) {
+  Shape<K> shape;
   set<K>(shape, current);
-  energy::PackRotation rotation;
-  energy::ElementPull<K> out;
-  energy::pull_of_body<K>(block, shape, rotation, out);
+  PackRotation rotation;
+  ElementPull<K> out;
+  pull_of_body<K>(block, shape, rotation, out);
   return {out.energy[3], get<K>(out.pull, 3)};
 }
 
 template <int K>
-energy::TargetSplit<K> split(const Points_<K>& rest) {
-  if constexpr (K == 3) return energy::split_cable(rest);
-  if constexpr (K == 4) return energy::split_pneumatic(rest);
-  if constexpr (K == 6) return energy::split_dea(rest);
+TargetSplit<K> split(const Points_<K>& rest) {
+  if constexpr (K == 3) return split_cable(rest);
+  if constexpr (K == 4) return split_pneumatic(rest);
+  if constexpr (K == 6) return split_dea(rest);
 }
 
 template <int K>
-energy::ActuationBlock<K> actuation(const Points_<K>& rest, double measure, double weight) {
-  const energy::TargetSplit<K> parts = split<K>(rest);
-  energy::ActuationBlock<K> block;
+ActuationBlock<K> actuation(const Points_<K>& rest, double measure, double weight) {
+  const TargetSplit<K> parts = split<K>(rest);
+  ActuationBlock<K> block;
   set<K>(block.constant, parts.constant);
   set<K>(block.grown, parts.grown);
   set<K>(block.thinned, parts.thinned);
-  block.measure = energy::pack(measure);
-  block.weight = energy::pack(weight);
+  block.measure = pack(measure);
+  block.weight = pack(weight);
   return block;
 }
 
 template <int K>
-Result<K> evaluate(const energy::ActuationBlock<K>& block, const Points_<K>& current, double ratio) {
-  energy::Shape<K> shape;
+Result<K> evaluate(const ActuationBlock<K>& block, const Points_<K>& current, double ratio) {
+  Shape<K> shape;
   set<K>(shape, current);
-  energy::PackRotation rotation;
-  energy::ElementPull<K> out;
-  energy::pull_of_actuation<K>(block, energy::pack(ratio), shape, rotation, out);
+  PackRotation rotation;
+  ElementPull<K> out;
+  pull_of_actuation<K>(block, pack(ratio), shape, rotation, out);
   return {out.energy[3], get<K>(out.pull, 3)};
 }
 
@@ -139,7 +138,7 @@ template <int K>
 void check_body_gradient() {
   for (int round = 0; round < 20; ++round) {
     const Points_<K> rest = base_shape<K>();
-    const energy::BodyBlock<K> block = body<K>(rest, 1, 1.7);
+    const BodyBlock<K> block = body<K>(rest, 1, 1.7);
     const Points_<K> current = rest + random_points<K>(0.3);
     expect_gradient<K>(current, evaluate<K>(block, current).pull,
                        [&](const Points_<K>& p) { return evaluate<K>(block, p).energy; });
@@ -150,7 +149,7 @@ template <int K>
 void check_actuation_gradient() {
   for (int round = 0; round < 20; ++round) {
     const Points_<K> rest = base_shape<K>();
-    const energy::ActuationBlock<K> block = actuation<K>(rest, 1, 1.7);
+    const ActuationBlock<K> block = actuation<K>(rest, 1, 1.7);
     const Points_<K> current = rest + random_points<K>(0.3);
     const double ratio = 0.6 + 0.05 * round;
     expect_gradient<K>(current, evaluate<K>(block, current, ratio).pull,
@@ -278,7 +277,7 @@ TEST(TargetShape, RegularTetrahedronIsIsotropic) {
 TEST(TargetShape, CableTargetShrinksTheEdgeAndKeepsTheApex) {
   Points_<3> rest;
   rest << 1, 2, 5, 5, 2, 5, 2, 2, 1;  // edge along x, foot of the apex at a quarter of it
-  const energy::TargetSplit<3> parts = energy::split_cable(rest);
+  const TargetSplit<3> parts = split_cable(rest);
   const Points_<3> target = parts.constant + 0.5 * parts.grown;
   EXPECT_NEAR((target.row(1) - target.row(0)).norm(), 2, 1e-12);
   const Vec3 along = (target.row(1) - target.row(0)).normalized();
@@ -293,38 +292,38 @@ TEST(TargetShape, DeaTargetScalesAreaAndKeepsVolume) {
   rest << 0, 0, 0, 3, 0, 0, 0, 2, 0, 0, 0, 0.5, 3, 0, 0.5, 0, 2, 0.5;
   const Mat3 turn = Eigen::AngleAxisd(0.9, Vec3(1, 1, 0).normalized()).toRotationMatrix();
   rest = rest * turn.transpose();
-  const energy::TargetSplit<6> parts = energy::split_dea(rest);
+  const TargetSplit<6> parts = split_dea(rest);
   EXPECT_NEAR((parts.constant + parts.grown + parts.thinned - centred<6>(rest)).norm(), 0, 1e-12);
   const double ratio = 1.44;
   const Points_<6> target = parts.constant + std::sqrt(ratio) * parts.grown + parts.thinned / ratio;
-  energy::Shape<6> shape;
+  Shape<6> shape;
   set<6>(shape, target);
-  EXPECT_NEAR(energy::volume(shape)[0], 1.5, 1e-12);
+  EXPECT_NEAR(volume(shape)[0], 1.5, 1e-12);
   const Vec3 u = target.row(1) - target.row(0), v = target.row(2) - target.row(0);
   EXPECT_NEAR(0.5 * u.cross(v).norm(), 3 * ratio, 1e-12);
-  EXPECT_NEAR(energy::current_ratio<6>(actuation<6>(rest, 3, 1), shape)[5], ratio, 1e-12);
+  EXPECT_NEAR(current_ratio<6>(actuation<6>(rest, 3, 1), shape)[5], ratio, 1e-12);
 }
 
 TEST(TargetShape, PneumaticTargetScalesVolume) {
   const Points_<4> rest = base_shape<4>();
-  const energy::ActuationBlock<4> block = actuation<4>(rest, volume_of(rest), 5);
+  const ActuationBlock<4> block = actuation<4>(rest, volume_of(rest), 5);
   const Points_<4> grown = std::cbrt(1.7) * rest;
   EXPECT_NEAR(evaluate<4>(block, grown, 1.7).pull.norm(), 0, 1e-10);
-  energy::Shape<4> shape;
+  Shape<4> shape;
   set<4>(shape, grown);
-  EXPECT_NEAR(energy::current_ratio<4>(block, shape)[0], 1.7, 1e-12);
+  EXPECT_NEAR(current_ratio<4>(block, shape)[0], 1.7, 1e-12);
 }
 
 TEST(TargetShape, VolumesOfTetrahedronAndPrism) {
-  energy::Shape<4> t;
+  Shape<4> t;
   const Points_<4> points = base_shape<4>();
   set<4>(t, points);
-  EXPECT_NEAR(energy::volume(t)[1], volume_of(points), 1e-12);
+  EXPECT_NEAR(volume(t)[1], volume_of(points), 1e-12);
   Points_<6> unit;
   unit << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1;
-  energy::Shape<6> p;
+  Shape<6> p;
   set<6>(p, unit);
-  EXPECT_NEAR(energy::volume(p)[0], 0.5, 1e-14);
+  EXPECT_NEAR(volume(p)[0], 0.5, 1e-14);
   // twisted: against a fine Gauss-like sum of the linear prism's Jacobian
   const Points_<6> twisted = unit + random_points<6>(0.1);
   set<6>(p, twisted);
@@ -344,7 +343,7 @@ TEST(TargetShape, VolumesOfTetrahedronAndPrism) {
         j.row(2) = upper - lower;
         sum += j.determinant() * (1 - r) / (n * n * n);
       }
-  EXPECT_NEAR(energy::volume(p)[0], sum, 1e-4);
+  EXPECT_NEAR(volume(p)[0], sum, 1e-4);
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

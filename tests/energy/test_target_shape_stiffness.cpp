@@ -5,7 +5,7 @@
 #include <random>
 #include <softkin/energy/target_shape_stiffness.hpp>
 
-namespace softkin {
+namespace softkin::energy {
 
 namespace {
 
@@ -42,8 +42,8 @@ double lane_scale(int lane) {
 }
 
 template <int K>
-void set(energy::Shape<K>& shape, const Rows<K>& rows) {
-  for (int l = 0; l < energy::lanes; ++l)
+void set(Shape<K>& shape, const Rows<K>& rows) {
+  for (int l = 0; l < lanes; ++l)
     for (int i = 0; i < K; ++i) {
       shape[i].x[l] = lane_scale(l) * rows(i, 0);
       shape[i].y[l] = lane_scale(l) * rows(i, 1);
@@ -52,7 +52,7 @@ void set(energy::Shape<K>& shape, const Rows<K>& rows) {
 }
 
 template <int K>
-Vector<K> get(const energy::Shape<K>& shape, int lane) {
+Vector<K> get(const Shape<K>& shape, int lane) {
   Vector<K> values;
   for (int i = 0; i < K; ++i) values.template segment<3>(3 * i) << shape[i].x[lane], shape[i].y[lane], shape[i].z[lane];
   return values;
@@ -64,32 +64,32 @@ Rows<K> centred(const Rows<K>& rows) {
 }
 
 template <int K>
-energy::BodyBlock<K> body(double ratio) {
-  energy::BodyBlock<K> block;
+BodyBlock<K> body(double ratio) {
+  BodyBlock<K> block;
   set<K>(block.rest, centred<K>(rest_shape<K>()));
-  block.volume = energy::volume(block.rest);
-  block.weight = energy::pack(1.7);
-  block.shape_ratio = energy::pack(ratio);
+  block.volume = volume(block.rest);
+  block.weight = pack(1.7);
+  block.shape_ratio = pack(ratio);
   block.shape_ratio[5] = 1;
   block.blended = ratio < 1;
   return block;
 }
 
 template <int K>
-energy::ActuationBlock<K> actuation() {
-  energy::TargetSplit<K> parts;
-  if constexpr (K == 3) parts = energy::split_cable(rest_shape<K>());
-  if constexpr (K == 4) parts = energy::split_pneumatic(rest_shape<K>());
-  if constexpr (K == 6) parts = energy::split_dea(rest_shape<K>());
-  energy::ActuationBlock<K> block;
+ActuationBlock<K> actuation() {
+  TargetSplit<K> parts;
+  if constexpr (K == 3) parts = split_cable(rest_shape<K>());
+  if constexpr (K == 4) parts = split_pneumatic(rest_shape<K>());
+  if constexpr (K == 6) parts = split_dea(rest_shape<K>());
+  ActuationBlock<K> block;
   set<K>(block.constant, parts.constant);
   set<K>(block.grown, parts.grown);
   set<K>(block.thinned, parts.thinned);
-  block.measure = energy::pack(1);
-  energy::Shape<K> rest;
+  block.measure = pack(1);
+  Shape<K> rest;
   set<K>(rest, rest_shape<K>());
-  block.measure = energy::current_ratio<K>(block, rest);
-  block.weight = energy::pack(1.7);
+  block.measure = current_ratio<K>(block, rest);
+  block.weight = pack(1.7);
   return block;
 }
 
@@ -102,35 +102,35 @@ Vector<K> difference(const Pull& pull, const Rows<K>& at, const Rows<K>& along, 
 
 template <int K>
 struct Local {
-  energy::Shape<K> current;
-  energy::PackRotation rotation;
-  energy::ElementPull<K> out;
+  Shape<K> current;
+  PackRotation rotation;
+  ElementPull<K> out;
 };
 
 template <int K>
-Local<K> local(const energy::BodyBlock<K>& block, const Rows<K>& at) {
+Local<K> local(const BodyBlock<K>& block, const Rows<K>& at) {
   Local<K> result;
   set<K>(result.current, at);
-  energy::pull_of_body<K>(block, result.current, result.rotation, result.out);
+  pull_of_body<K>(block, result.current, result.rotation, result.out);
   return result;
 }
 
 template <int K>
-Local<K> local(const energy::ActuationBlock<K>& block, const energy::Pack& ratio, const Rows<K>& at) {
+Local<K> local(const ActuationBlock<K>& block, const Pack& ratio, const Rows<K>& at) {
   Local<K> result;
   set<K>(result.current, at);
-  energy::pull_of_actuation<K>(block, ratio, result.current, result.rotation, result.out);
+  pull_of_actuation<K>(block, ratio, result.current, result.rotation, result.out);
   return result;
 }
 
 template <int K>
-Square<K> matrix(const energy::TargetStiffness<K>& stiffness, int lane) {
+Square<K> matrix(const TargetStiffness<K>& stiffness, int lane) {
   Square<K> full;
   for (int i = 0, at = 0; i < K; ++i)
     for (int j = 0; j <= i; ++j, ++at) {
       Mat3 block;
       for (int r = 0; r < 3; ++r) {
-        const energy::Pack3& row = stiffness.block[at].row[r];
+        const Pack3& row = stiffness.block[at].row[r];
         block.row(r) << row.x[lane], row.y[lane], row.z[lane];
       }
       full.template block<3, 3>(3 * i, 3 * j) = block;
@@ -154,15 +154,15 @@ void expect_near(const Vector<K>& a, const Vector<K>& b, double tolerance) {
 /// Sizes from crushed to three times as large: every branch of the soft target.
 template <int K>
 void check_body_change(double ratio) {
-  const energy::BodyBlock<K> block = body<K>(ratio);
+  const BodyBlock<K> block = body<K>(ratio);
   for (int round = 0; round < 40; ++round) {
     const double size = round < 10 ? 0.25 + 0.02 * round : 0.5 + 0.06 * round;
     const Rows<K> at = size * (rest_shape<K>() + random_rows<K>(0.2)), along = random_rows<K>(1);
     const Local<K> here = local<K>(block, at);
-    energy::Shape<K> change, out;
+    Shape<K> change, out;
     set<K>(change, along);
-    energy::pull_change_of_body<K>(block, here.current, here.rotation, change, out);
-    for (int l = 0; l < energy::lanes; ++l)
+    pull_change_of_body<K>(block, here.current, here.rotation, change, out);
+    for (int l = 0; l < lanes; ++l)
       expect_near<K>(
           get<K>(out, l),
           difference<K>([&](const Rows<K>& x, int lane) { return get<K>(local<K>(block, x).out.pull, lane); }, at,
@@ -173,39 +173,38 @@ void check_body_change(double ratio) {
 
 template <int K>
 void check_actuation_change() {
-  const energy::ActuationBlock<K> block = actuation<K>();
+  const ActuationBlock<K> block = actuation<K>();
   for (int round = 0; round < 20; ++round) {
     const Rows<K> at = rest_shape<K>() + random_rows<K>(0.3), along = random_rows<K>(1);
-    const energy::Pack ratio = energy::pack(0.5 + 0.1 * round);
+    const Pack ratio = pack(0.5 + 0.1 * round);
     const double ratio_change = 0.3;
     const Local<K> here = local<K>(block, ratio, at);
-    energy::Shape<K> change, out;
+    Shape<K> change, out;
     set<K>(change, along);
-    energy::pull_change_of_actuation<K>(block, ratio, energy::pack(ratio_change), here.current, here.rotation, change,
-                                        out);
+    pull_change_of_actuation<K>(block, ratio, pack(ratio_change), here.current, here.rotation, change, out);
     const double h = 1e-5;
     const Local<K> up = local<K>(block, ratio + h * ratio_change, at + h * along);
     const Local<K> down = local<K>(block, ratio - h * ratio_change, at - h * along);
-    for (int l = 0; l < energy::lanes; ++l)
+    for (int l = 0; l < lanes; ++l)
       expect_near<K>(get<K>(out, l), (get<K>(up.out.pull, l) - get<K>(down.out.pull, l)) / (2 * h), 2e-7);
   }
 }
 
 template <int K>
 void check_ratio_coupling() {
-  const energy::ActuationBlock<K> block = actuation<K>();
+  const ActuationBlock<K> block = actuation<K>();
   const Rows<K> at = rest_shape<K>() + random_rows<K>(0.3), along = random_rows<K>(1);
-  const Local<K> here = local<K>(block, energy::pack(1.2), at);
-  energy::RatioCoupling<K> coupling;
-  energy::ratio_coupling<K>(block, energy::pack(1.2), here.current, here.rotation, coupling);
+  const Local<K> here = local<K>(block, pack(1.2), at);
+  RatioCoupling<K> coupling;
+  ratio_coupling<K>(block, pack(1.2), here.current, here.rotation, coupling);
   const double h = 1e-5;
-  energy::Shape<K> up, down, change;
+  Shape<K> up, down, change;
   set<K>(up, at + h * along);
   set<K>(down, at - h * along);
   set<K>(change, along);
-  const energy::Pack slope = (energy::current_ratio<K>(block, up) - energy::current_ratio<K>(block, down)) / (2 * h);
-  const Local<K> more = local<K>(block, energy::pack(1.2 + h), at), less = local<K>(block, energy::pack(1.2 - h), at);
-  for (int l = 0; l < energy::lanes; ++l) {
+  const Pack slope = (current_ratio<K>(block, up) - current_ratio<K>(block, down)) / (2 * h);
+  const Local<K> more = local<K>(block, pack(1.2 + h), at), less = local<K>(block, pack(1.2 - h), at);
+  for (int l = 0; l < lanes; ++l) {
     EXPECT_NEAR(get<K>(coupling.ratio_slope, l).dot(get<K>(change, l)), slope[l], 1e-7);
     expect_near<K>(get<K>(coupling.pull_slope, l), (get<K>(more.out.pull, l) - get<K>(less.out.pull, l)) / (2 * h),
                    1e-7);
@@ -216,17 +215,16 @@ void check_ratio_coupling() {
 template <int K, class Stiffness, class Change>
 int check_exact(const Stiffness& stiffness, const Change& pull_change) {
   int indefinite = 0;
-  energy::TargetStiffness<K> exact, projected;
+  TargetStiffness<K> exact, projected;
   stiffness(false, exact);
   stiffness(true, projected);
   for (int round = 0; round < 3; ++round) {
-    energy::Shape<K> change, out;
+    Shape<K> change, out;
     set<K>(change, random_rows<K>(1));
     pull_change(change, out);
-    for (int l = 0; l < energy::lanes; ++l)
-      expect_near<K>(matrix<K>(exact, l) * get<K>(change, l), -get<K>(out, l), 1e-10);
+    for (int l = 0; l < lanes; ++l) expect_near<K>(matrix<K>(exact, l) * get<K>(change, l), -get<K>(out, l), 1e-10);
   }
-  for (int l = 0; l < energy::lanes; ++l) {
+  for (int l = 0; l < lanes; ++l) {
     const Square<K> m = matrix<K>(exact, l), positive = positive_part<K>(m);
     EXPECT_LT((matrix<K>(projected, l) - positive).norm(), 1e-9 * (1 + m.norm()));
     indefinite += (m - positive).norm() > 1e-6;
@@ -244,14 +242,14 @@ double least_eigenvalue(const Square<K>& m) {
 TEST(TargetShapeStiffness, VolumeSlopeIsTheDifferenceQuotient) {
   const auto check = []<int K>(std::integral_constant<int, K>) {
     const Rows<K> at = rest_shape<K>() + random_rows<K>(0.3), along = random_rows<K>(1);
-    energy::Shape<K> here, up, down, change, slope;
+    Shape<K> here, up, down, change, slope;
     set<K>(here, at);
     set<K>(change, along);
     set<K>(up, at + 1e-5 * along);
     set<K>(down, at - 1e-5 * along);
-    energy::volume_slope(here, slope);
-    const energy::Pack quotient = (energy::volume(up) - energy::volume(down)) / 2e-5;
-    for (int l = 0; l < energy::lanes; ++l) EXPECT_NEAR(get<K>(slope, l).dot(get<K>(change, l)), quotient[l], 1e-6);
+    volume_slope(here, slope);
+    const Pack quotient = (volume(up) - volume(down)) / 2e-5;
+    for (int l = 0; l < lanes; ++l) EXPECT_NEAR(get<K>(slope, l).dot(get<K>(change, l)), quotient[l], 1e-6);
   };
   check(std::integral_constant<int, 4>());
   check(std::integral_constant<int, 6>());
@@ -279,30 +277,29 @@ TEST(TargetShapeStiffness, RatioCouplingIsTheDifferenceQuotient) {
 TEST(TargetShapeStiffness, ExactAndProjectedMatrixOfRigidTargets) {
   int indefinite = 0;
   const auto bodies = [&]<int K>(std::integral_constant<int, K>) {
-    const energy::BodyBlock<K> block = body<K>(1);
+    const BodyBlock<K> block = body<K>(1);
     for (int round = 0; round < 20; ++round) {
       const Local<K> here = local<K>(block, (0.5 + 0.05 * round) * (rest_shape<K>() + random_rows<K>(0.3)));
       indefinite += check_exact<K>(
-          [&](bool projected, energy::TargetStiffness<K>& out) {
-            energy::stiffness_of_body<K>(block, here.current, here.rotation, projected, out);
+          [&](bool projected, TargetStiffness<K>& out) {
+            stiffness_of_body<K>(block, here.current, here.rotation, projected, out);
           },
-          [&](const energy::Shape<K>& change, energy::Shape<K>& out) {
-            energy::pull_change_of_body<K>(block, here.current, here.rotation, change, out);
+          [&](const Shape<K>& change, Shape<K>& out) {
+            pull_change_of_body<K>(block, here.current, here.rotation, change, out);
           });
     }
   };
   const auto actuations = [&]<int K>(std::integral_constant<int, K>) {
-    const energy::ActuationBlock<K> block = actuation<K>();
+    const ActuationBlock<K> block = actuation<K>();
     for (int round = 0; round < 20; ++round) {
-      const energy::Pack ratio = energy::pack(0.4 + 0.1 * round);
+      const Pack ratio = pack(0.4 + 0.1 * round);
       const Local<K> here = local<K>(block, ratio, rest_shape<K>() + random_rows<K>(0.3));
       indefinite += check_exact<K>(
-          [&](bool projected, energy::TargetStiffness<K>& out) {
-            energy::stiffness_of_actuation<K>(block, ratio, false, here.current, here.rotation, projected, out);
+          [&](bool projected, TargetStiffness<K>& out) {
+            stiffness_of_actuation<K>(block, ratio, false, here.current, here.rotation, projected, out);
           },
-          [&](const energy::Shape<K>& change, energy::Shape<K>& out) {
-            energy::pull_change_of_actuation<K>(block, ratio, energy::pack(0), here.current, here.rotation, change,
-                                                out);
+          [&](const Shape<K>& change, Shape<K>& out) {
+            pull_change_of_actuation<K>(block, ratio, pack(0), here.current, here.rotation, change, out);
           });
     }
   };
@@ -318,12 +315,12 @@ TEST(TargetShapeStiffness, ExactAndProjectedMatrixOfRigidTargets) {
 TEST(TargetShapeStiffness, MatrixOfBlendedTargetsIsPositiveAndNearTheDerivative) {
   const auto check = []<int K>(std::integral_constant<int, K>) {
     for (const double ratio : {0.5, 0.14, 0.0}) {
-      const energy::BodyBlock<K> block = body<K>(ratio);
+      const BodyBlock<K> block = body<K>(ratio);
       for (int round = 0; round < 30; ++round) {
         const Local<K> here = local<K>(block, (0.4 + 0.05 * round) * (rest_shape<K>() + random_rows<K>(0.3)));
-        energy::TargetStiffness<K> stiffness;
-        energy::stiffness_of_body<K>(block, here.current, here.rotation, true, stiffness);
-        for (int l = 0; l < energy::lanes; ++l) {
+        TargetStiffness<K> stiffness;
+        stiffness_of_body<K>(block, here.current, here.rotation, true, stiffness);
+        for (int l = 0; l < lanes; ++l) {
           const Square<K> m = matrix<K>(stiffness, l);
           EXPECT_GT(least_eigenvalue<K>(m), -1e-10 * m.norm());
         }
@@ -335,33 +332,32 @@ TEST(TargetShapeStiffness, MatrixOfBlendedTargetsIsPositiveAndNearTheDerivative)
 
   Rows<4> regular;
   regular << 1, 1, 1, -1, -1, 1, 1, -1, -1, -1, 1, -1;
-  energy::BodyBlock<4> block = body<4>(0.3);
-  block.shape_ratio = energy::pack(0.3);
+  BodyBlock<4> block = body<4>(0.3);
+  block.shape_ratio = pack(0.3);
   set<4>(block.rest, regular);
-  block.volume = energy::volume(block.rest);
+  block.volume = volume(block.rest);
   const Local<4> here = local<4>(block, regular);
-  energy::TargetStiffness<4> stiffness;
-  energy::stiffness_of_body<4>(block, here.current, here.rotation, false, stiffness);
+  TargetStiffness<4> stiffness;
+  stiffness_of_body<4>(block, here.current, here.rotation, false, stiffness);
   for (int column = 0; column < 12; ++column) {
     Rows<4> along = Rows<4>::Zero();
     along(column / 3, column % 3) = 1;
-    energy::Shape<4> change, out;
+    Shape<4> change, out;
     set<4>(change, along);
-    energy::pull_change_of_body<4>(block, here.current, here.rotation, change, out);
-    for (int l = 0; l < energy::lanes; ++l)
-      expect_near<4>(matrix<4>(stiffness, l) * get<4>(change, l), -get<4>(out, l), 1e-10);
+    pull_change_of_body<4>(block, here.current, here.rotation, change, out);
+    for (int l = 0; l < lanes; ++l) expect_near<4>(matrix<4>(stiffness, l) * get<4>(change, l), -get<4>(out, l), 1e-10);
   }
 }
 
 TEST(TargetShapeStiffness, MatrixOfRedistributedRatiosIsPositiveAndLeavesGrowthFree) {
   const auto check = []<int K>(std::integral_constant<int, K>) {
-    const energy::ActuationBlock<K> block = actuation<K>();
+    const ActuationBlock<K> block = actuation<K>();
     for (int round = 0; round < 20; ++round) {
-      const energy::Pack ratio = energy::pack(0.4 + 0.1 * round);
+      const Pack ratio = pack(0.4 + 0.1 * round);
       const Local<K> here = local<K>(block, ratio, rest_shape<K>() + random_rows<K>(0.2));
-      energy::TargetStiffness<K> stiffness;
-      energy::stiffness_of_actuation<K>(block, ratio, true, here.current, here.rotation, false, stiffness);
-      for (int l = 0; l < energy::lanes; ++l) {
+      TargetStiffness<K> stiffness;
+      stiffness_of_actuation<K>(block, ratio, true, here.current, here.rotation, false, stiffness);
+      for (int l = 0; l < lanes; ++l) {
         const Square<K> m = matrix<K>(stiffness, l);
         EXPECT_GT(least_eigenvalue<K>(m), -1e-10 * m.norm());
       }
@@ -370,59 +366,59 @@ TEST(TargetShapeStiffness, MatrixOfRedistributedRatiosIsPositiveAndLeavesGrowthF
   check(std::integral_constant<int, 3>());
   check(std::integral_constant<int, 4>());
   check(std::integral_constant<int, 6>());
-  const energy::ActuationBlock<4> block = actuation<4>();
+  const ActuationBlock<4> block = actuation<4>();
   const Rows<4> at = centred<4>(std::cbrt(1.5) * rest_shape<4>());
-  const Local<4> here = local<4>(block, energy::pack(1.5), at);
-  energy::TargetStiffness<4> stiffness;
-  energy::stiffness_of_actuation<4>(block, energy::pack(1.5), true, here.current, here.rotation, false, stiffness);
-  energy::Shape<4> change;
+  const Local<4> here = local<4>(block, pack(1.5), at);
+  TargetStiffness<4> stiffness;
+  stiffness_of_actuation<4>(block, pack(1.5), true, here.current, here.rotation, false, stiffness);
+  Shape<4> change;
   set<4>(change, at);
-  for (int l = 0; l < energy::lanes; ++l)
+  for (int l = 0; l < lanes; ++l)
     EXPECT_LT((matrix<4>(stiffness, l) * get<4>(change, l)).norm(), 1e-10 * matrix<4>(stiffness, l).norm());
 }
 
 /// A rotation's tangent turns an element at rest instead of stretching it; small changes stay what they are.
 TEST(TargetShapeStiffness, TurnedMovesBend) {
-  const energy::BodyBlock<4> block = body<4>(1);
+  const BodyBlock<4> block = body<4>(1);
   const Local<4> here = local<4>(block, rest_shape<4>());
   const Vec3 turn(0.3, -0.8, 1.1);
   const Rows<4> at = centred<4>(rest_shape<4>());
   Rows<4> along;
   for (int i = 0; i < 4; ++i) along.row(i) = turn.cross(Vec3(at.row(i).transpose())).transpose();
-  energy::Shape<4> change, out;
+  Shape<4> change, out;
   set<4>(change, along);
-  energy::turned_move_of_body<4>(block, here.current, here.rotation, change, out);
+  turned_move_of_body<4>(block, here.current, here.rotation, change, out);
   const double angle = 2 * std::atan(turn.norm() / 2);
   const Mat3 rotation = Eigen::AngleAxisd(angle, turn.normalized()).toRotationMatrix();
-  energy::Shape<4> expected;
+  Shape<4> expected;
   set<4>(expected, 1.7 * (at * rotation.transpose() - at));
-  for (int l = 0; l < energy::lanes; ++l) expect_near<4>(get<4>(out, l), get<4>(expected, l), 1e-12);
+  for (int l = 0; l < lanes; ++l) expect_near<4>(get<4>(out, l), get<4>(expected, l), 1e-12);
 
-  const energy::ActuationBlock<6> skin = actuation<6>();
-  const Local<6> there = local<6>(skin, energy::pack(1.3), rest_shape<6>() + random_rows<6>(0.2));
+  const ActuationBlock<6> skin = actuation<6>();
+  const Local<6> there = local<6>(skin, pack(1.3), rest_shape<6>() + random_rows<6>(0.2));
   const Rows<6> small = 1e-5 * centred<6>(random_rows<6>(1));
-  energy::Shape<6> little, moved;
+  Shape<6> little, moved;
   set<6>(little, small);
-  energy::turned_move_of_actuation<6>(skin, energy::pack(1.3), there.current, there.rotation, little, moved);
-  for (int l = 0; l < energy::lanes; ++l) EXPECT_LT((get<6>(moved, l) - 1.7 * get<6>(little, l)).norm(), 1e-8);
+  turned_move_of_actuation<6>(skin, pack(1.3), there.current, there.rotation, little, moved);
+  for (int l = 0; l < lanes; ++l) EXPECT_LT((get<6>(moved, l) - 1.7 * get<6>(little, l)).norm(), 1e-8);
 }
 
 TEST(TargetShapeStiffness, FlatAndVanishedElementsStayFinite) {
   for (const double ratio : {1.0, 0.5, 0.0})
     for (const int kind : {0, 1, 2}) {
-      const energy::BodyBlock<4> block = body<4>(ratio);
+      const BodyBlock<4> block = body<4>(ratio);
       Rows<4> at = rest_shape<4>();
       if (kind == 0) at.col(2).setZero();
       if (kind == 1) at.setZero();
       if (kind == 2) at.col(0) *= -1;
       const Local<4> here = local<4>(block, at);
-      energy::Shape<4> change, out;
+      Shape<4> change, out;
       set<4>(change, random_rows<4>(1));
-      energy::pull_change_of_body<4>(block, here.current, here.rotation, change, out);
+      pull_change_of_body<4>(block, here.current, here.rotation, change, out);
       for (const bool projected : {false, true}) {
-        energy::TargetStiffness<4> stiffness;
-        energy::stiffness_of_body<4>(block, here.current, here.rotation, projected, stiffness);
-        for (int l = 0; l < energy::lanes; ++l) {
+        TargetStiffness<4> stiffness;
+        stiffness_of_body<4>(block, here.current, here.rotation, projected, stiffness);
+        for (int l = 0; l < lanes; ++l) {
           EXPECT_TRUE((get<4>(out, l).allFinite()));
           EXPECT_TRUE((matrix<4>(stiffness, l).allFinite()));
         }
@@ -430,4 +426,4 @@ TEST(TargetShapeStiffness, FlatAndVanishedElementsStayFinite) {
     }
 }
 
-}  // namespace softkin
+}  // namespace softkin::energy

@@ -51,25 +51,26 @@ MarkerPath made_by_actuation(const Robot& robot, int count) {
   return path;
 }
 
-double mean_equilibria(const std::vector<FollowedWaypoint>& waypoints) {
+double mean_equilibria(const std::vector<InverseResult>& waypoints) {
   double sum = 0;
-  for (const FollowedWaypoint& each : waypoints) sum += each.equilibria;
+  for (const InverseResult& each : waypoints) sum += each.equilibria;
   return sum / static_cast<double>(waypoints.size());
 }
 
-void expect_reached(const Robot& robot, const MarkerPath& path, const std::vector<FollowedWaypoint>& found,
+void expect_reached(const Robot& robot, const MarkerPath& path, const std::vector<InverseResult>& found,
                     double tolerance_mm) {
   ASSERT_EQ(found.size(), path.waypoints.size());
   State state = robot.statics.rest();
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_EQ(found[i].status, InverseStatus::reached) << i << " " << found[i].remark;
-    EXPECT_LE(found[i].error_mm, tolerance_mm) << i;
-    check_actuation(robot.model, found[i].actuation);
-    const Equilibrium again = robot.statics.solve(found[i].actuation, state);  // forward kinematics has the last word
+    EXPECT_LE(found[i].errors_mm.maxCoeff(), tolerance_mm) << i;
+    check_actuation(robot.model, found[i].equilibrium.actuation);
+    const Equilibrium again =
+        robot.statics.solve(found[i].equilibrium.actuation, state);  // forward kinematics has the last word
     ASSERT_EQ(again.report.status, Status::converged);
     state = again.state;
     EXPECT_LE((robot.tip(state) - path.waypoints[i].targets[0]).norm(), tolerance_mm + 1e-5) << i;
-    EXPECT_LE((found[i].markers[0] - robot.tip(state)).norm(), 1e-5) << i;
+    EXPECT_LE((robot.tip(found[i].equilibrium.state) - robot.tip(state)).norm(), 1e-5) << i;
   }
 }
 
@@ -78,11 +79,11 @@ class FollowPath : public ::testing::TestWithParam<Formulation> {};
 TEST_P(FollowPath, LeadsTheTipAlongAReachableCurve) {
   const Robot robot(GetParam());
   const MarkerPath path = made_by_actuation(robot, 25);
-  const std::vector<FollowedWaypoint> found = follow_path(robot.model, robot.statics, path);
+  const std::vector<InverseResult> found = follow_path(robot.model, robot.statics, path);
   expect_reached(robot, path, found, 1e-3);
   EXPECT_LE(mean_equilibria(found), 3);
   for (std::size_t i = 1; i < found.size(); ++i)  // three coordinates, three chambers: one solution nearby
-    EXPECT_LE((found[i].actuation - turn(static_cast<double>(i) / 24)).norm(), 0.01) << i;
+    EXPECT_LE((found[i].equilibrium.actuation - turn(static_cast<double>(i) / 24)).norm(), 0.01) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Formulations, FollowPath, ::testing::Values(Formulation::physical, Formulation::target_shape));
@@ -115,24 +116,26 @@ TEST(Trajectory, OutsideTheWorkspaceItKeepsToTheNearestPointsAndComesBack) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool reached = found[i].status == InverseStatus::reached;
     EXPECT_TRUE(reached || found[i].status == InverseStatus::unreachable) << i << " " << found[i].remark;
-    EXPECT_EQ(reached, found[i].error_mm <= 1e-3) << i;
-    EXPECT_NEAR(found[i].error_mm, (found[i].markers[0] - path.waypoints[i].targets[0]).norm(), 1e-9);
-    check_actuation(robot.model, found[i].actuation);
+    EXPECT_EQ(reached, found[i].errors_mm.maxCoeff() <= 1e-3) << i;
+    EXPECT_NEAR(found[i].errors_mm.maxCoeff(),
+                (robot.tip(found[i].equilibrium.state) - path.waypoints[i].targets[0]).norm(), 1e-9);
+    check_actuation(robot.model, found[i].equilibrium.actuation);
     out += reached ? 0 : 1;
     if (i > 0) {
-      EXPECT_LE((found[i].markers[0] - found[i - 1].markers[0]).norm(),
+      EXPECT_LE((robot.tip(found[i].equilibrium.state) - robot.tip(found[i - 1].equilibrium.state)).norm(),
                 1.5 * (path.waypoints[i].targets[0] - path.waypoints[i - 1].targets[0]).norm() + 0.05);
     }
   }
   EXPECT_GT(out, 5);
   EXPECT_EQ(found.front().status, InverseStatus::reached);
   EXPECT_EQ(found.back().status, InverseStatus::reached);
-  EXPECT_GT(found[count / 2].error_mm, 1);
+  EXPECT_GT(found[count / 2].errors_mm.maxCoeff(), 1);
   const Actuation most = Actuation::Constant(3, 2);  // no sample of the ranges is nearer than what was found
   for (const double a : {1.0, 1.5, 2.0})
     for (const double b : {1.0, 1.5, 2.0}) {
       const State state = robot.statics.solve(Actuation{{a, b, 2.0}}, robot.statics.rest()).state;
-      EXPECT_GE((robot.tip(state) - path.waypoints[count / 2].targets[0]).norm(), found[count / 2].error_mm - 1e-3);
+      EXPECT_GE((robot.tip(state) - path.waypoints[count / 2].targets[0]).norm(),
+                found[count / 2].errors_mm.maxCoeff() - 1e-3);
     }
   EXPECT_EQ(robot.statics.solve(most, robot.statics.rest()).report.status, Status::converged);
 }
@@ -142,9 +145,9 @@ TEST(Trajectory, CoordinatesThatDoNotCountAreFree) {
   MarkerPath path = made_by_actuation(robot, 9);
   path.axes[0] = {false, true, true};
   for (Waypoint& waypoint : path.waypoints) waypoint.targets[0].x() = 0;
-  for (const FollowedWaypoint& each : follow_path(robot.model, robot.statics, path)) {
+  for (const InverseResult& each : follow_path(robot.model, robot.statics, path)) {
     EXPECT_EQ(each.status, InverseStatus::reached) << each.remark;
-    EXPECT_GT(each.markers[0].x(), 40);
+    EXPECT_GT(robot.tip(each.equilibrium.state).x(), 40);
   }
 }
 
@@ -164,16 +167,16 @@ TEST(Trajectory, InterruptedItKeepsWhatIsDoneAndGoesOnFromThere) {
   again.resume(5, last);
   while (!again.done()) {
     const std::size_t i = again.next();
-    const FollowedWaypoint found = followed(robot.model, path, again.advance());
+    const InverseResult found = again.advance();
     EXPECT_EQ(found.status, InverseStatus::reached);
-    EXPECT_LE((found.actuation - whole[i].actuation).norm(), 1e-3) << i;
+    EXPECT_LE((found.equilibrium.actuation - whole[i].equilibrium.actuation).norm(), 1e-3) << i;
   }
   int calls = 0;
   const auto part =
       follow_path(robot.model, robot.statics, path, {}, [&calls](const Progress&) { return ++calls < 40; });
   EXPECT_GT(part.size(), 0u);
   EXPECT_LT(part.size(), path.waypoints.size());
-  for (const FollowedWaypoint& each : part) EXPECT_EQ(each.status, InverseStatus::reached);
+  for (const InverseResult& each : part) EXPECT_EQ(each.status, InverseStatus::reached);
 }
 
 TEST(Trajectory, StartsWhereItIsTold) {
@@ -186,7 +189,7 @@ TEST(Trajectory, StartsWhereItIsTold) {
   const auto from_near = follow_path(robot.model, robot.statics, path, near);
   EXPECT_LE(from_near[0].equilibria, 2);
   EXPECT_LT(from_near[0].equilibria, from_rest[0].equilibria);
-  EXPECT_LE((from_near[0].actuation - turn(0)).norm(), 1e-4);
+  EXPECT_LE((from_near[0].equilibrium.actuation - turn(0)).norm(), 1e-4);
 }
 
 TEST(Trajectory, AlgorithmTwoFollowsToo) {

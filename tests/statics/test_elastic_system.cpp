@@ -11,6 +11,7 @@ namespace softkin {
 namespace {
 
 using namespace testing;
+using namespace linear;
 
 MaterialSpec material(const std::string& region, Law law) {
   MaterialSpec spec;

@@ -10,6 +10,7 @@ namespace softkin {
 namespace {
 
 using namespace testing;
+using namespace linear;
 
 /// A block held at one end, with vertices that slide in a plane or along a line, and rigid regions: a free one, one
 /// that is held along z, one held along y and z, and one that is held whole.

@@ -13,6 +13,7 @@ namespace softkin {
 namespace {
 
 using namespace testing;
+using namespace linear;
 
 /// A block with a chamber inside, a bag embedded in it, and cables: through points inside elements, from the mean of
 /// one face to the mean of the other, and one that passes a point twice.

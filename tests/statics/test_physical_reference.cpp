@@ -36,7 +36,7 @@ Vec3 marker(const Model& model, const Points& positions, std::size_t index = 0) 
 class FingerReference : public ::testing::TestWithParam<Sweep> {};
 class CableReference : public ::testing::TestWithParam<Sweep> {};
 
-std::string name_of(const ::testing::TestParamInfo<Sweep>& info) {
+std::string case_name(const ::testing::TestParamInfo<Sweep>& info) {
   return info.param.table;
 }
 
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Fem, FingerReference,
                                            Sweep{"finger_15k", "finger_15k_c3d4_lin", false, ReferenceLaw::lin, 11},
                                            Sweep{"finger_15k", "finger_15k_c3d4_nh", false, ReferenceLaw::nh, 11},
                                            Sweep{"finger_15k", "finger_15k_c3d10_lin", true, ReferenceLaw::lin, 24}),
-                         name_of);
+                         case_name);
 
 /// Length control with the reference's lengths: tip and tension. Rows in which notches would touch are left out.
 TEST_P(CableReference, TipAndTensionAtEqualLength) {
@@ -121,7 +121,7 @@ TEST_P(CableReference, TipAndTensionAtEqualLength) {
 INSTANTIATE_TEST_SUITE_P(Fem, CableReference,
                          ::testing::Values(Sweep{"cable_5k", "cable_5k_c3d4_lin", false, ReferenceLaw::lin, 8},
                                            Sweep{"cable_5k", "cable_5k_c3d10_lin", true, ReferenceLaw::lin, 4}),
-                         name_of);
+                         case_name);
 
 namespace {
 

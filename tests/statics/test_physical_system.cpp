@@ -207,7 +207,7 @@ TEST(System, AdvanceBendsABarWithoutStretchingIt) {
   RobotSpec spec = physical_robot(block_mesh({24, 2, 2}, {length, 5, 5}));
   Sample sample(spec);
   sample.at.positions = sample.model.rest;
-  const BlockColumns& columns = sample.system.freedoms().columns();
+  const linear::BlockColumns& columns = sample.system.freedoms().columns();
   for (const double angle : {0.5, 1.5, 2.5}) {
     // the tangent of an evenly bent bar: section at x turns by angle x / length about y
     Points moves(sample.model.rest.rows(), 3);

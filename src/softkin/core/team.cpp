@@ -80,4 +80,23 @@ void Team::work() {
   }
 }
 
+TeamPool::Lent TeamPool::lend(int threads) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::find_if(idle_.begin(), idle_.end(), [threads](const auto& team) { return team->size() == threads; });
+    if (found != idle_.end()) {
+      Lent lent(found->release(), GiveBack(this));
+      idle_.erase(found);
+      return lent;
+    }
+  }
+  return Lent(new Team(threads), GiveBack(this));
+}
+
+void TeamPool::GiveBack::operator()(Team* team) const {
+  const std::lock_guard lock(pool_->mutex_);
+  pool_->idle_.emplace_back(team);
+}
+
 }  // namespace softkin

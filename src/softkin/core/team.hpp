@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <softkin/core/types.hpp>
 #include <thread>
 #include <vector>
@@ -52,6 +54,29 @@ class Team {
   std::atomic<std::uint32_t> loops_{0};  // started so far; workers sleep on it
   std::atomic<std::uint32_t> state_{0};  // bit 0: a loop is open; above: workers inside it
   std::atomic<bool> ended_{false};
+};
+
+/// Teams that sleep until somebody needs one: starting a thread costs more than a small robot's equilibrium.
+class TeamPool {
+ public:
+  class GiveBack {
+   public:
+    explicit GiveBack(TeamPool* pool) : pool_(pool) {}
+    void operator()(Team* team) const;
+
+   private:
+    TeamPool* pool_;
+  };
+  /// For one user at a time, as a Team is; goes back by itself, before the pool ends.
+  using Lent = std::unique_ptr<Team, GiveBack>;
+
+  /// A team of so many threads, >= 1; one is made where none is idle, so that there are as many as were ever lent at
+  /// once. May be called on several threads at once.
+  [[nodiscard]] Lent lend(int threads);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Team>> idle_;
 };
 
 }  // namespace softkin

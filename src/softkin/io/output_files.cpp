@@ -130,7 +130,8 @@ void OutputFolders::remove_empty() const {
 
 void remove_torn_files(const std::vector<Output>& outputs) {
   for (const Output& output : outputs) {
-    std::set<std::string> names{output.file.filename().string()};
+    const std::string name = output.file.filename().string();
+    std::set<std::string> names{name, name + ".run"};  // a report's journal
     for (std::size_t i = 0; i < output.shapes; ++i) names.insert(series_file(output.file, i).filename().string());
     std::vector<fs::path> torn;
     for (const auto& entry : fs::directory_iterator(folder_of(output.file)))

@@ -12,7 +12,7 @@ namespace softkin {
 /// The beginning of text in single quotes, safe to print whatever text holds; for messages.
 [[nodiscard]] std::string excerpt(std::string_view text);
 
-/// A name out of a file, safe to print on one line: as it is where it is plain, else excerpt.
+/// A name out of a file as it is, where that is safe to print on one line; else its excerpt.
 [[nodiscard]] std::string printable(const std::string& name);
 
 }  // namespace softkin

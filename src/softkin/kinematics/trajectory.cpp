@@ -203,28 +203,14 @@ void PathFollower::learn(const std::vector<Goal>& goals, const InverseResult& fo
   if (slopes_before_.size() > 0 && !(move_.norm() > least_move)) slopes_before_.resize(0, 0);
 }
 
-FollowedWaypoint followed(const Model& model, const MarkerPath& path, const InverseResult& found) {
-  FollowedWaypoint result;
-  result.status = found.status;
-  result.actuation = found.equilibrium.actuation;
-  for (const Index m : path.markers)
-    result.markers.push_back(model.markers[static_cast<std::size_t>(m)].point.at(found.equilibrium.state.positions));
-  result.error_mm = found.errors_mm.maxCoeff();
-  result.equilibria = found.equilibria;
-  result.iterations = found.iterations;
-  result.seconds = found.seconds;
-  result.remark = found.remark;
-  return result;
-}
-
-std::vector<FollowedWaypoint> follow_path(const Model& model, const Statics& statics, const MarkerPath& path,
-                                          const TrajectoryOptions& options, const ProgressCallback& progress) {
+std::vector<InverseResult> follow_path(const Model& model, const Statics& statics, const MarkerPath& path,
+                                       const TrajectoryOptions& options, const ProgressCallback& progress) {
   PathFollower follower(model, statics, path, options);
-  std::vector<FollowedWaypoint> waypoints;
+  std::vector<InverseResult> waypoints;
   while (!follower.done()) {
-    const InverseResult found = follower.advance(progress);
+    InverseResult found = follower.advance(progress);
     if (found.status == InverseStatus::interrupted) break;
-    waypoints.push_back(followed(model, path, found));
+    waypoints.push_back(std::move(found));
   }
   return waypoints;
 }

@@ -61,23 +61,9 @@ class PathFollower {
   Eigen::VectorXd move_;           // from there [shares]
 };
 
-/// What a waypoint came to.
-struct FollowedWaypoint {
-  InverseStatus status = InverseStatus::not_converged;
-  Actuation actuation;
-  std::vector<Vec3> markers;  // of the path, where they are [mm]
-  double error_mm = 0;        // of the marker that is farthest from its target
-  int equilibria = 0, iterations = 0;
-  double seconds = 0;
-  std::string remark;
-};
-
-/// Of the path's markers; found: for the waypoint.
-[[nodiscard]] FollowedWaypoint followed(const Model& model, const MarkerPath& path, const InverseResult& found);
-
 /// The whole path; what was done where progress stopped it. Throws as PathFollower does.
-[[nodiscard]] std::vector<FollowedWaypoint> follow_path(const Model& model, const Statics& statics,
-                                                        const MarkerPath& path, const TrajectoryOptions& options = {},
-                                                        const ProgressCallback& progress = {});
+[[nodiscard]] std::vector<InverseResult> follow_path(const Model& model, const Statics& statics, const MarkerPath& path,
+                                                     const TrajectoryOptions& options = {},
+                                                     const ProgressCallback& progress = {});
 
 }  // namespace softkin

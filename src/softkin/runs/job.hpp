@@ -57,7 +57,7 @@ class Run {
   [[nodiscard]] const Points& last_positions() const { return positions_; }
   [[nodiscard]] TypedLog<Record>& log() { return log_; }
 
-  /// Takes over what is on disk. remark: for the user. throws  as RecordLog::resume
+  /// Takes over what is on disk. remark: for the user. Throws as RecordLog::resume
   void resume(std::string& remark) {
     log_.resume([this](std::size_t number, const Record& record) { return job_.mismatch(number, record); }, remark);
     if (done() == 0) return;

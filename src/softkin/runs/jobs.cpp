@@ -11,7 +11,7 @@ namespace softkin::runs {
 
 namespace {
 
-/// Reads a line by from_json of the record. throws  InvalidInput where it is none of to_json
+/// Reads a line by from_json of the record. Throws InvalidInput where it is none of to_json
 template <class Record, class Read>
 Codec<Record> codec_of(std::function<Json(const Record&)> write, Read read) {
   return {[write](const Record& record) { return line_of(write(record)); },

@@ -32,7 +32,7 @@ class PathJob : public Job<StepRecord> {
 /// Inverse kinematics along a path of markers.
 class FollowJob : public Job<WaypointRecord> {
  public:
-  /// All must outlive the job. file: of the path, for messages. throws  as PathFollower
+  /// All must outlive the job. file: of the path, for messages. Throws as PathFollower.
   FollowJob(const Model& model, const Statics& statics, const MarkerPath& path, std::string file,
             const TrajectoryOptions& options);
 
@@ -56,7 +56,7 @@ struct GaitStep {
   std::size_t cycle = 0;  // from 1; 0: where the robot is put down
 };
 
-/// The gait so many times. throws  InvalidInput, naming file and line, where its last row is not its first one again
+/// The gait so many times. Throws InvalidInput, naming file and line, where its last row is not its first one again
 [[nodiscard]] std::vector<GaitStep> repeated(const Model& model, const std::string& file,
                                              const std::vector<ActuationStep>& gait, std::size_t cycles);
 

@@ -78,9 +78,14 @@ void RecordLog::resume(const std::function<const StepRecord&(std::size_t, std::s
     if (const std::string why = difference(before, log.head, log.same); !why.empty()) refuse(why);
     if (!journal) {
       // nothing is written before all of it is found good
-      for (std::size_t i = 0; i < before.at("steps").size(); ++i) (void)take(i, line_of(before.at("steps").at(i)));
-      log.begin();
-      for (const Json& step : before.at("steps")) log.store->append(line_of(step));
+      std::string text = line_of(log.head) + "\n";
+      for (std::size_t i = 0; i < before.at("steps").size(); ++i) {
+        const std::string line = line_of(before.at("steps").at(i));
+        (void)take(i, line);
+        text += line + "\n";
+      }
+      write_file(log.journal(), text);  // all of it at once: a kill leaves the report or the journal
+      log.store.emplace(log.journal(), line_of(log.head) + "\n", true);
     }
     std::size_t good = 0;
     log.store->each([&](std::size_t i, std::string_view line) {

@@ -17,7 +17,7 @@ constexpr std::array<InverseStatus, 4> ends{InverseStatus::reached, InverseStatu
                                             InverseStatus::not_converged, InverseStatus::interrupted};
 constexpr const char* sliding_names[] = {"none", "rear", "front", "both"};  // of Sliding
 
-/// The value of that name. throws  std::out_of_range where there is none
+/// The value of that name. Throws std::out_of_range where there is none
 template <class Value, std::size_t N>
 Value named(const std::array<Value, N>& values, const std::string& name) {
   for (const Value value : values)

@@ -1,8 +1,8 @@
 #include <softkin/runs/shape_files.hpp>
 
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/picture/picture.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 
 namespace softkin::runs {
 

@@ -50,8 +50,8 @@ Store::Store(fs::path path, const std::string& head, bool resume) : path_(std::m
   const bool begin = !resume || path_.empty() || !fs::exists(path_);
   open(begin);
   try {
-    if (begin) {
-      if (::ftruncate(file_, 0) != 0) refuse(std::string("cannot be written: ") + std::strerror(errno));
+    if (begin || ends_within(head)) {
+      cut_off();
       write(head);
     } else {
       measure(static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n')));
@@ -85,6 +85,13 @@ void Store::open(bool begin) {
   refuse("another softkin is at work on it");
 }
 
+bool Store::ends_within(const std::string& head) const {
+  std::string text(head.size(), '\0');
+  const ssize_t count = ::pread(file_, text.data(), text.size(), 0);
+  return count >= 0 && static_cast<std::size_t>(count) < head.size() &&
+         head.starts_with(text.substr(0, static_cast<std::size_t>(count)));
+}
+
 void Store::measure(std::size_t head_lines) {
   std::size_t lines = 0;
   std::string head;
@@ -95,14 +102,19 @@ void Store::measure(std::size_t head_lines) {
     if (lines++ < head_lines) (head += line) += '\n';
     return true;
   });
-  if (lines < head_lines) refuse("ends within its first lines");
   head_ = std::move(head);
-  size_ = lines - head_lines;
-  if (torn_ && ::ftruncate(file_, static_cast<off_t>(bytes_)) != 0)
+  size_ = lines - std::min(lines, head_lines);
+  tail_ = torn_;
+}
+
+void Store::cut_off() {
+  if (::ftruncate(file_, static_cast<off_t>(bytes_)) != 0)
     refuse(std::string("cannot be written: ") + std::strerror(errno));
+  tail_ = false;
 }
 
 void Store::write(std::string_view text) {
+  if (tail_) cut_off();
   ssize_t written = -1;
   do {
     written = ::pwrite(file_, text.data(), text.size(), static_cast<off_t>(bytes_));
@@ -116,7 +128,13 @@ void Store::write(std::string_view text) {
   refuse("cannot be written: " + why);
 }
 
+std::size_t Store::size() const {
+  const std::lock_guard lock(mutex_);
+  return size_;
+}
+
 void Store::append(std::string_view record) {
+  const std::lock_guard lock(mutex_);
   std::string line(record);
   write(line += '\n');
   ++size_;
@@ -127,21 +145,23 @@ void Store::append(std::string_view record) {
 }
 
 void Store::each(const std::function<bool(std::size_t, std::string_view)>& visit) const {
+  const std::size_t records = size();
   std::size_t number = 0;
-  each_line(file_, head_.size(), [&](std::string_view line, bool) { return number < size_ && visit(number++, line); });
+  each_line(file_, head_.size(),
+            [&](std::string_view line, bool) { return number < records && visit(number++, line); });
 }
 
 void Store::cut(std::size_t records) {
-  if (records >= size_) return;
+  if (records >= size()) return;
   std::size_t bytes = head_.size();
   each([&](std::size_t number, std::string_view record) {
     if (number < records) bytes += record.size() + 1;
     return number < records;
   });
-  if (::ftruncate(file_, static_cast<off_t>(bytes)) != 0)
-    refuse(std::string("cannot be written: ") + std::strerror(errno));
+  const std::lock_guard lock(mutex_);
   bytes_ = bytes;
   size_ = records;
+  cut_off();
 }
 
 void Store::remove() {

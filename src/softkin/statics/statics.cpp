@@ -40,7 +40,7 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
         "solver options out of range: tolerance >= 0 mm, iterations >= 1, anderson 0 to 20, threads >= 0");
 }
 
-/// Starting a thread costs as much as some hundred elements.
+/// Waking a thread for every loop costs as much as some hundred elements.
 int worthwhile_threads(const Model& model) {
   constexpr std::size_t elements_each = 1500;
   const std::size_t elements = model.tetrahedra.size() + model.prisms.size();
@@ -69,7 +69,7 @@ void check_actuation(const Model& model, const Actuation& actuation) {
 }
 
 struct Statics::Parts {
-  explicit Parts(const Model& robot) : model(robot) {
+  explicit Parts(const Model& robot) : model(robot), worthwhile(worthwhile_threads(robot)) {
     if (robot.formulation == Formulation::physical)
       physical.emplace(robot);
     else
@@ -86,7 +86,13 @@ struct Statics::Parts {
     supports::GlobalStep global;
     target_shape::Newton newton;
   };
+  [[nodiscard]] TeamPool::Lent team(const StaticsOptions& options) {
+    return teams.lend(options.threads > 0 ? options.threads : worthwhile);
+  }
+
   const Model& model;
+  int worthwhile = 1;  // threads
+  TeamPool teams;
   std::optional<TargetShape> target_shape;
   std::optional<physical::Equilibria> physical;
 };
@@ -108,7 +114,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
-  Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));
+  const TeamPool::Lent team = parts_->team(options);
   const double paper_tolerance = 8e-8 * model.diagonal_mm;
 
   const double tolerance = options.step_tolerance_mm > 0 ? options.step_tolerance_mm : paper_tolerance;
@@ -118,16 +124,16 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
     result = parts_->physical->solve(actuation, start,
                                      {tolerance, options.max_iterations, options.keep_history, options.reuse_factor},
-                                     progress, team);
+                                     progress, *team);
   } else {
     result.actuation = actuation;
     result.state.positions = start.positions;
     result.report.tolerance_mm = tolerance;
     const Parts::TargetShape& parts = *parts_->target_shape;
     if (options.solver == Solver::newton)
-      parts.newton.solve(start.actuation, options, progress, team, result);
+      parts.newton.solve(start.actuation, options, progress, *team, result);
     else
-      target_shape::solve_local_global(parts.system, parts.global, options, progress, team, result);
+      target_shape::solve_local_global(parts.system, parts.global, options, progress, *team, result);
     if (result.report.status == Status::converged) result.state.actuation = actuation;
     result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
   }
@@ -144,9 +150,9 @@ Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options)
   if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
   if (parts_->physical && at.multipliers.size() != at.actuation.size())
     throw InvalidInput("the sensitivity of a shape needs the tensions and pressures of its equilibrium");
-  Team team(options.threads > 0 ? options.threads : worthwhile_threads(model));
-  if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, team);
-  return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, team);
+  const TeamPool::Lent team = parts_->team(options);
+  if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, *team);
+  return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, *team);
 }
 
 void Statics::forget() const {
@@ -155,10 +161,11 @@ void Statics::forget() const {
 }
 
 struct Neighbourhood::Parts {
-  Parts(const Model& robot, const State& centre, int threads) : model(robot), at(centre), team(threads) {}
+  Parts(const Model& robot, const State& centre, TeamPool::Lent lent)
+      : model(robot), at(centre), team(std::move(lent)) {}
   const Model& model;
   State at;
-  Team team;
+  TeamPool::Lent team;
   std::optional<physical::Equilibria::Lease> lease;
   std::optional<physical::Predictor> physical;
 };
@@ -170,11 +177,11 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
   check_start(model, at, options);
   if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
     throw InvalidInput("predictions around a shape need the actuation of which it is the equilibrium");
-  parts_ = std::make_unique<Parts>(model, at, threads);
+  parts_ = std::make_unique<Parts>(model, at, statics.parts_->team(options));
   if (!statics.parts_->physical || at.multipliers.size() == 0) return;
   const physical::Equilibria& physical = *statics.parts_->physical;
   parts_->lease.emplace(physical, at.positions, false);
-  parts_->physical.emplace(physical.system(), parts_->lease->work(), at, parts_->team);
+  parts_->physical.emplace(physical.system(), parts_->lease->work(), at, *parts_->team);
 }
 
 Neighbourhood::~Neighbourhood() = default;
@@ -183,7 +190,7 @@ Neighbourhood& Neighbourhood::operator=(Neighbourhood&&) noexcept = default;
 
 State Neighbourhood::predict(const Actuation& actuation) {
   check_actuation(parts_->model, actuation);
-  return parts_->physical ? parts_->physical->predict(actuation, parts_->team) : parts_->at;
+  return parts_->physical ? parts_->physical->predict(actuation, *parts_->team) : parts_->at;
 }
 
 }  // namespace softkin

@@ -28,7 +28,8 @@ struct StaticsOptions {
   bool reuse_factor = true;    // of an earlier solve that ended at the start; false: the result is that of a new object
 };
 
-/// Equilibria of one robot. Assembles and factorises once; solve() is const and may run on several threads at once.
+/// Equilibria of one robot. Assembles and factorises once, and keeps threads, memory and factors from call to call, so
+/// that a solve from the last equilibrium starts nothing. solve() is const and may run on several threads at once.
 class Statics {
  public:
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held

@@ -100,19 +100,6 @@ BoardSpec parse_board(const std::string& text) {
   return board;
 }
 
-double BoardSpec::width() const {
-  return kind == Kind::grid ? columns * (tag + gap) - gap : columns * square;
-}
-
-double BoardSpec::height() const {
-  return kind == Kind::grid ? rows * (tag + gap) - gap : rows * square;
-}
-
-int BoardSpec::tags() const {
-  if (kind == Kind::checker) return 0;
-  return kind == Kind::grid ? columns * rows : columns * rows / 2;
-}
-
 Vec2 grid_corner(const BoardSpec& board, int number, int corner) {
   const int column = number % board.columns, row = number / board.columns;
   const double pitch = board.tag + board.gap;

@@ -22,9 +22,16 @@ struct BoardSpec {
   std::string dictionary = "4x4_50";  // of the tags
   int first = 0;                      // grid: number of the tag at the top left; the others follow row by row
 
-  [[nodiscard]] double width() const;   // [mm]
-  [[nodiscard]] double height() const;  // [mm]
-  [[nodiscard]] int tags() const;       // how many
+  /// Of so many tags or squares in a row [mm].
+  [[nodiscard]] double length(int count) const {
+    return kind == Kind::grid ? count * (tag + gap) - gap : count * square;
+  }
+  [[nodiscard]] double width() const { return length(columns); }
+  [[nodiscard]] double height() const { return length(rows); }
+  /// How many.
+  [[nodiscard]] int tags() const {
+    return kind == Kind::checker ? 0 : kind == Kind::grid ? columns * rows : columns * rows / 2;
+  }
 };
 
 /// Reads "5x4,tag=12mm,gap=3mm", "charuco,7x5,square=10mm,tag=7mm" or "checker,9x6,square=10mm"; a length without a

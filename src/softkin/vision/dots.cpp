@@ -165,7 +165,8 @@ MarkerPlace find_dot(const RgbImage& picture, const Colour& colour, const PlaneV
   if (blobs.size() > 1 && blobs[1].area > rival_share * blobs[0].area)
     throw InvalidInput("two candidates for " + dot + ": at " + at_pixel(blobs[0].centre) + " and " +
                        at_pixel(blobs[1].centre) + "; cover one, or give another colour");
-  if (blobs[0].touches_frame(picture, blur))
+  const cv::Size free(picture.width - 2 * blur, picture.height - 2 * blur);  // a dot that fills it leaves no ground
+  if (blobs[0].touches_frame(picture, blur) || blobs[0].box.size() == free)
     throw InvalidInput(dot + " at " + at_pixel(blobs[0].centre) + " is partly outside the frame");
   refuse_glare(blobs[0]);
   return refined(picture, blobs[0], view);

@@ -44,7 +44,7 @@ std::vector<cv::Point2f> outline_of(const RgbImage& picture, const Colour& colou
 }
 
 /// The frame of a specimen: along its axis from A to B and across it [mm].
-struct Frame {
+struct BarFrame {
   Vec2 origin, along, across;
   double half_width = 0;  // that is used
   double pixel = 0;       // side of a pixel here
@@ -52,10 +52,10 @@ struct Frame {
   [[nodiscard]] Vec2 place(double s, double t) const { return origin + s * along + t * across; }
 };
 
-Frame frame_of(const cv::Moments& a, const cv::Moments& b, const PlaneView& view) {
+BarFrame frame_of(const cv::Moments& a, const cv::Moments& b, const PlaneView& view) {
   const double area = a.m00 + b.m00;
   const Vec2 from_a_to_b = Vec2(b.m10, b.m01) / b.m00 - Vec2(a.m10, a.m01) / a.m00;
-  Frame frame;
+  BarFrame frame;
   frame.origin = Vec2(a.m10 + b.m10, a.m01 + b.m01) / area;
   Eigen::Matrix2d spread;
   spread << a.m20 + b.m20, a.m11 + b.m11, a.m11 + b.m11, a.m02 + b.m02;
@@ -72,7 +72,7 @@ Frame frame_of(const cv::Moments& a, const cv::Moments& b, const PlaneView& view
 }
 
 /// First and last position of a part along the axis in the middle strips [mm].
-std::pair<double, double> extent(const std::vector<cv::Point2f>& outline, const Frame& frame) {
+std::pair<double, double> extent(const std::vector<cv::Point2f>& outline, const BarFrame& frame) {
   std::vector<double> positions;
   for (const cv::Point2f& place : outline) {
     const Vec2 arm = vec(place) - frame.origin;
@@ -110,7 +110,7 @@ LineFit line_through(Eigen::MatrixX2d points) {
 }
 
 /// The edge near a position. room: lengths free of other edges on both sides [mm].
-SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const Frame& frame, double position, double room,
+SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const BarFrame& frame, double position, double room,
                        const std::string& name) {
   LineFit fit{position, 0, 0, 0};
   const double half = std::min(reach * frame.pixel, 0.6 * room), level = levels * frame.pixel;
@@ -160,7 +160,7 @@ SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const Frame& f
 
 SpecimenView find_specimen(const RgbImage& picture, const Colour& a, const Colour& b, const PlaneView& view) {
   const std::vector<cv::Point2f> part_a = outline_of(picture, a, view), part_b = outline_of(picture, b, view);
-  const Frame frame = frame_of(cv::moments(part_a), cv::moments(part_b), view);
+  const BarFrame frame = frame_of(cv::moments(part_a), cv::moments(part_b), view);
   const auto [first, last_a] = extent(part_a, frame);
   const auto [first_b, last] = extent(part_b, frame);
   if (std::abs(first_b - last_a) > 12 * frame.pixel)
@@ -171,22 +171,6 @@ SpecimenView find_specimen(const RgbImage& picture, const Colour& a, const Colou
           .interface = edge_near(rgb, view, frame, middle, room, "interface"),
           .free = edge_near(rgb, view, frame, last, room, "free end"),
           .axis = std::atan2(frame.along.y(), frame.along.x()) * degrees};
-}
-
-double SpecimenView::length_error() const {
-  return std::hypot(fixed.error, free.error);
-}
-
-double SpecimenView::interface_error() const {
-  return std::hypot(fixed.error, interface.error);
-}
-
-double Stretch::elongation_error() const {
-  return std::hypot(rest.length_error(), stretched.length_error());
-}
-
-double Stretch::shift_error() const {
-  return std::hypot(rest.interface_error(), stretched.interface_error());
 }
 
 double Stretch::elasticity_ratio() const {

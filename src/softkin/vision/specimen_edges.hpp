@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <softkin/vision/colour.hpp>
 #include <softkin/vision/plane_view.hpp>
 
@@ -21,8 +22,8 @@ struct SpecimenView {
 
   [[nodiscard]] double length() const { return free.position - fixed.position; }                 // L [mm]
   [[nodiscard]] double interface_length() const { return interface.position - fixed.position; }  // L_1 [mm]
-  [[nodiscard]] double length_error() const;
-  [[nodiscard]] double interface_error() const;
+  [[nodiscard]] double length_error() const { return std::hypot(fixed.error, free.error); }
+  [[nodiscard]] double interface_error() const { return std::hypot(fixed.error, interface.error); }
 };
 
 /// Ends and interface of the one specimen in a picture, to a fraction of a pixel: in strips along the axis the share of
@@ -39,12 +40,11 @@ struct SpecimenView {
 struct Stretch {
   SpecimenView rest, stretched;
 
-  [[nodiscard]] double elongation() const { return stretched.length() - rest.length(); }  // Delta L [mm]
-  [[nodiscard]] double shift() const {
-    return stretched.interface_length() - rest.interface_length();
-  }                                               // Delta L_1 [mm]
-  [[nodiscard]] double elongation_error() const;  // [mm]
-  [[nodiscard]] double shift_error() const;       // [mm]
+  // Delta L, Delta L_1 and their standard errors [mm]
+  [[nodiscard]] double elongation() const { return stretched.length() - rest.length(); }
+  [[nodiscard]] double shift() const { return stretched.interface_length() - rest.interface_length(); }
+  [[nodiscard]] double elongation_error() const { return std::hypot(rest.length_error(), stretched.length_error()); }
+  [[nodiscard]] double shift_error() const { return std::hypot(rest.interface_error(), stretched.interface_error()); }
   /// L_1 (Delta L - Delta L_1) / ((L - L_1) Delta L_1) = eps_B / eps_A = E_A / E_B of linear materials, A at the fixed
   /// end: the right-hand side of Eq. (16), which prints eps_A / eps_B on its left [-].
   [[nodiscard]] double elasticity_ratio() const;

@@ -2,8 +2,8 @@
 #include <map>
 #include <softkin/io/mesh/abaqus_cards.hpp>
 #include <softkin/io/mesh/abaqus_deck.hpp>
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 #include <unordered_map>
 #include <utility>
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 #include <softkin/io/mesh/cell_grid.hpp>
-#include <softkin/io/mesh/element_order.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,5 +1,5 @@
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/io/mesh/gmsh_builder.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 
 namespace softkin::gmsh {
 

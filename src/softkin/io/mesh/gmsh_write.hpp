@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/io/mesh/gmsh_types.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 #include <softkin/model/mesh/mesh.hpp>
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 #include <set>
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -2,13 +2,13 @@
 #include <iterator>
 #include <map>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/io/mesh/gmsh.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/stl.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/mesh/text_meshes.hpp>
 #include <softkin/io/mesh/vtk.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -11,8 +11,8 @@
 #include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/mesh/element_order.hpp>
 #include <softkin/io/mesh/vtk.hpp>
+#include <softkin/model/mesh/element_order.hpp>
 #include <string>
 #include <type_traits>
 #include <utility>

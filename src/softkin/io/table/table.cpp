@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/io/json_text.hpp>
 #include <softkin/io/table/table.hpp>
 
 namespace softkin {
@@ -23,7 +24,7 @@ std::string text_of(const Cell& cell, const Column& column) {
   return "";
 }
 
-/// The last column has no blanks behind it.
+/// Without blanks at the end.
 std::string aligned(const std::vector<std::string>& cells, const std::vector<Column>& columns,
                     const std::vector<std::size_t>& widths) {
   std::string line;
@@ -31,9 +32,19 @@ std::string aligned(const std::vector<std::string>& cells, const std::vector<Col
     const std::size_t length = characters(cells[i]);
     const std::string fill(length < widths[i] ? widths[i] - length : 0, ' ');
     line += i > 0 ? "  " : "";
-    line += columns[i].left ? cells[i] + (i + 1 < cells.size() ? fill : "") : fill + cells[i];
+    line += columns[i].left ? cells[i] + fill : fill + cells[i];
   }
+  line.erase(line.find_last_not_of(' ') + 1);
   return line;
+}
+
+std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& texts, const std::vector<Column>& columns,
+                                 std::vector<std::size_t> widths) {
+  for (const auto& cells : texts)
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], characters(cells[i]));
+  std::vector<std::string> lines;
+  for (const auto& cells : texts) lines.push_back(aligned(cells, columns, widths));
+  return lines;
 }
 
 std::vector<std::size_t> widths_of(const std::vector<Column>& columns) {
@@ -81,12 +92,13 @@ std::string Table::line(const Row& row) const {
 std::vector<std::string> Table::lines() const {
   std::vector<std::vector<std::string>> texts{titles_of(columns)};
   for (const Row& row : rows) texts.push_back(cells_of(row, columns));
-  std::vector<std::size_t> widths = widths_of(columns);
-  for (const auto& cells : texts)
-    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], characters(cells[i]));
-  std::vector<std::string> lines;
-  for (const auto& cells : texts) lines.push_back(aligned(cells, columns, widths));
-  return lines;
+  return aligned(texts, columns, widths_of(columns));
+}
+
+std::vector<std::string> Table::body() const {
+  std::vector<std::vector<std::string>> texts;
+  for (const Row& row : rows) texts.push_back(cells_of(row, columns));
+  return aligned(texts, columns, std::vector<std::size_t>(columns.size(), 0));
 }
 
 std::string Table::csv() const {
@@ -101,18 +113,18 @@ std::string Table::csv() const {
 }
 
 std::string Table::json() const {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  Json all = Json::array();
   for (const Row& row : rows) {
-    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+    Json object = Json::object();
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      nlohmann::ordered_json& value = object[columns[i].key];
+      Json& value = object[columns[i].key];
       if (const auto* real = std::get_if<double>(&row.at(i)); real != nullptr && std::isfinite(*real)) value = *real;
       if (const auto* count = std::get_if<std::int64_t>(&row.at(i))) value = *count;
       if (const auto* words = std::get_if<std::string>(&row.at(i))) value = *words;
     }
     all.push_back(std::move(object));
   }
-  return all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_text(all);
 }
 
 }  // namespace softkin

@@ -11,8 +11,8 @@ namespace softkin {
 struct Column {
   enum class Form { decimals, significant };
 
-  std::string key;      // of CSV and JSON, with its unit: "tip_x_mm"
-  std::string title{};  // of the text: "tip x"; empty: the key
+  std::string key{};    // of CSV and JSON, with its unit: "tip_x_mm"
+  std::string title{};  // of the text: "tip x"; empty: the key; both empty: none
   std::string unit{};   // of the text: "mm", "-"; empty: the title is all there is
   int digits = 6;       // behind the point, or significant
   Form form = Form::significant;
@@ -36,6 +36,8 @@ struct Table {
 
   /// Header and all rows, every column as wide as it needs, a line each.
   [[nodiscard]] std::vector<std::string> lines() const;
+  /// The rows alone, every column as wide as their cells need; titles do not count.
+  [[nodiscard]] std::vector<std::string> body() const;
 
   /// A line of keys, then the rows: numbers so that they read back as they were, nothing as an empty cell.
   [[nodiscard]] std::string csv() const;

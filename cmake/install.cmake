@@ -1,0 +1,27 @@
+# cmake --install: headers, rooms, programs, and the package that find_package(softkin CONFIG) finds.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/softkin)
+
+# Not the library's own headers: those that need a library beyond Eigen, and those with vectors of eight numbers, which
+# a program built for another processor would pass in other registers.
+set(own energy linear physical target_shape supports vision vtu_document.hpp records_json.hpp)
+list(TRANSFORM own REPLACE "(.+)" "PATTERN;\\1;EXCLUDE")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/softkin DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp
+        ${own})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+install(TARGETS softkin_settings softkin_core softkin_linear softkin_model softkin_io softkin_energy softkin_statics
+        softkin_kinematics softkin_drive softkin_calibration softkin_runs softkin_all EXPORT softkin
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT softkin NAMESPACE softkin:: FILE softkin-targets.cmake DESTINATION ${package_dir})
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/softkin-config.cmake.in softkin-config.cmake
+                              INSTALL_DESTINATION ${package_dir})
+# until 1.0 any release may change what a program sees
+write_basic_package_version_file(softkin-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/softkin-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/softkin-config-version.cmake
+        DESTINATION ${package_dir})
+
+install(TARGETS softkin_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(SOFTKIN_OPENCV_FOUND)
+  install(TARGETS softkin_measure RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()

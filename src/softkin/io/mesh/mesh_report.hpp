@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <softkin/model/mesh/mesh_findings.hpp>
+#include <softkin/model/mesh/mesh_measures.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin {
+
+/// Is the path that of a scene (.yaml, .yml)?
+[[nodiscard]] bool is_scene(const std::string& path);
+
+/// A mesh's file and what it holds.
+struct MeshInfo {
+  std::string file, unit;  // of the file's lengths: "mm"
+  MeshMeasures measures;
+};
+
+/// throws  InvalidInput; also where coordinates are so large that volumes would overflow
+[[nodiscard]] MeshInfo mesh_info(const std::string& file, const std::string& unit);
+
+/// What compile() says of a scene.
+struct SceneVerdict {
+  std::vector<std::string> notes;
+  std::optional<std::string> error;
+};
+
+/// Whether a mesh can be used, and what to look at.
+struct MeshVerdict {
+  std::string file;
+  int order = 1;
+  std::size_t vertices = 0, tetrahedra = 0, prisms = 0;
+  std::vector<MeshFinding> findings;
+  std::vector<PartMeasures> parts;
+  std::optional<SceneVerdict> scene;
+
+  [[nodiscard]] bool usable() const;
+};
+
+/// file: a mesh with lengths in unit, or a scene, which names its own.
+/// throws  InvalidInput as mesh_info
+[[nodiscard]] MeshVerdict mesh_verdict(const std::string& file, const std::string& unit);
+
+/// What a written file holds, read from it, not from what was meant to be written.
+struct MeshConversion {
+  std::string input, output;
+  int order = 1;
+  std::size_t vertices = 0, tetrahedra = 0, prisms = 0, facets = 0;  // facets: of an .stl
+  std::vector<std::string> regions{}, not_kept{};
+};
+
+/// Writes the mesh in the form that output's extension names. ascii: a .msh as text. throws  InvalidInput
+[[nodiscard]] MeshConversion convert_mesh(const std::string& input, const std::string& output, bool ascii);
+
+/// "24 tetrahedra of order 2"
+[[nodiscard]] std::string tetrahedra_text(std::size_t count, int order);
+[[nodiscard]] const char* name_of(MeshSeverity severity);
+
+// As JSON, whose keys name the units.
+[[nodiscard]] std::string to_json(const MeshInfo& info);
+[[nodiscard]] std::string to_json(const MeshVerdict& verdict);
+[[nodiscard]] std::string to_json(const MeshConversion& conversion);
+
+}  // namespace softkin

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <softkin/model/mesh/mesh.hpp>
+#include <softkin/model/mesh/mesh_check.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin {
+
+struct RegionMeasures {
+  std::string name;
+  int dimension = 3;
+  std::size_t cells = 0;     // dimension 3: elements, 2: faces
+  std::size_t vertices = 0;  // of the cells, edge nodes included, or the region's own
+  double measure = 0;        // dimension 3: volume [mm^3], 2: area [mm^2]
+};
+
+/// Counts and sizes of a mesh. Reversed elements count with their volume as if they were not; sizes and quality of elements
+/// of order 2 are those of their corners.
+struct MeshMeasures {
+  int order = 1;
+  std::size_t vertices = 0, tetrahedra = 0, prisms = 0, triangles = 0, quads = 0, parts = 0;
+  Vec3 low, high;              // bounding box of the elements [mm]
+  double volume = 0;           // [mm^3]
+  double boundary = 0;         // area [mm^2]
+  double quality[3] = {};      // of MeshCheck: least, first percentile, median
+  double edge_length[3] = {};  // least, median, most [mm]
+  std::vector<RegionMeasures> regions;
+};
+
+/// mesh in mm, with an element. check: of the mesh.
+[[nodiscard]] MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check);
+
+struct PartMeasures {
+  std::size_t vertices = 0;
+  double volume = 0;  // [mm^3]
+  Vec3 centroid;      // mean of its elements' means, weighted by volume; of its vertices where it has no volume [mm]
+};
+
+/// In the order of check.parts.
+[[nodiscard]] std::vector<PartMeasures> measure_parts(const Mesh& mesh, const MeshCheck& check);
+
+/// Mean of vertices [mm].
+template <class Vertices>
+[[nodiscard]] Vec3 mean_position(const Mesh& mesh, const Vertices& vertices) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index v : vertices) sum += mesh.vertices.row(v).transpose();
+  return sum / static_cast<double>(vertices.size());
+}
+
+}  // namespace softkin

@@ -1,0 +1,210 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/io/json_text.hpp>
+#include <softkin/io/plot/curves.hpp>
+#include <softkin/runs/report_comparison.hpp>
+
+namespace softkin::runs {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+std::string asked_text(const ReportedStep& step) {
+  std::string text;
+  for (const auto& [name, value] : step.actuation)
+    text += (text.empty() ? "" : ", ") + name + " = " + number(value, 12);
+  return text.empty() ? "nothing" : text;
+}
+
+void check_same_steps(const ReportedPath& first, const ReportedPath& second) {
+  const auto refuse = [&](const std::string& why) {
+    throw InvalidInput({second.file}, why + "; reports are compared step by step, so they need the same path");
+  };
+  if (second.steps.size() != first.steps.size())
+    refuse("it has " + counted(second.steps.size(), "step") + ", but " + first.file + " has " +
+           std::to_string(first.steps.size()));
+  for (std::size_t i = 0; i < first.steps.size(); ++i)
+    if (second.steps[i].actuation != first.steps[i].actuation)
+      refuse("step " + std::to_string(i) + " asks for " + asked_text(second.steps[i]) + ", but in " + first.file +
+             " for " + asked_text(first.steps[i]));
+}
+
+std::vector<double> distances_of(const ReportedPath& path, const ReportedPath& from, const std::string& marker) {
+  const std::vector<Vec3> here = places_of(path, marker), there = places_of(from, marker);
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < here.size(); ++i) distances.push_back((here[i] - there[i]).norm());
+  return distances;
+}
+
+std::vector<double> turns_of(const ReportedPath& path, const std::string& from, const std::string& to) {
+  const std::vector<Vec3> begins = places_of(path, from), ends = places_of(path, to);
+  const Vec3 start = ends[0] - begins[0];
+  if (!(start.norm() > 0))
+    throw InvalidInput({path.file}, "markers '" + from + "' and '" + to + "' are at one place in the first step");
+  constexpr double rounding = 1e-9;  // below it the axis of a turn is noise
+  Vec3 axis = Vec3::Zero();
+  std::vector<double> turns;
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    const Vec3 line = ends[i] - begins[i], turned = start.cross(line);
+    if (axis.isZero() && turned.norm() > rounding * start.norm() * line.norm()) axis = turned.normalized();
+    double turn = degrees * std::atan2(axis.dot(turned), start.dot(line));
+    const double before = turns.empty() ? 0 : turns.back();
+    turn += 360 * std::round((before - turn) / 360);
+    turns.push_back(turn);
+  }
+  return turns;
+}
+
+/// "converged" where all did, else who did not: "2: limit".
+std::string status_of(const std::vector<ReportedPath>& paths, std::size_t step) {
+  std::string text;
+  for (std::size_t p = 0; p < paths.size(); ++p)
+    if (const std::string& status = paths[p].steps[step].status; status != "converged")
+      text += (text.empty() ? "" : ", ") + std::to_string(p + 1) + ": " + status;
+  return text.empty() ? "converged" : text;
+}
+
+StepAxis axis_of(const ReportedPath& path) {
+  std::vector<std::optional<double>> times;
+  std::vector<StepCurve> commands;
+  for (const auto& [name, value] : path.steps.front().actuation) {
+    const auto unit = path.units.find(name);
+    commands.push_back({name, unit == path.units.end() ? "-" : unit->second, {}});
+  }
+  for (const ReportedStep& step : path.steps) {
+    times.push_back(step.time);
+    for (std::size_t a = 0; a < step.actuation.size(); ++a) commands[a].values.push_back(step.actuation[a].second);
+  }
+  return step_axis(times, commands);
+}
+
+/// load: "air [kPa]"
+StepCurve load_curve(const ReportedPath& path, std::size_t l, const std::string& load, const std::string& report) {
+  const std::size_t bracket = load.rfind(" [");
+  StepCurve curve{report + load.substr(0, bracket), load.substr(bracket + 2, load.size() - bracket - 3), {}};
+  for (const ReportedStep& step : path.steps) curve.values.push_back(step.loads.at(l).second);
+  return curve;
+}
+
+Column fixed(const std::string& title, int decimals) {
+  return {.title = title, .digits = decimals, .form = Column::Form::decimals};
+}
+
+}  // namespace
+
+ReportComparison compare_reports(const std::vector<std::string>& files, const std::string& marker,
+                                 const std::vector<std::string>& turn, const std::vector<double>& poses) {
+  ReportComparison result;
+  for (const std::string& file : files) {
+    result.paths.push_back(read_reported_path(file));
+    check_same_steps(result.paths.front(), result.paths.back());
+  }
+  result.marker = marker_of(result.paths.front(), marker, ", so no distance is known");
+  result.poses = poses;
+  for (const ReportedPath& path : result.paths) {
+    result.distances.push_back(distances_of(path, result.paths.front(), result.marker));
+    if (!turn.empty()) result.turns.push_back(turns_of(path, turn[0], turn[1]));
+  }
+  return result;
+}
+
+std::optional<double> ReportComparison::time_to(std::size_t path, double pose) const {
+  for (std::size_t i = 0; i < turns[path].size(); ++i)
+    if (turns[path][i] >= pose && paths[path].steps[i].status == "converged") return paths[path].steps[i].elapsed;
+  return std::nullopt;
+}
+
+Table ReportComparison::steps() const {
+  Table table{{{.title = "step"}}};
+  const auto add = [&table](const Column& column) { table.columns.push_back(column); };
+  for (const auto& [name, value] : paths.front().steps.front().actuation) add({.title = name});
+  for (std::size_t p = 0; p < paths.size(); ++p) {
+    const std::string of = std::to_string(p + 1) + ": ";
+    if (!turns.empty()) add(fixed(of + "turn [deg]", 1));
+    for (const auto& [name, load] : paths[p].steps.front().loads) add(fixed(of + name, 2));
+    if (p > 0) add(fixed(of + marker + " off by [mm]", 2));
+  }
+  add({.title = "status"});
+  for (std::size_t i = 0; i < paths.front().steps.size(); ++i) {
+    Row row{static_cast<std::int64_t>(i)};
+    for (const auto& [name, value] : paths.front().steps[i].actuation) row.emplace_back(value);
+    for (std::size_t p = 0; p < paths.size(); ++p) {
+      if (!turns.empty()) row.emplace_back(turns[p][i]);
+      for (const auto& [name, load] : paths[p].steps[i].loads) row.emplace_back(load);
+      if (p > 0) row.emplace_back(distances[p][i]);
+    }
+    row.emplace_back(status_of(paths, i));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table ReportComparison::times() const {
+  Table table{{Column{}, {.title = poses.empty() ? "time of:" : "time to a turn of:"}}};
+  for (const double pose : poses) table.columns.push_back({.title = number(pose) + " deg"});
+  table.columns.push_back({.title = "all steps"});
+  for (std::size_t p = 0; p < paths.size(); ++p) {
+    Row row{std::to_string(p + 1), paths[p].method};
+    for (const double pose : poses) {
+      const std::optional<double> time = time_to(p, pose);
+      row.emplace_back(time ? decimal(*time, 2) + " s" : "not reached");
+    }
+    row.emplace_back(decimal(paths[p].steps.back().elapsed, 2) + " s");
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string ReportComparison::json() const {
+  Json reports = Json::array();
+  for (std::size_t p = 0; p < paths.size(); ++p) {
+    Json report{{"file", paths[p].file}, {"method", paths[p].method}, {"seconds", paths[p].steps.back().elapsed}};
+    if (!turns.empty()) report["turn_deg"] = turns[p];
+    report["distance_mm"] = distances[p];
+    Json elapsed = Json::array(), reached = Json::array();
+    for (const ReportedStep& step : paths[p].steps) elapsed.push_back(step.elapsed);
+    for (const double pose : poses) {
+      const std::optional<double> time = time_to(p, pose);
+      reached.push_back({{"turn_deg", pose}, {"seconds", time ? Json(*time) : Json()}});
+    }
+    report["elapsed_s"] = elapsed;
+    report["poses"] = reached;
+    reports.push_back(report);
+  }
+  return json_text({{"marker", marker}, {"reports", reports}});
+}
+
+Plot ReportComparison::plot() const {
+  const StepAxis along = axis_of(paths.front());
+  std::vector<StepCurve> turned, off, loads;
+  std::vector<SpaceCurve> ways;
+  for (std::size_t p = 0; p < paths.size(); ++p) {
+    const std::string report = std::to_string(p + 1) + ": ", name = report + paths[p].method;
+    if (!turns.empty()) turned.push_back({name, "degrees", turns[p]});
+    if (p > 0) off.push_back({name, "mm", distances[p]});
+    const auto& named = paths[p].steps.front().loads;
+    for (std::size_t l = 0; l < named.size(); ++l) loads.push_back(load_curve(paths[p], l, named[l].first, report));
+    ways.push_back({name, places_of(paths[p], marker), true, true});
+  }
+  Plot plot;
+  plot.title = marker + ": differences from " + paths.front().file;
+  const auto add = [&](const std::vector<StepCurve>& curves, const std::string& what) {
+    if (!curves.empty()) plot.rows.push_back(curve_panels(along, curves, what));
+  };
+  add(turned, "turn");
+  add(off, marker + " off by");
+  // a distance has no curve of the first report: the same report looks the same in every panel
+  for (std::size_t i = 0; i < plot.rows.back()[0].series.size(); ++i)
+    plot.rows.back()[0].series[i].style = static_cast<int>(i) + 1;
+  add(loads, "load");
+  plot.rows.push_back(projections(ways));
+  return plot;
+}
+
+}  // namespace softkin::runs

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <softkin/io/table/workspace_table.hpp>
+#include <softkin/kinematics/goal.hpp>
+#include <softkin/kinematics/workspace.hpp>
+#include <softkin/runs/store.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin::runs {
+
+/// The columns of a workspace of the robot: tendon1 or air_kPa; tip_x_mm, tip_y_mm, tip_z_mm; tendon1_tension_N or
+/// air_pressure_kPa (physical formulation).
+[[nodiscard]] WorkspaceColumns workspace_columns(const Model& model);
+
+/// What the samples are a function of, each a line of the file: softkin's version, the robot's fingerprint, the solver
+/// with those of its options that are not the defaults, the sampling with its ranges, the number of samples.
+[[nodiscard]] WorkspaceHead workspace_head(const Model& model, const SamplingOptions& sampling,
+                                           const StaticsOptions& solver);
+
+/// "grid of 15 x 15 x 15", "sobol" or "random, seed 7".
+[[nodiscard]] std::string sampling_text(const Model& model, const SamplingOptions& sampling);
+
+/// The samples on disk. While they are solved the file grows, a whole row at a time, in the order in which they come;
+/// the rows alone say what has been done. At the end it is put in the order of the samples.
+class WorkspaceFile {
+ public:
+  /// Begins the file, or with resume goes on with what is there. columns must outlive it.
+  ///
+  /// throws  InvalidInput where there is an unfinished workspace that is not to be resumed, or one of another robot,
+  ///         solver or sampling that is; where another softkin is at work on it; where it cannot be written
+  WorkspaceFile(std::filesystem::path path, const WorkspaceHead& head, const WorkspaceColumns& columns,
+                const WorkspacePlan& plan, bool resume);
+
+  [[nodiscard]] Index done() const { return static_cast<Index>(store_->size()); }
+  [[nodiscard]] bool complete() const { return store_->size() == known_.size(); }
+  /// A last row was so; it is solved again.
+  [[nodiscard]] bool was_torn() const { return store_->was_torn(); }
+  /// Samples that ended so.
+  [[nodiscard]] Index count(Status status) const;
+  [[nodiscard]] const std::optional<Status>& known(Index sample) const {
+    return known_[static_cast<std::size_t>(sample)];
+  }
+
+  /// Appends the row. throws  as Store::append
+  void add(const WorkspaceSample& sample);
+
+  /// Replaces the file by one in the order of the samples, and gives them. All of them must be done.
+  [[nodiscard]] std::vector<WorkspaceSample> finish();
+
+ private:
+  void take(const WorkspaceTable& table, const WorkspaceHead& head, const WorkspacePlan& plan);
+
+  std::filesystem::path path_;
+  const WorkspaceColumns& columns_;
+  std::vector<std::optional<Status>> known_;  // per sample
+  std::optional<Store> store_;
+};
+
+/// The actuation of the sample of a workspace at which the goals are nearest to being met.
+///
+/// throws  InvalidInput naming --workspace, or file and line: no workspace of this robot, no sample with an equilibrium
+[[nodiscard]] Actuation nearest_actuation(const Model& model, const std::string& workspace,
+                                          const std::vector<Goal>& goals);
+
+}  // namespace softkin::runs

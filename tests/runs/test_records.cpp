@@ -1,0 +1,180 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <softkin/runs/records_json.hpp>
+
+#include "small_runs.hpp"
+
+namespace softkin::runs {
+namespace {
+
+/// What is read is what was written: all of it where it can be compared, and the same text again.
+void expect_same(const StepRecord& a, const StepRecord& b) {
+  EXPECT_EQ(a.actuation, b.actuation);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.reached, b.reached);
+  EXPECT_EQ(a.remark, b.remark);
+  EXPECT_EQ(a.shape_actuation.has_value(), b.shape_actuation.has_value());
+  if (a.shape_actuation && b.shape_actuation) {
+    EXPECT_EQ(*a.shape_actuation, *b.shape_actuation);
+  }
+  EXPECT_EQ(a.shape_load_share, b.shape_load_share);
+  EXPECT_EQ(a.markers, b.markers);
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.shape, b.shape);
+  EXPECT_EQ(a.shape_fingerprint, b.shape_fingerprint);
+  ASSERT_EQ(a.actuators.size(), b.actuators.size());
+  for (std::size_t i = 0; i < a.actuators.size(); ++i) {
+    EXPECT_EQ(a.actuators[i].achieved, b.actuators[i].achieved);
+    EXPECT_EQ(a.actuators[i].multiplier, b.actuators[i].multiplier);
+    EXPECT_EQ(a.actuators[i].slack, b.actuators[i].slack);
+  }
+}
+
+template <class Record>
+Record read_back(const Codec<Record>& codec, const Record& record) {
+  const std::string line = codec.write(record);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  Record read = codec.read(line);
+  EXPECT_EQ(codec.write(read), line);
+  expect_same(record, read);
+  return read;
+}
+
+/// Lines that lack something or hold something else.
+template <class Record>
+void expect_damage_refused(const Codec<Record>& codec, const Record& record, const std::vector<std::string>& keys) {
+  const std::string line = codec.write(record);
+  const auto refused = [&](const std::string& damaged) {
+    EXPECT_THROW((void)codec.read(damaged), InvalidInput) << damaged.substr(0, 80);
+  };
+  for (const char* other : {"", "{}", "[]", "7", "null", "\"text\""}) refused(other);
+  for (std::size_t length = 1; length < line.size(); length += 37) refused(line.substr(0, length));
+  for (const std::string& key : keys) {
+    const Json::json_pointer at(key);
+    ASSERT_TRUE(Json::parse(line).contains(at)) << key;
+    Json json = Json::parse(line);
+    json[at] = Json::array({"other"});
+    refused(json.dump());
+    json = Json::parse(line);
+    json[at.parent_pointer()].erase(at.back());
+    refused(json.dump());
+  }
+}
+
+const std::vector<std::string> step_keys{"/actuation",       "/actuation/air",    "/status",        "/remark",
+                                         "/reached",         "/iterations",       "/seconds",       "/energy",
+                                         "/shape_actuation", "/markers/tip",      "/actuators/air", "/strain",
+                                         "/strain/least",    "/history/iteration"};
+
+class Steps : public ::testing::Test {
+ protected:
+  /// The records of a job's first steps.
+  template <class Record>
+  static std::vector<Record> made(Job<Record>& job) {
+    std::vector<Record> records;
+    for (std::size_t i = 0; i < job.size(); ++i) records.push_back(job.make(i, {}).value().record);
+    return records;
+  }
+};
+
+TEST_F(Steps, OfAPathAreReadBack) {
+  for (const Model& model : {testing::bending_model(), testing::swelling_model()}) {
+    const Statics statics(model);
+    const auto steps = testing::steps_of(model, 3);
+    PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+    auto records = made(job);
+    for (const StepRecord& record : records) {
+      EXPECT_EQ(record.status, Status::converged);
+      (void)read_back(job.codec(), record);
+    }
+    EXPECT_EQ(job.mismatch(1, records[1]), "");
+    EXPECT_NE(job.mismatch(0, records[1]), "");
+    EXPECT_NE(job.mismatch(3, records[1]), "");
+    records[2].shape = "s_0002.vtu";
+    records[2].shape_fingerprint = "0123456789abcdef";
+    (void)read_back(job.codec(), records[2]);
+    expect_damage_refused(job.codec(), records[2], step_keys);
+  }
+}
+
+TEST_F(Steps, ThatDidNotConvergeKeepWhatIsNotKnown) {
+  const Model model = testing::bending_model();
+  const Statics statics(model);
+  const auto steps = testing::steps_of(model, 1);
+  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+  StepRecord record = job.make(0, {}).value().record;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  record.status = Status::not_converged;
+  record.reached.reset();
+  record.shape_actuation.reset();
+  record.time_s.reset();
+  record.residual = record.energy = unknown;
+  record.remark = "it \"blew up\"\nin two lines";
+  const StepRecord read = read_back(job.codec(), record);
+  EXPECT_TRUE(std::isnan(read.residual) && std::isnan(read.energy));
+}
+
+TEST_F(Steps, LongHistoriesAreWrittenEverSparser) {
+  const Model model = testing::bending_model();
+  const Statics statics(model);
+  const auto steps = testing::steps_of(model, 1);
+  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+  StepRecord record = job.make(0, {}).value().record;
+  record.history.assign(10000, {1.23456789, 2, 3});
+  const StepRecord read = read_back(job.codec(), record);
+  EXPECT_LT(read.history.size(), 400u);
+  EXPECT_EQ(read.history_iterations.size(), read.history.size());
+  EXPECT_EQ(read.history[0].energy, 1.23457);
+}
+
+TEST_F(Steps, OfAFollowedPathAreReadBack) {
+  const Model model = testing::bending_model();
+  const MarkerPath path = testing::path_through(model, testing::steps_of(model, 3));
+  const Statics statics(model);
+  TrajectoryOptions options;
+  options.inverse.statics = testing::one_thread();
+  FollowJob job(model, statics, path, "path.csv", options);
+  const auto records = made(job);
+  for (const WaypointRecord& record : records) {
+    EXPECT_TRUE(record.is_reached());
+    const WaypointRecord read = read_back(job.codec(), record);
+    EXPECT_EQ(read.asked.targets, record.asked.targets);
+    EXPECT_EQ(read.end, record.end);
+    EXPECT_EQ(read.error_mm, record.error_mm);
+    EXPECT_EQ(read.equilibria, record.equilibria);
+  }
+  EXPECT_EQ(job.mismatch(2, records[2]), "");
+  EXPECT_NE(job.mismatch(1, records[2]), "");
+  auto keys = step_keys;
+  keys.insert(keys.end(), {"/waypoint", "/waypoint/targets/tip", "/waypoint/status", "/waypoint/equilibria"});
+  expect_damage_refused(job.codec(), records[2], keys);
+}
+
+TEST_F(Steps, OfAWalkAreReadBack) {
+  const Model model = testing::walking_model();
+  const auto gait =
+      repeated(model, "gait.csv", {{Actuation::Zero(1), 0.0}, {Actuation::Ones(1), 0.5}, {Actuation::Zero(1), 1.0}}, 2);
+  Walker walker(model, testing::one_thread());
+  WalkJob job(model, walker, gait, "gait.csv");
+  const auto records = made(job);
+  ASSERT_EQ(records.size(), 5u);
+  EXPECT_NE(records.back().walk.travel_mm, 0);
+  for (const WalkRecord& record : records) {
+    const WalkRecord read = read_back(job.codec(), record);
+    EXPECT_EQ(read.cycle, record.cycle);
+    EXPECT_EQ(read.walk.sliding, record.walk.sliding);
+    for (const auto member :
+         {&WalkStep::friction_N, &WalkStep::rear_mm, &WalkStep::front_mm, &WalkStep::travel_mm, &WalkStep::shift_mm})
+      EXPECT_EQ(read.walk.*member, record.walk.*member);
+  }
+  EXPECT_EQ(job.mismatch(4, records[4]), "");
+  EXPECT_NE(job.mismatch(3, records[4]), "");
+  expect_damage_refused(job.codec(), records[4],
+                        {"/actuation/tendon", "/status", "/walk", "/walk/cycle", "/walk/sliding", "/walk/friction_N",
+                         "/walk/feet_mm/heel", "/walk/travel_mm", "/walk/shift_mm"});
+}
+
+}  // namespace
+}  // namespace softkin::runs
