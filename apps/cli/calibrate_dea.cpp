@@ -1,14 +1,10 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <cmath>
 #include <memory>
-#include <softkin/calibration/curve_report.hpp>
-#include <softkin/calibration/voltage.hpp>
-#include <softkin/core/error.hpp>
+#include <softkin/calibration/actuator_tasks.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
-#include <softkin/io/table/actuator_tests.hpp>
 
 #include "calibrate_command.hpp"
 #include "printing.hpp"
@@ -18,91 +14,10 @@ namespace softkin::cli {
 
 namespace {
 
-constexpr int curve_points = 65;
-constexpr double rest_remark = 1e-3;  // from 1, beyond which the table's area ratio without voltage is told
-
-struct DeaOptions {
-  std::vector<std::string> tests;
-  std::string law;
-  std::optional<double> permittivity, thickness_mm, shear_modulus_MPa, prestretch, stretch_limit, breakdown_kV_mm;
+struct DeaOptions : calibration::DeaTask {
   std::string output, plot;
   bool json = false;
 };
-
-/// A curve and what is told of it.
-struct DeaResult {
-  calibration::FittedCurve fitted;
-  std::string head;
-  std::optional<calibration::DielectricCurve> computed{};
-};
-
-DeaResult measured(const DeaOptions& options, const std::string& name) {
-  std::vector<VoltageRun> runs;
-  std::string head;
-  for (const std::string& file : options.tests) {
-    const std::vector<VoltageRun> more = read_voltage_runs(file);
-    std::size_t rows = 0;
-    for (const VoltageRun& run : more) rows += run.rows.size();
-    head += file + ": " + counted(more.size(), "run") + ", " + counted(rows, "row") + "\n";
-    runs.insert(runs.end(), more.begin(), more.end());
-  }
-  calibration::VoltageSamples samples = calibration::voltage_samples(runs);
-  for (std::size_t r = 0; r < runs.size(); ++r)
-    if (std::abs(samples.rest_ratios[r] - 1) > rest_remark)
-      head += runs[r].file + ", " + runs[r].name + ": area ratio without voltage " + number(samples.rest_ratios[r], 5) +
-              "; the others are taken over it\n";
-  return {calibration::fitted_curve(name, CurveInput::voltage, 100, std::move(samples.samples)), head};
-}
-
-calibration::Dielectric elastomer_of(const DeaOptions& options) {
-  calibration::Dielectric d;
-  d.law = options.law == "gent" ? calibration::DielectricLaw::gent : calibration::DielectricLaw::neo_hookean;
-  const auto need = [&](const std::optional<double>& value, const char* option) {
-    if (!value) throw InvalidInput("--law " + options.law + " needs " + option);
-    return *value;
-  };
-  d.shear_modulus_MPa = need(options.shear_modulus_MPa, "--shear-modulus");
-  d.relative_permittivity = need(options.permittivity, "--permittivity");
-  d.thickness_mm = need(options.thickness_mm, "--thickness");
-  d.prestretch = options.prestretch.value_or(1);
-  if (d.law == calibration::DielectricLaw::gent) d.stretch_limit = need(options.stretch_limit, "--stretch-limit");
-  return d;
-}
-
-std::string elastomer_text(const DeaOptions& options, const calibration::Dielectric& d) {
-  std::string text = options.law + " elastomer in equal-biaxial tension: shear modulus " + number(d.shear_modulus_MPa) +
-                     " MPa, relative permittivity " + number(d.relative_permittivity) + ", " + number(d.thickness_mm) +
-                     " mm thick before any stretch, prestretch " + number(d.prestretch) +
-                     (options.prestretch ? "" : " (default)");
-  if (d.law == calibration::DielectricLaw::gent) text += ", J_lim " + number(d.stretch_limit);
-  return text + "; constant forces at its edge\n";
-}
-
-std::string pull_in_text(const calibration::Dielectric& d, const calibration::PullIn& pull_in) {
-  return "pull-in at " + number(pull_in.voltage_kV, 5) + " kV: stretch " + number(pull_in.stretch, 5) +
-         " (area ratio " + number(std::pow(pull_in.stretch / d.prestretch, 2), 5) +
-         " to that without voltage), field " + number(pull_in.field_kV_mm, 4) +
-         " kV/mm; beyond it no equilibrium follows\n";
-}
-
-DeaResult computed(const DeaOptions& options, const std::string& name) {
-  const calibration::Dielectric d = elastomer_of(options);
-  const calibration::DielectricCurve curve =
-      calibration::dielectric_curve(d, curve_points, options.breakdown_kV_mm.value_or(0));
-  std::string head = elastomer_text(options, d);
-  head += curve.pull_in ? pull_in_text(d, *curve.pull_in)
-                        : "no pull-in: the voltage rises up to 95 % of the limit of the chains\n";
-  if (curve.broken_down)
-    head += "breakdown field of " + number(*options.breakdown_kV_mm) + " kV/mm reached at " +
-            number(curve.voltages.back(), 5) + " kV, " + (curve.pull_in ? "before pull-in" : "and") +
-            ": the curve ends there\n";
-  else
-    head += "true field at the end of the curve: " + number(curve.end_field_kV_mm, 4) + " kV/mm" +
-            (options.breakdown_kV_mm ? "" : " (no --breakdown-field given: not checked)") + "\n";
-  const std::string end = curve.broken_down ? "breakdown" : curve.pull_in ? "pull-in" : "the limit of the chains";
-  const CurveBranch branch{MonotoneCurve(curve.voltages, curve.area_ratios), {}};
-  return {{{name, CurveInput::voltage, 100, end, branch, std::nullopt}}, head, curve};
-}
 
 int calibrate_dea(const DeaOptions& options) {
   check_extension("--output", options.output, {{".yaml", ""}});
@@ -110,17 +25,17 @@ int calibrate_dea(const DeaOptions& options) {
   const std::vector<Output> outputs = asked_outputs({{"--output", options.output}, {"--plot", options.plot}});
   check_outputs(outputs, {options.tests.begin(), options.tests.end()});
   const std::string name = options.output.empty() ? "of the elastomer" : options.output;
-  const auto [fitted, head, computed_curve] = options.tests.empty() ? computed(options, name) : measured(options, name);
+  const auto [fitted, head, computed] = calibration::evaluate(options, name);
   const OutputFolders folders(outputs);
   if (!options.output.empty())
     write_file(options.output, actuator_curve_text(fitted.curve, "made by softkin calibrate dea from:\n" + head));
   if (!options.plot.empty()) write_svg(options.plot, calibration::curve_plot(fitted, "area ratio by voltage"));
   if (options.json) {
-    print(calibration::dea_json(options.tests, fitted, computed_curve ? &*computed_curve : nullptr));
+    print(calibration::dea_json(options.tests, fitted, computed ? &*computed : nullptr));
     return done;
   }
   std::string text =
-      head + (computed_curve ? "" : calibration::quality_text(fitted)) + "\n" + calibration::curve_text(fitted.curve);
+      head + (computed ? "" : calibration::quality_text(fitted)) + "\n" + calibration::curve_text(fitted.curve);
   if (!options.output.empty())
     text += "\ncurve: " + options.output + " (name it in the scene: curve: FILE; then --set skin=" +
             number(0.5 * fitted.curve.loading.ratio.x().back(), 2) + "kV)\n";

@@ -2,10 +2,9 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <softkin/calibration/curve_report.hpp>
+#include <softkin/calibration/actuator_tasks.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
@@ -22,8 +21,6 @@ namespace softkin::cli {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double rest_tolerance = 0.005;  // of the atmosphere, beyond which a sensor's rest is remarked on
 
 /// What the user asks of `softkin calibrate pressure`. An empty text: not given.
 struct PressureOptions {
@@ -65,13 +62,11 @@ class PressureRun {
     outputs_ = asked_outputs({{"--output", options.output}, {"--table", options.table}, {"--plot", options.plot}});
     check_outputs(outputs_, inputs_);
     read_setup();
-    const std::vector<SyringeRun> runs = read_runs();
-    samples_ = calibration::chamber_ratios(setup_, runs);
-    std::vector<calibration::CurveSample> samples;
-    for (const calibration::SyringeSample& each : samples_) samples.push_back(each.sample);
-    fitted_ = calibration::fitted_curve(options.output.empty() ? "of the test" : options.output, CurveInput::pressure,
-                                        setup_.atmosphere_kPa, std::move(samples));
-    for (const SyringeRun& run : runs) remark_on_rest(run);
+    std::optional<PressureScale> scale;
+    if (!options.scale.empty()) scale = options.scale == "absolute" ? PressureScale::absolute : PressureScale::gauge;
+    results_ =
+        calibration::evaluate({options.tests, scale, setup_}, options.output.empty() ? "of the test" : options.output);
+    head_ += results_->head;
   }
 
   int run() {
@@ -81,12 +76,13 @@ class PressureRun {
       ProgressLine line;
       line.show(-1, "solving the physical formulation");
       catch_interrupt();
-      physics = calibration::compare_with_physics(*spec_, actuator_, fitted_->curve, options_.threads,
+      physics = calibration::compare_with_physics(*spec_, actuator_, results_->fitted.curve, options_.threads,
                                                   [](const Progress&) { return !interrupted(); });
     }
     write();
-    print(options_.json ? calibration::pressure_json(options_.tests, setup_, *fitted_, physics ? &*physics : nullptr)
-                        : text(physics));
+    print(options_.json
+              ? calibration::pressure_json(options_.tests, setup_, results_->fitted, physics ? &*physics : nullptr)
+              : text(physics));
     if (!physics || physics->is_complete()) return done;
     std::fprintf(stderr, "softkin: the physical formulation has no equilibrium at some of the ratios\n");
     return not_converged;
@@ -120,33 +116,10 @@ class PressureRun {
         (options_.atmosphere_kPa ? "" : " (default, as in the paper's Eq. (19))"));
   }
 
-  [[nodiscard]] std::vector<SyringeRun> read_runs() {
-    std::vector<SyringeRun> all;
-    std::optional<PressureScale> scale;
-    if (!options_.scale.empty()) scale = options_.scale == "absolute" ? PressureScale::absolute : PressureScale::gauge;
-    for (const std::string& file : options_.tests) {
-      const std::vector<SyringeRun> runs = read_syringe_runs(file, scale);
-      std::size_t rows = 0;
-      for (const SyringeRun& run : runs) rows += run.rows.size();
-      say(file + ": " + counted(runs.size(), "run") + ", " + counted(rows, "row") + ", " +
-          (runs.front().scale == PressureScale::absolute ? "absolute" : "gauge") + " pressures");
-      all.insert(all.end(), runs.begin(), runs.end());
-    }
-    return all;
-  }
-
-  /// By Eq. (19) the ratio is 1 at rest only where the sensor then reads the atmosphere.
-  void remark_on_rest(const SyringeRun& run) {
-    const std::optional<double> rest = calibration::rest_pressure(setup_, run);
-    if (rest && std::abs(*rest - setup_.atmosphere_kPa) > rest_tolerance * setup_.atmosphere_kPa)
-      say("note: " + run.file + ", " + run.name + ": the sensor reads " + number(*rest, 5) +
-          " kPa absolute with the syringe at rest, and the atmosphere counts as " + number(setup_.atmosphere_kPa, 5) +
-          " kPa: if the sensor is right, give --atmosphere " + number(*rest, 5));
-  }
-
   [[nodiscard]] std::string text(const std::optional<calibration::PressureComparison>& physics) const {
-    const ActuatorCurve& curve = fitted_->curve;
-    std::string text = head_ + calibration::quality_text(*fitted_) + "\n" + calibration::curve_text(curve) + "\n";
+    const ActuatorCurve& curve = results_->fitted.curve;
+    std::string text =
+        head_ + calibration::quality_text(results_->fitted) + "\n" + calibration::curve_text(curve) + "\n";
     if (physics) text += calibration::comparison_text(*physics, curve, *spec_);
     if (!options_.output.empty())
       text += "curve: " + options_.output + " (name it in the scene: curve: FILE; then --set " +
@@ -157,9 +130,11 @@ class PressureRun {
   void write() const {
     if (!options_.output.empty())
       write_file(options_.output,
-                 actuator_curve_text(fitted_->curve, "made by softkin calibrate pressure from:\n" + head_));
-    if (!options_.table.empty()) write_file(options_.table, calibration::syringe_table(setup_, samples_).csv());
-    if (!options_.plot.empty()) write_svg(options_.plot, calibration::curve_plot(*fitted_, "volume ratio by Eq. (19)"));
+                 actuator_curve_text(results_->fitted.curve, "made by softkin calibrate pressure from:\n" + head_));
+    if (!options_.table.empty())
+      write_file(options_.table, calibration::syringe_table(setup_, results_->samples).csv());
+    if (!options_.plot.empty())
+      write_svg(options_.plot, calibration::curve_plot(results_->fitted, "volume ratio by Eq. (19)"));
   }
 
   const PressureOptions& options_;
@@ -169,8 +144,7 @@ class PressureRun {
   std::string actuator_;
   double volume_mm3_ = 0;
   calibration::SyringeSetup setup_;
-  std::vector<calibration::SyringeSample> samples_;
-  std::optional<calibration::FittedCurve> fitted_;
+  std::optional<calibration::SyringeResults> results_;
   std::string head_;
 };
 
