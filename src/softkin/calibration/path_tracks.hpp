@@ -29,7 +29,7 @@ struct PathRequest {
   [[nodiscard]] bool by_name() const { return !by.empty() && by != "waypoint" && by != "time" && by != "arc"; }
 };
 
-/// The tracks of the files, then that of the sum. throws  InvalidInput
+/// The tracks of the files, then that of the sum. Throws InvalidInput.
 [[nodiscard]] std::vector<Track> read_tracks(const PathRequest& request);
 
 }  // namespace softkin::calibration

@@ -19,7 +19,7 @@ struct Reach {
   std::optional<Hull> hull{};            // where it is asked for and there are samples
 };
 
-/// The marker of that name; empty: the first. throws  InvalidInput on a robot without markers or an unknown name
+/// The marker of that name; empty: the first. Throws InvalidInput on a robot without markers or an unknown name
 [[nodiscard]] Index shown_marker(const Model& model, const std::string& name);
 
 /// throws  as shown_marker

@@ -28,7 +28,8 @@ struct ReportComparison {
 
 /// marker  empty for the first
 /// turn    empty, or two markers: by how much the line from one to the other has turned since the first step. It may
-///         exceed 180 degrees: the axis is that of the first turn, and from step to step the line turns by less than 180
+///         exceed 180 degrees: the axis is that of the first turn, and from step to step the line turns by less
+///         than 180
 /// throws  InvalidInput where reports have other steps than the first or lack a marker, or where the two markers of a
 ///         turn fall together in the first step
 [[nodiscard]] ReportComparison compare_reports(const std::vector<std::string>& files, const std::string& marker,

@@ -30,7 +30,7 @@ struct ReportedPath {
 /// throws  InvalidInput where the file is not a report of `softkin fk` with at least one step
 [[nodiscard]] ReportedPath read_reported_path(const std::string& file);
 
-/// asked, or the first marker where that is empty. throws  InvalidInput where there is none; hint: what that means
+/// asked, or the first marker where that is empty. Throws InvalidInput where there is none; hint: what that means
 [[nodiscard]] std::string marker_of(const ReportedPath& path, const std::string& asked, const std::string& hint = "");
 
 // In each step. throws  InvalidInput where a step has no such marker or actuator

@@ -44,7 +44,7 @@ class WorkspaceFile {
     return known_[static_cast<std::size_t>(sample)];
   }
 
-  /// Appends the row. throws  as Store::append
+  /// Appends the row. Throws as Store::append
   void add(const WorkspaceSample& sample);
 
   /// Replaces the file by one in the order of the samples, and gives them. All of them must be done.

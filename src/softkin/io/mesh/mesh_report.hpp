@@ -50,7 +50,7 @@ struct MeshConversion {
   std::vector<std::string> regions{}, not_kept{};
 };
 
-/// Writes the mesh in the form that output's extension names. ascii: a .msh as text. throws  InvalidInput
+/// Writes the mesh in the form that output's extension names. ascii: a .msh as text. Throws InvalidInput.
 [[nodiscard]] MeshConversion convert_mesh(const std::string& input, const std::string& output, bool ascii);
 
 /// "24 tetrahedra of order 2"

@@ -16,8 +16,8 @@ struct RegionMeasures {
   double measure = 0;        // dimension 3: volume [mm^3], 2: area [mm^2]
 };
 
-/// Counts and sizes of a mesh. Reversed elements count with their volume as if they were not; sizes and quality of elements
-/// of order 2 are those of their corners.
+/// Counts and sizes of a mesh. Reversed elements count with their volume as if they were not; sizes and quality of
+/// elements of order 2 are those of their corners.
 struct MeshMeasures {
   int order = 1;
   std::size_t vertices = 0, tetrahedra = 0, prisms = 0, triangles = 0, quads = 0, parts = 0;
