@@ -31,6 +31,19 @@ TEST(Threads, TeamsSideBySideDoEveryPieceOnce) {
   for (std::thread& user : users) user.join();
 }
 
+/// As the pieces of a factorisation do, each on a thread of its own.
+TEST(Threads, ATeamOfOneIsSharedByThreads) {
+  Team alone(1), several(4);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::vector<int>> done(8, std::vector<int>(50, 0));
+    several.each(8, [&](Index piece) {
+      alone.each(50, [&](Index i) { ++done[static_cast<std::size_t>(piece)][static_cast<std::size_t>(i)]; });
+    });
+    for (const auto& each : done)
+      for (const int count : each) ASSERT_EQ(count, 1);
+  }
+}
+
 TEST(Threads, OneStaticsSolvesForSeveralAtOnce) {
   const Model model = compile(bending_finger());
   const Statics statics(model);

@@ -41,14 +41,14 @@ Team::~Team() {
 }
 
 void Team::run(Index count, Call call, const void* body) {
+  if (workers_.empty() || count < 2) {  // nothing of the team is touched: threads may share one without helpers
+    for (Index i = 0; i < count; ++i) call(body, i);
+    return;
+  }
   call_ = call;
   body_ = body;
   count_ = count;
   next_.store(0, std::memory_order_relaxed);
-  if (workers_.empty() || count < 2) {
-    take_pieces();
-    return;
-  }
   state_.store(1, std::memory_order_release);
   loops_.fetch_add(1, std::memory_order_release);
   loops_.notify_all();

@@ -13,7 +13,7 @@ namespace softkin {
 
 /// Threads that work on one loop after another. Idle ones sleep, and a loop waits only for threads that have begun a
 /// piece of it: a busy machine slows the team down no more than its share of the processors does (OpenMP's barriers,
-/// which wait for every thread, were five times slower there).
+/// which wait for every thread, were five times slower there). A team of one may be shared by several threads.
 class Team {
  public:
   /// threads >= 1, the caller's included; 0: as many as the machine has.
