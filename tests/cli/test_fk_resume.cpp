@@ -281,7 +281,7 @@ TEST(FkResume, RefusesAReportThatItDidNotWrite) {
   refused(newer.dump(), "softkin 99.0 wrote it");
   json more = good;
   more["steps"][1]["actuation"]["oil"] = 1.0;
-  refused(more.dump(), "it is not a report that this command wrote");
+  refused(more.dump(), "step 1 has other actuators");
 }
 
 TEST(FkResume, SolvesAgainWhatIsMissingOrDamaged) {

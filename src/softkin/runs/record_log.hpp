@@ -19,6 +19,11 @@ struct RunFiles {
   std::filesystem::path shapes{};  // .pvd of a series, its shapes beside it; empty: none
 };
 
+/// A record that names other actuators than the model has.
+struct OtherActuators : InvalidInput {
+  OtherActuators() : InvalidInput("the record has other actuators") {}
+};
+
 /// How a record is written and read: a line of JSON.
 template <class Record>
 struct Codec {
@@ -80,6 +85,8 @@ class TypedLog : public RecordLog {
         [&](std::size_t number, std::string_view line) -> const StepRecord& {
           try {
             record = codec_.read(line);
+          } catch (const OtherActuators&) {
+            refuse("step " + std::to_string(number) + " has other actuators");
           } catch (const InvalidInput& error) {
             refuse(error.what());
           }

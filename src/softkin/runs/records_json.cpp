@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/record_log.hpp>
 #include <softkin/runs/records_json.hpp>
 #include <stdexcept>
 
@@ -114,7 +115,7 @@ Json by_actuator(const Model& model, const Actuation& values) {
 
 Actuation by_actuator(const Model& model, const Json& json) {
   Actuation values(static_cast<Index>(model.actuators.size()));
-  if (json.size() != model.actuators.size()) throw std::out_of_range("other actuators");
+  if (json.size() != model.actuators.size()) throw OtherActuators();
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     values[static_cast<Index>(a)] = json.at(model.actuators[a].name).get<double>();
   return values;
