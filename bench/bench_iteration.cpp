@@ -61,6 +61,7 @@ std::pair<double, double> parts(const Model& model) {
 /// Milliseconds per iteration: the least of several runs, each of as many iterations as take about a third of a second.
 double milliseconds(const Statics& statics, int threads, bool as_printed) {
   StaticsOptions options;
+  options.solver = Solver::local_global;
   options.threads = threads;
   options.anderson = as_printed ? 0 : 6;
   options.keep_history = false;
