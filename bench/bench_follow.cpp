@@ -2,19 +2,101 @@
 // inside (the paper's Fig. 13).
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <softkin/io/scene/scene.hpp>
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/kinematics/trajectory.hpp>
+#include <softkin/model/robot_spec.hpp>
+#include <string>
 
 #include "command_line.hpp"
-#include "knuckle_finger.hpp"
+#include "model/block_mesh.hpp"
 
 namespace {
 
 using namespace softkin;
 using namespace softkin::bench;
+
+// of examples/knuckle_finger.geo [mm]
+constexpr double length = 120, width = 25, height = 25, hinge = 5, flat = 4, slope = 0.4, cable_z = 21.5;
+constexpr std::array<double, 3> notches{30, 64, 98};
+
+/// Of the upper side.
+double top_at(double x) {
+  double top = height;
+  for (const double notch : notches) top = std::min(top, hinge + std::max(0.0, std::abs(x - notch) - flat) / slope);
+  return top;
+}
+
+/// Planes across the finger: the corners of its profile, and planes evenly between them, no farther apart than a size.
+std::vector<double> planes(double size) {
+  std::vector<double> corners{0};
+  for (const double notch : notches)
+    for (const double half : {-(flat + (height - hinge) * slope), -flat, flat, flat + (height - hinge) * slope})
+      corners.push_back(notch + half);
+  corners.push_back(length);
+  std::vector<double> planes{0};
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const double extent = corners[i] - corners[i - 1], parts = std::max(1.0, std::round(extent / size));
+    for (double part = 1; part <= parts; ++part) planes.push_back(corners[i - 1] + extent * part / parts);
+  }
+  return planes;
+}
+
+/// Cells along x, y and z for cells of a size.
+std::array<int, 3> cells_for(double size) {
+  const auto count = [size](double extent) { return std::max(2, 2 * static_cast<int>(std::round(extent / size / 2))); };
+  return {static_cast<int>(planes(size).size()) - 1, count(width), count(0.7 * height)};
+}
+
+double tetrahedra_for(double size) {
+  const std::array<int, 3> cells = cells_for(size);
+  return 6.0 * cells[0] * cells[1] * cells[2];
+}
+
+double size_for(double tetrahedra) {
+  double best = 5;
+  for (double size = 12; size > 0.8; size *= 0.99)
+    if (std::abs(std::log(tetrahedra_for(size) / tetrahedra)) < std::abs(std::log(tetrahedra_for(best) / tetrahedra)))
+      best = size;
+  return best;
+}
+
+Mesh finger_mesh(double size) {
+  const std::array<int, 3> cells = cells_for(size);
+  Mesh mesh = testing::block_mesh(cells, {1, 1, 1}, testing::Split::six);
+  const std::vector<double> x = planes(size);
+  for (Index v = 0; v < mesh.vertices.rows(); ++v) {
+    auto p = mesh.vertices.row(v);
+    p.x() = x[static_cast<std::size_t>(std::lround(p.x() * cells[0]))];
+    p.y() = width * (p.y() - 0.5);
+    p.z() *= top_at(p.x());
+  }
+  for (Region& region : mesh.regions) {
+    if (region.name == "x_low") region.name = "base";
+    if (region.name == "x_high") region.name = "tip";
+  }
+  return mesh;
+}
+
+/// The robot of examples/three_tendon_finger with a mesh of about so many tetrahedra in place of its own: the same
+/// shape, in hexahedra of six tetrahedra each; the tendons leave and enter the body in points.
+///
+/// scene   of that example
+/// order   of the tetrahedra in the physical formulation, 1 or 2
+RobotSpec knuckle_finger(const std::string& scene, double tetrahedra, int order) {
+  RobotSpec spec = read_scene(scene);
+  spec.mesh = finger_mesh(size_for(tetrahedra));
+  spec.quadratic = order == 2;
+  const double beside = flat + (cable_z - hinge) * slope;  // of the notch's middle, where the cable leaves its wall
+  for (std::size_t a = 0; a < spec.actuators.size() && a < notches.size(); ++a) {
+    spec.actuators[a].points[1].point = Vec3(notches[a] - beside, 0, cable_z);
+    spec.actuators[a].points[2].point = Vec3(notches[a] + beside, 0, cable_z);
+  }
+  return spec;
+}
 
 struct Options {
   std::string scene = "examples/three_tendon_finger/three_tendon_finger.yaml";
@@ -35,10 +117,6 @@ struct Method {
 constexpr Method methods[] = {{"newton", InverseMethod::newton, 1e-3},
                               {"gradient", InverseMethod::gradient, 0.2},
                               {"gradient", InverseMethod::gradient, 0.01}};
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct Followed {
   std::vector<InverseResult> waypoints;
@@ -85,9 +163,9 @@ Actuation sample_near(const Model& model, const Statics& statics, const MarkerPa
   Actuation near =
       follow_path(model, statics, begin, trajectory(methods[0], Solver::newton, options)).at(0).equilibrium.actuation;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const double low = model.actuators[a].low, width = model.actuators[a].high - low;
+    const double low = model.actuators[a].low, range = model.actuators[a].high - low;
     double& value = near[static_cast<Index>(a)];
-    value = std::clamp(low + width * std::round((value - low) / width * steps) / steps, low, low + width);
+    value = std::clamp(low + range * std::round((value - low) / range * steps) / steps, low, low + range);
   }
   return near;
 }
@@ -168,32 +246,25 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{"Paths on the three-tendon finger: Gauss-Newton against Algorithm 2, the same solver inside.",
                "bench_follow"};
+  app.option_defaults()->always_capture_default();
   Options options;
-  app.add_option("--scene", options.scene, "of the three-tendon finger")->capture_default_str();
-  app.add_option("--paths", options.paths, "of its tip, .csv")->delimiter(',')->capture_default_str();
+  app.add_option("--scene", options.scene, "of the three-tendon finger");
+  app.add_option("--paths", options.paths, "of its tip, .csv")->delimiter(',');
   app.add_option("--formulations", options.formulations, "with newton inside")
       ->delimiter(',')
-      ->check(CLI::IsMember({"physical", "target-shape"}))
-      ->capture_default_str();
-  app.add_option("--size", options.size, "tetrahedra")->check(CLI::Range(200.0, 1e6))->capture_default_str();
-  app.add_option("--order", options.order, "of the tetrahedra, physical")
-      ->check(CLI::Range(1, 2))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"physical", "target-shape"}));
+  app.add_option("--size", options.size, "tetrahedra")->check(CLI::Range(200.0, 1e6));
+  app.add_option("--order", options.order, "of the tetrahedra, physical")->check(CLI::Range(1, 2));
   app.add_option("--local-size", options.local_size, "tetrahedra with local-global inside; 0: not")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 1e6));
   app.add_option(
          "--local-tolerance", options.local_tolerance_mm,
          "step at which local-global ends [mm]; at the paper's 1e-5 its error is as large as the tolerance of newton")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->check(CLI::PositiveNumber);
   app.add_option("--anderson", options.anderson, "steps that Anderson acceleration combines; 0: as the paper ran it")
-      ->check(CLI::Range(0, 20))
-      ->capture_default_str();
+      ->check(CLI::Range(0, 20));
   app.add_option("--waypoints", options.waypoints, "of each path, at most")->check(CLI::Range(1, 1000000));
-  app.add_option("--limit", options.limit, "of each method on each path [s]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256))->capture_default_str();
+  app.add_option("--limit", options.limit, "of each method on each path [s]")->check(CLI::PositiveNumber);
+  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

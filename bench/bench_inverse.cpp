@@ -235,24 +235,21 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   CLI::App app{"Inverse kinematics of a robot: random targets, or a target that moves.", "bench_inverse"};
+  app.option_defaults()->always_capture_default();
   Options options;
-  app.add_option("--robot", options.robot, "a scene, or 'beam': three chambers in a block")->capture_default_str();
+  app.add_option("--robot", options.robot, "a scene, or 'beam': three chambers in a block");
   app.add_option("--mode", options.mode, "reach: random targets; drag: one that moves")
-      ->check(CLI::IsMember({"reach", "drag"}))
-      ->capture_default_str();
-  app.add_option("--method", options.method)->check(CLI::IsMember({"newton", "gradient"}))->capture_default_str();
-  app.add_option("--targets", options.targets, "reachable ones, made by forward kinematics")->capture_default_str();
-  app.add_option("--unreachable", options.unreachable)->capture_default_str();
-  app.add_option("--tolerance", options.tolerance_mm, "[mm]")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--other-starts", options.other_starts)->check(CLI::Range(0, 100))->capture_default_str();
-  app.add_option("--updates", options.updates, "drag: how many")->check(CLI::Range(1, 1000000))->capture_default_str();
+      ->check(CLI::IsMember({"reach", "drag"}));
+  app.add_option("--method", options.method)->check(CLI::IsMember({"newton", "gradient"}));
+  app.add_option("--targets", options.targets, "reachable ones, made by forward kinematics");
+  app.add_option("--unreachable", options.unreachable);
+  app.add_option("--tolerance", options.tolerance_mm, "[mm]")->check(CLI::PositiveNumber);
+  app.add_option("--other-starts", options.other_starts)->check(CLI::Range(0, 100));
+  app.add_option("--updates", options.updates, "drag: how many")->check(CLI::Range(1, 1000000));
   app.add_option("--move", options.millimetres_per_update, "drag: of the target per update [mm]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--size", options.size, "of the beam, tetrahedra")
-      ->check(CLI::Range(1000.0, 1e6))
-      ->capture_default_str();
-  app.add_option("--seed", options.seed)->capture_default_str();
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256))->capture_default_str();
+      ->check(CLI::PositiveNumber);
+  app.add_option("--size", options.size, "of the beam, tetrahedra")->check(CLI::Range(1000.0, 1e6));
+  app.add_option("--seed", options.seed);
+  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

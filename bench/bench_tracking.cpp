@@ -2,11 +2,10 @@
 
 #include <softkin/statics/statics.hpp>
 
-#include "bend.hpp"
 #include "command_line.hpp"
 #include "finger.hpp"
+#include "machine.hpp"
 #include "physical_parts.hpp"
-#include "rates.hpp"
 
 namespace {
 
@@ -136,12 +135,12 @@ int run(Options options) {
 int main(int argc, char** argv) {
   CLI::App app{"Converged shapes per second along a path of 1 % steps of the chamber's volume, and what bounds them.",
                "bench_tracking"};
+  app.option_defaults()->always_capture_default();
   Options options;
-  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers")->delimiter(',')->capture_default_str();
-  app.add_option("--steps", options.steps, "of 1 %")->check(CLI::Range(1, 100))->capture_default_str();
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256))->capture_default_str();
+  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers")->delimiter(',');
+  app.add_option("--steps", options.steps, "of 1 %")->check(CLI::Range(1, 100));
+  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
   app.add_option("--chamber-weight", options.chamber_weight, "w of the chamber's elements, target-shape")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->check(CLI::PositiveNumber);
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

@@ -13,11 +13,9 @@
 #include <softkin/model/mesh/mesh_check.hpp>
 #include <thread>
 
-#include "bend.hpp"
-#include "calculix.hpp"
+#include "finger.hpp"
 #include "machine.hpp"
 #include "newton_runs.hpp"
-#include "newton_table.hpp"
 #include "physical_parts.hpp"
 
 namespace softkin::bench {
@@ -309,8 +307,6 @@ TEST(Machine, MedianAndGrowth) {
   EXPECT_THROW((void)median({}), InvalidInput);
   EXPECT_NEAR(growth({10, 100, 1000}, {2 * std::pow(10, 1.4), 2 * std::pow(100, 1.4), 2 * std::pow(1000, 1.4)}), 1.4,
               1e-12);
-  EXPECT_THROW((void)solution_of("newtom"), InvalidInput);
-  EXPECT_EQ(solution_of("physical"), Solution::physical);
 }
 
 }  // namespace
