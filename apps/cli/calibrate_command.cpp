@@ -1,7 +1,5 @@
 #include "calibrate_command.hpp"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <softkin/io/scanner.hpp>
 
 namespace softkin::cli {

@@ -1,14 +1,11 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <memory>
 #include <softkin/calibration/actuator_tasks.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 
 #include "calibrate_command.hpp"
-#include "printing.hpp"
 #include "solve_options.hpp"
+#include "terminal.hpp"
 
 namespace softkin::cli {
 

@@ -1,7 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +12,6 @@
 #include <softkin/model/names.hpp>
 
 #include "calibrate_command.hpp"
-#include "printing.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 

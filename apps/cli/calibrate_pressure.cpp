@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -12,7 +9,6 @@
 #include <softkin/io/table/actuator_tests.hpp>
 
 #include "calibrate_command.hpp"
-#include "printing.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace softkin::cli {
 
@@ -18,6 +21,12 @@ template <class Value>
 CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const char* type,
                        const std::string& what, const CLI::Validator& check = {}) {
   return command.add_option(name, value, what)->type_name(type)->check(check);
+}
+
+/// The same for one that may be given several times.
+inline CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values,
+                                 const char* type, const std::string& what) {
+  return add_value(command, name, values, type, what)->expected(1)->take_all();
 }
 
 void add_calibrate(CLI::App& app, Run& run);

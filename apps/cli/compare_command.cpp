@@ -1,7 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -13,8 +9,8 @@
 #include <softkin/runs/report_comparison.hpp>
 
 #include "command.hpp"
-#include "printing.hpp"
 #include "solve_options.hpp"
+#include "terminal.hpp"
 
 namespace softkin::cli {
 
@@ -104,32 +100,24 @@ void check(const CompareOptions& options) {
 }
 
 void add_path_options(CLI::App& command, CompareOptions& options) {
-  command
-      .add_option("--by", options.by,
-                  "Paths: which points belong together: time, waypoint (row by row), arc (shares of the length), or a "
-                  "column or actuator that ascends (default: time where both have it, else waypoint where both have "
-                  "as many, else arc)")
-      ->type_name("NAME");
-  command
-      .add_option("--start", options.start,
-                  "Paths by time: when the first file's clock begins, in that of the tables after it [s], such as the "
-                  "time in a film at which the robot sets off (default: 0)")
-      ->type_name("S");
+  add_value(command, "--by", options.by, "NAME",
+            "Paths: which points belong together: time, waypoint (row by row), arc (shares of the length), or a "
+            "column or actuator that ascends (default: time where both have it, else waypoint where both have "
+            "as many, else arc)");
+  add_value(command, "--start", options.start, "S",
+            "Paths by time: when the first file's clock begins, in that of the tables after it [s], such as the "
+            "time in a film at which the robot sets off (default: 0)");
   command.add_flag(
       "--align", options.align,
       "Paths: first turn and move each onto the first, to the least squares (no mirroring); predictions among each "
       "other stay as they are");
-  command
-      .add_option("--plane", options.plane,
-                  "Paths: axes of the robot that the two coordinates of a flat track are, such as xz; x-z: the second "
-                  "turned round")
-      ->type_name("AXES");
-  command
-      .add_option("--sum", options.sum,
-                  "Paths: reports in which one actuator moves each; adds the sum of their displacements for the "
-                  "commands of the first report among the files")
-      ->type_name("F.json");
-  command.add_option("-o,--output", options.output, "Paths: every waypoint with its error")->type_name("F.csv");
+  add_value(command, "--plane", options.plane, "AXES",
+            "Paths: axes of the robot that the two coordinates of a flat track are, such as xz; x-z: the second "
+            "turned round");
+  add_value(command, "--sum", options.sum, "F.json",
+            "Paths: reports in which one actuator moves each; adds the sum of their displacements for the "
+            "commands of the first report among the files");
+  add_value(command, "-o,--output", options.output, "F.csv", "Paths: every waypoint with its error");
 }
 
 }  // namespace
@@ -144,22 +132,18 @@ void add_compare(CLI::App& app, Run& run) {
                   "and tracks F.csv (t_s,x_mm,y_mm,z_mm or tip_x_mm, ...; F.csv@tip chooses a marker)")
       ->type_name("F")
       ->required();
-  command
-      .add_option("--marker", options->marker,
-                  "The marker whose distance from that of the first report is shown (default: the first)")
-      ->type_name("NAME");
+  add_value(command, "--marker", options->marker, "NAME",
+            "The marker whose distance from that of the first report is shown (default: the first)");
   command
       .add_option("--turn", options->turn,
                   "Two markers: by how much the line from one to the other has turned since the first step [degrees]")
       ->type_name("FROM TO")
       ->expected(2);
-  command.add_option("--poses", options->poses, "With --turn: the time until each of these turns is reached [degrees]")
-      ->type_name("DEGREES")
-      ->check(CLI::PositiveNumber.description(""));
-  command
-      .add_option("--plot", options->plot,
-                  "Turns, distances and loads over the steps, and the marker's way by each report")
-      ->type_name("F.svg");
+  add_value(command, "--poses", options->poses, "DEGREES",
+            "With --turn: the time until each of these turns is reached [degrees]",
+            CLI::PositiveNumber.description(""));
+  add_value(command, "--plot", options->plot, "F.svg",
+            "Turns, distances and loads over the steps, and the marker's way by each report");
   add_path_options(command, *options);
   command.add_flag("--json", options->json, "Print JSON; its keys name the units");
   command.footer(

@@ -1,9 +1,5 @@
 #include <signal.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -19,7 +15,6 @@
 #include <softkin/runs/drive_report.hpp>
 
 #include "command.hpp"
-#include "printing.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 

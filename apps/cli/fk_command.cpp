@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -14,10 +11,8 @@
 #include <softkin/runs/step_tables.hpp>
 
 #include "command.hpp"
-#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
-#include "step_text.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -47,30 +42,20 @@ struct FkOptions : SolveOptions, RunOptions {
 
 void add_options(CLI::App& command, FkOptions& options) {
   add_scene(command, options);
-  command
-      .add_option(
-          "--path", options.path,
-          "A column per actuator (air; with a load's unit if you like:\nair_kPa), a row per step, each step solved "
-          "from the last; with a curve\nof the actuator also air_kPa (gauge), air_kPa_abs, skin_kV; a\ncolumn t_s is "
-          "the time in the series [s]")
-      ->type_name("F.csv");
-  command.add_option("-o,--output", options.output, "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...")
-      ->type_name("F");
-  command.add_option("--report", options.report, "All numbers of all steps, with their strain histograms")
-      ->type_name("F.json");
-  command.add_option("--image", options.show.image, "Picture of the last shape")->type_name("F.png");
-  command
-      .add_option("--plot", options.show.plot,
-                  "With --path: commands, markers, pressures and tensions over\nthe steps, and the markers' ways")
-      ->type_name("F.svg");
-  command
-      .add_option("--set", options.settings,
-                  "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
-                  "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
-                  "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest")
-      ->type_name("A=V")
-      ->expected(1)
-      ->take_all();
+  add_value(command, "--path", options.path, "F.csv",
+            "A column per actuator (air; with a load's unit if you like:\nair_kPa), a row per step, each step solved "
+            "from the last; with a curve\nof the actuator also air_kPa (gauge), air_kPa_abs, skin_kV; a\ncolumn t_s is "
+            "the time in the series [s]");
+  add_value(command, "-o,--output", options.output, "F",
+            "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...");
+  add_value(command, "--report", options.report, "F.json", "All numbers of all steps, with their strain histograms");
+  add_value(command, "--image", options.show.image, "F.png", "Picture of the last shape");
+  add_value(command, "--plot", options.show.plot, "F.svg",
+            "With --path: commands, markers, pressures and tensions over\nthe steps, and the markers' ways");
+  add_repeated(command, "--set", options.settings, "A=V",
+               "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
+               "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
+               "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest");
   add_force(command, options);
   add_view(command, options.show);
   add_solver(command, options, "--tolerance");

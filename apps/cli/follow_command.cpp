@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,11 +14,8 @@
 #include <softkin/runs/workspace_file.hpp>
 
 #include "command.hpp"
-#include "method_options.hpp"
-#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
-#include "step_text.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -68,25 +62,18 @@ void add_options(CLI::App& command, FollowOptions& options) {
                   "report.json")
       ->type_name("DIR")
       ->required();
-  command.add_option("--marker", options.marker, "Whose x_mm, y_mm, z_mm are (default: the scene's only one)")
-      ->type_name("NAME");
-  command
-      .add_option("--max-step", options.max_step_mm,
-                  "Insert waypoints on the straight lines between those given,\nso that no step is longer [mm]")
-      ->type_name("MM")
-      ->check(positive_length());
+  add_value(command, "--marker", options.marker, "NAME", "Whose x_mm, y_mm, z_mm are (default: the scene's only one)");
+  add_value(command, "--max-step", options.max_step_mm, "MM",
+            "Insert waypoints on the straight lines between those given,\nso that no step is longer [mm]",
+            positive_length());
   add_method(command, options, "Distance from a waypoint at which it is reached");
-  command
-      .add_option("--descents", options.descents,
-                  "gradient: iterations of Algorithm 2 for a waypoint, i_max\n(default: " +
-                      std::to_string(InverseOptions().max_iterations) + ")")
-      ->type_name("N")
-      ->check(integer_from(1, 1'000'000'000));
-  command
-      .add_option("--workspace", options.workspace,
-                  "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)")
-      ->type_name("F.csv");
-  command.add_option("--plot", options.plot_file, "The plot, instead of path.svg in the folder")->type_name("F.svg");
+  add_value(command, "--descents", options.descents, "N",
+            "gradient: iterations of Algorithm 2 for a waypoint, i_max\n(default: " +
+                std::to_string(InverseOptions().max_iterations) + ")",
+            integer_from(1, 1'000'000'000));
+  add_value(command, "--workspace", options.workspace, "F.csv",
+            "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)");
+  add_value(command, "--plot", options.plot_file, "F.svg", "The plot, instead of path.svg in the folder");
   add_force(command, options);
   add_solver(command, options, "--solver-tolerance");
   add_run(command, options, "Go on where the same command was interrupted", "Print the report instead of the table");

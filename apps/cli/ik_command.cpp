@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,12 +12,10 @@
 #include <softkin/runs/shape_files.hpp>
 #include <softkin/runs/workspace_file.hpp>
 #include "command.hpp"
-#include "ik_goals.hpp"
 #include "ik_options.hpp"
 #include "ik_table.hpp"
-#include "printing.hpp"
+#include "run_text.hpp"
 #include "solve_options.hpp"
-#include "step_text.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {

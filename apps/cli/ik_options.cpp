@@ -1,10 +1,14 @@
 #include "ik_options.hpp"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
+
+#include "terminal.hpp"
 
 namespace softkin::cli {
 
@@ -12,75 +16,188 @@ namespace {
 
 constexpr int most = 1'000'000;
 
-CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values,
-                          const std::string& help, const std::string& type) {
-  return command.add_option(name, values, help)->type_name(type)->expected(1)->take_all();
-}
-
 void add_goals(CLI::App& command, IkOptions& options) {
-  add_repeated(command, "--target", options.targets,
+  add_repeated(command, "--target", options.targets, "M=P",
                "MARKER=X,Y,Z: where a marker is to be [mm]; a coordinate left\nempty does not count (tip=,,40); "
-               "repeatable, as the two below",
-               "M=P");
-  add_repeated(command, "--plane", options.planes,
-               "MARKER=PX,PY,PZ/NX,NY,NZ: a plane for a marker to be in, by a\npoint [mm] and its normal", "M=P/N");
-  add_repeated(command, "--direction", options.directions,
+               "repeatable, as the two below");
+  add_repeated(command, "--plane", options.planes, "M=P/N",
+               "MARKER=PX,PY,PZ/NX,NY,NZ: a plane for a marker to be in, by a\npoint [mm] and its normal");
+  add_repeated(command, "--direction", options.directions, "A:B=D",
                "FROM:TO=X,Y,Z: where the line from one marker to another is to\npoint; its error is that of its unit "
-               "vector times --lever",
-               "A:B=D");
-  command
-      .add_option("--lever", options.lever_mm,
-                  "How far away a wrong direction counts [mm] (default: as far as\nits markers are apart at rest)")
-      ->type_name("MM")
-      ->check(positive_length());
-  add_repeated(command, "--weight", options.weights,
+               "vector times --lever");
+  add_value(command, "--lever", options.lever_mm, "MM",
+            "How far away a wrong direction counts [mm] (default: as far as\nits markers are apart at rest)",
+            positive_length());
+  add_repeated(command, "--weight", options.weights, "M=W",
                "MARKER=W or FROM:TO=W: weight in the sum of squares of what is\nasked of them (default: 1); "
-               "repeatable",
-               "M=W");
+               "repeatable");
 }
 
 void add_start(CLI::App& command, IkOptions& options) {
-  add_repeated(command, "--start", options.start,
-               "ACTUATOR=VALUE: where the search begins (default: rest);\nrepeatable, as the two below", "A=V");
-  add_repeated(command, "--prefer", options.prefer,
+  add_repeated(command, "--start", options.start, "A=V",
+               "ACTUATOR=VALUE: where the search begins (default: rest);\nrepeatable, as the two below");
+  add_repeated(command, "--prefer", options.prefer, "A=V",
                "ACTUATOR=VALUE: where several actuations reach the goals, the one\nnearest to this (default: to the "
-               "start)",
-               "A=V");
-  add_repeated(command, "--fix", options.fix, "ACTUATOR=VALUE: this actuator does not change", "A=V");
-  command
-      .add_option("--workspace", options.workspace, "Of softkin workspace: begins at its sample nearest to the goals")
-      ->type_name("F.csv");
+               "start)");
+  add_repeated(command, "--fix", options.fix, "A=V", "ACTUATOR=VALUE: this actuator does not change");
+  add_value(command, "--workspace", options.workspace, "F.csv",
+            "Of softkin workspace: begins at its sample nearest to the goals");
 }
 
 void add_search(CLI::App& command, IkOptions& options) {
   const InverseOptions defaults;
   add_method(command, options, "Error of every goal at which they are reached");
-  command
-      .add_option("--max-equilibria", options.max_equilibria,
-                  "newton: give up after so many (default: " + std::to_string(defaults.max_equilibria) + ")")
-      ->type_name("N")
-      ->check(integer_from(1, most));
-  command
-      .add_option("--other-starts", options.other_starts,
-                  "newton: places from where it is tried again before goals are\ncalled out of reach (default: " +
-                      std::to_string(defaults.other_starts) + ")")
-      ->type_name("N")
-      ->check(integer_from(0, 1000));
-  command
-      .add_option(
-          "--descents", options.descents,
-          "gradient: iterations of Algorithm 2, i_max (default: " + std::to_string(defaults.max_iterations) + ")")
-      ->type_name("N")
-      ->check(integer_from(1, most));
+  add_value(command, "--max-equilibria", options.max_equilibria, "N",
+            "newton: give up after so many (default: " + std::to_string(defaults.max_equilibria) + ")",
+            integer_from(1, most));
+  add_value(command, "--other-starts", options.other_starts, "N",
+            "newton: places from where it is tried again before goals are\ncalled out of reach (default: " +
+                std::to_string(defaults.other_starts) + ")",
+            integer_from(0, 1000));
+  add_value(command, "--descents", options.descents, "N",
+            "gradient: iterations of Algorithm 2, i_max (default: " + std::to_string(defaults.max_iterations) + ")",
+            integer_from(1, most));
 }
 
 void add_files(CLI::App& command, IkOptions& options) {
-  command.add_option("-o,--output", options.output, "The shape")->type_name("F.vtu");
-  command.add_option("--report", options.report, "All numbers, with the Jacobian and the strain histogram")
-      ->type_name("F.json");
-  command.add_option("--image", options.show.image, "Picture of the shape")->type_name("F.png");
+  add_value(command, "-o,--output", options.output, "F.vtu", "The shape");
+  add_value(command, "--report", options.report, "F.json", "All numbers, with the Jacobian and the strain histogram");
+  add_value(command, "--image", options.show.image, "F.png", "Picture of the shape");
   add_view(command, options.show);
-  command.add_option("--plot", options.show.plot, "The error over the equilibria of the search")->type_name("F.svg");
+  add_value(command, "--plot", options.show.plot, "F.svg", "The error over the equilibria of the search");
+}
+
+using Coordinates = std::array<std::optional<double>, 3>;
+
+/// "1,2,3"; where empty coordinates are allowed "1,,3" too.
+bool parse_coordinates(const std::string& text, bool empty_too, Coordinates& found) {
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos) return false;
+    const std::string part = text.substr(begin, end - begin);
+    double value = 0;
+    if (!part.empty() || !empty_too) {
+      if (!parse_real(part, value)) return false;
+      found[static_cast<std::size_t>(axis)] = value;
+    }
+    begin = end + 1;
+  }
+  return true;
+}
+
+Vec3 point_of(const Coordinates& coordinates) {
+  return {coordinates[0].value_or(0), coordinates[1].value_or(0), coordinates[2].value_or(0)};
+}
+
+Vec3 at_rest(const Model& model, Index marker) {
+  return model.markers[static_cast<std::size_t>(marker)].point.at(model.rest);
+}
+
+/// One argument of an option: NAME=VALUE.
+class Argument {
+ public:
+  Argument(const Model& model, std::string option, const std::string& text, const std::string& form)
+      : model_(model), option_(std::move(option)), text_(text), form_(form) {
+    const std::size_t equals = text.rfind('=');
+    if (equals == std::string::npos || equals == 0) refuse("expected " + form_);
+    name_ = text.substr(0, equals);
+    value_ = text.substr(equals + 1);
+  }
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw InvalidInput(option_ + " " + excerpt(text_) + ": " + why);
+  }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& value() const { return value_; }
+
+  [[nodiscard]] Index marker(const std::string& name) const {
+    std::vector<std::string> names;
+    for (const Marker& marker : model_.markers) names.push_back(marker.name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<Index>(found - names.begin());
+    refuse("no marker " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names)));
+  }
+
+  [[nodiscard]] Coordinates coordinates(const std::string& text, bool empty_too = false) const {
+    Coordinates found;
+    if (!parse_coordinates(text, empty_too, found))
+      refuse("expected three finite numbers in " + form_ + ", not " + excerpt(text));
+    return found;
+  }
+
+  [[nodiscard]] Vec3 direction(const std::string& text) const {
+    const Vec3 found = point_of(coordinates(text));
+    if (!(found.stableNorm() > 0)) refuse("the direction " + excerpt(text) + " is zero");
+    return found;
+  }
+
+ private:
+  const Model& model_;
+  std::string option_, text_, form_, name_, value_;
+};
+
+runs::NamedGoal target_of(const Model& model, const std::string& text) {
+  const Argument argument(model, "--target", text, "MARKER=X,Y,Z in mm, for example tip=100,0,50 or tip=,,50");
+  PositionGoal goal;
+  goal.marker = argument.marker(argument.name());
+  const Coordinates coordinates = argument.coordinates(argument.value(), true);
+  goal.target = point_of(coordinates);
+  for (std::size_t axis = 0; axis < 3; ++axis) goal.axes[axis] = coordinates[axis].has_value();
+  if (goal.axes == std::array<bool, 3>{}) argument.refuse("no coordinate of it is given");
+  return {argument.name(), {goal}};
+}
+
+runs::NamedGoal plane_of(const Model& model, const std::string& text) {
+  const Argument argument(model, "--plane", text, "MARKER=PX,PY,PZ/NX,NY,NZ, for example tip=0,0,50/0,0,1");
+  const std::size_t slash = argument.value().find('/');
+  if (slash == std::string::npos)
+    argument.refuse("expected a point in mm and a normal, PX,PY,PZ/NX,NY,NZ, not " + excerpt(argument.value()));
+  PlaneGoal goal;
+  goal.marker = argument.marker(argument.name());
+  goal.point = point_of(argument.coordinates(argument.value().substr(0, slash)));
+  goal.normal = argument.direction(argument.value().substr(slash + 1));
+  return {argument.name(), {goal}};
+}
+
+runs::NamedGoal direction_of(const Model& model, const std::string& text, std::optional<double> lever_mm) {
+  const Argument argument(model, "--direction", text, "FROM:TO=X,Y,Z, for example base:tip=0,0,1");
+  const std::size_t colon = argument.name().find(':');
+  if (colon == std::string::npos) argument.refuse("expected two markers, FROM:TO=X,Y,Z");
+  DirectionGoal goal;
+  goal.from = argument.marker(argument.name().substr(0, colon));
+  goal.to = argument.marker(argument.name().substr(colon + 1));
+  goal.direction = argument.direction(argument.value());
+  const double apart = (at_rest(model, goal.to) - at_rest(model, goal.from)).norm();
+  if (!(apart > 0)) argument.refuse("these markers are in one place at rest");
+  goal.lever_mm = lever_mm.value_or(apart);
+  return {argument.name(), {goal}};
+}
+
+void set_weight(const Model& model, const std::string& text, std::vector<runs::NamedGoal>& goals) {
+  const Argument argument(model, "--weight", text, "GOAL=WEIGHT, for example tip=2 or base:tip=0.5");
+  double weight = 0;
+  if (!parse_real(argument.value(), weight) || !(weight > 0))
+    argument.refuse("the weight must be a finite number > 0, not " + excerpt(argument.value()));
+  bool any = false;
+  std::vector<std::string> names;
+  for (runs::NamedGoal& goal : goals) {
+    names.push_back(goal.name);
+    if (goal.name != argument.name()) continue;
+    goal.goal.weight = weight;
+    any = true;
+  }
+  if (!any) argument.refuse("nothing is asked of " + excerpt(argument.name()) + suggest_name(argument.name(), names));
+}
+
+/// Distance of a marker at rest from its target, along the coordinates that count, were it given in units of so many
+/// millimetres [mm].
+double distance_from_rest(const Model& model, const PositionGoal& goal, double unit_mm) {
+  const Vec3 rest = at_rest(model, goal.marker);
+  Vec3 away = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (goal.axes[static_cast<std::size_t>(axis)]) away[axis] = unit_mm * goal.target[axis] - rest[axis];
+  return away.stableNorm();
 }
 
 }  // namespace
@@ -121,6 +238,37 @@ void check_usage(const IkOptions& options) {
   check_extension("--plot", options.show.plot, {{".svg", ""}});
   check_view(options.show);
   check_solver(options);
+}
+
+std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options) {
+  std::vector<runs::NamedGoal> goals;
+  for (const std::string& text : options.targets) goals.push_back(target_of(model, text));
+  for (const std::string& text : options.planes) goals.push_back(plane_of(model, text));
+  for (const std::string& text : options.directions) goals.push_back(direction_of(model, text, options.lever_mm));
+  for (const std::string& text : options.weights) set_weight(model, text, goals);
+  std::vector<Goal> plain;
+  for (const runs::NamedGoal& goal : goals) plain.push_back(goal.goal);
+  check_goals(model, plain);
+  return goals;
+}
+
+std::vector<std::string> doubts_about(const Model& model, const std::vector<runs::NamedGoal>& goals) {
+  constexpr double large = 100, metre = 1000;
+  std::vector<std::string> doubts;
+  for (const runs::NamedGoal& asked : goals) {
+    const auto* goal = std::get_if<PositionGoal>(&asked.goal.what);
+    if (goal == nullptr) continue;
+    const double given = distance_from_rest(model, *goal, 1), metres = distance_from_rest(model, *goal, metre);
+    const std::string away = "--target of '" + asked.name + "': " + number(given) +
+                             " mm away from the marker at rest, but the robot is " + number(model.diagonal_mm) +
+                             " mm across";
+    if (given > large * model.diagonal_mm)
+      doubts.push_back(away + ": are the coordinates in another unit than mm?");
+    else if (metres < 0.5 * given && goal->target.cwiseAbs().maxCoeff() * large < model.diagonal_mm)
+      doubts.push_back(away + "; it would be " + number(metres, 3) +
+                       " mm away if the coordinates were in metres: are they? They are taken as mm");
+  }
+  return doubts;
 }
 
 }  // namespace softkin::cli

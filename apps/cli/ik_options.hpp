@@ -1,13 +1,12 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <optional>
+#include <softkin/io/output_files.hpp>
 #include <softkin/kinematics/inverse.hpp>
+#include <softkin/runs/inverse_report.hpp>
 #include <string>
 #include <vector>
 
-#include <softkin/io/output_files.hpp>
-#include "method_options.hpp"
 #include "solve_options.hpp"
 
 namespace softkin::cli {
@@ -36,5 +35,12 @@ void add_options(CLI::App& command, IkOptions& options);
 
 /// Throws InvalidInput where the options contradict each other or name files of another form.
 void check_usage(const IkOptions& options);
+
+/// Throws InvalidInput naming the option: unknown markers, numbers that are none or not finite, a weight for nothing.
+[[nodiscard]] std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options);
+
+/// What looks wrong about the points beside this robot, a sentence each: 100 times its size away, or near it if they
+/// were in metres.
+[[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const std::vector<runs::NamedGoal>& goals);
 
 }  // namespace softkin::cli

@@ -6,7 +6,7 @@
 #include <softkin/io/table/settings.hpp>
 #include <softkin/io/table/table.hpp>
 #include <softkin/model/names.hpp>
-#include "printing.hpp"
+#include "terminal.hpp"
 
 namespace softkin::cli {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ik_goals.hpp"
+#include "ik_options.hpp"
 
 namespace softkin::cli {
 

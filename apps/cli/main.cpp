@@ -2,7 +2,7 @@
 #include <string>
 
 #include "command.hpp"
-#include "outcome.hpp"
+#include "terminal.hpp"
 
 namespace {
 

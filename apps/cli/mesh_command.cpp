@@ -1,7 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
 #include <algorithm>
 #include <memory>
 #include <softkin/io/mesh/length_unit.hpp>
@@ -12,7 +8,7 @@
 #include <softkin/io/table/table.hpp>
 
 #include "command.hpp"
-#include "printing.hpp"
+#include "terminal.hpp"
 
 namespace softkin::cli {
 
@@ -169,9 +165,8 @@ int run_convert(const MeshOptions& options) {
 }
 
 void add_unit(CLI::App& command, MeshOptions& options) {
-  command.add_option("--unit", options.unit, "Unit of the file's lengths: mm, cm, m, um, in (default: mm)")
-      ->type_name("UNIT")
-      ->check(CLI::IsMember(length_units()).description(""));
+  add_value(command, "--unit", options.unit, "UNIT", "Unit of the file's lengths: mm, cm, m, um, in (default: mm)",
+            CLI::IsMember(length_units()).description(""));
 }
 
 void add_json(CLI::App& command, MeshOptions& options) {
@@ -208,11 +203,9 @@ void add_check(CLI::App& mesh, Run& run) {
   const auto scene = std::make_shared<std::string>();
   CLI::App& command =
       *mesh.add_subcommand("check", "What is wrong with a mesh: elements, faces, vertices, loose parts");
-  command.add_option("MESH", options->input, "Mesh: .msh .vtk .vtu .mesh .node .ele .inp .tet; or a scene: .yaml")
-      ->type_name("");
-  command
-      .add_option("--scene", *scene, "Scene in place of MESH: its mesh, and whether the scene holds every part of it")
-      ->type_name("SCENE");
+  add_value(command, "MESH", options->input, "", "Mesh: .msh .vtk .vtu .mesh .node .ele .inp .tet; or a scene: .yaml");
+  add_value(command, "--scene", *scene, "SCENE",
+            "Scene in place of MESH: its mesh, and whether the scene holds every part of it");
   add_unit(command, *options);
   add_json(command, *options);
   command.footer(

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <softkin/core/progress.hpp>
+#include <softkin/model/model.hpp>
 #include <softkin/runs/job.hpp>
+#include <softkin/runs/records.hpp>
 #include <string>
 
-#include "printing.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -62,5 +63,19 @@ class EquilibriumProgress {
  private:
   double first_move_ = 0;  // [mm]
 };
+
+using runs::ActuatorRecord;
+using runs::StepRecord;
+
+/// "1,851 vertices, 5,556 tetrahedra of order 1; physical formulation (neo-hookean), solver newton", the actuators and
+/// the model's notes, a line each.
+[[nodiscard]] std::string summary(const Model& model, const std::string& solver);
+
+/// Strains, slack cables and what a step may hide, a line each.
+[[nodiscard]] std::string findings_text(const Model& model, const StepRecord& step);
+
+/// Why a step did not converge and what its shape is: "air reached 1.62 of 1.8: beyond this point no equilibrium
+/// follows; the shape is the last good one".
+[[nodiscard]] std::string shortfall_text(const Model& model, const StepRecord& step);
 
 }  // namespace softkin::cli

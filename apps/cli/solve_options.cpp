@@ -1,8 +1,5 @@
 #include "solve_options.hpp"
 
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/io/scanner.hpp>
@@ -13,6 +10,8 @@ namespace {
 
 constexpr int most_threads = 512;
 constexpr int most_iterations = 1'000'000'000;
+
+constexpr double tolerance_of_gradient_mm = 0.2;  // the paper's lambda
 
 }  // namespace
 
@@ -66,50 +65,35 @@ void add_scene(CLI::App& command, SolveOptions& options) {
 }
 
 void add_force(CLI::App& command, SolveOptions& options) {
-  command
-      .add_option(
-          "--force", options.forces,
-          "NAME=FX,FY,FZ: another size and direction for the scene's\nforce of that name [N], such as a payload; "
-          "physical; repeatable")
-      ->type_name("N=F")
-      ->expected(1)
-      ->take_all();
+  add_repeated(command, "--force", options.forces, "N=F",
+               "NAME=FX,FY,FZ: another size and direction for the scene's\nforce of that name [N], such as a payload; "
+               "physical; repeatable");
 }
 
 void add_solver(CLI::App& command, SolveOptions& options, const std::string& tolerance, const std::string& threads) {
   const StaticsOptions defaults;
-  command
-      .add_option("--formulation", options.formulation,
-                  "physical: elastic laws, pressures, tensions and forces;\ntarget-shape: Fang et al. 2020; default: "
-                  "the scene's")
-      ->type_name("NAME")
-      ->check(one_of({"physical", "target-shape"}));
-  command
-      .add_option("--solver", options.solver_name,
-                  "newton (default), or local-global: Algorithm 1 of Fang et al.\n2020, target-shape only, with the "
-                  "same equilibria but slower")
-      ->type_name("NAME")
-      ->check(one_of({"newton", "local-global"}));
-  command
-      .add_option(tolerance, options.tolerance_mm,
-                  "Stop when no vertex moves farther than this in an iteration\n[mm]; default: 8e-8 of the robot's "
-                  "diagonal, which is the\npaper's 1e-5 mm on its robots")
-      ->type_name("MM")
-      ->check(finite_number(false));
-  command
-      .add_option("--max-iterations", options.max_iterations,
-                  "Give up on a step after so many, of Newton's method or of\nAlgorithm 1 (default: " +
-                      std::to_string(defaults.max_iterations) + ")")
-      ->type_name("N")
-      ->check(integer_from(1, most_iterations));
-  command
-      .add_option("--anderson", options.anderson,
-                  "local-global: earlier iterations that Anderson acceleration\ncombines, 0 to 20; 0: Algorithm 1 as "
-                  "printed (default: " +
-                      std::to_string(defaults.anderson) + ")")
-      ->type_name("N")
-      ->check(integer_from(0, 20));
-  command.add_option("--threads", options.threads, threads)->type_name("N")->check(integer_from(0, most_threads));
+  add_value(command, "--formulation", options.formulation, "NAME",
+            "physical: elastic laws, pressures, tensions and forces;\ntarget-shape: Fang et al. 2020; default: "
+            "the scene's",
+            one_of({"physical", "target-shape"}));
+  add_value(command, "--solver", options.solver_name, "NAME",
+            "newton (default), or local-global: Algorithm 1 of Fang et al.\n2020, target-shape only, with the "
+            "same equilibria but slower",
+            one_of({"newton", "local-global"}));
+  add_value(command, tolerance, options.tolerance_mm, "MM",
+            "Stop when no vertex moves farther than this in an iteration\n[mm]; default: 8e-8 of the robot's "
+            "diagonal, which is the\npaper's 1e-5 mm on its robots",
+            finite_number(false));
+  add_value(command, "--max-iterations", options.max_iterations, "N",
+            "Give up on a step after so many, of Newton's method or of\nAlgorithm 1 (default: " +
+                std::to_string(defaults.max_iterations) + ")",
+            integer_from(1, most_iterations));
+  add_value(command, "--anderson", options.anderson, "N",
+            "local-global: earlier iterations that Anderson acceleration\ncombines, 0 to 20; 0: Algorithm 1 as "
+            "printed (default: " +
+                std::to_string(defaults.anderson) + ")",
+            integer_from(0, 20));
+  add_value(command, "--threads", options.threads, "N", threads, integer_from(0, most_threads));
 }
 
 void add_run(CLI::App& command, RunOptions& options, const std::string& resume, const std::string& json) {
@@ -167,6 +151,30 @@ RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::p
 
 Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
   return compile(asked_spec(options, inputs));
+}
+
+InverseOptions MethodOptions::by_method() const {
+  InverseOptions result;
+  if (method == "gradient") {
+    result.method = InverseMethod::gradient;
+    result.tolerance_mm = tolerance_of_gradient_mm;
+  }
+  result.tolerance_mm = tolerance_asked_mm.value_or(result.tolerance_mm);
+  result.max_iterations = descents.value_or(result.max_iterations);
+  return result;
+}
+
+void add_method(CLI::App& command, MethodOptions& options, const std::string& tolerance) {
+  add_value(command, "--method", options.method, "NAME",
+            "newton (default), or gradient: Algorithm 2 of Fang et al. 2020\nwith central differences",
+            one_of({"newton", "gradient"}));
+  add_value(command, "--tolerance", options.tolerance_asked_mm, "MM",
+            tolerance + " [mm] (default:\n0.001; gradient: 0.2)", positive_length());
+}
+
+void check_method(const MethodOptions& options) {
+  if (options.descents && options.method != "gradient")
+    throw InvalidInput("--descents are iterations of Algorithm 2: it needs --method gradient");
 }
 
 }  // namespace softkin::cli

@@ -1,18 +1,19 @@
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Validators.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/output_files.hpp>
 #include <softkin/io/scene/asked_scene.hpp>
+#include <softkin/kinematics/inverse.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/statics.hpp>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "command.hpp"
 
 namespace softkin::cli {
 
@@ -72,5 +73,20 @@ void check_solver(const SolveOptions& options);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);
 [[nodiscard]] CLI::Validator positive_length();
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& names);
+
+/// By which method inverse kinematics is solved, and how far off it may end.
+struct MethodOptions {
+  std::string method = "newton";
+  std::optional<double> tolerance_asked_mm;  // none: the method's
+  std::optional<int> descents;               // i_max of Algorithm 2
+
+  /// All else as it is by default.
+  [[nodiscard]] InverseOptions by_method() const;
+};
+
+/// tolerance: what it is the tolerance of, for the help.
+void add_method(CLI::App& command, MethodOptions& options, const std::string& tolerance);
+/// Throws InvalidInput where the options contradict each other.
+void check_method(const MethodOptions& options);
 
 }  // namespace softkin::cli

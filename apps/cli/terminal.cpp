@@ -3,10 +3,13 @@
 #include <signal.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <new>
+#include <softkin/core/error.hpp>
 
 namespace softkin::cli {
 
@@ -71,6 +74,60 @@ void ProgressLine::clear() {
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string point_text(const Vec3& point) {
+  const double rounding = 1e-12 * point.cwiseAbs().maxCoeff();
+  std::string text;
+  for (const double x : point) text += (text.empty() ? "(" : ", ") + number(std::abs(x) < rounding ? 0 : x);
+  return text + ") mm";
+}
+
+std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most) {
+  if (lines.size() <= most) return lines;
+  const std::size_t more = lines.size() - most;
+  lines.resize(most);
+  lines.push_back("... and " + std::to_string(more) + " more");
+  return lines;
+}
+
+std::string joined(const std::vector<std::string>& lines, const std::string& indent) {
+  std::string text;
+  for (const std::string& line : lines) text += indent + line + "\n";
+  return text;
+}
+
+void print_piece(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+    throw InvalidInput("standard output cannot be written");
+}
+
+void print(const std::string& text) {
+  print_piece(text);
+  if (std::fflush(stdout) != 0) throw InvalidInput("standard output cannot be written");
+}
+
+int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::string& command) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+  std::string message = error.what();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::fprintf(stderr, "softkin: %s (%s --help tells more)\n", message.c_str(), command.c_str());
+  return bad_input;
+}
+
+int outcome_of(const Run& run) {
+  try {
+    return run();
+  } catch (const InvalidInput& error) {
+    std::fprintf(stderr, "softkin: %s\n", error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "softkin: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "softkin: out of memory\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softkin: internal error, please report it: %s\n", error.what());
+  }
+  return bad_input;
 }
 
 }  // namespace softkin::cli

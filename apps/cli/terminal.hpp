@@ -1,7 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <softkin/core/text.hpp>
+#include <softkin/core/types.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
+
+#include "command.hpp"
 
 namespace softkin::cli {
 
@@ -30,5 +36,23 @@ class ProgressLine {
 
 /// Of a clock that never jumps.
 [[nodiscard]] double seconds_now();
+
+/// "(x, y, z) mm"; what is 1e-12 of the largest coordinate or less counts as 0.
+[[nodiscard]] std::string point_text(const Vec3& point);
+
+/// The first lines, at most so many, and what was left out: "... and N more".
+[[nodiscard]] std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most);
+
+[[nodiscard]] std::string joined(const std::vector<std::string>& lines, const std::string& indent);
+
+// Throw InvalidInput where standard output cannot be written.
+void print(const std::string& text);
+void print_piece(std::string_view text);  // without a flush
+
+/// Help and version are printed; anything else is bad usage, told in one line. command: whose --help tells more.
+[[nodiscard]] int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::string& command);
+
+/// The exit code of what was chosen; what it throws is told in one line.
+[[nodiscard]] int outcome_of(const Run& run);
 
 }  // namespace softkin::cli

@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -14,10 +11,8 @@
 #include <softkin/runs/step_tables.hpp>
 
 #include "command.hpp"
-#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
-#include "step_text.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -58,11 +53,9 @@ void add_options(CLI::App& command, WalkOptions& options) {
                   "Folder for walk.csv, walk.pvd with the shapes, walk.svg and\nreport.json")
       ->type_name("DIR")
       ->required();
-  command
-      .add_option("--cycles", options.cycles,
-                  "How often the gait is walked (default: " + std::to_string(WalkOptions().cycles) + ")")
-      ->type_name("N")
-      ->check(integer_from(1, 100'000));
+  add_value(command, "--cycles", options.cycles, "N",
+            "How often the gait is walked (default: " + std::to_string(WalkOptions().cycles) + ")",
+            integer_from(1, 100'000));
   add_force(command, options);
   add_solver(command, options, "--tolerance");
   add_run(command, options, "Go on where the same command was interrupted, or with more\n--cycles",

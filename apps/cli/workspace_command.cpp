@@ -1,6 +1,3 @@
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -12,10 +9,8 @@
 #include <thread>
 
 #include "command.hpp"
-#include "printing.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
-#include "step_text.hpp"
 #include "terminal.hpp"
 
 namespace softkin::cli {
@@ -50,15 +45,12 @@ void add_files(CLI::App& command, WorkspaceOptions& options) {
                   "samples are solved")
       ->type_name("F.csv")
       ->required();
-  command.add_option("--cloud", options.cloud, "The marker at every sample, with actuation and loads, for\nParaView")
-      ->type_name("F.vtu");
-  command.add_option("--hull", options.hull, "Convex hull of the marker's positions; its volume is printed")
-      ->type_name("F");
-  command.add_option("--plot", options.plot, "The marker's positions, seen along the axes")->type_name("F.svg");
-  command
-      .add_option("--marker", options.marker,
-                  "The marker that --cloud, --hull and --plot show (default: the\nscene's first); the CSV has all")
-      ->type_name("NAME");
+  add_value(command, "--cloud", options.cloud, "F.vtu",
+            "The marker at every sample, with actuation and loads, for\nParaView");
+  add_value(command, "--hull", options.hull, "F", "Convex hull of the marker's positions; its volume is printed");
+  add_value(command, "--plot", options.plot, "F.svg", "The marker's positions, seen along the axes");
+  add_value(command, "--marker", options.marker, "NAME",
+            "The marker that --cloud, --hull and --plot show (default: the\nscene's first); the CSV has all");
 }
 
 void add_sampling(CLI::App& command, WorkspaceOptions& options) {
@@ -69,15 +61,12 @@ void add_sampling(CLI::App& command, WorkspaceOptions& options) {
       ->type_name("N")
       ->required()
       ->check(integer_from(1, most_samples));
-  command
-      .add_option("--sampling", options.sampling,
-                  "grid (default): as many values for every actuator, ends\nincluded; sobol: a low-discrepancy "
-                  "sequence; random: uniform")
-      ->type_name("NAME")
-      ->check(one_of({"grid", "sobol", "random"}));
-  command.add_option("--seed", options.seed, "Of --sampling random (default: 0)")
-      ->type_name("S")
-      ->check(integer_from(0, std::numeric_limits<std::int64_t>::max()));
+  add_value(command, "--sampling", options.sampling, "NAME",
+            "grid (default): as many values for every actuator, ends\nincluded; sobol: a low-discrepancy "
+            "sequence; random: uniform",
+            one_of({"grid", "sobol", "random"}));
+  add_value(command, "--seed", options.seed, "S", "Of --sampling random (default: 0)",
+            integer_from(0, std::numeric_limits<std::int64_t>::max()));
 }
 
 void check_usage(const WorkspaceOptions& options) {

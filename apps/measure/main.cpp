@@ -5,7 +5,7 @@
 #include <softkin/vision/pictures.hpp>
 
 #include "cli/command.hpp"
-#include "cli/outcome.hpp"
+#include "cli/terminal.hpp"
 #include "commands.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <softkin/io/plain_text.hpp>
 
-#include "cli/printing.hpp"
+#include "cli/terminal.hpp"
 
 namespace softkin::cli {
 
