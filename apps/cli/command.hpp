@@ -5,6 +5,7 @@
 #include <CLI/Formatter.hpp>
 #include <CLI/Validators.hpp>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,17 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
 inline CLI::Option* add_repeated(CLI::App& command, const std::string& name, std::vector<std::string>& values,
                                  const char* type, const std::string& what) {
   return add_value(command, name, values, type, what)->expected(1)->take_all();
+}
+
+/// A subcommand whose options are kept for the run. declare: adds them; act: returns the exit code
+template <class Options>
+void add_command(CLI::App& app, Run& run, const std::string& name, const std::string& what, const std::string& footer,
+                 void (*declare)(CLI::App&, Options&), int (*act)(const Options&)) {
+  CLI::App* command = app.add_subcommand(name, what);
+  const auto options = std::make_shared<Options>();
+  declare(*command, *options);
+  command->footer(footer);
+  command->callback([options, act, &run] { run = [options, act] { return act(*options); }; });
 }
 
 void add_calibrate(CLI::App& app, Run& run);

@@ -1,7 +1,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/jobs.hpp>
@@ -88,11 +87,13 @@ class FkRun {
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
     const std::size_t first = run_.done();
-    if (!run_.is_complete()) say(table_.header());
-    RunProgress line(first, run_.size(), "step");
-    const bool complete = advance(line);
+    EquilibriumProgress share;
+    const runs::Advance end = advance_run(
+        run_, table_, "step", options_.json,
+        [&](RunProgress& line, const Progress& p) { line.show(EquilibriumProgress::text(p), share.share(p)); },
+        [&] { return runs::row_of(model_, run_.done() - 1, run_.last()); });
     finish();
-    if (!complete) return stopped();
+    if (end != runs::Advance::made) return stopped();
     if (run_.done() > first) say_findings();
     return judge();
   }
@@ -100,22 +101,6 @@ class FkRun {
  private:
   void say(const std::string& line) const {
     if (!options_.json) print(line + "\n");
-  }
-
-  /// False where the user has interrupted it.
-  bool advance(RunProgress& line) {
-    while (!run_.is_complete()) {
-      EquilibriumProgress step;
-      line.begin(run_.done());
-      const auto go_on = [&](const Progress& p) {
-        line.show(EquilibriumProgress::text(p), step.share(p));
-        return !interrupted();
-      };
-      if (interrupted() || run_.advance(go_on) != runs::Advance::made) return false;
-      line.clear();
-      say(table_.line(runs::row_of(model_, run_.done() - 1, run_.last())));
-    }
-    return true;
   }
 
   /// The files that show the last finished step, and the report.
@@ -231,15 +216,13 @@ int run_fk(const FkOptions& options) {
 }  // namespace
 
 void add_fk(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("fk", "Forward kinematics: the shape under given actuation");
-  const auto options = std::make_shared<FkOptions>();
-  add_options(*command, *options);
-  command->footer(
+  add_command(
+      app, run, "fk", "Forward kinematics: the shape under given actuation",
       "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 not converged, a limit or\n"
       "interrupted, 2 bad usage or bad input.\n"
       "Example:\n"
-      "  softkin fk examples/pneumatic_finger/pneumatic_finger.yaml --set air=1.5 -o finger.vtu");
-  command->callback([options, &run] { run = [options] { return run_fk(*options); }; });
+      "  softkin fk examples/pneumatic_finger/pneumatic_finger.yaml --set air=1.5 -o finger.vtu",
+      add_options, run_fk);
 }
 
 }  // namespace softkin::cli

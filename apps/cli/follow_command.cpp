@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/table/marker_path.hpp>
@@ -143,10 +142,16 @@ class FollowRun {
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "waypoint", options_.json);
-    if (!run_.is_complete()) say(table_.header());
-    const bool complete = advance();
+    const runs::Advance end = advance_run(
+        run_, table_, "waypoint", options_.json,
+        [](RunProgress& line, const Progress& p) {
+          std::string text = counted(static_cast<std::size_t>(std::max(0, p.iteration)), "equilibrium", "equilibria");
+          if (std::isfinite(p.step_mm)) text += ", " + number(p.step_mm, 2) + " mm off";
+          line.show(text);
+        },
+        [&] { return runs::row_of(run_.done() - 1, run_.last()); });
     const std::vector<WaypointRecord> done = finish();
-    if (!complete) return tell_stopped(run_.done(), run_.size(), "waypoint", options_.folder, true);
+    if (end != runs::Advance::made) return tell_stopped(run_.done(), run_.size(), "waypoint", options_.folder, true);
     say(summary_of(done, reach_mm_));
     say("commands: " + options_.file("commands.csv").string() + "; plot: " + options_.plot().string() +
         "; shapes: " + options_.file("path.pvd").string() + " (open it in ParaView)");
@@ -159,24 +164,6 @@ class FollowRun {
  private:
   void say(const std::string& line) const {
     if (!options_.json) print(line + "\n");
-  }
-
-  /// False where the user has interrupted it.
-  bool advance() {
-    RunProgress line(run_.done(), run_.size(), "waypoint");
-    while (!run_.is_complete()) {
-      line.begin(run_.done());
-      const auto go_on = [&](const Progress& p) {
-        std::string text = counted(static_cast<std::size_t>(std::max(0, p.iteration)), "equilibrium", "equilibria");
-        if (std::isfinite(p.step_mm)) text += ", " + number(p.step_mm, 2) + " mm off";
-        line.show(text);
-        return !interrupted();
-      };
-      if (interrupted() || run_.advance(go_on) != runs::Advance::made) return false;
-      line.clear();
-      say(table_.line(runs::row_of(run_.done() - 1, run_.last())));
-    }
-    return true;
   }
 
   std::vector<WaypointRecord> finish() {
@@ -233,16 +220,14 @@ int run_follow(const FollowOptions& options) {
 }  // namespace
 
 void add_follow(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("follow", "Trajectories: the actuation that leads markers along a path");
-  const auto options = std::make_shared<FollowOptions>();
-  add_options(*command, *options);
-  command->footer(
+  add_command(
+      app, run, "follow", "Trajectories: the actuation that leads markers along a path",
       "A waypoint out of reach ends at the nearest point that the ranges allow. Exit code: 0 all waypoints reached,\n"
       "1 some were not, or interrupted, 2 bad usage or bad input.\n"
       "Example:\n"
       "  softkin follow examples/three_tendon_finger/three_tendon_finger.yaml \\\n"
-      "      examples/three_tendon_finger/letter_l.csv -o out/letter_l");
-  command->callback([options, &run] { run = [options] { return run_follow(*options); }; });
+      "      examples/three_tendon_finger/letter_l.csv -o out/letter_l",
+      add_options, run_follow);
 }
 
 }  // namespace softkin::cli

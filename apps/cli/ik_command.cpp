@@ -1,7 +1,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
@@ -150,18 +149,15 @@ int run_ik(const IkOptions& options) {
 }  // namespace
 
 void add_ik(CLI::App& app, Run& run) {
-  CLI::App* command =
-      app.add_subcommand("ik", "Inverse kinematics: the actuation that brings markers where they should be");
-  const auto options = std::make_shared<IkOptions>();
-  add_options(*command, *options);
-  command->footer(
+  add_command(
+      app, run, "ik", "Inverse kinematics: the actuation that brings markers where they should be",
       "Lengths are in mm whatever the scene's unit, pressures in kPa (gauge), tensions in N. Goals out of reach end "
       "at\n"
       "the nearest point that the ranges allow. Exit code: 0 reached, 1 not reached, not converged or interrupted,\n"
       "2 bad usage or bad input.\n"
       "Example:\n"
-      "  softkin ik examples/three_chamber_actuator/three_chamber_actuator.yaml --target tip=10,-5,138");
-  command->callback([options, &run] { run = [options] { return run_ik(*options); }; });
+      "  softkin ik examples/three_chamber_actuator/three_chamber_actuator.yaml --target tip=10,-5,138",
+      add_options, run_ik);
 }
 
 }  // namespace softkin::cli

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/core/progress.hpp>
+#include <softkin/io/table/table.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/runs/job.hpp>
 #include <softkin/runs/records.hpp>
@@ -66,6 +67,31 @@ class EquilibriumProgress {
 
 using runs::ActuatorRecord;
 using runs::StepRecord;
+
+/// Makes the records that are missing and prints each as a line of the table, until one cannot be made or the user
+/// interrupts.
+///
+/// what  a record is: "step"
+/// tell  shows how far the record is that is being made: void(RunProgress&, const Progress&)
+/// row   of the table, for the last record: Table::Row()
+template <class Record, class Tell, class Row>
+runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std::string& what, bool quiet, Tell tell,
+                          Row row) {
+  if (!quiet && !run.is_complete()) print(table.header() + "\n");
+  RunProgress line(run.done(), run.size(), what);
+  while (!run.is_complete()) {
+    line.begin(run.done());
+    const auto go_on = [&](const Progress& progress) {
+      tell(line, progress);
+      return !interrupted();
+    };
+    const runs::Advance end = interrupted() ? runs::Advance::interrupted : run.advance(go_on);
+    if (end != runs::Advance::made) return end;
+    line.clear();
+    if (!quiet) print(table.line(row()) + "\n");
+  }
+  return runs::Advance::made;
+}
 
 /// "1,851 vertices, 5,556 tetrahedra of order 1; physical formulation (neo-hookean), solver newton", the actuators and
 /// the model's notes, a line each.

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/model/names.hpp>
@@ -94,8 +93,10 @@ class WalkRun {
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
-    if (!run_.is_complete()) say(table_.header());
-    const runs::Advance end = advance();
+    const runs::Advance end = advance_run(
+        run_, table_, "step", options_.json,
+        [](RunProgress& line, const Progress& p) { line.show("iteration " + std::to_string(p.iteration)); },
+        [&] { return runs::row_of(model_, run_.last()); });
     const std::vector<double> strides = finish();
     if (end == runs::Advance::interrupted) return tell_stopped(run_.done(), run_.size(), "step", options_.folder, true);
     if (end == runs::Advance::lost) return lost();
@@ -108,22 +109,6 @@ class WalkRun {
  private:
   void say(const std::string& line) const {
     if (!options_.json) print(line + "\n");
-  }
-
-  runs::Advance advance() {
-    RunProgress line(run_.done(), run_.size(), "step");
-    while (!run_.is_complete()) {
-      line.begin(run_.done());
-      const auto go_on = [&](const Progress& p) {
-        line.show("iteration " + std::to_string(p.iteration));
-        return !interrupted();
-      };
-      const runs::Advance end = interrupted() ? runs::Advance::interrupted : run_.advance(go_on);
-      if (end != runs::Advance::made) return end;
-      line.clear();
-      say(table_.line(runs::row_of(model_, run_.last())));
-    }
-    return runs::Advance::made;
   }
 
   /// Returns the strides.
@@ -179,16 +164,14 @@ int run_walk(const WalkOptions& options) {
 }  // namespace
 
 void add_walk(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("walk", "Walking: a gait with feet that slide one way better than the other");
-  const auto options = std::make_shared<WalkOptions>();
-  add_options(*command, *options);
-  command->footer(
+  add_command(
+      app, run, "walk", "Walking: a gait with feet that slide one way better than the other",
       "The scene's key 'feet' says what stands on the floor (docs/walking.md). Exit code: 0 done, 1 an equilibrium "
       "did\n"
       "not converge, or interrupted, 2 bad usage or bad input.\n"
       "Example:\n"
-      "  softkin walk examples/dea_crawler/dea_crawler.yaml examples/dea_crawler/gait.csv -o out/walk");
-  command->callback([options, &run] { run = [options] { return run_walk(*options); }; });
+      "  softkin walk examples/dea_crawler/dea_crawler.yaml examples/dea_crawler/gait.csv -o out/walk",
+      add_options, run_walk);
 }
 
 }  // namespace softkin::cli

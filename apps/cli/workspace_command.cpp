@@ -1,7 +1,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/runs/ranks.hpp>
@@ -258,6 +257,16 @@ class WorkspaceRun {
   std::optional<runs::WorkspaceFile> file_;
 };
 
+void add_options(CLI::App& command, WorkspaceOptions& options) {
+  add_files(command, options);
+  add_sampling(command, options);
+  add_force(command, options);
+  add_solver(command, options, "--tolerance",
+             "Samples solved at once, each on one thread; 0: as many as the\nmachine has (default); under mpirun: "
+             "of each rank");
+  add_run(command, options, "Go on where the same command was interrupted or killed", "Print a summary as JSON");
+}
+
 int run_workspace(const WorkspaceOptions& options) {
   const runs::Ranks ranks;
   try {
@@ -283,22 +292,13 @@ int run_workspace(const WorkspaceOptions& options) {
 }  // namespace
 
 void add_workspace(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("workspace", "Workspace: the equilibria of many actuations, and their reach");
-  const auto options = std::make_shared<WorkspaceOptions>();
-  add_files(*command, *options);
-  add_sampling(*command, *options);
-  add_force(*command, *options);
-  add_solver(*command, *options, "--tolerance",
-             "Samples solved at once, each on one thread; 0: as many as the\nmachine has (default); under mpirun: "
-             "of each rank");
-  add_run(*command, *options, "Go on where the same command was interrupted or killed", "Print a summary as JSON");
-  command->footer(
-      "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 some samples have no "
-      "equilibrium\n"
-      "or interrupted, 2 bad usage or bad input.\n"
-      "Example:\n"
-      "  softkin workspace examples/three_tendon_finger/three_tendon_finger.yaml --samples 64 -o reach.csv");
-  command->callback([options, &run] { run = [options] { return run_workspace(*options); }; });
+  add_command(app, run, "workspace", "Workspace: the equilibria of many actuations, and their reach",
+              "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 some samples have no "
+              "equilibrium\n"
+              "or interrupted, 2 bad usage or bad input.\n"
+              "Example:\n"
+              "  softkin workspace examples/three_tendon_finger/three_tendon_finger.yaml --samples 64 -o reach.csv",
+              add_options, run_workspace);
 }
 
 }  // namespace softkin::cli
