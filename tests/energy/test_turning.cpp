@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <softkin/energy/turning.hpp>
+#include <softkin/energy/elastic.hpp>
 
 #include "elastic_samples.hpp"
 

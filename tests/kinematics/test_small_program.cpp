@@ -2,7 +2,7 @@
 
 #include <Eigen/QR>
 #include <random>
-#include <softkin/kinematics/small_program.hpp>
+#include <softkin/kinematics/inverse_step.hpp>
 
 namespace softkin {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 #include <limits>
-#include <softkin/linear/conjugate_residuals.hpp>
+#include <softkin/linear/krylov.hpp>
 
 namespace softkin::linear {
 

@@ -1,5 +1,5 @@
 #include <Eigen/LU>
-#include <softkin/linear/gmres.hpp>
+#include <softkin/linear/krylov.hpp>
 #include <softkin/statics/target_shape/newton_tangent.hpp>
 
 #include "statics/robots.hpp"

@@ -75,4 +75,23 @@ struct ElasticRest {
 /// throws  InvalidInput where the triangles span no area
 [[nodiscard]] Mat3 layer_frame(const Eigen::Matrix<double, 6, 3>& rest);
 
+/// elastic_stiffness with d^2W/dF^2 replaced by the nearest positive semidefinite matrix, in every lane.
+///
+/// source  in the frame of the principal stretches the 9 x 9 matrix of an isotropic law is a 3 x 3 block (stretches)
+///         and three 2 x 2 blocks (symmetric and antisymmetric shears); Smith, De Goes, Kim 2019, "Analytic
+///         eigensystems for isotropic distortion energies", Section 4
+template <int K, int Q>
+void projected_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out);
+
+/// What a step lacks to turn an element instead of shearing it. A linear step of a body that bends far enlarges it as
+/// it turns it; the deformation gradient F with rate F' is better led to exp([w]) (F + F' - [w] F), w being the rate at
+/// which the rotation of F turns.
+///
+/// block    the element at rest
+/// current  its nodes [mm], step: their moves [mm]
+/// pull     sum over quadrature points of volume (exp([w]) (F + F' - [w] F) - F - F') slope_a [mm^2 mm]
+/// source   the rotation-strain coordinates of Huang et al. 2011, used as a retraction: second order in the step
+template <int K, int Q>
+void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull);
+
 }  // namespace softkin::energy

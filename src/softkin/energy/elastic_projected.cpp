@@ -1,6 +1,6 @@
+#include <softkin/energy/elastic.hpp>
 #include <softkin/energy/elastic_law_point.hpp>
 #include <softkin/energy/elastic_polar.hpp>
-#include <softkin/energy/elastic_stiffness.hpp>
 
 namespace softkin::energy {
 

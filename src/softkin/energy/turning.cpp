@@ -1,7 +1,7 @@
+#include <softkin/energy/elastic.hpp>
 #include <softkin/energy/elastic_law_point.hpp>
 #include <softkin/energy/elastic_polar.hpp>
 #include <softkin/energy/rotation.hpp>
-#include <softkin/energy/turning.hpp>
 
 namespace softkin::energy {
 

@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cmath>
 #include <softkin/core/error.hpp>
-#include <softkin/kinematics/inverse_gradient.hpp>
 #include <softkin/kinematics/inverse_robot.hpp>
 #include <softkin/kinematics/inverse_search.hpp>
 #include <utility>

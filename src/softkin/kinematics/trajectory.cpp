@@ -2,7 +2,7 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/goal_terms.hpp>
-#include <softkin/kinematics/small_program.hpp>
+#include <softkin/kinematics/inverse_step.hpp>
 #include <softkin/kinematics/trajectory.hpp>
 #include <utility>
 

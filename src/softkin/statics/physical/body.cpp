@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <softkin/energy/turning.hpp>
+#include <softkin/energy/elastic.hpp>
 #include <softkin/statics/physical/body.hpp>
 
 namespace softkin::physical {

@@ -1,5 +1,5 @@
 #include <cmath>
-#include <softkin/linear/conjugate_residuals.hpp>
+#include <softkin/linear/krylov.hpp>
 #include <softkin/statics/physical/derivative.hpp>
 #include <softkin/statics/physical/lease.hpp>
 

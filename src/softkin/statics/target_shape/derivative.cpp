@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <limits>
-#include <softkin/linear/conjugate_residuals.hpp>
+#include <softkin/linear/krylov.hpp>
 #include <softkin/statics/target_shape/newton.hpp>
 
 namespace softkin::target_shape {

@@ -1,9 +1,35 @@
 #include <algorithm>
+#include <cmath>
 #include <softkin/statics/target_shape/newton.hpp>
+#include <utility>
 
 namespace softkin::target_shape {
 
+using namespace energy;
+
 namespace {
+
+/// Steps are halved so often at most: where the energy decides to the end, and where something else can be tried.
+constexpr int most_halvings = 12, few_halvings = 2;
+
+/// What GMRES leaves of the residual at most, and at least: below is rounding. Directions less exact lead astray on
+/// slender robots.
+constexpr double loosest = 1e-2, tightest = 1e-10;
+
+/// Steps of one run, and those of them that move nothing and yet do not end it.
+constexpr int most_steps = 200, most_idle_steps = 4;
+
+/// Accelerated local-global iterations at a time, and how many earlier ones each combines.
+constexpr int rescue = 50, rescue_window = 6;
+
+/// Energy of Eq. (9) that the rounding of coordinates alone can make [mm^5].
+double rounding_energy(const Model& model) {
+  double volume = 0;
+  for (const double v : model.tetrahedron_volumes) volume += v;
+  for (const double v : model.prism_volumes) volume += v;
+  const double rounding = 1e-14 * model.diagonal_mm;
+  return volume * rounding * rounding;
+}
 
 using End = NewtonSearch::End;
 
@@ -36,6 +62,219 @@ End follow(const Actuation& from, const Actuation& to, NewtonSearch& search, Poi
 }
 
 }  // namespace
+
+Workspace::Workspace(const Unknowns& unknowns)
+    : tangent(unknowns),
+      local(unknowns.system.make_scratch()),
+      start(unknowns.system.make_scratch()),
+      work(unknowns.system.make_scratch()) {}
+
+NewtonSearch::NewtonSearch(const Unknowns& unknowns, const supports::GlobalStep& global, Workspace& workspace,
+                           const StaticsOptions& options, const ProgressCallback& progress, Team& team,
+                           SolveReport& report)
+    : unknowns_(unknowns),
+      global_(global),
+      options_(options),
+      progress_(progress),
+      team_(team),
+      report_(report),
+      tangent_(workspace.tangent),
+      local_(workspace.local),
+      start_(workspace.start),
+      work_(workspace.work) {
+  // rotations are searched for from the last ones: those of an earlier search would show in the last digits
+  for (auto& rotations : local_.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
+}
+
+/// Local step at positions, which supports put right before.
+void NewtonSearch::evaluate(const Actuation& actuation, Points& positions) {
+  poses_ = global_.project(positions);
+  energy_ = unknowns_.system.local_step(actuation, positions, local_, team_);
+}
+
+/// The exact step; false where none comes of it.
+bool NewtonSearch::exact_direction(const Points& positions) {
+  if (!keep_factor_) {
+    if (!tangent_.factorise(local_, positions, false, team_, report_)) return false;
+    (void)natural_norm(positions);
+  }
+  keep_factor_ = false;
+  // Eisenstat and Walker 1996, choice 2: as accurate as the last steps were successful, and as is needed at last
+  const double norm = moves_.norm(), ratio = natural_start_ > 0 ? norm / natural_start_ : 1;
+  const double enough = 0.1 * report_.tolerance_mm / std::max(norm, report_.tolerance_mm);
+  tolerance_ = std::clamp(0.9 * ratio * ratio, std::clamp(enough, tightest, loosest), loosest);
+  natural_start_ = norm;
+  exact_ = !tangent_.symmetric() || !tangent_.shifted();
+  return tangent_.solve(local_, positions, natural_, tolerance_, team_, step_) && step_.allFinite();
+}
+
+/// The step with the positive semidefinite matrices near the exact ones: it goes down in the energy at fixed targets.
+bool NewtonSearch::projected_direction(const Points& positions) {
+  if (!tangent_.factorise(local_, positions, true, team_, report_)) return false;
+  natural_start_ = 0;
+  exact_ = false;
+  step_ = residual_;
+  tangent_.precondition(step_, team_);
+  return step_.allFinite() && step_.dot(residual_) > 0;
+}
+
+/// The residual seen through the preconditioner: natural_ over the unknowns, moves_ over the vertices, whose Euclidean
+/// norm it returns [mm].
+double NewtonSearch::natural_norm(const Points& positions) {
+  tangent_.reduce(local_.residual, positions, natural_);
+  tangent_.precondition(natural_, team_);
+  tangent_.freedoms().expand(natural_, positions, moves_);
+  return moves_.norm();
+}
+
+/// A whole, exact step that ends the search: what it does to energy or residual may be rounding.
+bool NewtonSearch::negligible(int halvings, const Points& positions) const {
+  return halvings == 0 && exact_ && (positions - before_).rowwise().norm().maxCoeff() < report_.tolerance_mm;
+}
+
+/// The step that the last factor asks for from here on, taken if it ends the search.
+bool NewtonSearch::close(const Actuation& actuation, Points& positions, double& step_mm) {
+  constexpr double safely = 0.1;
+  if (tangent_.shifted()) return false;
+  if (tangent_.symmetric()) (void)natural_norm(positions);  // else search_residual did it
+  step_mm = moves_.rowwise().norm().maxCoeff();
+  if (!(step_mm < safely * report_.tolerance_mm)) return false;
+  tangent_.freedoms().move(natural_, 1, positions);
+  evaluate(actuation, positions);
+  return true;
+}
+
+/// Backtracking to a sufficient decrease (Armijo) of the energy; below its rounding any step is as good.
+NewtonSearch::Step NewtonSearch::search_energy(const Actuation& actuation, Points& positions) {
+  constexpr double sufficient = 1e-4, rounding = 1e-12;
+  const double start = energy_, slope = -2 * residual_.dot(step_);
+  double scale = 1;
+  const int halvings = tangent_.symmetric() ? most_halvings : few_halvings;
+  for (int i = 0; i <= halvings; ++i, scale /= 2) {
+    move(scale, positions);
+    evaluate(actuation, positions);
+    if (negligible(i, positions) || energy_ <= start + sufficient * scale * slope + rounding * start)
+      return i == 0 ? Step::full : Step::shortened;
+  }
+  return Step::none;
+}
+
+/// Backtracking until the residual, seen through one preconditioner, falls (Deuflhard 2004, Section 3.3), or the energy
+/// falls well below all there was: far from the fixed point that tells more.
+NewtonSearch::Step NewtonSearch::search_residual(const Actuation& actuation, Points& positions) {
+  constexpr double well_below = 0.9, still_near = 0.1;
+  double scale = 1;
+  for (int i = 0; i <= few_halvings; ++i, scale /= 2) {
+    move(scale, positions);
+    evaluate(actuation, positions);
+    const double norm = natural_norm(positions);
+    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * least_energy_) {
+      keep_factor_ = i == 0 && norm < still_near * natural_start_;
+      return i == 0 ? Step::full : Step::shortened;
+    }
+  }
+  return Step::none;
+}
+
+/// Moves from before_ by a share of the step, with the turns that it makes the targets make: what bends far bends,
+/// instead of growing along the tangents.
+void NewtonSearch::move(double scale, Points& positions) {
+  scaled_ = scale * step_;
+  tangent_.freedoms().expand(scaled_, before_, moves_);
+  unknowns_.system.turned_move(start_, moves_, work_, team_);
+  positions = before_;
+  poses_ = poses_before_;
+  global_.step(work_.residual, positions, poses_, team_);
+}
+
+void NewtonSearch::take_back(const Actuation& actuation, Points& positions) {
+  positions = before_;
+  evaluate(actuation, positions);
+}
+
+NewtonSearch::Step NewtonSearch::newton_step(const Actuation& actuation, Points& positions) {
+  before_ = positions;
+  poses_before_ = poses_;
+  start_ = local_;
+  Step step = Step::none;
+  tangent_.reduce(local_.residual, positions, residual_);
+  if (!residual_.allFinite()) return Step::none;
+  if (!std::exchange(projected_next_, false) && exact_direction(positions)) {
+    step = tangent_.symmetric() ? search_energy(actuation, positions) : search_residual(actuation, positions);
+    if (step == Step::none) take_back(actuation, positions);
+  }
+  if (step == Step::none && projected_direction(positions)) {
+    step = search_energy(actuation, positions);
+    if (step == Step::none) take_back(actuation, positions);
+  }
+  least_energy_ = std::min(least_energy_, energy_);
+  return step;
+}
+
+NewtonSearch::End NewtonSearch::enter(const IterationRecord& record) {
+  accept(record, options_.keep_history, report_);
+  if (progress_ && !progress_({report_.iterations, report_.step_mm, report_.tolerance_mm})) return End::interrupted;
+  return report_.iterations < options_.max_iterations ? End::stuck : End::exhausted;
+}
+
+/// stuck: go on
+NewtonSearch::End NewtonSearch::local_global(const Actuation& actuation, int count, Points& positions) {
+  LocalGlobal iteration(unknowns_.system, global_, rescue_window, positions);
+  End end = End::stuck;
+  for (int i = 0; i < count && end == End::stuck; ++i) {
+    if (i > 0) iteration.extrapolate();
+    IterationRecord record;
+    if (!iteration.iterate(actuation, local_, team_, record)) return End::astray;
+    end = enter(record);
+  }
+  evaluate(actuation, positions);
+  natural_start_ = 0;
+  keep_factor_ = false;
+  return end;
+}
+
+/// Energy and gradient norm of the last shape evaluated.
+IterationRecord NewtonSearch::here() const {
+  IterationRecord record;
+  record.energy = energy_;
+  record.gradient_norm = 2 * global_.free_norm(local_.residual, poses_);
+  return record;
+}
+
+NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int patience, Points& positions) {
+  evaluate(actuation, positions);
+  natural_start_ = 0;
+  keep_factor_ = false;
+  projected_next_ = !tangent_.symmetric();
+  least_energy_ = energy_;
+  if (energy_ <= rounding_energy(unknowns_.model)) {  // every element has its target shape
+    (void)enter(here());
+    return End::converged;
+  }
+  int idle = 0;
+  for (int i = 0; i < most_steps && idle < most_idle_steps && report_.iterations < options_.max_iterations; ++i) {
+    IterationRecord record = here();
+    const Step step = newton_step(actuation, positions);
+    if (step == Step::none) {
+      if (patience <= 0) return End::stuck;
+      patience -= rescue;
+      if (const End end = local_global(actuation, rescue, positions); end != End::stuck) return end;
+      continue;
+    }
+    record.step_mm = (positions - before_).rowwise().norm().maxCoeff();
+    const End end = enter(record);
+    const bool whole = step == Step::full && exact_;
+    if (whole && record.step_mm < report_.tolerance_mm) return End::converged;
+    if (end != End::stuck) return end;
+    idle = record.step_mm < report_.tolerance_mm ? idle + 1 : 0;
+    record = here();
+    if (whole && close(actuation, positions, record.step_mm)) {
+      (void)enter(record);
+      return End::converged;
+    }
+  }
+  return report_.iterations < options_.max_iterations ? End::stuck : End::exhausted;
+}
 
 Newton::Newton(const Unknowns& unknowns, const supports::GlobalStep& global) : global_(global), unknowns_(unknowns) {}
 
