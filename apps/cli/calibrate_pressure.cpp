@@ -9,7 +9,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
-#include <softkin/io/table/actuator_tests.hpp>
+#include <softkin/io/table/measurements.hpp>
 
 #include "calibrate_command.hpp"
 #include "printing.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/runs/inverse_report.hpp>
+#include <softkin/runs/reports.hpp>
 #include <string>
 #include <vector>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <softkin/io/output_files.hpp>
+#include <softkin/io/file.hpp>
 #include "method_options.hpp"
 #include "solve_options.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/core/progress.hpp>
-#include <softkin/runs/job.hpp>
+#include <softkin/runs/jobs.hpp>
 #include <string>
 
 #include "printing.hpp"

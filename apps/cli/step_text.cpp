@@ -6,7 +6,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
-#include <softkin/runs/findings.hpp>
+#include <softkin/runs/records.hpp>
 
 namespace softkin::cli {
 

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <random>
-#include <softkin/model/compile/cavity.hpp>
 #include <softkin/model/mesh/quadratic_tetrahedron.hpp>
 #include <softkin/model/mesh/quadratic_triangle.hpp>
 

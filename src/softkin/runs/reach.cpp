@@ -123,9 +123,9 @@ std::string workspace_summary(const std::string& scene, const WorkspaceHead& hea
     json["hull"] = {{"shape", hull_name(hull->shape)},
                     {"volume_mm3", hull->volume},
                     {"area_mm2", hull->area},
-                    {"extents_mm", {hull->extents[0], hull->extents[1], hull->extents[2]}}};
+                    {"extents_mm", json_of(hull->extents)}};
   json["seconds"] = seconds;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace softkin::runs

@@ -4,8 +4,8 @@
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/walk.hpp>
 #include <softkin/model/equilibrium.hpp>
-#include <softkin/model/marker_path.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/model/paths.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <string>
 #include <vector>
@@ -72,5 +72,32 @@ struct WalkRecord : StepRecord {
 
 /// The state that a record's shape is, as if it had just been solved.
 [[nodiscard]] State state_of(const Model& model, const StepRecord& record, Points positions);
+
+/// What a user should know of an equilibrium beside its numbers.
+struct Finding {
+  enum class Kind {
+    strain,               // values: least, greatest, 95th percentile of the magnitude [-]
+    beyond_linear_range,  // name: region; values: share of its volume [-], its linear range [-]
+    inverted,             // values: how many elements
+    slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
+    diverged,             // the iteration
+    accuracy              // values: last step, estimated distance from the equilibrium [mm]
+  };
+  Kind kind;
+  std::string name{};
+  std::vector<double> values{};
+};
+
+[[nodiscard]] std::vector<Finding> findings(const Model& model, const StepRecord& record);
+
+/// An actuator that did not come as far as was asked, in its own unit.
+struct Shortfall {
+  Index actuator = -1;
+  double reached = 0, asked = 0;
+};
+
+/// Where the shape of a step that did not converge falls short of what was asked; none where only loads or displaced
+/// supports do (StepRecord::reached), or it is not known.
+[[nodiscard]] std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record);
 
 }  // namespace softkin::runs

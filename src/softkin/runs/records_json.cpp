@@ -150,10 +150,8 @@ Json step_json(const Model& model, const StepRecord& record) {
                {"markers", Json::object()},
                {"actuators", Json::object()}};
   if (record.shape_actuation) step["shape_actuation"] = by_actuator(model, *record.shape_actuation);
-  for (std::size_t m = 0; m < model.markers.size(); ++m) {
-    const Vec3& p = record.markers[m];
-    step["markers"][model.markers[m].name] = {p.x(), p.y(), p.z()};
-  }
+  for (std::size_t m = 0; m < model.markers.size(); ++m)
+    step["markers"][model.markers[m].name] = json_of(record.markers[m]);
   if (model.formulation == Formulation::physical) step["shape_load_share"] = record.shape_load_share;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     step["actuators"][model.actuators[a].name] = actuator_json(model, model.actuators[a], record.actuators[a]);

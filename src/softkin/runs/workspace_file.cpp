@@ -4,7 +4,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/kinematics/nearest.hpp>
-#include <softkin/model/fingerprint.hpp>
+#include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/workspace_file.hpp>
 #include <string_view>
