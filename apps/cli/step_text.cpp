@@ -49,7 +49,7 @@ std::string reached_text(const Model& model, const StepRecord& step) {
             command_text(actuator, asked);
   }
   if (!text.empty()) return text;
-  return percent(step.reached.value_or(0)) + " of the loads and displacements were reached";
+  return percent(step.reached_share.value_or(0)) + " of the loads and displacements were reached";
 }
 
 std::string finding_text(const runs::Finding& finding) {

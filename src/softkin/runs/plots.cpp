@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <softkin/core/text.hpp>
 #include <softkin/io/plot/curves.hpp>
 #include <softkin/model/names.hpp>
@@ -12,6 +13,24 @@ namespace softkin::runs {
 namespace {
 
 constexpr std::size_t most_markers = 12;  // with panels of their own
+
+/// Of every actuator over the steps. Records: a range of records, or of references to them.
+template <class Records>
+std::vector<StepCurve> command_curves(const Model& model, const Records& records) {
+  std::vector<StepCurve> curves;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    curves.push_back(command_curve(model.actuators[a]));
+    for (const StepRecord& record : records) curves.back().values.push_back(record.actuation[static_cast<Index>(a)]);
+  }
+  return curves;
+}
+
+template <class Records>
+StepAxis step_axis_of(const Records& records, const std::vector<StepCurve>& commands) {
+  std::vector<std::optional<double>> times;
+  for (const StepRecord& record : records) times.push_back(record.time_s);
+  return step_axis(times, commands);
+}
 
 bool is_known(const StepRecord& step) {
   for (const Vec3& point : step.markers)
@@ -25,22 +44,13 @@ class Steps {
  public:
   Steps(const Model& model, const std::vector<StepRecord>& steps) : model_(model) {
     for (const StepRecord& step : steps)
-      if (is_known(step)) steps_.push_back(&step);
-    std::vector<std::optional<double>> times;
-    for (const StepRecord* step : steps_) times.push_back(step->time_s);
-    along_ = step_axis(times, commands());
+      if (is_known(step)) steps_.emplace_back(step);
+    along_ = step_axis_of(steps_, commands());
   }
 
   [[nodiscard]] const StepAxis& along() const { return along_; }
 
-  [[nodiscard]] std::vector<StepCurve> commands() const {
-    std::vector<StepCurve> curves;
-    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      curves.push_back(command_curve(model_.actuators[a]));
-      for (const StepRecord* step : steps_) curves.back().values.push_back(step->actuation[static_cast<Index>(a)]);
-    }
-    return curves;
-  }
+  [[nodiscard]] std::vector<StepCurve> commands() const { return command_curves(model_, steps_); }
 
   /// Pressures or tensions, by the report's key.
   [[nodiscard]] std::vector<StepCurve> loads(const std::string& key, const std::string& unit) const {
@@ -49,14 +59,14 @@ class Steps {
       if (model_.formulation != Formulation::physical || multiplier_key(model_.actuators[a]) != key || steps_.empty())
         continue;
       curves.push_back({model_.actuators[a].name, unit, {}});
-      for (const StepRecord* step : steps_) curves.back().values.push_back(step->actuators[a].multiplier);
+      for (const StepRecord& step : steps_) curves.back().values.push_back(step.actuators[a].multiplier);
     }
     return curves;
   }
 
   [[nodiscard]] SpaceCurve way(std::size_t marker) const {
     SpaceCurve curve{model_.markers[marker].name, {}, true, true};
-    for (const StepRecord* step : steps_) curve.points.push_back(step->markers[marker]);
+    for (const StepRecord& step : steps_) curve.points.push_back(step.markers[marker]);
     return curve;
   }
 
@@ -78,7 +88,7 @@ class Steps {
     series.line = false;
     series.style = 4;  // black crosses
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-      if (steps_[i]->status == Status::converged) continue;
+      if (steps_[i].get().status == Status::converged) continue;
       for (const double x : curve.points[i]) {
         series.x.push_back(along_.values[i]);
         series.y.push_back(x);
@@ -88,7 +98,7 @@ class Steps {
   }
 
   const Model& model_;
-  std::vector<const StepRecord*> steps_;
+  std::vector<std::reference_wrapper<const StepRecord>> steps_;
   StepAxis along_;
 };
 
@@ -98,9 +108,7 @@ class PathPlot {
  public:
   PathPlot(const Model& model, const MarkerPath& path, const std::vector<WaypointRecord>& done, double tolerance_mm)
       : model_(model), path_(path), done_(done), tolerance_mm_(tolerance_mm) {
-    std::vector<std::optional<double>> times;
-    for (std::size_t i = 0; i < done.size(); ++i) times.push_back(path.waypoints[i].time);
-    along_ = step_axis(times, {});
+    along_ = step_axis_of(done, {});
     if (along_.axis.whole) along_.axis.label = "waypoint";
   }
 
@@ -162,12 +170,7 @@ class PathPlot {
   }
 
   [[nodiscard]] std::vector<PlotPanel> command_panels() const {
-    std::vector<StepCurve> commands;
-    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      commands.push_back(command_curve(model_.actuators[a]));
-      for (const WaypointRecord& each : done_) commands.back().values.push_back(each.actuation[static_cast<Index>(a)]);
-    }
-    return curve_panels(along_, commands, "command");
+    return curve_panels(along_, command_curves(model_, done_), "command");
   }
 
  private:
@@ -252,21 +255,14 @@ Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<
 }
 
 Plot plot_of_walk(const Model& model, const std::vector<WalkRecord>& steps, const std::string& title) {
-  std::vector<std::optional<double>> times;
-  for (const WalkRecord& step : steps) times.push_back(step.time_s);
-  const StepAxis along = step_axis(times, {});
+  const StepAxis along = step_axis_of(steps, {});
 
   PlotPanel feet = panel_of(along, "place [mm]");
   feet.series = {series_of(along, foot_name(model, 0), steps, &WalkStep::rear_mm),
                  series_of(along, foot_name(model, 1), steps, &WalkStep::front_mm)};
-  std::vector<StepCurve> commands;
-  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    commands.push_back(command_curve(model.actuators[a]));
-    for (const WalkRecord& step : steps) commands.back().values.push_back(step.actuation[static_cast<Index>(a)]);
-  }
   Plot plot;
   plot.title = title;
-  plot.rows = {{std::move(feet)}, curve_panels(along, commands, "command")};
+  plot.rows = {{std::move(feet)}, curve_panels(along, command_curves(model, steps), "command")};
   if (model.formulation == Formulation::physical) {
     PlotPanel friction = panel_of(along, "friction [N]");
     friction.series = {series_of(along, "", steps, &WalkStep::friction_N)};

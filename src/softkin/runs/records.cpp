@@ -39,31 +39,17 @@ std::optional<double> reached_share(const Model& model, const SolveReport& repor
 }  // namespace
 
 StepRecord step_record(const Model& model, const Equilibrium& found, const ElementDeformation& deformation) {
-  const SolveReport& report = found.report;
   StepRecord record;
+  static_cast<SolveReport&>(record) = found.report;
   record.actuation = found.actuation;
-  record.status = report.status;
-  record.reached = reached_share(model, report);
-  record.remark = report.remark;
+  record.reached_share = reached_share(model, found.report);
   if (found.state.actuation.size() == found.actuation.size()) record.shape_actuation = found.state.actuation;
   record.shape_load_share = found.state.share;
-  record.iterations = report.iterations;
-  record.factorisations = report.factorisations;
-  record.projections = report.projections;
-  record.shifts = report.shifts;
-  record.continuation_steps = report.continuation_steps;
-  record.residual = report.gradient_norm;
-  record.step_mm = report.step_mm;
-  record.tolerance_mm = report.tolerance_mm;
-  record.estimated_error_mm = report.estimated_error_mm;
-  record.seconds = report.seconds;
-  record.energy = report.energy;
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
   for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
   record.strain = strain_histogram(model, deformation);
-  record.history = report.history;
   return record;
 }
 
@@ -86,13 +72,8 @@ WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& fo
   WalkRecord record;
   static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
   record.cycle = cycle;
-  record.walk.sliding = found.sliding;
-  record.walk.friction_N = found.friction_N;
-  record.walk.rear_mm = found.rear_mm;
-  record.walk.front_mm = found.front_mm;
-  record.walk.travel_mm = found.travel_mm;
-  record.walk.shift_mm = found.shift_mm;
-  record.walk.equilibria = found.equilibria;
+  record.walk = found;
+  record.walk.equilibrium = {};
   return record;
 }
 

@@ -24,22 +24,18 @@ struct ActuatorRecord {
   bool slack = false;                // a cable that carries nothing because its path is shorter than it
 };
 
-/// One equilibrium: what was asked, what came of it, and how. Of a report a step.
-struct StepRecord {
-  Actuation actuation;  // m, asked for
-  Status status = Status::not_converged;
-  std::optional<double> reached{};  // share of the way from the step before [-]; none: not known
-  std::string remark;
+/// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read
+/// has the iterations that were written.
+struct StepRecord : SolveReport {
+  Actuation actuation;                         // m, asked for
+  std::optional<double> reached_share{};       // of the way from the step before [-]; none: not known
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
   double shape_load_share = 1;
-  int iterations = 0, factorisations = 0, projections = 0, shifts = 0, continuation_steps = 0;
-  double residual = 0, step_mm = 0, tolerance_mm = 0, estimated_error_mm = 0, seconds = 0, energy = 0;
   std::size_t inverted_elements = 0;
   std::vector<Vec3> markers;  // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
-  std::vector<IterationRecord> history;  // all iterations; of a record that was read: those that were written
-  std::vector<int> history_iterations;   // from 1, per entry of history; empty: all
+  std::vector<int> history_iterations;  // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
@@ -97,7 +93,7 @@ struct Shortfall {
 };
 
 /// Where the shape of a step that did not converge falls short of what was asked; none where only loads or displaced
-/// supports do (StepRecord::reached), or it is not known.
+/// supports do (StepRecord::reached_share), or it is not known.
 [[nodiscard]] std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record);
 
 }  // namespace softkin::runs

@@ -109,26 +109,21 @@ FootSpec read_foot(const Node& node) {
 }
 
 void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
+  const auto each = [&map](const char* key, const auto& read) {
+    if (const Node* node = map.find(key))
+      for (const auto& item : list(*node)) read(*item);
+  };
+  Names forces, markers;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
-  if (const Node* node = map.find("materials"))
-    for (const auto& item : list(*node)) spec.materials.push_back(read_material(*item));
+  each("materials", [&](const Node& item) { spec.materials.push_back(read_material(item)); });
   spec.formulation = read_formulation(map, spec.materials);
   if (const Node* node = map.find("gravity")) spec.gravity = read_vector(*node);
-  if (const Node* node = map.find("void"))
-    for (const auto& item : list(*node)) spec.voids.push_back(read_region_name(*item));
-  if (const Node* node = map.find("fixed"))
-    for (const auto& item : list(*node)) spec.fixed.push_back(read_fixed(context, *item));
-  if (const Node* node = map.find("rigid"))
-    for (const auto& item : list(*node)) spec.rigid.push_back(read_rigid(context, *item, spec.rigid.size() + 1));
+  each("void", [&](const Node& item) { spec.voids.push_back(read_region_name(item)); });
+  each("fixed", [&](const Node& item) { spec.fixed.push_back(read_fixed(context, item)); });
+  each("rigid", [&](const Node& item) { spec.rigid.push_back(read_rigid(context, item, spec.rigid.size() + 1)); });
   if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
-  if (const Node* node = map.find("forces")) {
-    Names names;
-    for (const auto& item : list(*node)) spec.forces.push_back(read_force(context, *item, names));
-  }
-  if (const Node* node = map.find("markers")) {
-    Names names;
-    for (const auto& item : list(*node)) spec.markers.push_back(read_marker(context, *item, names));
-  }
+  each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
+  each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
   if (const Node* node = map.find("feet"))
     for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
 }
