@@ -5,6 +5,7 @@
 #include <random>
 #include <softkin/model/mesh/quadratic_tetrahedron.hpp>
 #include <softkin/model/mesh/quadratic_triangle.hpp>
+#include <softkin/model/model.hpp>
 
 #include "model/quadratic_mesh.hpp"
 
