@@ -8,7 +8,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
-#include <softkin/io/table/material_tables.hpp>
+#include <softkin/io/table/measurements.hpp>
 #include <softkin/model/names.hpp>
 
 #include "calibrate_command.hpp"

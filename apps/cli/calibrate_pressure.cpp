@@ -6,7 +6,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
-#include <softkin/io/table/actuator_tests.hpp>
+#include <softkin/io/table/measurements.hpp>
 
 #include "calibrate_command.hpp"
 #include "solve_options.hpp"

@@ -5,7 +5,6 @@
 #include <softkin/calibration/path_tracks.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/output_files.hpp>
 #include <softkin/runs/report_comparison.hpp>
 
 #include "command.hpp"

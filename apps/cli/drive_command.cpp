@@ -12,7 +12,7 @@
 #include <softkin/io/stream_log.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/table.hpp>
-#include <softkin/runs/drive_report.hpp>
+#include <softkin/runs/reports.hpp>
 
 #include "command.hpp"
 #include "solve_options.hpp"

@@ -7,9 +7,8 @@
 #include <softkin/model/names.hpp>
 #include <softkin/runs/jobs.hpp>
 #include <softkin/runs/plots.hpp>
-#include <softkin/runs/report_head.hpp>
+#include <softkin/runs/reports.hpp>
 #include <softkin/runs/run_tables.hpp>
-#include <softkin/runs/step_tables.hpp>
 #include <softkin/runs/workspace_file.hpp>
 
 #include "command.hpp"

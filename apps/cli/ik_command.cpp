@@ -7,7 +7,7 @@
 
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
-#include <softkin/runs/inverse_report.hpp>
+#include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
 #include <softkin/runs/workspace_file.hpp>
 #include "command.hpp"

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <optional>
-#include <softkin/io/output_files.hpp>
 #include <softkin/kinematics/inverse.hpp>
-#include <softkin/runs/inverse_report.hpp>
+#include <softkin/runs/reports.hpp>
 #include <string>
 #include <vector>
 
+#include <softkin/io/file.hpp>
 #include "solve_options.hpp"
 
 namespace softkin::cli {

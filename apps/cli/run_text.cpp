@@ -6,7 +6,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
-#include <softkin/runs/findings.hpp>
+#include <softkin/runs/records.hpp>
 #include <utility>
 
 #include "command.hpp"
@@ -54,7 +54,7 @@ std::string reached_text(const Model& model, const StepRecord& step) {
             command_text(actuator, asked);
   }
   if (!text.empty()) return text;
-  return percent(step.reached.value_or(0)) + " of the loads and displacements were reached";
+  return percent(step.reached_share.value_or(0)) + " of the loads and displacements were reached";
 }
 
 std::string finding_text(const runs::Finding& finding) {

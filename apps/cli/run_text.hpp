@@ -3,7 +3,7 @@
 #include <softkin/core/progress.hpp>
 #include <softkin/io/table/table.hpp>
 #include <softkin/model/model.hpp>
-#include <softkin/runs/job.hpp>
+#include <softkin/runs/jobs.hpp>
 #include <softkin/runs/records.hpp>
 #include <string>
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/output_files.hpp>
-#include <softkin/io/scene/asked_scene.hpp>
+#include <softkin/io/scene/scene.hpp>
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/statics.hpp>

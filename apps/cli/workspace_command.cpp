@@ -4,7 +4,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/runs/ranks.hpp>
-#include <softkin/runs/reach.hpp>
+#include <softkin/runs/workspace_file.hpp>
 #include <thread>
 
 #include "command.hpp"

@@ -6,7 +6,6 @@
 #include <softkin/io/picture/png.hpp>
 #include <softkin/vision/tags.hpp>
 
-#include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"

@@ -5,7 +5,6 @@
 #include <softkin/vision/pictures.hpp>
 #include <softkin/vision/tags.hpp>
 
-#include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"

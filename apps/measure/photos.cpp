@@ -1,7 +1,6 @@
 #include <softkin/io/file.hpp>
 #include <softkin/vision/pictures.hpp>
 
-#include <softkin/io/output_files.hpp>
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "commands.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 #include <softkin/core/error.hpp>
-#include <softkin/model/monotone_curve.hpp>
+#include <softkin/model/actuator_curve.hpp>
 
 namespace softkin {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <softkin/core/error.hpp>
 #include <softkin/io/plain_text.hpp>
-#include <softkin/io/table/material_tables.hpp>
+#include <softkin/io/table/measurements.hpp>
 
 namespace softkin {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
-#include <softkin/model/compile/cavity.hpp>
+#include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
 
 #include "model/compile_testing.hpp"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <softkin/model/compile/cavity.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
 
 #include "model/compile_testing.hpp"

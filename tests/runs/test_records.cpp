@@ -13,7 +13,7 @@ namespace {
 void expect_same(const StepRecord& a, const StepRecord& b) {
   EXPECT_EQ(a.actuation, b.actuation);
   EXPECT_EQ(a.status, b.status);
-  EXPECT_EQ(a.reached, b.reached);
+  EXPECT_EQ(a.reached_share, b.reached_share);
   EXPECT_EQ(a.remark, b.remark);
   EXPECT_EQ(a.shape_actuation.has_value(), b.shape_actuation.has_value());
   if (a.shape_actuation && b.shape_actuation) {
@@ -107,13 +107,13 @@ TEST_F(Steps, ThatDidNotConvergeKeepWhatIsNotKnown) {
   StepRecord record = job.make(0, {}).value().record;
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   record.status = Status::not_converged;
-  record.reached.reset();
+  record.reached_share.reset();
   record.shape_actuation.reset();
   record.time_s.reset();
-  record.residual = record.energy = unknown;
+  record.gradient_norm = record.energy = unknown;
   record.remark = "it \"blew up\"\nin two lines";
   const StepRecord read = read_back(job.codec(), record);
-  EXPECT_TRUE(std::isnan(read.residual) && std::isnan(read.energy));
+  EXPECT_TRUE(std::isnan(read.gradient_norm) && std::isnan(read.energy));
 }
 
 TEST_F(Steps, LongHistoriesAreWrittenEverSparser) {

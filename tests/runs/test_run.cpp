@@ -2,7 +2,7 @@
 
 #include <map>
 #include <regex>
-#include <softkin/runs/report_head.hpp>
+#include <softkin/runs/reports.hpp>
 
 #include "small_runs.hpp"
 

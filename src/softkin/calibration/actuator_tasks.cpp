@@ -3,7 +3,7 @@
 #include <softkin/calibration/voltage.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
-#include <softkin/io/table/actuator_tests.hpp>
+#include <softkin/io/table/measurements.hpp>
 
 namespace softkin::calibration {
 

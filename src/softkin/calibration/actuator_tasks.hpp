@@ -2,7 +2,7 @@
 
 #include <optional>
 #include <softkin/calibration/curve_report.hpp>
-#include <softkin/model/syringe_run.hpp>
+#include <softkin/model/measurements.hpp>
 #include <string>
 #include <vector>
 

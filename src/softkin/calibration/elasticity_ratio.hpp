@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/model/material_tests.hpp>
+#include <softkin/model/measurements.hpp>
 #include <vector>
 
 namespace softkin::calibration {

@@ -6,8 +6,8 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/plain_text.hpp>
-#include <softkin/io/table/track_file.hpp>
-#include <softkin/runs/reported_path.hpp>
+#include <softkin/io/table/marker_path.hpp>
+#include <softkin/runs/report_comparison.hpp>
 
 namespace softkin::calibration {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <softkin/model/track.hpp>
+#include <softkin/model/measurements.hpp>
 #include <string>
 #include <vector>
 

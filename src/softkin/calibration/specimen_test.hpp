@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/model/material_tests.hpp>
+#include <softkin/model/measurements.hpp>
 #include <softkin/statics/statics.hpp>
 
 namespace softkin::calibration {

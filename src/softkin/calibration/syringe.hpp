@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/calibration/curve_fit.hpp>
-#include <softkin/model/syringe_run.hpp>
+#include <softkin/model/measurements.hpp>
 
 namespace softkin::calibration {
 

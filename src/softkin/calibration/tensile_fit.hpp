@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/calibration/uniaxial.hpp>
-#include <softkin/model/material_tests.hpp>
+#include <softkin/model/measurements.hpp>
 #include <softkin/model/robot_spec.hpp>
 
 namespace softkin::calibration {

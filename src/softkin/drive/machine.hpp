@@ -1,8 +1,8 @@
 #pragma once
 
-#include <softkin/model/commands.hpp>
 #include <softkin/model/hardware_spec.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/model/paths.hpp>
 
 namespace softkin::drive {
 

@@ -1,9 +1,15 @@
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <fstream>
+#include <map>
+#include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <sstream>
+#include <string>
+#include <system_error>
 
 namespace softkin {
 
@@ -39,6 +45,134 @@ void write_file(const fs::path& path, const std::function<void(std::ostream&)>& 
     std::error_code ignored;
     fs::remove(part, ignored);
     throw InvalidInput({path.string()}, "cannot be written");
+  }
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// The same for every spelling of a path, whether the file exists or not.
+fs::path resolved(const fs::path& file) {
+  std::error_code failure;
+  const fs::path result = fs::weakly_canonical(fs::absolute(file), failure);
+  return failure ? fs::absolute(file) : result;
+}
+
+[[noreturn]] void refuse(const Output& output, const std::string& why) {
+  throw InvalidInput(output.option + " " + output.file.string() + ": " + why);
+}
+
+void check_series(const Output& output, const std::vector<fs::path>& inputs) {
+  std::set<fs::path> beside;
+  for (const fs::path& input : inputs)
+    if (resolved(folder_of(input)) == resolved(folder_of(output.file))) beside.insert(input.filename());
+  if (beside.empty()) return;
+  for (std::size_t i = 0; i < output.shapes; ++i) {
+    const fs::path name = series_file(output.file, i).filename();
+    if (beside.count(name) > 0) refuse(output, "its " + name.string() + " would replace a file that is read");
+  }
+}
+
+/// What write_file writes before it renames: NAME.PID.part. Returns NAME, or "".
+std::string torn_name(std::string name) {
+  const std::string end = ".part";
+  if (name.size() < end.size() || name.compare(name.size() - end.size(), end.size(), end) != 0) return "";
+  name.resize(name.size() - end.size());
+  const std::size_t dot = name.find_last_not_of("0123456789");
+  return dot == std::string::npos || name[dot] != '.' || dot + 1 == name.size() ? "" : name.substr(0, dot);
+}
+
+constexpr const char* probe_begin = ".softkin.";
+
+/// What OutputFolders writes to see whether it can.
+std::string probe_name() {
+  return probe_begin + std::to_string(::getpid());
+}
+
+bool is_probe(const std::string& name) {
+  const std::string begin = probe_begin;
+  return name.starts_with(begin) && name.size() > begin.size() &&
+         name.find_first_not_of("0123456789", begin.size()) == std::string::npos;
+}
+
+bool is_left_over(const std::string& file, const std::set<std::string>& outputs) {
+  const std::string torn = torn_name(file);
+  return outputs.count(torn) > 0 || is_probe(torn) || is_probe(file);
+}
+
+}  // namespace
+
+fs::path series_file(const fs::path& pvd, std::size_t step) {
+  char number[24];
+  std::snprintf(number, sizeof number, "_%04zu.vtu", step);
+  return fs::path(pvd).replace_filename(pvd.stem().string() + number);
+}
+
+void check_outputs(const std::vector<Output>& outputs, const std::vector<fs::path>& inputs) {
+  std::map<fs::path, std::string> taken;
+  for (const Output& output : outputs) {
+    std::error_code failure;
+    if (!output.file.has_filename() || fs::is_directory(output.file, failure))
+      refuse(output, "is a folder, not a file");
+    if (fs::exists(output.file, failure) && !fs::is_regular_file(output.file, failure))
+      refuse(output, "is no plain file and will not be replaced");
+    const fs::path file = resolved(output.file);
+    for (const fs::path& input : inputs)
+      if (resolved(input) == file) refuse(output, "would replace a file that is read");
+    if (!taken.emplace(file, output.option).second) refuse(output, "is the file of " + taken[file]);
+    check_series(output, inputs);
+  }
+}
+
+OutputFolders::OutputFolders(const std::vector<Output>& outputs) {
+  for (const Output& output : outputs) {
+    const fs::path folder = folder_of(output.file);
+    try {
+      make(folder);
+      const fs::path probe = folder / probe_name();
+      write_file(probe, "");  // asks what permissions do not tell, before the work and not after it
+      fs::remove(probe);
+    } catch (const fs::filesystem_error& failure) {
+      remove_empty();
+      refuse(output, "its folder cannot be made: " + failure.code().message());
+    } catch (const InvalidInput&) {
+      remove_empty();
+      refuse(output, "its folder cannot be written to");
+    }
+  }
+}
+
+OutputFolders::~OutputFolders() {
+  remove_empty();
+}
+
+void OutputFolders::make(const fs::path& folder) {
+  if (fs::is_directory(folder)) return;
+  if (fs::exists(folder)) throw fs::filesystem_error("", folder, std::make_error_code(std::errc::not_a_directory));
+  if (folder.has_parent_path() && folder.parent_path() != folder) make(folder.parent_path());
+  if (fs::create_directory(folder)) made_.push_back(folder);
+}
+
+void OutputFolders::remove_empty() const {
+  std::error_code not_empty;
+  std::for_each(made_.rbegin(), made_.rend(), [&](const fs::path& folder) { fs::remove(folder, not_empty); });
+}
+
+void remove_torn_files(const std::vector<Output>& outputs) {
+  for (const Output& output : outputs) {
+    const std::string name = output.file.filename().string();
+    std::set<std::string> names{name, name + ".run"};  // a report's journal
+    for (std::size_t i = 0; i < output.shapes; ++i) names.insert(series_file(output.file, i).filename().string());
+    std::vector<fs::path> torn;
+    for (const auto& entry : fs::directory_iterator(folder_of(output.file)))
+      if (is_left_over(entry.path().filename().string(), names)) torn.push_back(entry.path());
+    std::error_code ignored;
+    for (const fs::path& file : torn) fs::remove(file, ignored);
   }
 }
 

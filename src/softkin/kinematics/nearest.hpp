@@ -2,7 +2,7 @@
 
 #include <memory>
 #include <softkin/kinematics/goal.hpp>
-#include <softkin/model/workspace_sample.hpp>
+#include <softkin/model/equilibrium.hpp>
 
 namespace softkin {
 

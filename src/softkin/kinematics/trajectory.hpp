@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/kinematics/inverse.hpp>
-#include <softkin/model/marker_path.hpp>
+#include <softkin/model/paths.hpp>
 
 namespace softkin {
 

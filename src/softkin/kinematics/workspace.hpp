@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 #include <softkin/kinematics/sampling.hpp>
-#include <softkin/model/workspace_sample.hpp>
+#include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/statics.hpp>
 
 namespace softkin {

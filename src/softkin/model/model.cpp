@@ -1,7 +1,107 @@
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <softkin/model/mesh/quadratic_triangle.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
 #include <softkin/model/model.hpp>
+#include <type_traits>
 
 namespace softkin {
+
+namespace {
+
+const CurveBranch* branch_of(const Actuator& actuator, Branch which) {
+  if (!actuator.curve || (which == Branch::unloading && !actuator.curve->unloading)) return nullptr;
+  return &actuator.curve->branch(which);
+}
+
+bool holds(const std::vector<double>& ascending, double value) {
+  return value >= ascending.front() && value <= ascending.back();
+}
+
+class Hash {
+ public:
+  template <class... Values>
+  void add(const Values&... values) {
+    (put(values), ...);
+  }
+
+  [[nodiscard]] std::string text() const {
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(state_));
+    return digits;
+  }
+
+ private:
+  void word(std::uint64_t value) {
+    for (int shift = 0; shift < 64; shift += 8) {
+      state_ ^= (value >> shift) & 0xFF;
+      state_ *= 0x100000001b3;
+    }
+  }
+  void put(double value) { word(std::bit_cast<std::uint64_t>(value)); }
+  template <class Whole>
+  requires std::is_integral_v<Whole> || std::is_enum_v<Whole>
+  void put(Whole value) { word(static_cast<std::uint64_t>(value)); }
+  void put(const std::string& text) {
+    put(text.size());
+    for (const char c : text) put(c);
+  }
+  void put(const Points& points) {
+    put(points.rows());
+    for (Eigen::Index i = 0; i < points.size(); ++i) put(points.data()[i]);
+  }
+  template <class Item>
+  void put(const std::vector<Item>& items) {
+    put(items.size());
+    for (const auto& item : items) put(item);
+  }
+  template <class Item, std::size_t N>
+  void put(const std::array<Item, N>& items) {
+    for (const Item& item : items) put(item);
+  }
+  void put(const std::optional<double>& value) { add(value.has_value(), value.value_or(0)); }
+  void put(const ElementRole& role) { add(role.material, role.actuator, role.region); }
+  void put(const ElasticLaw& e) { add(e.law, e.mu, e.lambda, e.c10, e.c01, e.c20, e.c30, e.bulk); }
+  void put(const Material& m) { add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range); }
+  void put(const CavityFace& face) { add(face.corners, face.edges); }
+  void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
+  void put(const CableGap& gap) { add(gap.segment, gap.apex); }
+  void put(const Marker& marker) { add(marker.name, marker.point); }
+  void put(const RigidRegion& region) { add(region.name, region.vertices); }
+  void put(const Actuator& a) {
+    add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.points,
+        a.surface, a.gaps, a.rest_measure);
+  }
+
+  std::uint64_t state_ = 0xcbf29ce484222325;
+};
+
+// Three times the volume between a face and the origin.
+double linear_face(const Points& positions, const CavityFace& face, const Vec3& origin) {
+  const Vec3 a = vertex_at(positions, face.corners[0]) - origin, b = vertex_at(positions, face.corners[1]) - origin,
+             c = vertex_at(positions, face.corners[2]) - origin;
+  return 0.5 * a.dot(b.cross(c));
+}
+
+double quadratic_face(const Points& positions, const CavityFace& face, const Vec3& origin) {
+  TriangleNodes nodes;
+  for (int i = 0; i < 3; ++i) {
+    nodes.row(i) = positions.row(face.corners[i]) - origin.transpose();
+    nodes.row(i + 3) = positions.row(face.edges[i]) - origin.transpose();
+  }
+  double sum = 0;
+  for (const TrianglePoint& point : triangle_rule()) {
+    const Vec3 x = nodes.transpose() * point.shape, u = nodes.transpose() * point.along_u,
+               v = nodes.transpose() * point.along_v;
+    sum += point.weight * x.dot(u.cross(v));
+  }
+  return sum;
+}
+
+}  // namespace
 
 Vec3 EmbeddedPoint::at(const Points& positions) const {
   Vec3 sum = Vec3::Zero();
@@ -9,11 +109,57 @@ Vec3 EmbeddedPoint::at(const Points& positions) const {
   return sum;
 }
 
+double enclosed_volume(const Points& positions, const std::vector<CavityFace>& faces) {
+  if (faces.empty()) return 0;
+  // relative to a point of the boundary: far from the origin the terms would cancel
+  const Vec3 origin = vertex_at(positions, faces.front().corners[0]);
+  double three_volumes = 0;
+  for (const CavityFace& face : faces)
+    three_volumes += face.edges[0] < 0 ? linear_face(positions, face, origin) : quadratic_face(positions, face, origin);
+  return three_volumes / 3;
+}
+
 Eigen::VectorXd Model::rest_actuation() const {
   Eigen::VectorXd ratios(static_cast<Eigen::Index>(actuators.size()));
   for (std::size_t i = 0; i < actuators.size(); ++i)
     ratios[static_cast<Eigen::Index>(i)] = std::clamp(actuators[i].rest, actuators[i].low, actuators[i].high);
   return ratios;
+}
+
+double ratio_by_curve(const Actuator& actuator, double input, Branch branch) {
+  if (!actuator.curve) throw InvalidInput("actuator '" + actuator.name + "' has no curve");
+  return actuator.rest * actuator.curve->ratio(input, branch);
+}
+
+std::optional<double> input_by_curve(const Actuator& actuator, double ratio, Branch branch) {
+  const CurveBranch* curve = branch_of(actuator, branch);
+  const double relative = ratio / actuator.rest;
+  if (curve == nullptr || !holds(curve->ratio.y(), relative)) return std::nullopt;
+  return curve->ratio.inverse(relative);
+}
+
+std::optional<double> spread_by_curve(const Actuator& actuator, double input, Branch branch) {
+  const CurveBranch* curve = branch_of(actuator, branch);
+  if (curve == nullptr || curve->spread.empty() || !holds(curve->ratio.x(), input)) return std::nullopt;
+  const std::vector<double>& x = curve->ratio.x();
+  const auto above = std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), input) - x.begin());
+  const auto i = static_cast<std::size_t>(above);
+  const double share = (input - x[i - 1]) / (x[i] - x[i - 1]);
+  return actuator.rest * ((1 - share) * curve->spread[i - 1] + share * curve->spread[i]);
+}
+
+std::string fingerprint_of(const Model& model) {
+  Hash hash;
+  hash.add(model.formulation, model.rest, model.tetrahedra, model.edge_nodes, model.prisms, model.tetrahedron_roles,
+           model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
+           model.fixed, model.held, model.dead_load);
+  return hash.text();
+}
+
+std::string fingerprint_of(const Points& positions) {
+  Hash hash;
+  hash.add(positions);
+  return hash.text();
 }
 
 }  // namespace softkin

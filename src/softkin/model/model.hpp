@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/model/robot_spec.hpp>
+#include <string>
 
 namespace softkin {
 
@@ -27,6 +28,14 @@ struct CavityFace {
   Triangle corners;
   std::array<Index, 3> edges{-1, -1, -1};
 };
+
+/// Volume enclosed by a cavity's boundary whose normals point out of it, exact for curved faces too.
+///
+/// positions  #V by 3 [mm]
+/// returns    sum over the faces of 1/3 of the integral of x . (dx/du x dx/dv) over the reference triangle [mm^3];
+///            0 without faces; linear or quadratic faces by whether their edges are given
+/// source     divergence theorem; the integrand is of degree 4 on a quadratic face, the rule is exact for degree 4
+[[nodiscard]] double enclosed_volume(const Points& positions, const std::vector<CavityFace>& faces);
 
 /// A piece of cable that runs free between two points of the body, and the body's point across it: the triangle
 /// (points[segment], points[segment + 1], apex) is the actuation element of Eq. (6).
@@ -112,5 +121,24 @@ struct Model {
 ///         physical: materials without elastic constants, chambers that do not touch the body, gravity without a
 ///         density; target-shape: load control; feet that are not two different markers
 [[nodiscard]] Model compile(const RobotSpec& spec);
+
+/// The ratio that an actuator's curve gives for an input: pressure [kPa gauge] or voltage [kV]. Without input it is the
+/// actuator's ratio at rest: a dea's prestretch, else 1.
+///
+/// throws  InvalidInput where the actuator has no curve, or outside the branch
+[[nodiscard]] double ratio_by_curve(const Actuator& actuator, double input, Branch branch);
+
+/// The input that a ratio asks for, the other way round; none outside the branch or without a curve.
+[[nodiscard]] std::optional<double> input_by_curve(const Actuator& actuator, double ratio, Branch branch);
+
+/// Standard deviation of the ratio between repeated runs near an input [-]; none where it is not known.
+[[nodiscard]] std::optional<double> spread_by_curve(const Actuator& actuator, double input, Branch branch);
+
+/// 16 hexadecimal digits that change with anything that a compiled robot's shapes and report depend on, but not with
+/// the names of its files. source: FNV-1a, 64 bit
+[[nodiscard]] std::string fingerprint_of(const Model& model);
+
+/// The same of a shape, bit by bit.
+[[nodiscard]] std::string fingerprint_of(const Points& positions);
 
 }  // namespace softkin

@@ -4,28 +4,15 @@
 namespace softkin {
 
 const char* kind_name(const Actuator& actuator) {
-  switch (actuator.kind) {
-    case ActuatorKind::cable:
-      return "cable";
-    case ActuatorKind::dea:
-      return "dea";
-    case ActuatorKind::pneumatic:
-      break;
-  }
-  return "pneumatic";
+  constexpr const char* names[] = {"cable", "dea", "pneumatic"};  // in the order of ActuatorKind
+  return names[static_cast<std::size_t>(actuator.kind)];
 }
 
 const char* control_name(const Actuator& actuator) {
-  const bool load = actuator.control == Control::load;
-  switch (actuator.kind) {
-    case ActuatorKind::cable:
-      return load ? "tension" : "length";
-    case ActuatorKind::dea:
-      return "area";
-    case ActuatorKind::pneumatic:
-      break;
-  }
-  return load ? "pressure" : "volume";
+  constexpr const char* ratios[] = {"length", "area", "volume"};  // in the order of ActuatorKind
+  const bool by_ratio = actuator.control == Control::ratio || actuator.kind == ActuatorKind::dea;
+  if (by_ratio) return ratios[static_cast<std::size_t>(actuator.kind)];
+  return actuator.kind == ActuatorKind::cable ? "tension" : "pressure";
 }
 
 const char* command_name(const Actuator& actuator) {
@@ -63,19 +50,8 @@ std::string range_text(const Actuator& actuator) {
 }
 
 const char* law_name(Law law) {
-  switch (law) {
-    case Law::st_venant_kirchhoff:
-      return "st-venant-kirchhoff";
-    case Law::corotational:
-      return "corotational";
-    case Law::neo_hookean:
-      return "neo-hookean";
-    case Law::mooney_rivlin:
-      return "mooney-rivlin";
-    case Law::yeoh:
-      break;
-  }
-  return "yeoh";
+  constexpr const char* names[] = {"st-venant-kirchhoff", "corotational", "neo-hookean", "mooney-rivlin", "yeoh"};
+  return names[static_cast<std::size_t>(law)];
 }
 
 const char* formulation_name(Formulation formulation) {
@@ -83,17 +59,8 @@ const char* formulation_name(Formulation formulation) {
 }
 
 const char* name_of(Status status) {
-  switch (status) {
-    case Status::converged:
-      return "converged";
-    case Status::interrupted:
-      return "interrupted";
-    case Status::limit:
-      return "limit";
-    case Status::not_converged:
-      break;
-  }
-  return "not converged";
+  constexpr const char* names[] = {"converged", "not converged", "interrupted", "limit"};
+  return names[static_cast<std::size_t>(status)];
 }
 
 const char* curve_key(const ActuatorCurve& curve) {

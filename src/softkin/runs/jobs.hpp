@@ -1,11 +1,131 @@
 #pragma once
 
-#include <softkin/io/table/actuation_path.hpp>
+#include <softkin/core/progress.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/io/mesh/vtk.hpp>
+#include <softkin/io/table/commands.hpp>
 #include <softkin/kinematics/trajectory.hpp>
 #include <softkin/kinematics/walk.hpp>
-#include <softkin/runs/job.hpp>
+#include <softkin/model/model.hpp>
+#include <softkin/runs/record_log.hpp>
+#include <utility>
 
 namespace softkin::runs {
+
+/// Something long that is done record by record, each from the one before.
+template <class Record>
+class Job {
+ public:
+  struct Made {
+    Record record;
+    Points positions;  // #V by 3 [mm]
+    ElementDeformation deformation;
+  };
+
+  virtual ~Job() = default;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  [[nodiscard]] virtual Codec<Record> codec() const = 0;
+
+  /// Why a record is not what is asked for as that number; empty: it is.
+  [[nodiscard]] virtual std::string mismatch(std::size_t number, const Record& record) const = 0;
+
+  /// The record of that number, after the one before was made or go_on() was called; none where progress stopped it.
+  [[nodiscard]] virtual std::optional<Made> make(std::size_t number, const ProgressCallback& progress) = 0;
+
+  /// Is it one to go on from? Else the run ends before it.
+  [[nodiscard]] virtual bool keeps(const Record&) const { return true; }
+
+  /// Forgets everything but the record before that number and its shape: what is made from here on is a function of
+  /// these alone.
+  virtual void go_on(std::size_t number, const Record& before, Points positions) = 0;
+};
+
+enum class Advance { made, interrupted, lost };
+
+/// A job and its log. Now and then the job forgets all but the last record, so that a run that is resumed makes again
+/// the few records since then and goes on as if it had never been stopped: bit by bit, with the same number of threads.
+template <class Record>
+class Run {
+ public:
+  static constexpr std::size_t fresh_every = 32;  // records; a fresh start costs about one factorisation
+
+  Run(const Model& model, Job<Record>& job, RunFiles files, std::string head, std::vector<std::string> same)
+      : job_(job), files_(files), log_(model, files, std::move(head), std::move(same), job.codec()) {}
+
+  [[nodiscard]] std::size_t size() const { return job_.size(); }
+  [[nodiscard]] std::size_t done() const { return log_.size(); }
+  [[nodiscard]] bool is_complete() const { return done() >= size(); }
+  /// What was made last, kept or not.
+  [[nodiscard]] const Record& last() const { return last_; }
+  [[nodiscard]] const Points& last_positions() const { return positions_; }
+  [[nodiscard]] TypedLog<Record>& log() { return log_; }
+
+  /// Takes over what is on disk. remark: for the user. Throws as RecordLog::resume
+  void resume(std::string& remark) {
+    log_.resume([this](std::size_t number, const Record& record) { return job_.mismatch(number, record); }, remark);
+    if (done() == 0) return;
+    last_ = log_.at(done() - 1);
+    positions_ = log_.shape_of(done() - 1, last_).value();
+    resumed_ = true;
+  }
+
+  /// The next record, onto the disk.
+  [[nodiscard]] Advance advance(const ProgressCallback& progress) {
+    if (std::exchange(resumed_, false) && !repeat(progress)) {
+      resumed_ = true;
+      return Advance::interrupted;
+    }
+    const std::size_t number = done();
+    if (number > 0 && number % fresh_every == 0) job_.go_on(number, last_, positions_);
+    auto made = job_.make(number, progress);
+    if (!made) return Advance::interrupted;
+    const bool keeps = job_.keeps(made->record);
+    if (keeps) log_.add(made->record, made->positions, made->deformation);
+    last_ = std::move(made->record);
+    if (!keeps) return Advance::lost;
+    positions_ = std::move(made->positions);
+    return Advance::made;
+  }
+
+  /// The report and the series' collection, of what is done.
+  void finish() {
+    if (done() == 0) return;
+    if (!files_.shapes.empty()) {
+      std::vector<PvdEntry> entries;
+      log_.each([&](std::size_t number, const Record& record) {
+        entries.push_back({record.time_s.value_or(static_cast<double>(number)), record.shape});
+      });
+      write_pvd(files_.shapes, entries);
+    }
+    log_.finish();
+  }
+
+ private:
+  /// Makes the records since the last fresh start again, so that the job knows what it knew. False: interrupted.
+  [[nodiscard]] bool repeat(const ProgressCallback& progress) {
+    const std::size_t end = done(), begin = end - end % fresh_every;
+    if (begin == end) return true;
+    if (begin > 0) {
+      const Record before = log_.at(begin - 1);
+      job_.go_on(begin, before, log_.shape_of(begin - 1, before).value());
+    }
+    for (std::size_t number = begin; number < end; ++number) {
+      const auto made = job_.make(number, progress);
+      if (!made) return false;
+      if (number + 1 < end) continue;
+      // another machine, or another number of threads, ends a rounding away: what is on disk counts
+      if (fingerprint_of(made->positions) != last_.shape_fingerprint) job_.go_on(end, last_, positions_);
+    }
+    return true;
+  }
+
+  Job<Record>& job_;
+  RunFiles files_;
+  TypedLog<Record> log_;
+  Record last_;
+  Points positions_;
+  bool resumed_ = false;
+};
 
 /// Equilibria along a path of actuations, each from the last.
 class PathJob : public Job<StepRecord> {

@@ -3,8 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/vtk.hpp>
-#include <softkin/io/output_files.hpp>
-#include <softkin/model/fingerprint.hpp>
+#include <softkin/model/model.hpp>
 #include <softkin/runs/record_log.hpp>
 #include <softkin/runs/records_json.hpp>
 #include <softkin/runs/shape_files.hpp>

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <softkin/model/curve_command.hpp>
+#include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/records.hpp>
 #include <utility>
@@ -39,31 +39,17 @@ std::optional<double> reached_share(const Model& model, const SolveReport& repor
 }  // namespace
 
 StepRecord step_record(const Model& model, const Equilibrium& found, const ElementDeformation& deformation) {
-  const SolveReport& report = found.report;
   StepRecord record;
+  static_cast<SolveReport&>(record) = found.report;
   record.actuation = found.actuation;
-  record.status = report.status;
-  record.reached = reached_share(model, report);
-  record.remark = report.remark;
+  record.reached_share = reached_share(model, found.report);
   if (found.state.actuation.size() == found.actuation.size()) record.shape_actuation = found.state.actuation;
   record.shape_load_share = found.state.share;
-  record.iterations = report.iterations;
-  record.factorisations = report.factorisations;
-  record.projections = report.projections;
-  record.shifts = report.shifts;
-  record.continuation_steps = report.continuation_steps;
-  record.residual = report.gradient_norm;
-  record.step_mm = report.step_mm;
-  record.tolerance_mm = report.tolerance_mm;
-  record.estimated_error_mm = report.estimated_error_mm;
-  record.seconds = report.seconds;
-  record.energy = report.energy;
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
   for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
   record.strain = strain_histogram(model, deformation);
-  record.history = report.history;
   return record;
 }
 
@@ -86,13 +72,8 @@ WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& fo
   WalkRecord record;
   static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
   record.cycle = cycle;
-  record.walk.sliding = found.sliding;
-  record.walk.friction_N = found.friction_N;
-  record.walk.rear_mm = found.rear_mm;
-  record.walk.front_mm = found.front_mm;
-  record.walk.travel_mm = found.travel_mm;
-  record.walk.shift_mm = found.shift_mm;
-  record.walk.equilibria = found.equilibria;
+  record.walk = found;
+  record.walk.equilibrium = {};
   return record;
 }
 
@@ -104,6 +85,36 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     state.multipliers[static_cast<Index>(a)] = record.actuators[a].multiplier;
   return state;
+}
+
+std::vector<Finding> findings(const Model& model, const StepRecord& record) {
+  std::vector<Finding> found;
+  const StrainHistogram& strain = record.strain;
+  if (!strain.shares.empty())
+    found.push_back({Finding::Kind::strain, "", {strain.least, strain.greatest, strain.percentile_95}});
+  for (const auto& beyond : strain.beyond)
+    found.push_back({Finding::Kind::beyond_linear_range, beyond.region, {beyond.share, beyond.linear_range}});
+  if (record.inverted_elements > 0)
+    found.push_back({Finding::Kind::inverted, "", {static_cast<double>(record.inverted_elements)}});
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (const ActuatorRecord& actuator = record.actuators[a]; actuator.slack)
+      found.push_back({Finding::Kind::slack, model.actuators[a].name, {actuator.achieved, actuator.requested}});
+  if (model.formulation == Formulation::physical && record.status != Status::converged)
+    return found;  // the iteration was of another shape
+  if (!std::isfinite(record.step_mm) || !std::isfinite(record.estimated_error_mm))
+    found.push_back({Finding::Kind::diverged});
+  else
+    found.push_back({Finding::Kind::accuracy, "", {record.step_mm, record.estimated_error_mm}});
+  return found;
+}
+
+std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record) {
+  std::vector<Shortfall> short_of;
+  if (!record.shape_actuation) return short_of;
+  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+    if ((*record.shape_actuation)[a] != record.actuation[a])
+      short_of.push_back({a, (*record.shape_actuation)[a], record.actuation[a]});
+  return short_of;
 }
 
 }  // namespace softkin::runs

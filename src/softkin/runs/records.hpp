@@ -4,8 +4,8 @@
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/walk.hpp>
 #include <softkin/model/equilibrium.hpp>
-#include <softkin/model/marker_path.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/model/paths.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <string>
 #include <vector>
@@ -24,22 +24,18 @@ struct ActuatorRecord {
   bool slack = false;                // a cable that carries nothing because its path is shorter than it
 };
 
-/// One equilibrium: what was asked, what came of it, and how. Of a report a step.
-struct StepRecord {
-  Actuation actuation;  // m, asked for
-  Status status = Status::not_converged;
-  std::optional<double> reached{};  // share of the way from the step before [-]; none: not known
-  std::string remark;
+/// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read
+/// has the iterations that were written.
+struct StepRecord : SolveReport {
+  Actuation actuation;                         // m, asked for
+  std::optional<double> reached_share{};       // of the way from the step before [-]; none: not known
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
   double shape_load_share = 1;
-  int iterations = 0, factorisations = 0, projections = 0, shifts = 0, continuation_steps = 0;
-  double residual = 0, step_mm = 0, tolerance_mm = 0, estimated_error_mm = 0, seconds = 0, energy = 0;
   std::size_t inverted_elements = 0;
   std::vector<Vec3> markers;  // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
-  std::vector<IterationRecord> history;  // all iterations; of a record that was read: those that were written
-  std::vector<int> history_iterations;   // from 1, per entry of history; empty: all
+  std::vector<int> history_iterations;  // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
@@ -72,5 +68,32 @@ struct WalkRecord : StepRecord {
 
 /// The state that a record's shape is, as if it had just been solved.
 [[nodiscard]] State state_of(const Model& model, const StepRecord& record, Points positions);
+
+/// What a user should know of an equilibrium beside its numbers.
+struct Finding {
+  enum class Kind {
+    strain,               // values: least, greatest, 95th percentile of the magnitude [-]
+    beyond_linear_range,  // name: region; values: share of its volume [-], its linear range [-]
+    inverted,             // values: how many elements
+    slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
+    diverged,             // the iteration
+    accuracy              // values: last step, estimated distance from the equilibrium [mm]
+  };
+  Kind kind;
+  std::string name{};
+  std::vector<double> values{};
+};
+
+[[nodiscard]] std::vector<Finding> findings(const Model& model, const StepRecord& record);
+
+/// An actuator that did not come as far as was asked, in its own unit.
+struct Shortfall {
+  Index actuator = -1;
+  double reached = 0, asked = 0;
+};
+
+/// Where the shape of a step that did not converge falls short of what was asked; none where only loads or displaced
+/// supports do (StepRecord::reached_share), or it is not known.
+[[nodiscard]] std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record);
 
 }  // namespace softkin::runs

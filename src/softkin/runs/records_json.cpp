@@ -30,6 +30,24 @@ double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
+void write_number(double value, Json& json) {
+  json = known(value);
+}
+
+template <class Count>
+void write_number(Count value, Json& json) {
+  json = value;
+}
+
+void read_number(const Json& json, double& value) {
+  value = number_or_nan(json);
+}
+
+template <class Count>
+void read_number(const Json& json, Count& value) {
+  value = json.get<Count>();
+}
+
 Json strain_json(const StrainHistogram& histogram) {
   Json json = {{"least", histogram.least},
                {"greatest", histogram.greatest},
@@ -128,32 +146,36 @@ void add_shape(const StepRecord& record, Json& json) {
   json["shape_fingerprint"] = record.shape_fingerprint;
 }
 
+/// Numbers of a record in the order of the report: visit(key, number) of each.
+template <class Record, class Visit>
+void counts_and_measures(Record& record, const Visit& visit) {
+  visit("iterations", record.iterations);
+  visit("factorisations", record.factorisations);
+  visit("projections", record.projections);
+  visit("shifts", record.shifts);
+  visit("continuation_steps", record.continuation_steps);
+  visit("residual", record.gradient_norm);
+  visit("step_mm", record.step_mm);
+  visit("tolerance_mm", record.tolerance_mm);
+  visit("estimated_error_mm", record.estimated_error_mm);
+  visit("seconds", record.seconds);
+  visit("energy", record.energy);
+  visit("inverted_elements", record.inverted_elements);
+}
+
 /// All of a step but its shape.
 Json step_json(const Model& model, const StepRecord& record) {
   Json step = {{"actuation", by_actuator(model, record.actuation)},
                {"status", name_of(record.status)},
-               {"reached", record.reached ? Json(*record.reached) : Json()},
+               {"reached", record.reached_share ? Json(*record.reached_share) : Json()},
                {"remark", record.remark},
-               {"shape_actuation", Json()},
-               {"iterations", record.iterations},
-               {"factorisations", record.factorisations},
-               {"projections", record.projections},
-               {"shifts", record.shifts},
-               {"continuation_steps", record.continuation_steps},
-               {"residual", known(record.residual)},
-               {"step_mm", known(record.step_mm)},
-               {"tolerance_mm", record.tolerance_mm},
-               {"estimated_error_mm", known(record.estimated_error_mm)},
-               {"seconds", record.seconds},
-               {"energy", known(record.energy)},
-               {"inverted_elements", record.inverted_elements},
-               {"markers", Json::object()},
-               {"actuators", Json::object()}};
+               {"shape_actuation", Json()}};
+  counts_and_measures(record, [&step](const char* key, const auto& value) { write_number(value, step[key]); });
+  step["markers"] = Json::object();
+  step["actuators"] = Json::object();
   if (record.shape_actuation) step["shape_actuation"] = by_actuator(model, *record.shape_actuation);
-  for (std::size_t m = 0; m < model.markers.size(); ++m) {
-    const Vec3& p = record.markers[m];
-    step["markers"][model.markers[m].name] = {p.x(), p.y(), p.z()};
-  }
+  for (std::size_t m = 0; m < model.markers.size(); ++m)
+    step["markers"][model.markers[m].name] = json_of(record.markers[m]);
   if (model.formulation == Formulation::physical) step["shape_load_share"] = record.shape_load_share;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     step["actuators"][model.actuators[a].name] = actuator_json(model, model.actuators[a], record.actuators[a]);
@@ -218,25 +240,12 @@ Json to_json(const Model& model, const WalkRecord& record) {
 void from_json(const Model& model, const Json& json, StepRecord& record) {
   record.actuation = by_actuator(model, json.at("actuation"));
   record.status = named(statuses, json.at("status").get<std::string>());
-  if (const Json& reached = json.at("reached"); !reached.is_null()) record.reached = reached.get<double>();
+  if (const Json& reached = json.at("reached"); !reached.is_null()) record.reached_share = reached.get<double>();
   record.remark = json.at("remark").get<std::string>();
   if (const Json& shape = json.at("shape_actuation"); !shape.is_null())
     record.shape_actuation = by_actuator(model, shape);
   if (model.formulation == Formulation::physical) record.shape_load_share = json.at("shape_load_share").get<double>();
-  for (const auto& [key, value] : {std::pair{"iterations", &record.iterations},
-                                   {"factorisations", &record.factorisations},
-                                   {"projections", &record.projections},
-                                   {"shifts", &record.shifts},
-                                   {"continuation_steps", &record.continuation_steps}})
-    *value = json.at(key).get<int>();
-  for (const auto& [key, value] : {std::pair{"residual", &record.residual},
-                                   {"step_mm", &record.step_mm},
-                                   {"tolerance_mm", &record.tolerance_mm},
-                                   {"estimated_error_mm", &record.estimated_error_mm},
-                                   {"seconds", &record.seconds},
-                                   {"energy", &record.energy}})
-    *value = number_or_nan(json.at(key));
-  record.inverted_elements = json.at("inverted_elements").get<std::size_t>();
+  counts_and_measures(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   for (const Marker& marker : model.markers) {
     const Json& p = json.at("markers").at(marker.name);
     record.markers.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());

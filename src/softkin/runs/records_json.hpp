@@ -1,11 +1,9 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <softkin/io/json_text.hpp>
 #include <softkin/runs/records.hpp>
 
 namespace softkin::runs {
-
-using Json = nlohmann::ordered_json;
 
 // A record as a step of a report, and back. What the model knows (names, units, which axes count) is not in the record.
 // from_json reads what to_json of the same model wrote. throws  Json::exception on anything else

@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <cmath>
 #include <softkin/core/text.hpp>
+#include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/run_tables.hpp>
 
@@ -6,7 +9,8 @@ namespace softkin::runs {
 
 namespace {
 
-void add_commands(const Model& model, Table& table) {
+/// Of a file.
+void add_command_columns(const Model& model, Table& table) {
   for (const Actuator& actuator : model.actuators) table.columns.push_back({command_column(actuator)});
 }
 
@@ -18,12 +22,80 @@ bool has_times(const MarkerPath& path) {
   return path.waypoints.front().time.has_value();
 }
 
+constexpr std::size_t longest_name = 24, longest_command_name = 16, load_width = 12;
+constexpr int value_decimals = 4;                         // of commands, ratios and loads
+constexpr int place_decimals = 4, friction_decimals = 6;  // of a walk
+
+Column fixed(const std::string& title, int decimals, std::size_t width) {
+  return {.title = title, .digits = decimals, .form = Column::Form::decimals, .width = width};
+}
+
+Column words(const std::string& title, std::size_t width = 0) {
+  return {.title = title, .width = width};
+}
+
+Column last(const std::string& title) {
+  return {.title = title, .left = true};
+}
+
+/// Where bytes of text hold so many characters.
+std::size_t offset_of(const std::string& text, std::size_t character) {
+  std::size_t at = 0;
+  while (at < text.size() && characters(text.substr(0, at + 1)) <= character) ++at;
+  return at;
+}
+
+/// A long name keeps its beginning and its end, which often is a number.
+std::string short_name(const std::string& name) {
+  const std::size_t length = characters(name);
+  if (length <= longest_name) return name;
+  const std::size_t half = longest_name / 2 - 1;
+  return name.substr(0, offset_of(name, half)) + ".." + name.substr(offset_of(name, length - half));
+}
+
+/// Of a column that holds the actuator's range.
+std::size_t width_of(const Actuator& actuator) {
+  return std::max(decimal(actuator.high, value_decimals).size(), decimal(actuator.low, value_decimals).size());
+}
+
+/// "pressure [kPa]" or "tension [N]" where the robot answers with one, else "".
+std::string load_title(const Model& model, const Actuator& actuator) {
+  if (model.formulation != Formulation::physical || actuator.kind == ActuatorKind::dea) return "";
+  return actuator.kind == ActuatorKind::cable ? "tension [N]" : "pressure [kPa]";
+}
+
+/// Six significant digits of the robot's size [mm].
+int length_decimals(const Model& model) {
+  return std::clamp(5 - static_cast<int>(std::floor(std::log10(model.diagonal_mm))), 1, 9);
+}
+
+std::size_t length_width(const Model& model) {
+  const double farthest = model.rest.cwiseAbs().maxCoeff() + model.diagonal_mm;
+  return std::max<std::size_t>(8, decimal(-farthest, length_decimals(model)).size());
+}
+
+std::string point_text(const Vec3& point, int decimals, std::size_t width) {
+  std::string text;
+  for (const double x : point) {
+    const std::string value = decimal(x, decimals);
+    text += (text.empty() ? "" : " ") + std::string(value.size() < width ? width - value.size() : 0, ' ') + value;
+  }
+  return text;
+}
+
+void add_commands(const Model& model, Table& table) {
+  for (const Actuator& actuator : model.actuators) {
+    const std::string name = characters(actuator.name) > longest_command_name ? "command" : actuator.name;
+    table.columns.push_back(fixed(name + " " + bracketed_unit(actuator), value_decimals, width_of(actuator)));
+  }
+}
+
 }  // namespace
 
 Table commands_table(const Model& model, const MarkerPath& path, const std::vector<WaypointRecord>& done) {
   Table table;
   if (has_times(path)) table.columns.push_back({"t_s"});
-  add_commands(model, table);
+  add_command_columns(model, table);
   for (const WaypointRecord& each : done) {
     Row row;
     if (each.time_s) row.emplace_back(*each.time_s);
@@ -76,7 +148,7 @@ Table walk_table(const Model& model, const std::vector<WalkRecord>& steps) {
   const bool timed = steps.front().time_s.has_value(), physical = model.formulation == Formulation::physical;
   Table table{{{"cycle"}}};
   if (timed) table.columns.push_back({"t_s"});
-  add_commands(model, table);
+  add_command_columns(model, table);
   for (std::size_t foot = 0; foot < 2; ++foot) table.columns.push_back({foot_name(model, foot) + "_mm"});
   table.columns.push_back({"travel_mm"});
   if (physical) table.columns.push_back({"friction_N"});
@@ -104,6 +176,78 @@ std::vector<double> strides(const std::vector<WalkRecord>& steps, std::size_t cy
     before = steps[i].walk.travel_mm;
   }
   return lengths;
+}
+
+Table table_of_steps(const Model& model, std::size_t steps) {
+  Table table{{words("step", std::to_string(steps).size())}};
+  const auto add = [&table](const Column& column) { table.columns.push_back(column); };
+  for (const Actuator& actuator : model.actuators) {
+    const std::size_t width = width_of(actuator);
+    add(fixed(short_name(actuator.name) + " " + bracketed_unit(actuator), value_decimals, width));
+    add(fixed("achieved [-]", value_decimals, width));
+    if (const std::string load = load_title(model, actuator); !load.empty())
+      add(fixed(load, value_decimals, load_width));
+    if (actuator.curve)
+      add(fixed("by curve [" + std::string(unit_of_input(actuator.curve->input) + 1) + "]", value_decimals,
+                load_width));
+  }
+  for (const Marker& marker : model.markers)
+    add(words(short_name(marker.name) + " x, y, z [mm]", 3 * length_width(model) + 2));
+  add(words("iterations"));
+  add(fixed("time [s]", 2, 8));
+  add(last("status"));
+  return table;
+}
+
+Row row_of(const Model& model, std::size_t step, const StepRecord& record) {
+  Row row{static_cast<std::int64_t>(step)};
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const ActuatorRecord& of = record.actuators[a];
+    row.insert(row.end(), {of.requested, of.achieved});
+    if (!load_title(model, actuator).empty()) row.push_back(of.slack ? Cell("slack") : Cell(of.multiplier));
+    if (actuator.curve) row.push_back(of.by_curve ? Cell(*of.by_curve) : Cell("outside"));
+  }
+  for (const Vec3& marker : record.markers)
+    row.emplace_back(point_text(marker, length_decimals(model), length_width(model)));
+  row.insert(row.end(), {std::int64_t{record.iterations}, record.seconds, name_of(record.status)});
+  return row;
+}
+
+Table table_of_waypoints(const Model& model, std::size_t waypoints) {
+  Table table{{words("waypoint", std::to_string(waypoints).size())}};
+  add_commands(model, table);
+  table.columns.insert(
+      table.columns.end(),
+      {{.title = "error [mm]", .digits = 2}, words("equilibria"), fixed("time [s]", 2, 8), last("status")});
+  return table;
+}
+
+Row row_of(std::size_t waypoint, const WaypointRecord& record) {
+  Row row{static_cast<std::int64_t>(waypoint)};
+  add_values(record.actuation, row);
+  row.insert(row.end(), {record.error_mm, std::int64_t{record.equilibria}, record.seconds, name_of(record.end)});
+  return row;
+}
+
+Table table_of_walk(const Model& model) {
+  Table table{{words("cycle"), {.title = "t [s]", .width = 7}}};
+  add_commands(model, table);
+  const auto add = [&table](const Column& column) { table.columns.push_back(column); };
+  for (std::size_t foot = 0; foot < 2; ++foot) add(fixed(foot_name(model, foot) + " [mm]", place_decimals, 10));
+  add(fixed("travel [mm]", place_decimals, 10));
+  if (model.formulation == Formulation::physical) add(fixed("friction [N]", friction_decimals, 12));
+  add(last("slides"));
+  return table;
+}
+
+Row row_of(const Model& model, const WalkRecord& record) {
+  Row row{static_cast<std::int64_t>(record.cycle), record.time_s ? Cell(*record.time_s) : Cell("-")};
+  add_values(record.actuation, row);
+  row.insert(row.end(), {record.walk.rear_mm, record.walk.front_mm, record.walk.travel_mm});
+  if (model.formulation == Formulation::physical) row.emplace_back(record.walk.friction_N);
+  row.emplace_back(sliding_text(model, record.walk.sliding));
+  return row;
 }
 
 }  // namespace softkin::runs

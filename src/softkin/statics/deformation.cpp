@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <softkin/model/compile/cavity.hpp>
 #include <softkin/model/mesh/quadratic_tetrahedron.hpp>
 #include <softkin/statics/deformation.hpp>
 

@@ -1,6 +1,9 @@
+#include <cmath>
 #include <cstdio>
+#include <set>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/plot/svg_canvas.hpp>
+#include <utility>
 
 namespace softkin {
 
@@ -174,6 +177,31 @@ std::string svg_fitted(const std::string& text, double size, double width) {
     if (!beginning.empty()) beginning.pop_back();
   }
   return beginning + "...";
+}
+
+std::vector<SvgPoint> apart_along(const std::vector<SvgPoint>& points, double distance) {
+  std::vector<SvgPoint> kept;
+  for (const SvgPoint& point : points)
+    if (kept.empty() || std::hypot(point.x - kept.back().x, point.y - kept.back().y) >= distance) kept.push_back(point);
+  return kept;
+}
+
+std::vector<SvgPoint> thinned_line(const std::vector<SvgPoint>& points) {
+  constexpr double unseen = 0.25;  // [pixel]
+  std::vector<SvgPoint> kept = apart_along(points, unseen);
+  if (points.empty()) return kept;
+  if (kept.size() == 1 || kept.back().x != points.back().x || kept.back().y != points.back().y)
+    kept.push_back(points.back());
+  return kept;
+}
+
+std::vector<SvgPoint> apart_on_grid(const std::vector<SvgPoint>& points) {
+  constexpr double cell = 0.5;  // [pixel]
+  std::set<std::pair<double, double>> taken;
+  std::vector<SvgPoint> kept;
+  for (const SvgPoint& point : points)
+    if (taken.emplace(std::floor(point.x / cell), std::floor(point.y / cell)).second) kept.push_back(point);
+  return kept;
 }
 
 }  // namespace softkin

@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <softkin/io/plot/svg_canvas.hpp>
 #include <softkin/io/plot/svg_panel.hpp>
-#include <softkin/io/plot/svg_points.hpp>
 
 namespace softkin {
 
@@ -190,8 +190,7 @@ void SvgPanel::draw_title(SvgCanvas& canvas, SvgPoint corner) const {
                svg_fitted(panel_.title, title_size * svg_bold, frame_width()),
                title_size,
                SvgAnchor::middle,
-               true,
-               false});
+               true});
 }
 
 void SvgPanel::draw_legend(SvgCanvas& canvas, SvgPoint corner) const {
@@ -204,12 +203,7 @@ void SvgPanel::draw_legend(SvgCanvas& canvas, SvgPoint corner) const {
     stroke = {stroke.color, 1.2, "", paper};
     if (series.marks)
       canvas.marks({{x + sample_length / 2, y}}, style_of(entry.series) % svg_mark_shapes, series.mark_radius, stroke);
-    canvas.text({{x + sample_length + sample_gap, y + 0.35 * text_size},
-                 entry.text,
-                 text_size,
-                 SvgAnchor::start,
-                 false,
-                 false});
+    canvas.text({{x + sample_length + sample_gap, y + 0.35 * text_size}, entry.text, text_size});
   }
   canvas.close();
 }
@@ -222,33 +216,21 @@ void SvgPanel::draw_axes(SvgCanvas& canvas, SvgPoint low, SvgPoint high) const {
     const double at = x.at(x_ticks_.values[i]);
     canvas.line({at, low.y}, {at, high.y}, faint);
     canvas.line({at, high.y}, {at, high.y + tick_length}, black);
-    canvas.text({{at, high.y + tick_length + 2 + 0.85 * tick_size},
-                 x_ticks_.labels[i],
-                 tick_size,
-                 SvgAnchor::middle,
-                 false,
-                 false});
+    canvas.text({{at, high.y + tick_length + 2 + 0.85 * tick_size}, x_ticks_.labels[i], tick_size, SvgAnchor::middle});
   }
   const double below = high.y + tick_length + 2 + tick_size;
   if (!panel_.x.label.empty())
     canvas.text({{(low.x + high.x) / 2, below + text_size + 2},
                  svg_fitted(panel_.x.label, text_size, frame_width()),
                  text_size,
-                 SvgAnchor::middle,
-                 false,
-                 false});
+                 SvgAnchor::middle});
   canvas.close();
   canvas.open("y-axis");
   for (std::size_t i = 0; i < y_ticks_.values.size(); ++i) {
     const double at = y.at(y_ticks_.values[i]);
     canvas.line({low.x, at}, {high.x, at}, faint);
     canvas.line({low.x - tick_length, at}, {low.x, at}, black);
-    canvas.text({{low.x - tick_length - 3, at + 0.35 * tick_size},
-                 y_ticks_.labels[i],
-                 tick_size,
-                 SvgAnchor::end,
-                 false,
-                 false});
+    canvas.text({{low.x - tick_length - 3, at + 0.35 * tick_size}, y_ticks_.labels[i], tick_size, SvgAnchor::end});
   }
   if (!panel_.y.label.empty())
     canvas.text({{low.x - left_ + text_size, (low.y + high.y) / 2},

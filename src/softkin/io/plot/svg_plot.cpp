@@ -104,8 +104,7 @@ std::string svg_text(const Plot& plot) {
                  svg_fitted(plot.title, title_size * svg_bold, plot.width - 2 * margin),
                  title_size,
                  SvgAnchor::middle,
-                 true,
-                 false});
+                 true});
     y += title_height;
   }
   int number = 0;

@@ -2,7 +2,7 @@
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/hardware.hpp>
 #include <softkin/io/scene/parts.hpp>
-#include <softkin/io/scene/values.hpp>
+#include <softkin/io/scene/tree.hpp>
 
 namespace softkin {
 
@@ -13,18 +13,6 @@ using scene::Map;
 using scene::Node;
 
 const std::string axis_letters = "XYZABCUVW";
-
-void check_version(const Node& root) {
-  if (root.kind != Node::Kind::map)
-    scene::fail(root, "a hardware file must be a map that begins with 'softkin_hardware: 1'");
-  for (const Node::Entry& entry : root.entries) {
-    if (entry.key != "softkin_hardware") continue;
-    if (scene::integer(*entry.value) != 1)
-      scene::fail(*entry.value, "this version of softkin reads hardware of version 1, not " + entry.value->text);
-    return;
-  }
-  scene::fail(root, "a hardware file needs key 'softkin_hardware', its version: 'softkin_hardware: 1'");
-}
 
 template <class Value, class Read>
 std::optional<Value> optional(const Map& map, const char* key, const Read& read) {
@@ -120,7 +108,9 @@ void check_families(const Node& node, const std::vector<TendonSpec>& tendons) {
 
 HardwareSpec read_hardware(const std::filesystem::path& path) {
   const auto root = scene::parse_yaml(read_file(path), path.string());
-  check_version(*root);
+  scene::check_version(*root, "softkin_hardware", "hardware",
+                       "a hardware file must be a map that begins with 'softkin_hardware: 1'",
+                       "a hardware file needs key 'softkin_hardware', its version: 'softkin_hardware: 1'");
   const Map map(*root, {"softkin_hardware", "board", "tendons", "chambers"});
   HardwareSpec spec;
   spec.file = path.string();

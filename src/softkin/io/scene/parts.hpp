@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <softkin/io/scene/scene.hpp>
-#include <softkin/io/scene/values.hpp>
+#include <softkin/io/scene/tree.hpp>
 
 namespace softkin::scene {
 

@@ -1,9 +1,16 @@
 #include <algorithm>
 #include <array>
+#include <set>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
 #include <softkin/io/mesh/length_unit.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/stl.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
 #include <softkin/io/scene/parts.hpp>
 #include <softkin/io/scene/scene.hpp>
+#include <softkin/io/table/actuator_curve_file.hpp>
 #include <string>
 #include <variant>
 
@@ -12,17 +19,6 @@ namespace softkin {
 namespace scene {
 
 namespace {
-
-void check_version(const Node& root) {
-  if (root.kind != Node::Kind::map) fail(root, "a scene must be a map that begins with 'softkin: 1'");
-  for (const Node::Entry& entry : root.entries) {
-    if (entry.key != "softkin") continue;
-    if (integer(*entry.value) != 1)
-      fail(*entry.value, "this version of softkin reads scenes of version 1, not " + entry.value->text);
-    return;
-  }
-  fail(root, "the scene needs key 'softkin', its version: 'softkin: 1'");
-}
 
 double read_length_unit(const Node& node) {
   const Map map(node, {"length"});
@@ -113,26 +109,21 @@ FootSpec read_foot(const Node& node) {
 }
 
 void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
+  const auto each = [&map](const char* key, const auto& read) {
+    if (const Node* node = map.find(key))
+      for (const auto& item : list(*node)) read(*item);
+  };
+  Names forces, markers;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
-  if (const Node* node = map.find("materials"))
-    for (const auto& item : list(*node)) spec.materials.push_back(read_material(*item));
+  each("materials", [&](const Node& item) { spec.materials.push_back(read_material(item)); });
   spec.formulation = read_formulation(map, spec.materials);
   if (const Node* node = map.find("gravity")) spec.gravity = read_vector(*node);
-  if (const Node* node = map.find("void"))
-    for (const auto& item : list(*node)) spec.voids.push_back(read_region_name(*item));
-  if (const Node* node = map.find("fixed"))
-    for (const auto& item : list(*node)) spec.fixed.push_back(read_fixed(context, *item));
-  if (const Node* node = map.find("rigid"))
-    for (const auto& item : list(*node)) spec.rigid.push_back(read_rigid(context, *item, spec.rigid.size() + 1));
+  each("void", [&](const Node& item) { spec.voids.push_back(read_region_name(item)); });
+  each("fixed", [&](const Node& item) { spec.fixed.push_back(read_fixed(context, item)); });
+  each("rigid", [&](const Node& item) { spec.rigid.push_back(read_rigid(context, item, spec.rigid.size() + 1)); });
   if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
-  if (const Node* node = map.find("forces")) {
-    Names names;
-    for (const auto& item : list(*node)) spec.forces.push_back(read_force(context, *item, names));
-  }
-  if (const Node* node = map.find("markers")) {
-    Names names;
-    for (const auto& item : list(*node)) spec.markers.push_back(read_marker(context, *item, names));
-  }
+  each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
+  each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
   if (const Node* node = map.find("feet"))
     for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
 }
@@ -143,7 +134,8 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
 
 RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name, const SceneFiles& files) {
   const auto root = scene::parse_yaml(yaml_text, file_name);
-  scene::check_version(*root);
+  scene::check_version(*root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
+                       "the scene needs key 'softkin', its version: 'softkin: 1'");
   const scene::Map map(*root, {"softkin", "units", "mesh", "formulation", "regions", "materials", "void", "fixed",
                                "rigid", "actuators", "gravity", "forces", "markers", "feet"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
@@ -154,6 +146,74 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
   context.vertices = spec.mesh.vertices.rows();
   context.tetrahedra = static_cast<std::int64_t>(spec.mesh.tetrahedra.size());
   scene::read_parts(context, map, spec);
+  return spec;
+}
+
+RobotSpec read_scene(const std::filesystem::path& path) {
+  return parse_scene(read_file(path), path.string(), {read_mesh, read_stl, read_sidecar});
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+RobotSpec read_scene_and(std::vector<fs::path>& inputs, const std::string& scene) {
+  const auto noting = [&inputs](auto read) {
+    return [&inputs, read](const fs::path& path) {
+      inputs.push_back(path);
+      return read(path);
+    };
+  };
+  return parse_scene(read_file(scene), scene,
+                     {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve)});
+}
+
+bool parse_vector(const std::string& text, Vec3& vector) {
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos || !parse_real(text.substr(begin, end - begin), vector[axis])) return false;
+    begin = end + 1;
+  }
+  return true;
+}
+
+ForceSpec* find_force(RobotSpec& spec, const std::string& name) {
+  for (ForceSpec& force : spec.forces)
+    if (force.name == name) return &force;
+  return nullptr;
+}
+
+std::string unknown_force(const RobotSpec& spec, const std::string& name) {
+  std::vector<std::string> names;
+  for (const ForceSpec& force : spec.forces) names.push_back(force.name);
+  return "no force " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
+}
+
+void change_forces(RobotSpec& spec, const std::vector<std::string>& forces) {
+  std::set<std::string> changed;
+  for (const std::string& force : forces) {
+    const auto refuse = [&](const std::string& why) { throw InvalidInput("--force " + excerpt(force) + ": " + why); };
+    if (spec.formulation != Formulation::physical)
+      refuse("the target-shape formulation knows no forces; the physical one does (--formulation physical)");
+    const std::size_t equals = force.find('=');
+    if (equals == std::string::npos) refuse("expected NAME=FX,FY,FZ in N, for example --force payload=0,0,-0.5");
+    const std::string name = force.substr(0, equals), text = force.substr(equals + 1);
+    ForceSpec* found = find_force(spec, name);
+    if (found == nullptr) refuse(unknown_force(spec, name));
+    if (!parse_vector(text, found->force))
+      refuse("the force must be three finite numbers in N, FX,FY,FZ, not " + excerpt(text));
+    if (!changed.insert(name).second) refuse("force '" + name + "' is given twice");
+  }
+}
+
+}  // namespace
+
+RobotSpec read_asked_scene(const AskedScene& asked, std::vector<fs::path>& inputs) {
+  RobotSpec spec = read_scene_and(inputs, asked.scene);
+  if (asked.formulation == "physical") spec.formulation = Formulation::physical;
+  if (asked.formulation == "target-shape") spec.formulation = Formulation::target_shape;
+  change_forces(spec, asked.forces);
   return spec;
 }
 

@@ -6,6 +6,7 @@
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
+#include <vector>
 
 namespace softkin {
 
@@ -25,5 +26,16 @@ struct SceneFiles {
 /// folder. An InvalidInput of `files` is passed on with the line of the scene that names the file.
 [[nodiscard]] RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name,
                                     const SceneFiles& files);
+
+/// A scene, and what the user changes in it.
+struct AskedScene {
+  std::string scene;                // file
+  std::string formulation;          // "physical" or "target-shape"; empty: the scene's
+  std::vector<std::string> forces;  // NAME=FX,FY,FZ [N]
+};
+
+/// inputs  the files that the scene names are added
+/// throws  InvalidInput naming --force, or file and line
+[[nodiscard]] RobotSpec read_asked_scene(const AskedScene& asked, std::vector<std::filesystem::path>& inputs);
 
 }  // namespace softkin

@@ -1,8 +1,8 @@
-#include <charconv>
 #include <cmath>
+#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
-#include <softkin/io/scene/values.hpp>
+#include <softkin/io/scene/tree.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <sstream>
 #include <utility>
@@ -14,17 +14,6 @@ namespace {
 using namespace scene;
 
 constexpr const char* input_names[] = {"gauge_pressure_kPa", "voltage_kV"};
-
-void check_version(const Node& root) {
-  if (root.kind == Node::Kind::map)
-    for (const Node::Entry& entry : root.entries)
-      if (entry.key == "softkin_curve") {
-        if (integer(*entry.value) != 1)
-          fail(*entry.value, "this version of softkin reads curves of version 1, not " + entry.value->text);
-        return;
-      }
-  fail(root, "a curve file is a map that begins with 'softkin_curve: 1'");
-}
 
 CurveBranch read_branch(const Node& node, CurveInput input) {
   std::vector<double> x, y, spread;
@@ -49,11 +38,6 @@ CurveBranch read_branch(const Node& node, CurveInput input) {
   }
 }
 
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 std::string branch_text(const char* name, const CurveBranch& branch) {
   std::string text = std::string(name) + ":\n";
   for (std::size_t i = 0; i < branch.ratio.x().size(); ++i) {
@@ -68,7 +52,8 @@ std::string branch_text(const char* name, const CurveBranch& branch) {
 
 ActuatorCurve read_actuator_curve(const std::filesystem::path& path) {
   const auto root = parse_yaml(read_file(path), path.string());
-  check_version(*root);
+  const std::string begin = "a curve file is a map that begins with 'softkin_curve: 1'";
+  check_version(*root, "softkin_curve", "curves", begin, begin);
   const Map map(*root, {"softkin_curve", "input", "atmosphere_kPa", "end", "loading", "unloading"});
   const auto input = static_cast<CurveInput>(choice(map.at("input"), {input_names[0], input_names[1]}));
   ActuatorCurve curve{path.string(), input, 100, "", read_branch(map.at("loading"), input), std::nullopt};

@@ -4,13 +4,133 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/table/actuation_path.hpp>
+#include <softkin/io/plain_text.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/csv.hpp>
+#include <softkin/model/names.hpp>
+#include <utility>
 
 namespace softkin {
 
 namespace {
+
+constexpr const char* time_column = "t_s";
+constexpr Index time_target = -1;
+
+/// The end of a column's name that holds inputs of an actuator's curve: "kPa" of air_kPa; empty: it holds none.
+std::string curve_unit_of(const Actuator& actuator, const std::string& column) {
+  for (const std::string& unit : curve_units(actuator))
+    if (column == actuator.name + "_" + unit) return unit;
+  return "";
+}
+
+}  // namespace
+
+std::optional<Index> actuator_of_column(const Model& model, const std::string& column) {
+  if (const std::optional<Index> a = find_actuator(model, column)) return a;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (column == command_column(model.actuators[a]) || !curve_unit_of(model.actuators[a], column).empty())
+      return static_cast<Index>(a);
+  return std::nullopt;
+}
+
+namespace {
+
+std::string curve_columns(const Actuator& actuator) {
+  std::string text;
+  for (const std::string& unit : curve_units(actuator))
+    text += ", or by its curve '" + actuator.name + "_" + unit + "'";
+  return text;
+}
+
+/// Where a column names an actuator with a unit that it does not take, says so; else what an unknown name says.
+std::string unknown_column(const Model& model, const std::string& column) {
+  const std::size_t underscore = column.rfind('_');
+  const std::optional<Index> a =
+      underscore == std::string::npos ? std::nullopt : find_actuator(model, column.substr(0, underscore));
+  if (!a) return unknown_actuator(model, column) + "; a time is column t_s [s]";
+  const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
+  return "actuator '" + actuator.name + "' takes a " + command_name(actuator) +
+         (command_unit(actuator).empty()
+              ? " without unit: its column is '" + actuator.name + "'" + curve_columns(actuator)
+              : ": its column is '" + actuator.name + "' or '" + command_column(actuator) + "'");
+}
+
+std::vector<Index> column_targets(const Model& model, const CsvTable& table, const Settings& settings) {
+  const std::string& file = table.file;
+  std::vector<Index> targets;
+  for (const std::string& column : table.columns) {
+    const std::optional<Index> a = actuator_of_column(model, column);
+    if (!a && column != time_column)
+      throw InvalidInput({file}, "column " + excerpt(column) + ": " + unknown_column(model, column));
+    if (a && settings[static_cast<std::size_t>(*a)])
+      throw InvalidInput("--set " + model.actuators[static_cast<std::size_t>(*a)].name + ": the path " + file +
+                         " has a column for this actuator");
+    if (a && std::find(targets.begin(), targets.end(), *a) != targets.end())
+      throw InvalidInput({file}, "column " + excerpt(column) + ": another column is of the same actuator");
+    targets.push_back(a.value_or(time_target));
+  }
+  if (std::all_of(targets.begin(), targets.end(), [](Index target) { return target == time_target; }))
+    throw InvalidInput({file}, "no column names an actuator, so there is nothing to follow");
+  return targets;
+}
+
+class PathReader {
+ public:
+  PathReader(const Model& model, const CsvTable& table, const Settings& settings)
+      : model_(model),
+        table_(table),
+        targets_(column_targets(model, table, settings)),
+        start_{with_settings(model.rest_actuation(), settings), std::nullopt, 0} {}
+
+  [[nodiscard]] std::vector<ActuationStep> steps() const {
+    std::vector<ActuationStep> steps;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      steps.push_back(step(row));
+      if (row > 0 && steps[row].time && *steps[row].time <= *steps[row - 1].time)
+        table_.fail(row, std::string(time_column) + " must increase from row to row, but " +
+                             number(*steps[row].time, 12) + " s follows " + number(*steps[row - 1].time, 12) + " s");
+    }
+    return steps;
+  }
+
+ private:
+  /// What a cell asks of its actuator; a pressure or voltage becomes the ratio of the actuator's curve.
+  [[nodiscard]] double command(std::size_t row, std::size_t column, const Actuator& actuator) const {
+    const double given = table_.rows[row][column];
+    const std::string unit =
+        table_.columns[column] == actuator.name ? "" : curve_unit_of(actuator, table_.columns[column]);
+    if (unit.empty()) return given;
+    try {
+      return ratio_of(actuator, {unit == "kPa_abs" ? given - actuator.curve->atmosphere_kPa : given, actuator.branch});
+    } catch (const InvalidInput& error) {
+      table_.fail(row, "column '" + table_.columns[column] + "': " + error.what());
+    }
+  }
+
+  [[nodiscard]] ActuationStep step(std::size_t row) const {
+    ActuationStep step = start_;
+    step.line = table_.lines[row];
+    for (std::size_t column = 0; column < targets_.size(); ++column) {
+      if (targets_[column] == time_target) {
+        step.time = table_.rows[row][column];
+        continue;
+      }
+      const Actuator& actuator = model_.actuators[static_cast<std::size_t>(targets_[column])];
+      const double value = command(row, column, actuator);
+      if (!(value >= actuator.low && value <= actuator.high))
+        table_.fail(row, "column '" + table_.columns[column] + "': " + number(value, 12) + " is outside " +
+                             range_text(actuator));
+      step.actuation[targets_[column]] = value;
+    }
+    return step;
+  }
+
+  const Model& model_;
+  const CsvTable& table_;
+  std::vector<Index> targets_;
+  ActuationStep start_;
+};
 
 using Json = nlohmann::json;
 
@@ -32,8 +152,7 @@ class Reader {
     take_pressures();
     for (const std::string& column : table_.columns)
       if (const auto a = actuator_of_column(model_, column)) commands_.commanded[static_cast<std::size_t>(*a)] = true;
-    const std::vector<ActuationStep> steps =
-        actuation_path(model_, commands_.file, table_, Settings(model_.actuators.size()));
+    const std::vector<ActuationStep> steps = PathReader(model_, table_, Settings(model_.actuators.size())).steps();
     for (std::size_t row = 0; row < steps.size(); ++row) {
       const Eigen::VectorXd pressures =
           pressures_.empty() ? Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size())) : pressures_[row];
@@ -120,6 +239,11 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<ActuationStep> read_actuation_path(const Model& model, const std::string& file, const Settings& settings) {
+  const CsvTable table = read_csv(file);
+  return PathReader(model, table, settings).steps();
+}
 
 Commands read_commands(const Model& model, const std::string& file, const std::string& report) {
   return Reader(model, file).read(report);

@@ -1,10 +1,32 @@
 #pragma once
 
-#include <softkin/model/commands.hpp>
+#include <cstddef>
+#include <optional>
+#include <softkin/io/table/settings.hpp>
+#include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/model/paths.hpp>
 #include <string>
+#include <vector>
 
 namespace softkin {
+
+/// One actuation to solve for.
+struct ActuationStep {
+  Actuation actuation;
+  std::optional<double> time{};  // [s], where the path has times
+  std::size_t line = 0;          // of the path's file
+};
+
+/// A table of commands: a column per actuator (air, air_kPa, or by its curve air_kPa_abs, skin_kV) and t_s, a row per
+/// step. Actuators without a column stay at their setting, or at rest.
+///
+/// throws  InvalidInput naming file and line, or the setting of an actuator that has a column too
+[[nodiscard]] std::vector<ActuationStep> read_actuation_path(const Model& model, const std::string& file,
+                                                             const Settings& settings);
+
+/// Whose command a column of such a table holds: the actuator's that it names, with the unit of its load if it has one.
+[[nodiscard]] std::optional<Index> actuator_of_column(const Model& model, const std::string& column);
 
 /// Reads a file of commands, and the pressures of chambers that are commanded by volume: from columns air_pressure_kPa,
 /// or from the report of the run that made the commands (empty: none).

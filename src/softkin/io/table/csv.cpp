@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <softkin/core/error.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/table/csv.hpp>
 #include <string_view>
+#include <utility>
 
 namespace softkin {
 
@@ -74,6 +78,13 @@ std::vector<double> read_row(const Scanner& scanner, std::string_view line, cons
   return row;
 }
 
+constexpr double most_runs = 1e6;
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 }  // namespace
 
 CsvTable read_csv(const std::filesystem::path& path) {
@@ -81,6 +92,7 @@ CsvTable read_csv(const std::filesystem::path& path) {
   std::string_view line;
   if (!next_line(scanner, line)) throw InvalidInput({path.string()}, "has no header");
   CsvTable table;
+  table.file = path.string();
   table.columns = read_header(scanner, line);
   table.header_line = scanner.here().line;
   while (next_line(scanner, line)) {
@@ -89,6 +101,77 @@ CsvTable read_csv(const std::filesystem::path& path) {
   }
   if (table.rows.empty()) scanner.fail("no row follows the header");
   return table;
+}
+
+std::optional<std::size_t> CsvTable::find(const std::string& column) const {
+  const auto found = std::find(columns.begin(), columns.end(), column);
+  if (found == columns.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+void CsvTable::fail(std::size_t row, const std::string& message) const {
+  throw InvalidInput({file, lines[row]}, message);
+}
+
+void CsvTable::fail_header(const std::string& message) const {
+  throw InvalidInput({file, header_line}, message);
+}
+
+RunTable::RunTable(const std::filesystem::path& path, const std::vector<std::string>& known,
+                   const std::vector<std::pair<std::string, std::string>>& units)
+    : CsvTable(read_csv(path)) {
+  std::vector<std::string> names = known;
+  names.insert(names.end(), {"run", "t_s"});
+  for (const std::string& column : std::exchange(columns, {})) {
+    const std::string name = lower(column);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      for (const auto& [begin, unit] : units)
+        if (name.starts_with(begin)) fail_header("column " + excerpt(column) + ": " + unit);
+      fail_header("unknown column " + excerpt(column) + suggest_name(name, names));
+    }
+    if (find(name)) fail_header("column " + excerpt(column) + " appears twice in the header");
+    columns.push_back(name);
+  }
+  group();
+  check_times();
+}
+
+void RunTable::group() {
+  std::vector<double> numbers;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const double number = find("run") ? cell(row, "run") : 1;
+    if (number != std::round(number) || std::abs(number) > most_runs)
+      fail(row, "column 'run' must hold whole numbers, not " + std::to_string(number));
+    const auto found = std::find(numbers.begin(), numbers.end(), number);
+    if (found == numbers.end()) {
+      numbers.push_back(number);
+      runs.push_back({"run " + std::to_string(static_cast<long>(number)), {row}});
+      continue;
+    }
+    Run& run = runs[static_cast<std::size_t>(found - numbers.begin())];
+    if (run.rows.back() + 1 != row) fail(row, run.name + " goes on here after another run: keep its rows together");
+    run.rows.push_back(row);
+  }
+}
+
+void RunTable::check_times() const {
+  if (!find("t_s")) return;
+  for (const Run& run : runs)
+    for (std::size_t i = 1; i < run.rows.size(); ++i)
+      if (!(cell(run.rows[i], "t_s") > cell(run.rows[i - 1], "t_s")))
+        fail(run.rows[i], "column 't_s': times must ascend within " + run.name);
+}
+
+std::string RunTable::one_of(const std::vector<std::string>& choices, const std::string& what) const {
+  std::string found, names;
+  for (const std::string& column : choices) {
+    names += (names.empty() ? "" : ", ") + column;
+    if (!find(column)) continue;
+    if (!found.empty()) fail_header("both '" + found + "' and '" + column + "' give " + what + ": which one counts?");
+    found = column;
+  }
+  if (found.empty()) fail_header("no column gives " + what + ": " + names);
+  return found;
 }
 
 }  // namespace softkin

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <softkin/model/marker_path.hpp>
+#include <softkin/model/measurements.hpp>
+#include <softkin/model/paths.hpp>
 #include <string>
 
 namespace softkin {
@@ -18,5 +19,15 @@ namespace softkin {
 /// What looks wrong about a path beside this robot, a sentence each: coordinates 100 times its size, or such as would
 /// fit in metres.
 [[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const MarkerPath& path);
+
+/// Reads the track of a marker, CSV: x_mm, y_mm, z_mm (at least two of them), or tip_x_mm, ... of a marker `tip`; t_s.
+/// Columns without the form of a coordinate or a time are not read.
+///
+/// marker     whose; empty: of x_mm, y_mm, z_mm, else of the only marker that the columns name
+/// parameter  column that ascends along the track; empty: t_s where there is one
+/// throws     InvalidInput naming file, line and column: coordinates in another unit than mm or without one, times not
+///            in s, unknown or ambiguous markers, fewer than two coordinates, a parameter that does not ascend
+[[nodiscard]] Track read_track(const std::filesystem::path& path, const std::string& marker = "",
+                               const std::string& parameter = "");
 
 }  // namespace softkin

@@ -3,7 +3,7 @@
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/table/settings.hpp>
-#include <softkin/model/curve_command.hpp>
+#include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
 
 namespace softkin {
@@ -54,24 +54,6 @@ double ratio_of(const Actuator& actuator, const CurveSetting& setting) {
   return ratio;
 }
 
-std::string curve_hint(const Actuator& actuator) {
-  if (!actuator.curve) return "";
-  const bool dea = actuator.kind == ActuatorKind::dea;
-  return dea ? "; or a voltage by its curve, such as 2.5kV" +
-                   std::string(actuator.curve->unloading ? " or 2.5kV:unloading" : "")
-             : "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs" +
-                   std::string(actuator.curve->unloading ? " or 50kPa:unloading" : "");
-}
-
-std::string missing_curve(const Actuator& actuator, const std::string& text) {
-  if (actuator.curve || actuator.control != Control::ratio) return "";
-  if (actuator.kind == ActuatorKind::pneumatic && (text.ends_with("kPa") || text.ends_with("kPa_abs")))
-    return "; a pressure needs a curve in the scene (softkin calibrate pressure)";
-  if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
-    return "; a voltage needs a curve in the scene (softkin calibrate dea)";
-  return "";
-}
-
 std::vector<std::string> curve_units(const Actuator& actuator) {
   if (!actuator.curve) return {};
   if (actuator.curve->input == CurveInput::voltage) return {"kV"};
@@ -100,6 +82,36 @@ std::string curve_text(const Actuator& actuator) {
          input_text(*actuator.curve, inputs.back()) + ", " + branch_name(actuator.branch) + " branch";
 }
 
+std::string unknown_actuator(const Model& model, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Actuator& actuator : model.actuators) names.push_back(actuator.name);
+  return "no actuator " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
+}
+
+namespace {
+
+/// What may stand in place of a ratio; "" without a curve.
+std::string curve_hint(const Actuator& actuator) {
+  if (!actuator.curve) return "";
+  const bool dea = actuator.kind == ActuatorKind::dea;
+  return dea ? "; or a voltage by its curve, such as 2.5kV" +
+                   std::string(actuator.curve->unloading ? " or 2.5kV:unloading" : "")
+             : "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs" +
+                   std::string(actuator.curve->unloading ? " or 50kPa:unloading" : "");
+}
+
+/// Where to get a curve, for a pressure or voltage given to an actuator that has none; else "".
+std::string missing_curve(const Actuator& actuator, const std::string& text) {
+  if (actuator.curve || actuator.control != Control::ratio) return "";
+  if (actuator.kind == ActuatorKind::pneumatic && (text.ends_with("kPa") || text.ends_with("kPa_abs")))
+    return "; a pressure needs a curve in the scene (softkin calibrate pressure)";
+  if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
+    return "; a voltage needs a curve in the scene (softkin calibrate dea)";
+  return "";
+}
+
+/// Reads a value as the user gives it: a ratio without unit, a load with or without its own, or the pressure or voltage
+/// of the actuator's curve with its unit, which becomes a ratio; false where it is none of these.
 bool parse_command(const Actuator& actuator, const std::string& text, double& value) {
   if (const auto setting = parse_curve_setting(actuator, text)) {
     value = ratio_of(actuator, *setting);
@@ -107,13 +119,11 @@ bool parse_command(const Actuator& actuator, const std::string& text, double& va
   }
   const std::string unit = command_unit(actuator);
   std::string digits = text;
-  if (!unit.empty() && text.ends_with(unit)) {
-    digits.resize(text.size() - unit.size());
-    if (digits.ends_with(' ')) digits.pop_back();
-  }
+  if (!unit.empty()) (void)take_end(digits, unit);
   return parse_real(digits, value);
 }
 
+/// "the pressure must be a finite number in kPa, such as 5 or 5kPa".
 std::string expected_command(const Actuator& actuator) {
   const std::string unit = command_unit(actuator);
   if (unit.empty()) return "the ratio to rest must be a finite number without unit" + curve_hint(actuator);
@@ -121,11 +131,7 @@ std::string expected_command(const Actuator& actuator) {
          unit;
 }
 
-std::string unknown_actuator(const Model& model, const std::string& name) {
-  std::vector<std::string> names;
-  for (const Actuator& actuator : model.actuators) names.push_back(actuator.name);
-  return "no actuator " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
-}
+}  // namespace
 
 Settings read_settings(const Model& model, const std::string& option, const std::vector<std::string>& settings) {
   Settings values(model.actuators.size());

@@ -22,12 +22,6 @@ struct CurveSetting {
 /// outside the actuator's range.
 [[nodiscard]] double ratio_of(const Actuator& actuator, const CurveSetting& setting);
 
-/// "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs or 50kPa:unloading"; "" without a curve.
-[[nodiscard]] std::string curve_hint(const Actuator& actuator);
-
-/// Where to get a curve, for a pressure or voltage given to an actuator that has none; else "".
-[[nodiscard]] std::string missing_curve(const Actuator& actuator, const std::string& text);
-
 /// Ends of the names of a path's columns that hold inputs: "kPa" and "kPa_abs", or "kV"; none without a curve.
 [[nodiscard]] std::vector<std::string> curve_units(const Actuator& actuator);
 
@@ -37,13 +31,6 @@ struct CurveSetting {
 
 /// "; curve F: 0 to 140 kPa (gauge), loading branch".
 [[nodiscard]] std::string curve_text(const Actuator& actuator);
-
-/// Reads a value as the user gives it: a ratio without unit, a load with or without its own, or the pressure or voltage
-/// of the actuator's curve with its unit, which becomes a ratio; false where it is none of these. Throws InvalidInput
-/// outside the curve.
-[[nodiscard]] bool parse_command(const Actuator& actuator, const std::string& text, double& value);
-/// "the pressure must be a finite number in kPa, such as 5 or 5kPa".
-[[nodiscard]] std::string expected_command(const Actuator& actuator);
 
 /// What an option such as --set asks for, per actuator.
 using Settings = std::vector<std::optional<double>>;

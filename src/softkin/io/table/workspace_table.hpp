@@ -1,7 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <softkin/model/workspace_sample.hpp>
+#include <softkin/model/equilibrium.hpp>
 #include <string>
 #include <utility>
 #include <vector>

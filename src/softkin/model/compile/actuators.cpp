@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <softkin/model/compile/cavity.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/triangle_geometry.hpp>
@@ -15,7 +14,7 @@ namespace {
 }
 
 std::string range_text(double low, double high) {
-  return "[" + number_text(low) + ", " + number_text(high) + "]";
+  return "[" + number(low) + ", " + number(high) + "]";
 }
 
 void check_load(const ActuatorSpec& spec, Formulation formulation) {
@@ -27,7 +26,7 @@ void check_load(const ActuatorSpec& spec, Formulation formulation) {
     refuse(spec, std::string("needs a range of its ") +
                      (cable ? "tension with 0 <= low <= high" : "pressure with low <= high") + ", not " +
                      range_text(spec.low, spec.high));
-  if (spec.rest != 0) refuse(spec, "cannot have a load at rest other than 0, not " + number_text(spec.rest));
+  if (spec.rest != 0) refuse(spec, "cannot have a load at rest other than 0, not " + number(spec.rest));
 }
 
 void check_ratio(const ActuatorSpec& spec) {
@@ -35,7 +34,7 @@ void check_ratio(const ActuatorSpec& spec) {
     refuse(spec, "needs a range with 0 < low <= high, not " + range_text(spec.low, spec.high));
   if (spec.kind == ActuatorKind::dea) {
     if (!(spec.rest >= spec.low && spec.rest <= spec.high))
-      refuse(spec, "has its rest ratio (prestretch) " + number_text(spec.rest) + " outside its range " +
+      refuse(spec, "has its rest ratio (prestretch) " + number(spec.rest) + " outside its range " +
                        range_text(spec.low, spec.high));
   } else if (spec.rest != 1) {
     refuse(spec, "cannot have a rest ratio other than 1: only a dea has a prestretch");
@@ -56,7 +55,7 @@ void check_curve(const ActuatorSpec& spec) {
 
 void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
   if (!(spec.weight > 0 && std::isfinite(spec.weight)))
-    refuse(spec, "needs a weight above 0, not " + number_text(spec.weight));
+    refuse(spec, "needs a weight above 0, not " + number(spec.weight));
   if (spec.control == Control::load)
     check_load(spec, formulation);
   else
@@ -123,7 +122,7 @@ const std::vector<Index>& chamber_region(const Compilation& c, const ActuatorSpe
   const Region& region = c.regions.find(*spec.region, spec.origin);
   if (!region.prisms.empty())
     refuse(spec, "is pneumatic and needs tetrahedra, but region '" + *spec.region + "' has " +
-                     count_text(region.prisms.size(), "prism"));
+                     counted(region.prisms.size(), "prism"));
   if (region.tetrahedra.empty()) refuse(spec, "has no element: region '" + *spec.region + "' holds no tetrahedron");
   return region.tetrahedra;
 }
@@ -158,7 +157,7 @@ void check_contact(Compilation& c, const ActuatorSpec& spec, const std::vector<C
       std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
   if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
   if (loose > 0)
-    c.model.notes.push_back(count_text(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
+    c.model.notes.push_back(counted(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
                             spec.name + "' " + (loose == 1 ? "belongs" : "belong") +
                             " to no element of the body and stay" + (loose == 1 ? "s" : "") + " in place.");
 }
@@ -206,7 +205,7 @@ void fill_membrane(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
   const Region& region = c.regions.find(*spec.region, spec.origin);
   if (!region.tetrahedra.empty())
     refuse(spec, "is a dea and needs prisms, but region '" + *spec.region + "' has " +
-                     count_text(region.tetrahedra.size(), "tetrahedron", "tetrahedra"));
+                     counted(region.tetrahedra.size(), "tetrahedron", "tetrahedra"));
   if (region.prisms.empty()) refuse(spec, "is a dea and needs prisms, but region '" + *spec.region + "' has none");
   take(c, spec, in_model(spec, region.prisms, c.prism_at, "prism"), model.prism_roles, c.prism_of, "prism",
        actuator.prisms);
@@ -221,7 +220,7 @@ void note_rest(Compilation& c, const Actuator& actuator) {
   c.model.notes.push_back("The range " + range_text(actuator.low, actuator.high) + " of actuator '" + actuator.name +
                           "' excludes its " + (actuator.control == Control::load ? "load at rest 0" : "rest ratio 1") +
                           ": where none is asked for, " +
-                          number_text(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
+                          number(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
 }
 
 }  // namespace
@@ -269,10 +268,10 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
     if (distance > 1e-6 * c.model.diagonal_mm) ++outside;
   }
   if (farthest > 0.1 * c.model.diagonal_mm)
-    refuse(spec, "has a surface of which a vertex is " + number_text(farthest) + " mm from the body");
+    refuse(spec, "has a surface of which a vertex is " + number(farthest) + " mm from the body");
   if (outside > 0)
-    c.model.notes.push_back(count_text(outside, "vertex", "vertices") + " of the surface of actuator '" + spec.name +
-                            "' " + (outside == 1 ? "is" : "are") + " up to " + number_text(farthest) +
+    c.model.notes.push_back(counted(outside, "vertex", "vertices") + " of the surface of actuator '" + spec.name +
+                            "' " + (outside == 1 ? "is" : "are") + " up to " + number(farthest) +
                             " mm outside the body and follow" + (outside == 1 ? "s" : "") + " its nearest elements.");
   if (c.spec.formulation != Formulation::physical) return;
   Points embedded(vertices.rows(), 3);

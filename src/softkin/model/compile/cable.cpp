@@ -88,8 +88,8 @@ void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec
 
 void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, Actuator& cable) {
   if (spec.apexes.size() != cable.gaps.size())
-    refuse(spec, "has " + count_text(cable.gaps.size(), "gap") + " but " +
-                     count_text(spec.apexes.size(), "apex", "apexes") + ": it needs one for each, in order");
+    refuse(spec, "has " + counted(cable.gaps.size(), "gap") + " but " + counted(spec.apexes.size(), "apex", "apexes") +
+                     ": it needs one for each, in order");
   for (std::size_t i = 0; i < cable.gaps.size(); ++i) {
     CableGap& gap = cable.gaps[i];
     const std::string what = "apexes[" + std::to_string(i) + "] of actuator '" + spec.name + "'";
@@ -117,9 +117,8 @@ void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
   for (const CableGap& gap : cable.gaps) inside -= (points[gap.segment + 1] - points[gap.segment]).norm();
   const double least = inside / cable.rest_measure;
   if (cable.low < least - 1e-12)
-    refuse(spec, "has a range that begins at " + number_text(cable.low) +
-                     ", but its pieces inside the body alone make " + number_text(least) + " of its length of " +
-                     number_text(cable.rest_measure) + " mm");
+    refuse(spec, "has a range that begins at " + number(cable.low) + ", but its pieces inside the body alone make " +
+                     number(least) + " of its length of " + number(cable.rest_measure) + " mm");
 }
 
 }  // namespace softkin

@@ -1,26 +1,23 @@
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <set>
-#include <softkin/model/compile/anchoring.hpp>
 #include <softkin/model/compile/parts.hpp>
 
 namespace softkin {
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value == 0 ? 0.0 : value);
-  return text;
-}
-
-std::string count_text(std::size_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
-}
-
-std::string point_text(const Vec3& point) {
-  return "(" + number_text(point[0]) + ", " + number_text(point[1]) + ", " + number_text(point[2]) + ")";
-}
-
 namespace {
+
+Index marker_of(const Model& model, const FootSpec& spec) {
+  for (std::size_t m = 0; m < model.markers.size(); ++m)
+    if (model.markers[m].name == spec.marker) return static_cast<Index>(m);
+  throw InvalidInput(spec.origin, "a foot stands at marker '" + spec.marker + "', which the robot does not have");
+}
+
+void check_friction(const FootSpec& spec, double friction, const char* direction) {
+  if (!(friction >= 0) || !std::isfinite(friction))
+    throw InvalidInput(spec.origin, "foot '" + spec.marker + "': the friction " + direction +
+                                        " must be 0 N or more, not " + number(friction));
+}
 
 EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& origin, const std::string& what) {
   if (!point.allFinite()) throw InvalidInput(origin, what + " is not finite");
@@ -32,7 +29,7 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& orig
   } catch (const InvalidInput& error) {
     throw InvalidInput(origin, what + ": " + error.what());
   }
-  const std::string distance = number_text(embedded.distance_mm);
+  const std::string distance = number(embedded.distance_mm);
   if (embedded.distance_mm > 0.1 * c.model.diagonal_mm)
     throw InvalidInput(origin, what + " is " + distance + " mm from the mesh");
   if (embedded.distance_mm > 1e-6 * c.model.diagonal_mm)
@@ -110,6 +107,21 @@ Model compile(const RobotSpec& spec) {
   compile_loads(c);
   check_anchoring(c.model, c.origin);
   return std::move(c.model);
+}
+
+void compile_feet(Compilation& c) {
+  const std::vector<FootSpec>& feet = c.spec.feet;
+  if (feet.empty()) return;
+  if (feet.size() != 2)
+    throw InvalidInput(feet.back().origin, "a robot walks on two feet, the rear one and the front one, not on " +
+                                               std::to_string(feet.size()));
+  for (const FootSpec& spec : feet) {
+    check_friction(spec, spec.forward, "forward");
+    check_friction(spec, spec.backward, "backward");
+    c.model.feet.push_back({marker_of(c.model, spec), spec.forward, spec.backward});
+  }
+  if (c.model.feet[0].marker == c.model.feet[1].marker)
+    throw InvalidInput(feet[1].origin, "both feet stand at marker '" + feet[1].marker + "'");
 }
 
 }  // namespace softkin

@@ -86,7 +86,7 @@ struct Refused {
 void refuse(const Compilation& c, const std::string& one, const std::string& many, const Refused& refused,
             const std::string& what) {
   if (refused.count == 0) return;
-  throw InvalidInput(c.origin, count_text(refused.count, one, many) + " " + what + "; the first is " + one + " " +
+  throw InvalidInput(c.origin, counted(refused.count, one, many) + " " + what + "; the first is " + one + " " +
                                    std::to_string(refused.first) + " (from 0)");
 }
 
@@ -179,7 +179,7 @@ void find_used_vertices(Compilation& c) {
   }
   model.diagonal_mm = bounds.diagonal().norm();
   if (unused > 0)
-    model.notes.push_back(count_text(unused, "vertex belongs", "vertices belong") + " to no element and stay" +
+    model.notes.push_back(counted(unused, "vertex belongs", "vertices belong") + " to no element and stay" +
                           (unused == 1 ? "s" : "") + " where they are.");
 }
 
@@ -234,7 +234,7 @@ void compile_elements(Compilation& c) {
     throw InvalidInput(c.origin, std::string("every element of the mesh is void") +
                                      (c.chamber_tetrahedra.empty() ? "" : " or belongs to a chamber"));
   if (reversed > 0)
-    model.notes.push_back(count_text(reversed, "element was", "elements were") +
+    model.notes.push_back(counted(reversed, "element was", "elements were") +
                           " reordered, because the order of the vertices made the volume negative.");
   if (!mesh.edge_nodes.empty()) {
     take_edge_nodes(c, model.tetrahedra, c.tetrahedron_of, model.edge_nodes, model.tetrahedron_volumes);

@@ -1,8 +1,11 @@
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <softkin/model/compile/embedding.hpp>
+#include <softkin/model/mesh/quadratic_triangle.hpp>
 #include <softkin/model/mesh/triangle_geometry.hpp>
 
 namespace softkin {
@@ -96,6 +99,60 @@ Barycentric drawn_inside(const Barycentric& l) {
   return least >= 0 ? l : Barycentric(middle + 0.25 / (0.25 - least) * (l - middle));
 }
 
+using VertexWeights = std::map<Index, double>;
+
+template <class Cell>
+void spread(const Cell& cell, double measure, VertexWeights& weights) {
+  for (const Index i : cell) weights[i] += measure / static_cast<double>(cell.size());
+}
+
+double area(const Points& vertices, const Triangle& t) {
+  const Vec3 a = vertex_at(vertices, t[0]);
+  return 0.5 * (vertex_at(vertices, t[1]) - a).cross(vertex_at(vertices, t[2]) - a).norm();
+}
+
+void spread_quad(const Points& vertices, const Quad& q, VertexWeights& weights) {
+  for (const Triangle& t :
+       {Triangle{q[0], q[1], q[2]}, Triangle{q[0], q[2], q[3]}, Triangle{q[0], q[1], q[3]}, Triangle{q[1], q[2], q[3]}})
+    spread(t, 0.5 * area(vertices, t), weights);
+}
+
+void spread_quadratic(const Mesh& mesh, Index tetrahedron, VertexWeights& weights) {
+  const Tetrahedron& corners = mesh.tetrahedra[tetrahedron];
+  const EdgeNodes& edge_nodes = mesh.edge_nodes[tetrahedron];
+  TetrahedronWeights integrals = shape_integrals(nodes_of(mesh.vertices, corners, edge_nodes));
+  if (integrals.sum() < 0) integrals = -integrals;  // in the file's order the corners may be reversed
+  for (int i = 0; i < 10; ++i) weights[i < 4 ? corners[i] : edge_nodes[i - 4]] += integrals[i];
+}
+
+void spread_quadratic(const Points& vertices, const Triangle& corners, const std::array<Index, 3>& edge_nodes,
+                      VertexWeights& weights) {
+  if (*std::min_element(edge_nodes.begin(), edge_nodes.end()) < 0)
+    throw InvalidInput("a triangle of the region is not a face of an element of order 2");
+  TriangleNodes nodes;
+  for (int i = 0; i < 3; ++i) {
+    nodes.row(i) = vertices.row(corners[i]);
+    nodes.row(i + 3) = vertices.row(edge_nodes[i]);
+  }
+  const Eigen::Matrix<double, 6, 1> integrals = shape_integrals(nodes);
+  for (int i = 0; i < 6; ++i) weights[i < 3 ? corners[i] : edge_nodes[i - 3]] += integrals[i];
+}
+
+/// By integrals of the shape functions over the region's cells.
+VertexWeights integrated(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
+  VertexWeights weights;
+  if (region.dimension == 3)
+    for (const Index i : region.tetrahedra) spread_quadratic(mesh, i, weights);
+  else
+    for (const Index i : region.triangles)
+      spread_quadratic(mesh.vertices, mesh.triangles[i], edges.of(mesh.triangles[i]), weights);
+  double total = 0;
+  for (const auto& [vertex, weight] : weights) total += weight;
+  // corners of straight cells weigh nothing, but for rounding
+  std::erase_if(weights, [&](const auto& entry) { return std::abs(entry.second) < 1e-15 * total; });
+  return weights;
+}
+
 }  // namespace
 
 Embedder::Embedder(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms,
@@ -159,6 +216,33 @@ TetrahedronWeights Embedder::quadratic_weights(Index element, const Vec3& point,
     coordinates += Barycentric(-step.sum(), step[0], step[1], step[2]);
   }
   throw InvalidInput("the nearest element is too strongly curved to carry the point");
+}
+
+EmbeddedPoint mean_of(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
+  const Points& vertices = mesh.vertices;
+  VertexWeights weights;
+  if (region.dimension >= 2 && !edges.empty()) {
+    weights = integrated(region, mesh, edges);
+  } else if (region.dimension == 3) {
+    for (const Index i : region.tetrahedra)
+      spread(mesh.tetrahedra[i], std::abs(signed_volume(vertices, mesh.tetrahedra[i])), weights);
+    for (const Index i : region.prisms)
+      spread(mesh.prisms[i], std::abs(signed_volume(vertices, mesh.prisms[i])), weights);
+  } else if (region.dimension == 2) {
+    for (const Index i : region.triangles) spread(mesh.triangles[i], area(vertices, mesh.triangles[i]), weights);
+    for (const Index i : region.quads) spread_quad(vertices, mesh.quads[i], weights);
+  } else {
+    for (const Index i : region.vertices) weights[i] = 1;
+  }
+  double total = 0;
+  for (const auto& [vertex, weight] : weights) total += weight;
+  if (!(total > 0)) throw InvalidInput("region '" + region.name + "' has no extent to take the mean of");
+  EmbeddedPoint mean;
+  for (const auto& [vertex, weight] : weights) {
+    mean.vertices.push_back(vertex);
+    mean.weights.push_back(weight / total);
+  }
+  return mean;
 }
 
 }  // namespace softkin

@@ -83,7 +83,7 @@ void compile_loads(Compilation& c) {
   if (c.spec.formulation != Formulation::physical) {
     if (weight) c.model.notes.emplace_back("Gravity is left out: the target-shape formulation knows no forces.");
     if (!c.spec.forces.empty())
-      c.model.notes.push_back(count_text(c.spec.forces.size(), "force is", "forces are") +
+      c.model.notes.push_back(counted(c.spec.forces.size(), "force is", "forces are") +
                               " left out: the target-shape formulation knows none.");
     return;
   }

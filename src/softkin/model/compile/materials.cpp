@@ -7,6 +7,76 @@ namespace softkin {
 
 namespace {
 
+struct Constants {
+  const ElasticSpec& spec;
+  const std::string& owner;
+  const Origin& origin;
+
+  [[noreturn]] void refuse(const std::string& what) const { throw InvalidInput(origin, owner + what); }
+
+  double required(const std::optional<double>& value, const std::string& name) const {
+    if (!value) refuse(" needs " + name + ": its law takes it");
+    return finite(*value, name);
+  }
+  double optional(const std::optional<double>& value, const std::string& name) const {
+    return value ? finite(*value, name) : 0;
+  }
+  double finite(double value, const std::string& name) const {
+    if (!std::isfinite(value)) refuse(": " + name + " must be finite, not " + number(value));
+    return value;
+  }
+  double positive(double value, const std::string& name) const {
+    if (!(value > 0)) refuse(": " + name + " must be above 0, not " + number(value));
+    return value;
+  }
+  double poisson_ratio() const {
+    const double nu = required(spec.poisson_ratio, "poisson_ratio");
+    if (!(nu > -1 && nu < 0.5)) refuse(": poisson_ratio must lie between -1 and 0.5, not be " + number(nu));
+    return nu;
+  }
+  void absent(const std::optional<double>& value, const std::string& name) const {
+    if (value) refuse(" has " + name + ", which its law does not take");
+  }
+};
+
+double bulk_modulus(const Constants& c, double shear) {
+  if (c.spec.bulk_modulus && c.spec.poisson_ratio)
+    c.refuse(" has bulk_modulus and poisson_ratio: it needs one of the two");
+  if (c.spec.bulk_modulus) return c.positive(c.required(c.spec.bulk_modulus, "bulk_modulus"), "bulk_modulus");
+  if (!c.spec.poisson_ratio) c.refuse(" needs bulk_modulus or poisson_ratio");
+  const double nu = c.poisson_ratio();
+  return c.finite(2 * shear * (1 + nu) / (3 * (1 - 2 * nu)), "bulk modulus");
+}
+
+void set_lame(const Constants& c, ElasticLaw& law) {
+  c.absent(c.spec.c10, "c10");
+  c.absent(c.spec.c01, "c01");
+  c.absent(c.spec.c20, "c20");
+  c.absent(c.spec.c30, "c30");
+  c.absent(c.spec.bulk_modulus, "bulk_modulus");
+  const double e = c.positive(c.required(c.spec.youngs_modulus, "youngs_modulus"), "youngs_modulus");
+  const double nu = c.poisson_ratio();
+  law.mu = c.finite(e / (2 * (1 + nu)), "shear modulus");
+  law.lambda = c.finite(e * nu / ((1 + nu) * (1 - 2 * nu)), "lambda");
+}
+
+void set_coefficients(const Constants& c, ElasticLaw& law) {
+  c.absent(c.spec.youngs_modulus, "youngs_modulus");
+  law.c10 = c.required(c.spec.c10, "c10");
+  if (law.law == Law::mooney_rivlin) {
+    law.c01 = c.required(c.spec.c01, "c01");
+    c.absent(c.spec.c20, "c20");
+    c.absent(c.spec.c30, "c30");
+  } else {
+    c.absent(c.spec.c01, "c01");
+    law.c20 = c.optional(c.spec.c20, "c20");
+    law.c30 = c.optional(c.spec.c30, "c30");
+  }
+  const std::string sum = law.law == Law::yeoh ? "c10" : "c10 + c01";
+  const double half_shear = c.positive(c.finite(law.c10 + law.c01, sum), sum);
+  law.bulk = bulk_modulus(c, 2 * half_shear);
+}
+
 Material checked_material(const MaterialSpec& spec, Formulation formulation) {
   const std::string owner = "the material of region '" + spec.region + "'";
   const bool physical = formulation == Formulation::physical;
@@ -15,14 +85,13 @@ Material checked_material(const MaterialSpec& spec, Formulation formulation) {
   if (physical && !spec.elastic)
     throw InvalidInput(spec.origin, owner + " needs elastic constants: the formulation is physical");
   if (spec.shape_ratio && !(*spec.shape_ratio >= 0 && *spec.shape_ratio <= 1))
-    throw InvalidInput(spec.origin,
-                       owner + ": shape_ratio must lie in [0, 1], not be " + number_text(*spec.shape_ratio));
+    throw InvalidInput(spec.origin, owner + ": shape_ratio must lie in [0, 1], not be " + number(*spec.shape_ratio));
   if (!(spec.weight > 0 && std::isfinite(spec.weight)))
-    throw InvalidInput(spec.origin, owner + ": weight must be above 0, not " + number_text(spec.weight));
+    throw InvalidInput(spec.origin, owner + ": weight must be above 0, not " + number(spec.weight));
   if (spec.linear_range && !(*spec.linear_range > 0 && std::isfinite(*spec.linear_range)))
-    throw InvalidInput(spec.origin, owner + ": linear_range must be above 0, not " + number_text(*spec.linear_range));
+    throw InvalidInput(spec.origin, owner + ": linear_range must be above 0, not " + number(*spec.linear_range));
   if (!(spec.density >= 0 && std::isfinite(spec.density)))
-    throw InvalidInput(spec.origin, owner + ": density must be 0 or above, not " + number_text(spec.density));
+    throw InvalidInput(spec.origin, owner + ": density must be 0 or above, not " + number(spec.density));
   Material material;
   material.region = spec.region;
   if (spec.shape_ratio) material.shape_ratio = *spec.shape_ratio;
@@ -56,7 +125,7 @@ void refuse_bare_elements(const Compilation& c) {
   std::string text;
   for (const auto& [region, count] : bare) {
     const std::string where = region < 0 ? "of no region" : "of region '" + model.region_names[region] + "'";
-    text += (text.empty() ? "" : " and ") + count_text(count, "element") + " " + where;
+    text += (text.empty() ? "" : " and ") + counted(count, "element") + " " + where;
   }
   const bool single = bare.size() == 1 && bare.begin()->second == 1;
   throw InvalidInput(c.origin, text + (single ? " has" : " have") + " no material: give one, or make the region void");
@@ -75,6 +144,17 @@ bool only_actuated(const Compilation& c, const Region& region) {
 }
 
 }  // namespace
+
+ElasticLaw elastic_law(const ElasticSpec& spec, const std::string& owner, const Origin& origin) {
+  const Constants constants{spec, owner, origin};
+  ElasticLaw law;
+  law.law = spec.law;
+  if (spec.law == Law::mooney_rivlin || spec.law == Law::yeoh)
+    set_coefficients(constants, law);
+  else
+    set_lame(constants, law);
+  return law;
+}
 
 void compile_materials(Compilation& c) {
   Model& model = c.model;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/core/text.hpp>
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
@@ -59,6 +60,12 @@ void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
 /// Fixed vertices and rigid regions.
 void compile_supports(Compilation& c);
 
+/// Refuses a robot that its fixed vertices do not hold: every part (connected through elements, rigid regions and the
+/// triangles of cables) must be unable to move rigidly, to first order.
+///
+/// throws  InvalidInput at origin that names the first five such parts and how each can move
+void check_anchoring(const Model& model, const Origin& origin);
+
 void compile_markers(Compilation& c);
 /// After the markers.
 void compile_feet(Compilation& c);
@@ -68,9 +75,5 @@ void compile_loads(Compilation& c);
 
 /// A point of the body; what names it in messages. Notes one that is outside, refuses one that is far outside.
 [[nodiscard]] EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what);
-
-[[nodiscard]] std::string number_text(double value);
-[[nodiscard]] std::string count_text(std::size_t count, const std::string& one, const std::string& many = "");
-[[nodiscard]] std::string point_text(const Vec3& point);
 
 }  // namespace softkin

@@ -1,18 +1,81 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <set>
 #include <softkin/model/compile/regions.hpp>
-#include <softkin/model/compile/selectors.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
 #include <softkin/model/mesh/triangle_geometry.hpp>
 
 namespace softkin {
 
 namespace {
+
+struct HoldsPoint {
+  const Vec3& point;
+  double tolerance;
+
+  bool operator()(const Box& box) const {
+    return ((point - box.low).array() >= -tolerance).all() && ((box.high - point).array() >= -tolerance).all();
+  }
+  bool operator()(const Sphere& sphere) const { return (point - sphere.center).norm() <= sphere.radius + tolerance; }
+  bool operator()(const Cylinder& cylinder) const {
+    const Vec3 offset = point - cylinder.start;
+    const double length = (cylinder.end - cylinder.start).norm();
+    const Vec3 axis = (cylinder.end - cylinder.start) / length;
+    const double along = offset.dot(axis);
+    return along >= -tolerance && along <= length + tolerance &&
+           (offset - along * axis).norm() <= cylinder.radius + tolerance;
+  }
+  bool operator()(const Halfspace& halfspace) const {
+    return (point - halfspace.point).dot(halfspace.normal.normalized()) >= -tolerance;
+  }
+  bool operator()(const VertexList&) const { return false; }
+  bool operator()(const ElementList&) const { return false; }
+};
+
+// The complaint about a shape, or nothing.
+struct Complaint {
+  const char* operator()(const Box& box) const {
+    if (!box.low.allFinite() || !box.high.allFinite()) return "has a corner that is not finite";
+    return (box.low.array() <= box.high.array()).all() ? nullptr : "has a low corner above its high corner";
+  }
+  const char* operator()(const Sphere& sphere) const {
+    if (!sphere.center.allFinite()) return "has a center that is not finite";
+    return positive(sphere.radius) ? nullptr : "needs a radius above 0";
+  }
+  const char* operator()(const Cylinder& cylinder) const {
+    if (!cylinder.start.allFinite() || !cylinder.end.allFinite()) return "has an end that is not finite";
+    if (!positive(cylinder.radius)) return "needs a radius above 0";
+    return positive((cylinder.end - cylinder.start).norm()) ? nullptr : "starts where it ends";
+  }
+  const char* operator()(const Halfspace& halfspace) const {
+    if (!halfspace.point.allFinite()) return "has a point that is not finite";
+    return positive(halfspace.normal.norm()) ? nullptr : "needs a normal other than 0";
+  }
+  const char* operator()(const VertexList&) const { return nullptr; }
+  const char* operator()(const ElementList&) const { return nullptr; }
+
+  static bool positive(double x) { return x > 0 && std::isfinite(x); }
+};
+
+/// "box", "sphere", ...
+std::string kind_of(const Selector& selector) {
+  static const std::array<const char*, std::variant_size_v<Selector>> kinds{
+      "box", "sphere", "cylinder", "halfspace", "list of vertices", "list of elements"};
+  return kinds[selector.index()];
+}
+
+/// Refuses a shape without extent or with numbers that are not finite.
+void check_shape(const Selector& selector, const Origin& origin) {
+  if (const char* complaint = std::visit(Complaint{}, selector))
+    throw InvalidInput(origin, "the " + kind_of(selector) + " " + complaint);
+}
+
+/// Whether a shape holds the point, or its boundary is within tolerance of it [mm]. Lists hold no point.
+bool holds(const Selector& selector, const Vec3& point, double tolerance) {
+  return std::visit(HoldsPoint{point, tolerance}, selector);
+}
 
 void sort_unique(std::vector<Index>& values) {
   std::sort(values.begin(), values.end());
@@ -206,91 +269,6 @@ Region RegionTable::select(const Selector& selector, const std::string& name, co
 std::string label(const RegionRef& reference) {
   if (const auto* name = std::get_if<std::string>(&reference.region)) return "region '" + *name + "'";
   return "the " + kind_of(std::get<Selector>(reference.region));
-}
-
-namespace {
-
-using VertexWeights = std::map<Index, double>;
-
-template <class Cell>
-void spread(const Cell& cell, double measure, VertexWeights& weights) {
-  for (const Index i : cell) weights[i] += measure / static_cast<double>(cell.size());
-}
-
-double area(const Points& vertices, const Triangle& t) {
-  const Vec3 a = vertex_at(vertices, t[0]);
-  return 0.5 * (vertex_at(vertices, t[1]) - a).cross(vertex_at(vertices, t[2]) - a).norm();
-}
-
-void spread_quad(const Points& vertices, const Quad& q, VertexWeights& weights) {
-  for (const Triangle& t :
-       {Triangle{q[0], q[1], q[2]}, Triangle{q[0], q[2], q[3]}, Triangle{q[0], q[1], q[3]}, Triangle{q[1], q[2], q[3]}})
-    spread(t, 0.5 * area(vertices, t), weights);
-}
-
-void spread_quadratic(const Mesh& mesh, Index tetrahedron, VertexWeights& weights) {
-  const Tetrahedron& corners = mesh.tetrahedra[tetrahedron];
-  const EdgeNodes& edge_nodes = mesh.edge_nodes[tetrahedron];
-  TetrahedronWeights integrals = shape_integrals(nodes_of(mesh.vertices, corners, edge_nodes));
-  if (integrals.sum() < 0) integrals = -integrals;  // in the file's order the corners may be reversed
-  for (int i = 0; i < 10; ++i) weights[i < 4 ? corners[i] : edge_nodes[i - 4]] += integrals[i];
-}
-
-void spread_quadratic(const Points& vertices, const Triangle& corners, const std::array<Index, 3>& edge_nodes,
-                      VertexWeights& weights) {
-  if (*std::min_element(edge_nodes.begin(), edge_nodes.end()) < 0)
-    throw InvalidInput("a triangle of the region is not a face of an element of order 2");
-  TriangleNodes nodes;
-  for (int i = 0; i < 3; ++i) {
-    nodes.row(i) = vertices.row(corners[i]);
-    nodes.row(i + 3) = vertices.row(edge_nodes[i]);
-  }
-  const Eigen::Matrix<double, 6, 1> integrals = shape_integrals(nodes);
-  for (int i = 0; i < 6; ++i) weights[i < 3 ? corners[i] : edge_nodes[i - 3]] += integrals[i];
-}
-
-/// By integrals of the shape functions over the region's cells.
-VertexWeights integrated(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
-  VertexWeights weights;
-  if (region.dimension == 3)
-    for (const Index i : region.tetrahedra) spread_quadratic(mesh, i, weights);
-  else
-    for (const Index i : region.triangles)
-      spread_quadratic(mesh.vertices, mesh.triangles[i], edges.of(mesh.triangles[i]), weights);
-  double total = 0;
-  for (const auto& [vertex, weight] : weights) total += weight;
-  // corners of straight cells weigh nothing, but for rounding
-  std::erase_if(weights, [&](const auto& entry) { return std::abs(entry.second) < 1e-15 * total; });
-  return weights;
-}
-
-}  // namespace
-
-EmbeddedPoint mean_of(const Region& region, const Mesh& mesh, const EdgeTable& edges) {
-  const Points& vertices = mesh.vertices;
-  VertexWeights weights;
-  if (region.dimension >= 2 && !edges.empty()) {
-    weights = integrated(region, mesh, edges);
-  } else if (region.dimension == 3) {
-    for (const Index i : region.tetrahedra)
-      spread(mesh.tetrahedra[i], std::abs(signed_volume(vertices, mesh.tetrahedra[i])), weights);
-    for (const Index i : region.prisms)
-      spread(mesh.prisms[i], std::abs(signed_volume(vertices, mesh.prisms[i])), weights);
-  } else if (region.dimension == 2) {
-    for (const Index i : region.triangles) spread(mesh.triangles[i], area(vertices, mesh.triangles[i]), weights);
-    for (const Index i : region.quads) spread_quad(vertices, mesh.quads[i], weights);
-  } else {
-    for (const Index i : region.vertices) weights[i] = 1;
-  }
-  double total = 0;
-  for (const auto& [vertex, weight] : weights) total += weight;
-  if (!(total > 0)) throw InvalidInput("region '" + region.name + "' has no extent to take the mean of");
-  EmbeddedPoint mean;
-  for (const auto& [vertex, weight] : weights) {
-    mean.vertices.push_back(vertex);
-    mean.weights.push_back(weight / total);
-  }
-  return mean;
 }
 
 bool span_plane(const Points& points, const std::vector<Index>& vertices) {

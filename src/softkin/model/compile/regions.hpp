@@ -43,18 +43,6 @@ class RegionTable {
 /// "region 'base'" or "the box", for messages.
 [[nodiscard]] std::string label(const RegionRef& reference);
 
-/// The mean of a region as weights of its vertices: of its volume (dimension 3), its area (2), else of its vertices.
-/// A triangle or a tetrahedron of order 1 acts at its centroid, one of order 2 by the integrals of its shape functions
-/// (straight edges: a third at a triangle's edges and nothing at its corners, 1/5 and -1/20 in a tetrahedron); a quad
-/// as the mean of its two triangulations.
-///
-/// throws  InvalidInput where the region has no volume, area or vertex to take the mean of, or a triangle that is not
-///         a face of an element of order 2
-[[nodiscard]] EmbeddedPoint mean_of(const Region& region, const Mesh& mesh, const EdgeTable& edges);
-[[nodiscard]] inline EmbeddedPoint mean_of(const Region& region, const Mesh& mesh) {
-  return mean_of(region, mesh, EdgeTable(mesh));
-}
-
 /// throws  InvalidInput at origin where a cell names a vertex that is not there, a coordinate is not finite, or a mesh
 ///         of order 2 has prisms or elements without edge nodes
 void check_cells(const Mesh& mesh, const Origin& origin);

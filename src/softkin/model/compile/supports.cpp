@@ -1,7 +1,11 @@
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/triangle_geometry.hpp>
 
 namespace softkin {
 
@@ -45,7 +49,7 @@ RigidRegion rigid_region(const Compilation& c, const RigidSpec& spec) {
   if (!span_plane(c.model.rest, rigid.vertices))
     throw InvalidInput(spec.where.origin, rigid_label(spec) +
                                               " needs three vertices that are not on one line; it holds " +
-                                              count_text(rigid.vertices.size(), "vertex", "vertices"));
+                                              counted(rigid.vertices.size(), "vertex", "vertices"));
   return rigid;
 }
 
@@ -65,6 +69,122 @@ void check_held(const Compilation& c, const RigidSpec& spec, const RigidRegion& 
                          rigid_label(spec) + " is held along " + "xyz"[axis] +
                              " at fewer than three non-collinear vertices: hold a face of it or none");
   }
+}
+
+class Parts {
+ public:
+  explicit Parts(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+
+  Index root(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  template <class Vertices>
+  void join(const Vertices& vertices) {
+    for (const Index v : vertices) parent_[root(v)] = root(vertices[0]);
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+Parts connected_parts(const Model& model) {
+  Parts parts(static_cast<std::size_t>(model.rest.rows()));
+  for (const Tetrahedron& t : model.tetrahedra) parts.join(t);
+  for (std::size_t e = 0; e < model.edge_nodes.size(); ++e) {
+    parts.join(model.edge_nodes[e]);
+    parts.join(std::array{model.tetrahedra[e][0], model.edge_nodes[e][0]});
+  }
+  for (const Prism& p : model.prisms) parts.join(p);
+  for (const RigidRegion& rigid : model.rigid) parts.join(rigid.vertices);
+  for (const Actuator& actuator : model.actuators)
+    for (const CableGap& gap : actuator.gaps) {
+      std::vector<Index> corners = gap.apex.vertices;
+      for (const Index end : {gap.segment, gap.segment + 1}) {
+        const auto& vertices = actuator.points[end].vertices;
+        corners.insert(corners.end(), vertices.begin(), vertices.end());
+      }
+      parts.join(corners);
+    }
+  return parts;
+}
+
+using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic>;     // translation over rotation, a motion a column
+using Directions = Eigen::Matrix<double, 3, Eigen::Dynamic>;  // orthonormal columns
+constexpr double rank_tolerance = 1e-9, direction_tolerance = 1e-6;
+
+// Rigid motions that leave every fixed vertex where it is held, to first order; rotations are about the centroid
+// and in units of the size.
+Motions free_motions(const Model& model, const std::vector<Index>& vertices, const Vec3& centroid, double size) {
+  std::vector<Eigen::Matrix<double, 1, 6>> rows;
+  for (const Index v : vertices)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!model.fixed[v][axis]) continue;
+      const Vec3 unit = Vec3::Unit(axis);
+      rows.emplace_back();
+      rows.back() << unit.transpose(), ((vertex_at(model.rest, v) - centroid) / size).cross(unit).transpose();
+    }
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(6, static_cast<Eigen::Index>(rows.size())), 6);
+  for (std::size_t i = 0; i < rows.size(); ++i) held.row(static_cast<Eigen::Index>(i)) = rows[i];
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(held);
+  const Eigen::MatrixXd triangle = qr.matrixQR().topRows(6).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
+  const Eigen::VectorXd values = svd.singularValues();
+  const Eigen::Index rank = (values.array() > rank_tolerance * std::max(values[0], 1.0)).count();
+  return svd.matrixV().rightCols(6 - rank);
+}
+
+// An orthonormal basis of what the columns span.
+Directions span_of(const Eigen::MatrixXd& columns) {
+  if (columns.cols() == 0) return Directions(3, 0);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU);
+  return svd.matrixU().leftCols((svd.singularValues().array() > direction_tolerance).count());
+}
+
+std::string point_text(const Vec3& point) {
+  return "(" + number(point[0]) + ", " + number(point[1]) + ", " + number(point[2]) + ")";
+}
+
+// "x, y and z" for the space that the columns span; directions that are not along an axis as vectors.
+std::string axes_text(Directions space) {
+  std::vector<std::string> names;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 unit = Vec3::Unit(axis);
+    if ((space * (space.transpose() * unit) - unit).norm() > direction_tolerance) continue;
+    names.emplace_back(1, "xyz"[axis]);
+    space = span_of(space - unit * (unit.transpose() * space));
+  }
+  for (Eigen::Index i = 0; i < space.cols(); ++i) names.push_back(point_text(space.col(i)));
+  std::string text = names[0];
+  for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+std::string motion_text(const Motions& motions) {
+  const Eigen::MatrixXd rotations = motions.bottomRows(3);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rotations, Eigen::ComputeFullV);
+  const Eigen::Index turning = (svd.singularValues().array() > direction_tolerance).count();
+  const Directions turns = span_of(rotations);
+  const Directions moves = span_of(motions.topRows(3) * svd.matrixV().rightCols(motions.cols() - turning));
+  std::string text;
+  if (moves.cols() > 0) text = "move along " + axes_text(moves);
+  if (turns.cols() > 0) text += (text.empty() ? "" : " and ") + ("turn about " + axes_text(turns));
+  return text;
+}
+
+// "8 vertices around (1, 2, 3) mm can move along x", or "" where the part is held.
+std::string freedom_of(const Model& model, const std::vector<Index>& vertices) {
+  Vec3 centroid = Vec3::Zero();
+  Bounds bounds;
+  for (const Index v : vertices) {
+    centroid += vertex_at(model.rest, v);
+    bounds.extend(vertex_at(model.rest, v));
+  }
+  centroid /= static_cast<double>(vertices.size());
+  const Motions motions = free_motions(model, vertices, centroid, bounds.diagonal().norm());
+  if (motions.cols() == 0) return "";
+  return counted(vertices.size(), "vertex", "vertices") + " around " + point_text(centroid) + " mm can " +
+         motion_text(motions);
 }
 
 }  // namespace
@@ -87,6 +207,25 @@ void compile_supports(Compilation& c) {
     check_held(c, spec, rigid);
     c.model.rigid.push_back(std::move(rigid));
   }
+}
+
+void check_anchoring(const Model& model, const Origin& origin) {
+  constexpr std::size_t most_named = 5;
+  Parts parts = connected_parts(model);
+  std::map<Index, std::vector<Index>> members;
+  for (Index v = 0; v < model.rest.rows(); ++v)
+    if (model.used[v]) members[parts.root(v)].push_back(v);
+  std::string text;
+  std::size_t loose = 0;
+  for (const auto& [root, vertices] : members) {
+    const std::string freedom = freedom_of(model, vertices);
+    if (freedom.empty() || ++loose > most_named) continue;
+    text += (loose == 1 ? "" : "; ") + std::string(members.size() == 1 ? "the robot" : "a part") + " of " + freedom;
+  }
+  if (loose == 0) return;
+  if (loose > most_named) text += "; and " + counted(loose - most_named, "more part", "more parts");
+  throw InvalidInput(origin, text + (loose == 1 ? ": fix more of it, or connect it to a part that is held"
+                                                : ": fix more of them, or connect them to a part that is held"));
 }
 
 }  // namespace softkin

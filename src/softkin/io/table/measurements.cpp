@@ -1,21 +1,17 @@
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
 #include <softkin/io/table/csv.hpp>
-#include <softkin/io/table/material_tables.hpp>
+#include <softkin/io/table/measurements.hpp>
 
 namespace softkin {
 
 namespace {
 
 constexpr double greatest_strain = 15;
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
 
 /// A column that a table may have: its quantity and unit, "dl" and "mm". Units of no case of their own may be written
 /// as usual: force_N, stress_MPa.
@@ -29,51 +25,40 @@ struct Quantity {
   }
 };
 
-class Table {
+class Table : public CsvTable {
  public:
   Table(const std::filesystem::path& path, const std::vector<Quantity>& quantities)
-      : file_(path.string()), table_(read_csv(path)), quantities_(quantities) {
-    places_.assign(quantities.size(), -1);
-    for (std::size_t c = 0; c < table_.columns.size(); ++c) place(table_.columns[c], static_cast<int>(c));
+      : CsvTable(read_csv(path)), quantities_(quantities), places_(quantities.size(), -1) {
+    for (std::size_t c = 0; c < columns.size(); ++c) place(columns[c], static_cast<int>(c));
     for (std::size_t q = 0; q < quantities.size(); ++q)
-      if (quantities[q].required && places_[q] < 0)
-        throw InvalidInput({file_, table_.header_line}, "column '" + quantities[q].column() + "' is missing");
+      if (quantities[q].required && places_[q] < 0) fail_header("column '" + quantities[q].column() + "' is missing");
   }
 
-  [[nodiscard]] std::size_t rows() const { return table_.rows.size(); }
-  [[nodiscard]] std::size_t line(std::size_t row) const { return table_.lines[row]; }
-  [[nodiscard]] std::optional<double> find(std::size_t row, const std::string& name) const {
+  [[nodiscard]] std::optional<double> value(std::size_t row, const std::string& name) const {
     const int at = places_[index(name)];
     if (at < 0) return std::nullopt;
-    return table_.rows[row][static_cast<std::size_t>(at)];
+    return rows[row][static_cast<std::size_t>(at)];
   }
-  [[nodiscard]] double at(std::size_t row, const std::string& name) const { return *find(row, name); }
+  [[nodiscard]] double at(std::size_t row, const std::string& name) const { return *value(row, name); }
   [[nodiscard]] double positive(std::size_t row, const std::string& name) const {
     const double value = at(row, name);
-    if (!(value > 0)) fail(row, called(name) + " must be greater than 0, not " + number_text(value));
+    if (!(value > 0)) fail(row, called(name) + " must be greater than 0, not " + number(value));
     return value;
   }
   [[nodiscard]] std::optional<double> positive_if_there(std::size_t row, const std::string& name) const {
-    if (!find(row, name)) return std::nullopt;
+    if (!value(row, name)) return std::nullopt;
     return positive(row, name);
   }
   /// Of what lies inside something else: 0 < part < whole.
   [[nodiscard]] double part(std::size_t row, const std::string& name, const std::string& whole) const {
     const double value = positive(row, name), all = at(row, whole);
     if (!(value < all))
-      fail(row, called(name) + " must be less than " + called(whole) + ", but " + number_text(value) +
-                    " is not below " + number_text(all));
+      fail(row, called(name) + " must be less than " + called(whole) + ", but " + number(value) + " is not below " +
+                    number(all));
     return value;
   }
   [[nodiscard]] std::string called(const std::string& name) const {
     return "'" + quantities_[index(name)].column() + "'";
-  }
-  [[noreturn]] void fail(std::size_t row, const std::string& message) const {
-    throw InvalidInput({file_, line(row)}, message);
-  }
-  [[noreturn]] void fail(const std::string& message) const { throw InvalidInput({file_}, message); }
-  [[noreturn]] void fail_header(const std::string& message) const {
-    throw InvalidInput({file_, table_.header_line}, message);
   }
 
  private:
@@ -107,8 +92,6 @@ class Table {
     fail_header("column " + excerpt(column) + ": there is no such column" + suggest_name(column, known));
   }
 
-  std::string file_;
-  CsvTable table_;
   std::vector<Quantity> quantities_;
   std::vector<int> places_;
 };
@@ -123,7 +106,7 @@ struct Strains {
     const double strain = table.at(row, name()) / (percent ? 100 : 1);
     if (strain < 0) table.fail(row, table.called(name()) + " must not be below 0: a tensile test begins at rest");
     if (strain > greatest_strain)
-      table.fail(row, table.called(name()) + " is " + number_text(100 * strain) + " %, more than 1500 %" +
+      table.fail(row, table.called(name()) + " is " + number(100 * strain) + " %, more than 1500 %" +
                           (percent ? "" : ": is it in percent? Then name the column 'strain_percent'"));
     if (row > 0) check_order(row, strain, table.at(row - 1, name()) / (percent ? 100 : 1));
     return strain;
@@ -132,10 +115,25 @@ struct Strains {
  private:
   void check_order(std::size_t row, double strain, double before) const {
     if (strain > before) return;
-    table.fail(row, table.called(name()) + " must ascend, but " + number_text(table.at(row, name())) + " follows " +
-                        number_text(table.at(row - 1, name())) + ": give the loading branch of one test");
+    table.fail(row, table.called(name()) + " must ascend, but " + number(table.at(row, name())) + " follows " +
+                        number(table.at(row - 1, name())) + ": give the loading branch of one test");
   }
 };
+
+PressureScale scale_of(const RunTable& table, const std::string& column, std::optional<PressureScale> asked) {
+  if (column == "p_kpa") {
+    if (!asked)
+      table.fail_header(
+          "column 'p_kpa' does not say above what: name it p_abs_kpa (above vacuum) or p_gauge_kpa (above the air "
+          "around), or add --pressure absolute or gauge");
+    return *asked;
+  }
+  const PressureScale named = column == "p_abs_kpa" ? PressureScale::absolute : PressureScale::gauge;
+  if (asked && *asked != named)
+    table.fail_header("column '" + column + "' and --pressure " +
+                      (*asked == PressureScale::absolute ? "absolute" : "gauge") + " contradict each other");
+  return named;
+}
 
 }  // namespace
 
@@ -147,7 +145,7 @@ std::vector<StretchedSpecimen> read_stretched_specimens(const std::filesystem::p
                            {"force", "n", "N", false},
                            {"area", "mm2", "", false}});
   std::vector<StretchedSpecimen> specimens;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
     StretchedSpecimen& s = specimens.emplace_back();
     s.length_mm = table.positive(row, "l");
     s.interface_mm = table.part(row, "l1", "l");
@@ -155,7 +153,7 @@ std::vector<StretchedSpecimen> read_stretched_specimens(const std::filesystem::p
     s.interface_moved_mm = table.part(row, "dl1", "dl");
     s.force_n = table.positive_if_there(row, "force");
     s.area_mm2 = table.positive_if_there(row, "area");
-    s.line = table.line(row);
+    s.line = table.lines[row];
   }
   return specimens;
 }
@@ -165,15 +163,14 @@ std::vector<TwistedSpecimen> read_twisted_specimens(const std::filesystem::path&
       path,
       {{"l", "mm", "", true}, {"l1", "mm", "", true}, {"twist", "deg", "", true}, {"interface", "deg", "", false}});
   std::vector<TwistedSpecimen> specimens;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
     TwistedSpecimen& s = specimens.emplace_back();
     s.length_mm = table.positive(row, "l");
     s.interface_mm = table.part(row, "l1", "l");
     s.twist_deg = table.positive(row, "twist");
-    if (s.twist_deg > 180)
-      table.fail(row, table.called("twist") + " must be at most 180, not " + number_text(s.twist_deg));
-    if (table.find(row, "interface")) s.interface_deg = table.part(row, "interface", "twist");
-    s.line = table.line(row);
+    if (s.twist_deg > 180) table.fail(row, table.called("twist") + " must be at most 180, not " + number(s.twist_deg));
+    if (table.value(row, "interface")) s.interface_deg = table.part(row, "interface", "twist");
+    s.line = table.lines[row];
   }
   return specimens;
 }
@@ -181,23 +178,78 @@ std::vector<TwistedSpecimen> read_twisted_specimens(const std::filesystem::path&
 TensileCurve read_tensile_curve(const std::filesystem::path& path) {
   const Table table(path,
                     {{"strain_percent", "", "", false}, {"strain", "", "", false}, {"stress", "mpa", "MPa", true}});
-  const bool percent = table.find(0, "strain_percent").has_value();
-  if (percent == table.find(0, "strain").has_value())
+  const bool percent = table.value(0, "strain_percent").has_value();
+  if (percent == table.value(0, "strain").has_value())
     table.fail_header(percent ? "two columns are the strain: leave one of 'strain' and 'strain_percent'"
                               : "a column of the strain is missing: 'strain' (without unit) or 'strain_percent'");
   const Strains strains{table, percent};
   TensileCurve curve;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
     curve.strain.push_back(strains.at(row));
     curve.stress.push_back(table.at(row, "stress"));
-    curve.lines.push_back(table.line(row));
+    curve.lines.push_back(table.lines[row]);
   }
   constexpr std::size_t least_rows = 5;
-  if (table.rows() < least_rows)
-    table.fail("a tensile test needs at least five rows, not " + std::to_string(table.rows()));
+  if (table.rows.size() < least_rows)
+    throw InvalidInput({table.file},
+                       "a tensile test needs at least five rows, not " + std::to_string(table.rows.size()));
   if (!(*std::max_element(curve.stress.begin(), curve.stress.end()) > 0))
-    table.fail("no stress is greater than 0: tension counts positive");
+    throw InvalidInput({table.file}, "no stress is greater than 0: tension counts positive");
   return curve;
+}
+
+std::vector<SyringeRun> read_syringe_runs(const std::filesystem::path& path, std::optional<PressureScale> scale) {
+  const RunTable table(path, {"p_abs_kpa", "p_gauge_kpa", "p_kpa", "dv_sy_mm3", "dv_sy_ml"},
+                       {{"p_", "pressures are in kPa: p_abs_kpa or p_gauge_kpa"},
+                        {"pressure", "pressures are in kPa: p_abs_kpa or p_gauge_kpa"},
+                        {"dv_", "volumes are in mm^3 or mL: dv_sy_mm3 or dv_sy_ml"},
+                        {"t_", "a time is in s: t_s"}});
+  const std::string pressure = table.one_of({"p_abs_kpa", "p_gauge_kpa", "p_kpa"}, "the pressure");
+  const std::string volume = table.one_of({"dv_sy_mm3", "dv_sy_ml"}, "the air pushed out of the syringe");
+  const PressureScale given = scale_of(table, pressure, scale);
+  const double factor = volume == "dv_sy_ml" ? 1000 : 1;
+  std::vector<SyringeRun> runs;
+  for (const RunTable::Run& each : table.runs) {
+    runs.push_back({table.file, each.name, given, {}});
+    for (const std::size_t row : each.rows)
+      runs.back().rows.push_back({table.cell(row, pressure), factor * table.cell(row, volume), table.lines[row]});
+  }
+  return runs;
+}
+
+std::vector<VoltageRun> read_voltage_runs(const std::filesystem::path& path) {
+  const RunTable table(path, {"voltage_kv", "voltage_v", "area_ratio", "stretch"},
+                       {{"voltage", "voltages are in kV or V: voltage_kv or voltage_v"},
+                        {"area", "areas are ratios: area_ratio"},
+                        {"stretch", "stretches are ratios of lengths, not strains or percents: stretch"},
+                        {"t_", "a time is in s: t_s"}});
+  const std::string voltage = table.one_of({"voltage_kv", "voltage_v"}, "the voltage");
+  const std::string ratio = table.one_of({"area_ratio", "stretch"}, "the stretch");
+  const double factor = voltage == "voltage_v" ? 0.001 : 1;
+  std::vector<VoltageRun> runs;
+  for (const RunTable::Run& each : table.runs) {
+    runs.push_back({table.file, each.name, {}});
+    for (const std::size_t row : each.rows) {
+      const double kV = factor * table.cell(row, voltage), value = table.cell(row, ratio);
+      if (kV < 0)
+        table.fail(row, "column '" + voltage + "' must not be below 0: the stretch has no sign of the voltage");
+      if (!(value > 0)) table.fail(row, "column '" + ratio + "' must be above 0");
+      runs.back().rows.push_back({kV, ratio == "stretch" ? value * value : value, table.lines[row]});
+    }
+  }
+  return runs;
+}
+
+double read_volume(const std::string& option, const std::string& text) {
+  constexpr double mm3_per_ml = 1000;
+  for (const std::string unit : {"mm3", "mL", "ml", "cm3"}) {
+    if (!text.ends_with(unit)) continue;
+    std::string digits = text.substr(0, text.size() - unit.size());
+    if (digits.ends_with(' ')) digits.pop_back();
+    double value = 0;
+    if (parse_real(digits, value) && value >= 0) return unit == "mm3" ? value : mm3_per_ml * value;
+  }
+  throw InvalidInput(option + " " + excerpt(text) + ": must be a volume with its unit, mm3, mL or cm3, such as 12.5mL");
 }
 
 }  // namespace softkin

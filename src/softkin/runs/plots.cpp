@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <softkin/core/text.hpp>
+#include <softkin/io/plot/curves.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/plots.hpp>
+#include <utility>
+
+namespace softkin::runs {
+
+namespace {
+
+constexpr std::size_t most_markers = 12;  // with panels of their own
+
+/// Of every actuator over the steps. Records: a range of records, or of references to them.
+template <class Records>
+std::vector<StepCurve> command_curves(const Model& model, const Records& records) {
+  std::vector<StepCurve> curves;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    curves.push_back(command_curve(model.actuators[a]));
+    for (const StepRecord& record : records) curves.back().values.push_back(record.actuation[static_cast<Index>(a)]);
+  }
+  return curves;
+}
+
+template <class Records>
+StepAxis step_axis_of(const Records& records, const std::vector<StepCurve>& commands) {
+  std::vector<std::optional<double>> times;
+  for (const StepRecord& record : records) times.push_back(record.time_s);
+  return step_axis(times, commands);
+}
+
+bool is_known(const StepRecord& step) {
+  for (const Vec3& point : step.markers)
+    if (!point.allFinite()) return false;
+  for (const ActuatorRecord& actuator : step.actuators)
+    if (!std::isfinite(actuator.multiplier)) return false;
+  return true;
+}
+
+class Steps {
+ public:
+  Steps(const Model& model, const std::vector<StepRecord>& steps) : model_(model) {
+    for (const StepRecord& step : steps)
+      if (is_known(step)) steps_.emplace_back(step);
+    along_ = step_axis_of(steps_, commands());
+  }
+
+  [[nodiscard]] const StepAxis& along() const { return along_; }
+
+  [[nodiscard]] std::vector<StepCurve> commands() const { return command_curves(model_, steps_); }
+
+  /// Pressures or tensions, by the report's key.
+  [[nodiscard]] std::vector<StepCurve> loads(const std::string& key, const std::string& unit) const {
+    std::vector<StepCurve> curves;
+    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+      if (model_.formulation != Formulation::physical || multiplier_key(model_.actuators[a]) != key || steps_.empty())
+        continue;
+      curves.push_back({model_.actuators[a].name, unit, {}});
+      for (const StepRecord& step : steps_) curves.back().values.push_back(step.actuators[a].multiplier);
+    }
+    return curves;
+  }
+
+  [[nodiscard]] SpaceCurve way(std::size_t marker) const {
+    SpaceCurve curve{model_.markers[marker].name, {}, true, true};
+    for (const StepRecord& step : steps_) curve.points.push_back(step.markers[marker]);
+    return curve;
+  }
+
+  [[nodiscard]] PlotPanel marker_panel(std::size_t marker) const {
+    const SpaceCurve curve = way(marker);
+    std::vector<StepCurve> coordinates{{"x", "mm", {}}, {"y", "mm", {}}, {"z", "mm", {}}};
+    for (const Vec3& point : curve.points)
+      for (int axis = 0; axis < 3; ++axis) coordinates[static_cast<std::size_t>(axis)].values.push_back(point[axis]);
+    PlotPanel panel = curve_panels(along_, coordinates, "position").front();
+    panel.title = model_.markers[marker].name;
+    if (PlotSeries failed = unconverged(curve); !failed.x.empty()) panel.series.push_back(std::move(failed));
+    return panel;
+  }
+
+ private:
+  [[nodiscard]] PlotSeries unconverged(const SpaceCurve& curve) const {
+    PlotSeries series;
+    series.label = "not converged";
+    series.line = false;
+    series.style = 4;  // black crosses
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      if (steps_[i].get().status == Status::converged) continue;
+      for (const double x : curve.points[i]) {
+        series.x.push_back(along_.values[i]);
+        series.y.push_back(x);
+      }
+    }
+    return series;
+  }
+
+  const Model& model_;
+  std::vector<std::reference_wrapper<const StepRecord>> steps_;
+  StepAxis along_;
+};
+
+constexpr double least_error = 1e-9;  // [mm], as small as a logarithmic axis is to show
+
+class PathPlot {
+ public:
+  PathPlot(const Model& model, const MarkerPath& path, const std::vector<WaypointRecord>& done, double tolerance_mm)
+      : model_(model), path_(path), done_(done), tolerance_mm_(tolerance_mm) {
+    along_ = step_axis_of(done, {});
+    if (along_.axis.whole) along_.axis.label = "waypoint";
+  }
+
+  [[nodiscard]] const Vec3& place(std::size_t i, std::size_t m) const {
+    return done_[i].markers[static_cast<std::size_t>(path_.markers[m])];
+  }
+
+  /// A coordinate that does not count is where the marker came to.
+  [[nodiscard]] Vec3 target(std::size_t i, std::size_t m) const {
+    Vec3 point = place(i, m);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (path_.axes[m][axis])
+        point[static_cast<Index>(axis)] = path_.waypoints[i].targets[m][static_cast<Index>(axis)];
+    return point;
+  }
+
+  [[nodiscard]] std::vector<SpaceCurve> curves() const {
+    std::vector<SpaceCurve> curves;
+    for (std::size_t m = 0; m < path_.markers.size(); ++m) {
+      const std::string of =
+          path_.markers.size() == 1 ? "" : model_.markers[static_cast<std::size_t>(path_.markers[m])].name + ": ";
+      SpaceCurve targets{of + "target", {}, true, false}, reached{of + "reached", {}, true, true};
+      SpaceCurve missed{of + "not reached", {}, false, true}, gaps{"", {}, true, false};
+      targets.pale = true;
+      targets.width = 4;
+      gaps.pairs = true;
+      gaps.width = 1;
+      for (std::size_t i = 0; i < done_.size(); ++i) {
+        targets.points.push_back(target(i, m));
+        reached.points.push_back(place(i, m));
+        if (done_[i].is_reached()) continue;
+        missed.points.push_back(target(i, m));
+        gaps.points.push_back(target(i, m));
+        gaps.points.push_back(place(i, m));
+      }
+      curves.insert(curves.end(), {targets, reached});
+      if (!missed.points.empty()) curves.insert(curves.end(), {missed, gaps});
+    }
+    style(curves);
+    return curves;
+  }
+
+  [[nodiscard]] PlotPanel error_panel() const {
+    PlotPanel panel;
+    panel.x = along_.axis;
+    panel.y.label = "error [mm]";
+    panel.y.logarithmic = true;
+    PlotSeries error, tolerance;
+    error.label = "error";
+    error.x = along_.values;
+    for (const WaypointRecord& each : done_) error.y.push_back(std::max(each.error_mm, least_error));
+    tolerance.label = "tolerance " + number(tolerance_mm_) + " mm";
+    tolerance.x = {along_.values.front(), along_.values.back()};
+    tolerance.y = {std::max(tolerance_mm_, least_error), std::max(tolerance_mm_, least_error)};
+    tolerance.marks = false;
+    tolerance.style = 4;
+    panel.series = {error, tolerance};
+    return panel;
+  }
+
+  [[nodiscard]] std::vector<PlotPanel> command_panels() const {
+    return curve_panels(along_, command_curves(model_, done_), "command");
+  }
+
+ private:
+  /// Each marker has its own colour for what was reached; what was missed is crossed.
+  static void style(std::vector<SpaceCurve>& curves) {
+    int color = 0;
+    for (SpaceCurve& curve : curves) {
+      if (curve.line && curve.marks) curve.style = color++ % 4;
+      if (!curve.line || curve.pairs) curve.style = 4;
+    }
+  }
+
+  const Model& model_;
+  const MarkerPath& path_;
+  const std::vector<WaypointRecord>& done_;
+  double tolerance_mm_;
+  StepAxis along_;
+};
+
+/// Drawn along the steps in a panel of its own.
+PlotPanel panel_of(const StepAxis& along, const std::string& label) {
+  PlotPanel panel;
+  panel.x = along.axis;
+  panel.y.label = label;
+  return panel;
+}
+
+PlotSeries series_of(const StepAxis& along, const std::string& label, const std::vector<WalkRecord>& steps,
+                     double WalkStep::*value) {
+  PlotSeries series;
+  series.label = label;
+  series.x = along.values;
+  for (const WalkRecord& step : steps) series.y.push_back(step.walk.*value);
+  return series;
+}
+
+}  // namespace
+
+Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, const std::string& title) {
+  const Steps path(model, steps);
+  Plot plot;
+  plot.title = title;
+  if (model.markers.size() > most_markers)
+    plot.title +=
+        " (the first " + std::to_string(most_markers) + " of " + std::to_string(model.markers.size()) + " markers)";
+  const auto add = [&plot](std::vector<PlotPanel> row) {
+    if (!row.empty()) plot.rows.push_back(std::move(row));
+  };
+  if (!path.along().command) add(curve_panels(path.along(), path.commands(), "command"));
+  std::vector<SpaceCurve> ways;
+  std::vector<PlotPanel> row;
+  for (std::size_t m = 0; m < std::min(model.markers.size(), most_markers); ++m) {
+    ways.push_back(path.way(m));
+    row.push_back(path.marker_panel(m));
+    if (row.size() == 2) add(std::exchange(row, {}));
+  }
+  add(std::move(row));
+  std::vector<PlotPanel> loads = curve_panels(path.along(), path.loads("pressure_kPa", "kPa"), "gauge pressure");
+  for (PlotPanel& panel : curve_panels(path.along(), path.loads("tension_N", "N"), "tension"))
+    loads.push_back(std::move(panel));
+  add(std::move(loads));
+  if (!ways.empty()) add(projections(ways));
+  if (plot.rows.empty()) add({PlotPanel{}});
+  return plot;
+}
+
+Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<WaypointRecord>& done,
+                  double tolerance_mm, const std::string& title) {
+  const PathPlot parts(model, path, done, tolerance_mm);
+  Plot plot;
+  plot.title = title;
+  std::vector<PlotPanel> views = planar_or_projections(parts.curves());
+  std::vector<PlotPanel> commands = parts.command_panels();
+  if (views.size() == 1) {
+    views.push_back(parts.error_panel());
+    plot.rows = {std::move(views), std::move(commands)};
+  } else {
+    plot.rows = {std::move(views), {parts.error_panel()}, std::move(commands)};
+  }
+  plot.panel_height = 260;
+  return plot;
+}
+
+Plot plot_of_walk(const Model& model, const std::vector<WalkRecord>& steps, const std::string& title) {
+  const StepAxis along = step_axis_of(steps, {});
+
+  PlotPanel feet = panel_of(along, "place [mm]");
+  feet.series = {series_of(along, foot_name(model, 0), steps, &WalkStep::rear_mm),
+                 series_of(along, foot_name(model, 1), steps, &WalkStep::front_mm)};
+  Plot plot;
+  plot.title = title;
+  plot.rows = {{std::move(feet)}, curve_panels(along, command_curves(model, steps), "command")};
+  if (model.formulation == Formulation::physical) {
+    PlotPanel friction = panel_of(along, "friction [N]");
+    friction.series = {series_of(along, "", steps, &WalkStep::friction_N)};
+    plot.rows.push_back({std::move(friction)});
+  }
+  return plot;
+}
+
+}  // namespace softkin::runs

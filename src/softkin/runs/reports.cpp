@@ -1,0 +1,294 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <softkin/kinematics/jacobian.hpp>
+#include <softkin/model/model.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/records_json.hpp>
+#include <softkin/runs/reports.hpp>
+
+namespace softkin::runs {
+
+namespace {
+
+Json elastic_json(const ElasticLaw& e) {
+  switch (e.law) {
+    case Law::mooney_rivlin:
+      return {{"c10_MPa", e.c10}, {"c01_MPa", e.c01}, {"bulk_modulus_MPa", e.bulk}};
+    case Law::yeoh:
+      return {{"c10_MPa", e.c10}, {"c20_MPa", e.c20}, {"c30_MPa", e.c30}, {"bulk_modulus_MPa", e.bulk}};
+    case Law::st_venant_kirchhoff:
+    case Law::corotational:
+    case Law::neo_hookean:
+      break;
+  }
+  return {{"mu_MPa", e.mu}, {"lambda_MPa", e.lambda}};
+}
+
+Json materials_json(const Model& model) {
+  Json materials = Json::array();
+  for (const Material& material : model.materials) {
+    Json json = {{"region", material.region}};
+    if (model.formulation == Formulation::physical) {
+      json["law"] = law_name(material.elastic.law);
+      json.update(elastic_json(material.elastic));
+      json["density_kg_m3"] = material.density;
+    } else {
+      json["shape_ratio"] = material.shape_ratio;
+      json["weight"] = material.weight;
+    }
+    materials.push_back(json);
+  }
+  return materials;
+}
+
+Json actuators_json(const Model& model) {
+  Json actuators = Json::object();
+  for (const Actuator& actuator : model.actuators) {
+    const std::string unit = command_unit(actuator);
+    actuators[actuator.name] = {{"kind", kind_name(actuator)},
+                                {"control", control_name(actuator)},
+                                {"unit", unit.empty() ? "ratio to rest" : unit},
+                                {"range", {actuator.low, actuator.high}}};
+    if (actuator.curve)
+      actuators[actuator.name]["curve"] = {{"file", actuator.curve->file}, {"branch", branch_name(actuator.branch)}};
+  }
+  return actuators;
+}
+
+Json units_json(const Model& model) {
+  const bool physical = model.formulation == Formulation::physical;
+  return {{"markers", "mm"},
+          {"requested", "the unit of each actuator"},
+          {"achieved", "ratio to rest"},
+          {"strain", "stretch minus 1"},
+          {"energy", physical ? "mJ" : "mm^5"},
+          {"residual", physical ? "N" : "mm^4"}};
+}
+
+Json solver_json(const StaticsOptions& options) {
+  Json json = {{"name", name_of(options.solver)},
+               {"tolerance_mm", options.step_tolerance_mm},
+               {"max_iterations", options.max_iterations}};
+  if (options.solver == Solver::local_global) json["anderson"] = options.anderson;
+  return json;
+}
+
+Json head_json(const Model& model, const std::string& scene, const StaticsOptions& options) {
+  return {{"softkin", SOFTKIN_VERSION},
+          {"scene", scene},
+          {"robot_fingerprint", fingerprint_of(model)},
+          {"formulation", formulation_name(model.formulation)},
+          {"materials", materials_json(model)},
+          {"actuators", actuators_json(model)},
+          {"solver", solver_json(options)},
+          {"units", units_json(model)},
+          {"mesh",
+           {{"order", model.edge_nodes.empty() ? 1 : 2},
+            {"vertices", model.rest.rows()},
+            {"tetrahedra", model.tetrahedra.size()},
+            {"prisms", model.prisms.size()}}},
+          {"notes", model.notes}};
+}
+
+Json asked_json(const Goal& goal) {
+  if (const auto* position = std::get_if<PositionGoal>(&goal.what)) {
+    Json target = Json::array();
+    for (int axis = 0; axis < 3; ++axis)
+      target.push_back(position->axes[static_cast<std::size_t>(axis)] ? Json(position->target[axis]) : Json());
+    return {{"kind", "target"}, {"target_mm", target}};
+  }
+  if (const auto* plane = std::get_if<PlaneGoal>(&goal.what))
+    return {{"kind", "plane"}, {"point_mm", json_of(plane->point)}, {"normal", json_of(plane->normal)}};
+  const auto& direction = std::get<DirectionGoal>(goal.what);
+  return {{"kind", "direction"}, {"direction", json_of(direction.direction)}, {"lever_mm", direction.lever_mm}};
+}
+
+Json goals_json(const Model& model, const std::vector<NamedGoal>& goals, const InverseResult& found) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const Goal& goal = goals[i].goal;
+    Json json = {{"of", goals[i].name}};
+    json.update(asked_json(goal));
+    const bool direction = std::holds_alternative<DirectionGoal>(goal.what);
+    json[direction ? "found" : "found_mm"] = json_of(place_of(model, goal, found.equilibrium.state.positions));
+    json["weight"] = goal.weight;
+    json["error_mm"] = found.errors_mm[static_cast<Index>(i)];
+    all.push_back(json);
+  }
+  return all;
+}
+
+std::string unit_of(const Actuator& actuator) {
+  const std::string unit = command_unit(actuator);
+  return unit.empty() ? "unit of ratio" : unit;
+}
+
+/// Of every marker and every pressure and tension, by the command of every actuator, each with its unit.
+Json jacobian_json(const Model& model, const Sensitivity& sensitivity) {
+  Json json = {{"unit", Json::object()}, {"markers", Json::object()}};
+  std::vector<Index> markers;
+  for (std::size_t p = 0; p < model.markers.size(); ++p) markers.push_back(static_cast<Index>(p));
+  const Eigen::MatrixXd slopes = jacobian(model, sensitivity, markers);
+  for (const Actuator& actuator : model.actuators) json["unit"][actuator.name] = "mm per " + unit_of(actuator);
+  for (std::size_t p = 0; p < markers.size(); ++p)
+    for (std::size_t a = 0; a < model.actuators.size(); ++a)
+      json["markers"][model.markers[p].name][model.actuators[a].name] =
+          json_of(slopes.block<3, 1>(3 * static_cast<Index>(p), static_cast<Index>(a)));
+  if (model.formulation != Formulation::physical) return json;
+  for (std::size_t i = 0; i < model.actuators.size(); ++i) {
+    const std::string key = multiplier_key(model.actuators[i]);
+    if (key.empty()) continue;
+    for (std::size_t a = 0; a < model.actuators.size(); ++a)
+      json[key][model.actuators[i].name][model.actuators[a].name] =
+          sensitivity.multipliers(static_cast<Index>(i), static_cast<Index>(a));
+  }
+  return json;
+}
+
+/// Every equilibrium of the search.
+Json history_json(const std::vector<InverseTrial>& history) {
+  Json json = {{"error_mm", Json::array()}, {"iterations", Json::array()}};
+  for (const InverseTrial& record : history) {
+    json["error_mm"].push_back(known(record.error_mm));
+    json["iterations"].push_back(record.iterations);
+  }
+  return json;
+}
+
+Json inverse_json(const Model& model, const InverseOptions& options, const std::vector<NamedGoal>& goals,
+                  const InverseResult& found) {
+  const bool newton = options.method == InverseMethod::newton;
+  Json json = {{"method", name_of(options.method)},
+               {"tolerance_mm", options.tolerance_mm},
+               {"status", name_of(found.status)},
+               {"reached", found.status == InverseStatus::reached},
+               {"remark", found.remark},
+               {"error_mm", found.errors_mm.maxCoeff()},
+               {"goals", goals_json(model, goals, found)},
+               {"at_end_of_range", Json::object()},
+               {"iterations", found.iterations},
+               {"equilibria", found.equilibria},
+               {"seconds", found.seconds}};
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (found.active[a] != 0) json["at_end_of_range"][model.actuators[a].name] = found.active[a] < 0 ? "low" : "high";
+  if (newton && found.status != InverseStatus::reached) json["slope_mm_per_range"] = found.slope;
+  if (newton && found.sensitivity.regular) json["jacobian"] = jacobian_json(model, found.sensitivity);
+  json["history"] = history_json(found.history);
+  return json;
+}
+
+Json tendon_json(const drive::Plan& plan, std::size_t index) {
+  const drive::Tendon& tendon = plan.machine.tendons[index];
+  const drive::TendonUse use = drive::use_of(plan, index);
+  return {{"axis", std::string(1, tendon.axis)},
+          {"rest_length_mm", tendon.rest_length_mm},
+          {"length_mm", {use.shortest_mm, use.longest_mm}},
+          {"length_limits_mm", {tendon.shortest_mm, tendon.longest_mm}},
+          {"steps", {use.lowest, use.highest}},
+          {"speed_mm_per_s", use.fastest_mm_per_s},
+          {"max_speed_mm_per_s", tendon.max_speed_mm_per_s},
+          {"max_acceleration_mm_per_s2", tendon.max_acceleration_mm_per_s2},
+          {"slack_offset_mm", tendon.slack_offset_mm},
+          {"backlash_mm", tendon.backlash_mm}};
+}
+
+Json stream_json(const drive::GcodeProgram& program, const drive::StreamReport& report) {
+  Json json = {{"end", drive::name_of(report.end)},
+               {"message", report.message},
+               {"lines", report.lines},
+               {"acknowledged", report.acknowledged},
+               {"sent", report.sent},
+               {"resends", report.resends},
+               {"timeouts", report.timeouts},
+               {"position_known", report.position_known}};
+  if (report.position_known)
+    for (std::size_t i = 0; i < report.position.size(); ++i)
+      json["position_mm"][std::string(1, program.axes[i])] = report.position[i];
+  return json;
+}
+
+}  // namespace
+
+std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options) {
+  return line_of(head_json(model, scene, options));
+}
+
+std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options) {
+  Json head = head_json(model, scene, options.inverse.statics);
+  head["follow"] = {{"method", name_of(options.inverse.method)},
+                    {"tolerance_mm", options.inverse.tolerance_mm},
+                    {"max_iterations", options.inverse.max_iterations}};
+  return line_of(head);
+}
+
+std::string walk_head(const Model& model, const std::string& scene, const StaticsOptions& options,
+                      const std::string& gait, std::size_t cycles, const Vec3& direction) {
+  Json head = head_json(model, scene, options);
+  head["walk"] = {{"gait", gait}, {"cycles", cycles}, {"direction", json_of(direction)}};
+  Json& feet = head["feet"] = Json::array();
+  for (std::size_t i = 0; i < model.feet.size(); ++i)
+    feet.push_back({{"marker", foot_name(model, i)},
+                    {"forward_N", model.feet[i].forward},
+                    {"backward_N", model.feet[i].backward}});
+  return line_of(head);
+}
+
+Vec3 place_of(const Model& model, const Goal& goal, const Points& positions) {
+  const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].point.at(positions); };
+  if (const auto* position = std::get_if<PositionGoal>(&goal.what)) return at(position->marker);
+  if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) return at(plane->marker);
+  const auto& direction = std::get<DirectionGoal>(goal.what);
+  return (at(direction.to) - at(direction.from)).stableNormalized();
+}
+
+InverseRecord inverse_record(const Model& model, const InverseResult& found, const ElementDeformation& deformation) {
+  InverseRecord record;
+  static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
+  record.seconds = found.seconds;
+  record.error_mm = found.errors_mm.maxCoeff();
+  return record;
+}
+
+RecordLog inverse_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
+                         const InverseOptions& options, const std::vector<NamedGoal>& goals, const InverseResult& found,
+                         const InverseRecord& record) {
+  Json head = Json::parse(report_head(model, scene, options.statics));
+  head["ik"] = inverse_json(model, options, goals, found);
+  Json step = to_json(model, record);
+  step["error_mm"] = record.error_mm;
+  RecordLog log(model, {file}, line_of(head), {});
+  log.add(line_of(step), record.seconds);
+  return log;
+}
+
+std::string drive_report(const std::string& scene, const drive::Plan& plan, bool whole,
+                         const drive::StreamReport* stream) {
+  const drive::Machine& machine = plan.machine;
+  Json json = {{"softkin", SOFTKIN_VERSION},
+               {"scene", scene},
+               {"commands", plan.commands.file},
+               {"hardware", machine.file},
+               {"defaults", machine.defaults}};
+  for (std::size_t i = 0; i < machine.tendons.size(); ++i)
+    json["tendons"][machine.tendons[i].name] = tendon_json(plan, i);
+  for (std::size_t i = 0; i < machine.chambers.size(); ++i) {
+    const drive::Chamber& chamber = machine.chambers[i];
+    const auto [low, high] = drive::pressure_range(plan, i);
+    json["chambers"][chamber.name] = {{"channel", chamber.channel},
+                                      {"pressure_kPa", {low, high}},
+                                      {"limits_kPa", {chamber.low_kpa, chamber.high_kpa}}};
+  }
+  json["rows"] = plan.commands.rows.size();
+  if (!machine.tendons.empty()) {
+    json["approach_s"] = drive::seconds_of(plan.motion.approach);
+    json["motion_s"] = plan.motion.seconds;
+    json["lines"] = plan.program.lines.size();
+    if (whole) json["gcode"] = drive::gcode_text(machine, plan.program);
+  }
+  if (whole && !machine.chambers.empty()) json["schedule"] = drive::schedule_csv(plan.schedule);
+  if (stream != nullptr) json["stream"] = stream_json(plan.program, *stream);
+  return json_text(json) + "\n";
+}
+
+}  // namespace softkin::runs

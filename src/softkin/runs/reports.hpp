@@ -1,0 +1,54 @@
+#pragma once
+
+#include <softkin/drive/marlin_link.hpp>
+#include <softkin/drive/plan.hpp>
+#include <softkin/kinematics/inverse.hpp>
+#include <softkin/kinematics/trajectory.hpp>
+#include <softkin/model/model.hpp>
+#include <softkin/runs/record_log.hpp>
+#include <softkin/runs/records.hpp>
+#include <string>
+
+namespace softkin::runs {
+
+// What a report says before its steps, a JSON object on one line: version, scene, robot, formulation, materials,
+// actuators, solver, units, mesh, notes. scene: its file, as the user named it
+
+[[nodiscard]] std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options);
+/// With what changes the waypoints' results beside robot and solver, "follow".
+[[nodiscard]] std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options);
+/// With what is walked, and the feet.
+[[nodiscard]] std::string walk_head(const Model& model, const std::string& scene, const StaticsOptions& options,
+                                    const std::string& gait, std::size_t cycles, const Vec3& direction);
+
+/// A goal and what the user calls it: "tip", "base:tip".
+struct NamedGoal {
+  std::string name;
+  Goal goal;
+};
+
+/// The equilibrium that inverse kinematics came to.
+struct InverseRecord : StepRecord {
+  double error_mm = 0;  // of the farthest goal
+};
+
+[[nodiscard]] InverseRecord inverse_record(const Model& model, const InverseResult& found,
+                                           const ElementDeformation& deformation);
+
+/// Where the marker of a goal, or the unit vector between its markers, is [mm, -].
+[[nodiscard]] Vec3 place_of(const Model& model, const Goal& goal, const Points& positions);
+
+/// The report of it: what was asked and what came of it, and the record; to be written to file at its finish().
+[[nodiscard]] RecordLog inverse_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
+                                       const InverseOptions& options, const std::vector<NamedGoal>& goals,
+                                       const InverseResult& found, const InverseRecord& record);
+
+/// The report of softkin drive, JSON.
+///
+/// scene   its file, as the user named it
+/// whole   with the program and the schedule
+/// stream  how the program was sent; null: it was not
+[[nodiscard]] std::string drive_report(const std::string& scene, const drive::Plan& plan, bool whole,
+                                       const drive::StreamReport* stream);
+
+}  // namespace softkin::runs
