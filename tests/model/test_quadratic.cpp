@@ -4,8 +4,7 @@
 #include <cmath>
 #include <random>
 #include <softkin/model/compile/cavity.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 
 #include "model/quadratic_mesh.hpp"
 

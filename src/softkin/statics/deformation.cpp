@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/model/compile/cavity.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/statics/deformation.hpp>
 
 namespace softkin {

@@ -1,6 +1,5 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
-#include <softkin/io/mesh/stl.hpp>
 #include <softkin/io/scene/scene.hpp>
 
 namespace softkin {

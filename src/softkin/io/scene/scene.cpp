@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <softkin/io/mesh/length_unit.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/parts.hpp>
 #include <softkin/io/scene/scene.hpp>

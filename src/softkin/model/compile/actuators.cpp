@@ -4,7 +4,7 @@
 #include <softkin/model/compile/cavity.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/boundary.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <softkin/model/compile/cavity.hpp>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 

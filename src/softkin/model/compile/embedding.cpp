@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/model/compile/embedding.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/model/mesh/box_tree.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/model.hpp>
 
 namespace softkin {

@@ -6,18 +6,12 @@
 #include <set>
 #include <softkin/model/compile/regions.hpp>
 #include <softkin/model/compile/selectors.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 
 namespace {
-
-void sort_unique(std::vector<Index>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 template <class Cell>
 void add_vertices(const std::vector<Cell>& cells, const std::vector<Index>& which, std::vector<Index>& vertices) {
