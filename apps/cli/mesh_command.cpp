@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <memory>
-#include <softkin/io/mesh/length_unit.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/mesh_report.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>

@@ -3,7 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/picture/png.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 #include <softkin/vision/tags.hpp>
 
 #include "cli/command.hpp"

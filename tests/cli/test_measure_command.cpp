@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <softkin/io/picture/png.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 #include <softkin/io/table/csv.hpp>
 #include <vision/rendering.hpp>
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
-#include <softkin/io/mesh/stl.hpp>
 #include <utility>
 
 #include "mesh_samples.hpp"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
-#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 #include <sstream>
 #include <thread>

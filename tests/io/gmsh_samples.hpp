@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh/gmsh_read.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -462,7 +462,7 @@ inline std::string replaced(std::string text, const std::string& old, const std:
 /// The message of the InvalidInput that reading content as a file of that name ends with, "" where it does not.
 inline std::string refusal(const std::string& content, const std::string& file) {
   try {
-    (void)softkin::gmsh::read(file, content);
+    (void)softkin::read_gmsh(file, content);
   } catch (const softkin::InvalidInput& error) {
     return error.what();
   }

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 #include <softkin/io/file.hpp>
-#include <softkin/io/mesh/gmsh.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 
 #include "gmsh_samples.hpp"
 

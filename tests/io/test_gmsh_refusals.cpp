@@ -1,7 +1,7 @@
 #include <functional>
 #include <limits>
 #include <random>
-#include <softkin/io/mesh/gmsh.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 
 #include "gmsh_samples.hpp"
 
@@ -301,7 +301,7 @@ TEST(GmshRefusals, BytesThatFlip) {
     const std::size_t at = random() % content.size();
     content[at] = static_cast<char>(content[at] ^ static_cast<char>(1 + random() % 255));
     try {
-      expect_consistent(gmsh::read("flipped.msh", content));
+      expect_consistent(read_gmsh("flipped.msh", content));
     } catch (const InvalidInput& error) {
       ++refused;
       ASSERT_TRUE(std::string(error.what()).starts_with("flipped.msh:")) << error.what();

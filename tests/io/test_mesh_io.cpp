@@ -2,7 +2,6 @@
 
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
-#include <softkin/io/mesh/stl.hpp>
 #include <string>
 
 #include "text_mesh_files.hpp"

@@ -1,7 +1,4 @@
-#include <softkin/io/mesh/gmsh.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
-#include <softkin/io/mesh/stl.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 
 #include "gmsh_samples.hpp"
@@ -58,7 +55,7 @@ void expect_same(const Mesh& found, const Mesh& expected) {
 }
 
 Mesh read_gmsh_text(const std::string& content) {
-  return gmsh::read("sample.msh", content);
+  return read_gmsh("sample.msh", content);
 }
 
 TEST(Order2, GmshInEveryForm) {

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <set>
-#include <softkin/io/mesh/gmsh.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <sstream>
 

@@ -13,9 +13,8 @@
 #include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/picture/bitmap_font.hpp>
+#include <softkin/io/picture/canvas.hpp>
 #include <softkin/io/picture/picture.hpp>
-#include <softkin/io/picture/picture_legend.hpp>
 
 namespace softkin {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 
 #include "io/vtk_files.hpp"
 

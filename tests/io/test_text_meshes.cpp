@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <sstream>
 
 #include "text_mesh_files.hpp"

@@ -3,7 +3,7 @@
 #include <functional>
 #include <random>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <vector>
 
 #include "text_mesh_files.hpp"

@@ -3,8 +3,7 @@
 
 #include <cmath>
 #include <random>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/model.hpp>
 
 #include "model/quadratic_mesh.hpp"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/statics/deformation.hpp>
 
 namespace softkin {

@@ -1,6 +1,6 @@
 #include <fstream>
 #include <softkin/energy/rotation.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <softkin/statics/statics.hpp>
 

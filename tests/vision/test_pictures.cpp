@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/picture/png.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
 #include <softkin/vision/dots.hpp>
 #include <softkin/vision/pictures.hpp>
 #include <vision/rendering.hpp>

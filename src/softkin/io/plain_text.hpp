@@ -15,4 +15,7 @@ namespace softkin {
 /// A name out of a file as it is, where that is safe to print on one line; else its excerpt.
 [[nodiscard]] std::string printable(const std::string& name);
 
+/// For XML: the characters & < > " as entities.
+[[nodiscard]] std::string xml_escaped(std::string_view text);
+
 }  // namespace softkin

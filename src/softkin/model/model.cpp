@@ -3,8 +3,8 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 #include <softkin/model/model.hpp>
 #include <type_traits>
 

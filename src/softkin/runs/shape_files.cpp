@@ -2,7 +2,7 @@
 
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/picture/picture.hpp>
-#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 
 namespace softkin::runs {
 

@@ -4,7 +4,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/plain_text.hpp>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/statics/deformation.hpp>
 
 namespace softkin {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <optional>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh/length_unit.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/vision/boards.hpp>
 
 namespace softkin::vision {

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <map>
 #include <softkin/io/mesh/abaqus_cards.hpp>
-#include <softkin/io/mesh/abaqus_deck.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
-#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <unordered_map>
 #include <utility>
 
@@ -16,11 +16,6 @@ constexpr Index tetrahedron_faces[4][4] = {{1, 2, 3, 0}, {1, 4, 2, 0}, {2, 4, 3,
 constexpr Index prism_faces[5][4] = {{1, 2, 3, 0}, {4, 6, 5, 0}, {1, 4, 5, 2}, {2, 5, 6, 3}, {3, 6, 4, 1}};
 
 using Numbers = std::unordered_map<std::int64_t, Index>;  // from the file's numbers to the order of appearance
-
-void sort_unique(std::vector<Index>& members) {
-  std::sort(members.begin(), members.end());
-  members.erase(std::unique(members.begin(), members.end()), members.end());
-}
 
 struct NamedSet {
   std::string name;
@@ -67,18 +62,18 @@ class MeshBuilder {
     add_elements();
     for (const AbaqusSet& card : cards_.sets)
       if (card.kind != AbaqusSetKind::surface) resolve(card);
-    add_element_regions();
+    add_regions(element_sets_, 3, [&](Region& region, Index element) {
+      const auto i = static_cast<std::size_t>(element);
+      auto& members = cards_.elements[i].is_tetrahedron() ? region.tetrahedra : region.prisms;
+      members.push_back(static_cast<Index>(place_[i]));
+    });
     for (const AbaqusSet& card : cards_.sets)
       if (card.kind == AbaqusSetKind::surface) resolve_surface(card);
-    add_regions(
-        surfaces_,
-        [&](Region& region, Index face) {
-          const auto [is_quad, index] = faces_[static_cast<std::size_t>(face)];
-          (is_quad ? region.quads : region.triangles).push_back(index);
-        },
-        2);
-    add_regions(
-        node_sets_, [](Region& region, Index node) { region.vertices.push_back(node); }, 0);
+    add_regions(surfaces_, 2, [&](Region& region, Index face) {
+      const auto [is_quad, index] = faces_[static_cast<std::size_t>(face)];
+      (is_quad ? region.quads : region.triangles).push_back(index);
+    });
+    add_regions(node_sets_, 0, [](Region& region, Index node) { region.vertices.push_back(node); });
     return std::move(mesh_);
   }
 
@@ -103,8 +98,7 @@ class MeshBuilder {
         throw InvalidInput(cards_.origin(element.line),
                            "element " + std::to_string(element.id) + " is defined a second time");
       add_element(element);
-      const std::string refusal =
-          refusal_of_orders(mesh_.tetrahedra.size(), mesh_.edge_nodes.size(), mesh_.prisms.size());
+      const std::string refusal = refusal_of_orders(mesh_);
       if (!refusal.empty()) throw InvalidInput(cards_.origin(element.line), refusal);
     }
   }
@@ -133,8 +127,10 @@ class MeshBuilder {
     return found->second;
   }
 
-  /// Appends what the numbers of an item stand for.
-  void look_up(const AbaqusItem& item, const Numbers& numbers, const char* kind, std::vector<Index>& members) const {
+  /// Appends what an item stands for: numbers, or the members of the set that it names.
+  void append_item(const AbaqusItem& item, const Numbers& numbers, const SetTable& table, const char* kind,
+                   std::vector<Index>& members) const {
+    if (!item.name.empty()) return append(members, table.members(cards_, item, kind));
     for (std::int64_t id = item.first; id <= item.last; id += item.step) {
       const auto found = numbers.find(id);
       if (found == numbers.end())
@@ -152,10 +148,8 @@ class MeshBuilder {
     for (const AbaqusItem& item : card.items) {
       if (item.element_nodes)
         append_nodes_of(element_sets_.members(cards_, item, "element"), members);
-      else if (item.name.empty())
-        look_up(item, numbers, kind, members);
       else
-        append(members, table.members(cards_, item, kind));
+        append_item(item, numbers, table, kind, members);
       if (members.size() > 2 * numbers.size()) sort_unique(members);  // sets of sets must not grow without bound
     }
     std::vector<Index>& all = table.at(cards_, card).members;
@@ -189,10 +183,7 @@ class MeshBuilder {
     std::vector<Index> members;
     for (const AbaqusItem& item : card.items) {
       std::vector<Index> elements;
-      if (item.name.empty())
-        look_up(item, elements_, "element", elements);
-      else
-        elements = element_sets_.members(cards_, item, "element");
+      append_item(item, elements_, element_sets_, "element", elements);
       for (const Index element : elements) members.push_back(face_of(element, item));
       if (members.size() > 2 * faces_.size()) sort_unique(members);
     }
@@ -220,19 +211,8 @@ class MeshBuilder {
     return found->second;
   }
 
-  void add_element_regions() {
-    add_regions(
-        element_sets_,
-        [&](Region& region, Index element) {
-          const auto i = static_cast<std::size_t>(element);
-          (cards_.elements[i].is_tetrahedron() ? region.tetrahedra : region.prisms)
-              .push_back(static_cast<Index>(place_[i]));
-        },
-        3);
-  }
-
   template <class Add>
-  void add_regions(SetTable& table, const Add& add, int dimension) {
+  void add_regions(SetTable& table, int dimension, const Add& add) {
     for (const NamedSet& set : table.sets()) {
       Region region;
       region.name = set.name;

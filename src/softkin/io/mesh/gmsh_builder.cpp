@@ -1,5 +1,5 @@
 #include <softkin/io/mesh/gmsh_builder.hpp>
-#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 
 namespace softkin::gmsh {
 
@@ -10,11 +10,6 @@ std::array<Index, N> to_array(std::span<const Index> vertices) {
   std::array<Index, N> cell;
   std::copy_n(vertices.begin(), N, cell.begin());
   return cell;
-}
-
-void sort_unique(std::vector<Index>& indices) {
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
 /// Index of the cell of the first N vertices, new or known.
@@ -28,33 +23,21 @@ Index add_cell(CellStore<N>& store, std::span<const Index> vertices, std::span<R
 
 }  // namespace
 
-bool NodeNumbers::insert(std::int64_t number, Index row) {
-  if (!is_dense(number)) return sparse_.try_emplace(number, row).second;
-  const auto place = static_cast<std::size_t>(number);
-  if (place >= dense_.size()) dense_.resize(std::min(dense_limit_, 2 * place + 1), -1);
-  if (dense_[place] >= 0) return false;
-  dense_[place] = row;
-  return true;
-}
-
-Index NodeNumbers::find(std::int64_t number) const {
-  if (is_dense(number)) {
-    const auto place = static_cast<std::size_t>(number);
-    return place < dense_.size() ? dense_[place] : -1;
-  }
-  const auto found = sparse_.find(number);
-  return found == sparse_.end() ? -1 : found->second;
-}
-
 void Builder::begin_nodes(std::size_t count) {
   positions_.resize(static_cast<Eigen::Index>(count), 3);
   numbers_ = NodeNumbers(count);
 }
 
-bool Builder::number_node(std::int64_t number) {
-  if (!numbers_.insert(number, node_count_)) return false;
+void Builder::number_node(std::int64_t number) {
+  if (!numbers_.insert(number, node_count_)) in_.fail("two nodes have the number " + std::to_string(number));
   ++node_count_;
-  return true;
+}
+
+Index Builder::vertex(std::int64_t element, std::int64_t number) const {
+  const Index row = numbers_.find(number);
+  if (row < 0)
+    in_.fail("element " + std::to_string(element) + " names node " + std::to_string(number) + ", which does not exist");
+  return row;
 }
 
 Region& Builder::group(int dimension, int tag) {
@@ -63,7 +46,7 @@ Region& Builder::group(int dimension, int tag) {
   return place->second;
 }
 
-std::string Builder::add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
+void Builder::add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
   switch (type) {
     case CellType::tetrahedron:
     case CellType::quadratic_tetrahedron:
@@ -72,52 +55,50 @@ std::string Builder::add_element(CellType type, std::span<const Index> vertices,
     case CellType::triangle:
     case CellType::quadratic_triangle:
       if (!groups.empty()) add_cell(triangles_, vertices, groups, &Region::triangles);
-      return "";
+      return;
     case CellType::quad:
       if (!groups.empty()) add_cell(quads_, vertices, groups, &Region::quads);
-      return "";
+      return;
     case CellType::line:
     case CellType::quadratic_line:
     case CellType::point:
       for (Region* group : groups) group->vertices.insert(group->vertices.end(), vertices.begin(), vertices.end());
-      return "";
   }
-  return "";
 }
 
-std::string Builder::add_volume(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
+void Builder::add_volume(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
   has_linear_ = has_linear_ || type == CellType::tetrahedron;
   has_quadratic_ = has_quadratic_ || type == CellType::quadratic_tetrahedron;
   const std::size_t prisms = prisms_.size() + (type == CellType::prism ? 1 : 0);
-  std::string refusal =
+  const std::string refusal =
       refusal_of_orders((has_linear_ ? 1 : 0) + (has_quadratic_ ? 1 : 0), has_quadratic_ ? 1 : 0, prisms);
-  if (!refusal.empty()) return refusal;
-  if (type != CellType::prism) return add_tetrahedron(type, vertices, groups);
-  add_cell(prisms_, vertices, groups, &Region::prisms);
-  return "";
+  if (!refusal.empty()) in_.fail(refusal);
+  if (type == CellType::prism)
+    add_cell(prisms_, vertices, groups, &Region::prisms);
+  else
+    add_tetrahedron(type, vertices, groups);
 }
 
-std::string Builder::add_tetrahedron(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
+void Builder::add_tetrahedron(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
   const auto place = static_cast<std::size_t>(add_cell(tetrahedra_, vertices, groups, &Region::tetrahedra));
-  if (type == CellType::tetrahedron) return "";
+  if (type == CellType::tetrahedron) return;
   EdgeNodes nodes = reordered(to_array<6>(vertices.subspan(4)));
   if (place == edge_nodes_.size()) edge_nodes_.push_back(nodes);
   EdgeNodes known = edge_nodes_[place];
   std::sort(known.begin(), known.end());
   std::sort(nodes.begin(), nodes.end());
-  return nodes == known ? "" : "two tetrahedra have the same corners but different edge nodes";
+  if (nodes != known) in_.fail("two tetrahedra have the same corners but different edge nodes");
 }
 
-std::string Builder::name_group(int dimension, int tag, const std::string& name) {
+void Builder::name_group(int dimension, int tag, const std::string& name) {
   const Key key{dimension, tag};
   const auto [known, is_new] = names_.try_emplace(key, name);
   if (!is_new)
-    return "physical group " + std::to_string(tag) + " of dimension " + std::to_string(dimension) +
-           " has a name already: '" + known->second + "'";
+    in_.fail("physical group " + std::to_string(tag) + " of dimension " + std::to_string(dimension) +
+             " has a name already: '" + known->second + "'");
   if (!used_names_.emplace(dimension, name).second)
-    return "two physical groups of dimension " + std::to_string(dimension) + " have the name '" + name + "'";
+    in_.fail("two physical groups of dimension " + std::to_string(dimension) + " have the name '" + name + "'");
   named_.push_back(key);
-  return "";
 }
 
 void Builder::move_to_regions(const Key& key, const std::string& name) {
@@ -126,7 +107,7 @@ void Builder::move_to_regions(const Key& key, const std::string& name) {
   groups_.erase(key);
 }
 
-std::string Builder::make_regions() {
+void Builder::make_regions() {
   std::map<std::string, int> highest;
   for (const auto& [dimension, name] : used_names_) highest[name] = std::max(highest[name], dimension);
   for (const Key& key : named_) {
@@ -139,11 +120,14 @@ std::string Builder::make_regions() {
   }
   std::set<std::string> seen;
   for (const Region& region : regions_)
-    if (!seen.insert(region.name).second) return "two physical groups would become regions named '" + region.name + "'";
-  return "";
+    if (!seen.insert(region.name).second)
+      in_.fail_file("two physical groups would become regions named '" + region.name + "'");
 }
 
 Mesh Builder::take() {
+  if (tetrahedra_.size() + prisms_.size() == 0)
+    in_.fail_file("holds no volume elements: mesh in three dimensions, with tetrahedra or prisms");
+  make_regions();
   for (Region& region : regions_)
     for (auto* list : {&region.tetrahedra, &region.prisms, &region.triangles, &region.quads, &region.vertices})
       sort_unique(*list);

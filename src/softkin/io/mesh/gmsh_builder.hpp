@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
-#include <softkin/io/mesh/gmsh_types.hpp>
+#include <softkin/io/mesh/gmsh_format.hpp>
 #include <softkin/model/mesh/mesh.hpp>
 #include <span>
 #include <string>
@@ -20,10 +20,26 @@ namespace softkin::gmsh {
 class NodeNumbers {
  public:
   explicit NodeNumbers(std::size_t expected = 0) : dense_limit_(4 * expected + 1024) {}
+
   /// False where the number is taken.
-  bool insert(std::int64_t number, Index row);
+  bool insert(std::int64_t number, Index row) {
+    if (!is_dense(number)) return sparse_.try_emplace(number, row).second;
+    const auto place = static_cast<std::size_t>(number);
+    if (place >= dense_.size()) dense_.resize(std::min(dense_limit_, 2 * place + 1), -1);
+    if (dense_[place] >= 0) return false;
+    dense_[place] = row;
+    return true;
+  }
+
   /// -1 where no node has the number.
-  [[nodiscard]] Index find(std::int64_t number) const;
+  [[nodiscard]] Index find(std::int64_t number) const {
+    if (is_dense(number)) {
+      const auto place = static_cast<std::size_t>(number);
+      return place < dense_.size() ? dense_[place] : -1;
+    }
+    const auto found = sparse_.find(number);
+    return found == sparse_.end() ? -1 : found->second;
+  }
 
  private:
   [[nodiscard]] bool is_dense(std::int64_t number) const { return static_cast<std::size_t>(number) < dense_limit_; }
@@ -85,36 +101,36 @@ class CellStore {
   std::vector<Index> slots_;  // open addressing, at most half full: half the time of a std::unordered_map
 };
 
-/// Collects what a .msh file holds and makes a Mesh of it.
+/// Collects what a .msh file holds and makes a Mesh of it. What cannot be is a failure of the source, where it stands.
 class Builder {
  public:
+  explicit Builder(const Source& in) : in_(in) {}
+
   void begin_nodes(std::size_t count);
-  /// Gives the next vertex a number; false where that is taken.
-  bool number_node(std::int64_t number);
+  /// Gives the next vertex a number, which must be new.
+  void number_node(std::int64_t number);
   void place_node(Index row, const Vec3& position) { positions_.row(row) = position.transpose(); }
   [[nodiscard]] Index node_count() const { return node_count_; }
-  [[nodiscard]] Index find_node(std::int64_t number) const { return numbers_.find(number); }
+  /// The vertex of a number that an element names.
+  [[nodiscard]] Index vertex(std::int64_t element, std::int64_t number) const;
 
   /// The physical group of a dimension and tag; the reference stays valid.
   Region& group(int dimension, int tag);
-  /// vertices holds shape_of(type).nodes rows. Why the element cannot stand beside the others, or "".
-  std::string add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
-  [[nodiscard]] bool has_volume_elements() const { return tetrahedra_.size() + prisms_.size() > 0; }
-
-  /// Why the group cannot get that name, or "".
-  std::string name_group(int dimension, int tag, const std::string& name);
-  /// Turns the groups into named regions; the reason why that fails, or "".
-  std::string make_regions();
-  /// The mesh, once.
+  /// vertices holds shape_of(type).nodes rows.
+  void add_element(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
+  void name_group(int dimension, int tag, const std::string& name);
+  /// The mesh, once; its groups become named regions.
   Mesh take();
 
  private:
   using Key = std::pair<int, int>;  // dimension, tag
 
-  std::string add_volume(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
-  std::string add_tetrahedron(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
+  void add_volume(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
+  void add_tetrahedron(CellType type, std::span<const Index> vertices, std::span<Region* const> groups);
   void move_to_regions(const Key& key, const std::string& name);
+  void make_regions();
 
+  const Source& in_;
   Points positions_;
   Index node_count_ = 0;
   NodeNumbers numbers_;

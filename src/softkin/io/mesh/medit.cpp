@@ -1,7 +1,9 @@
+#include <algorithm>
+#include <map>
 #include <set>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
-#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,35 +12,26 @@ namespace softkin {
 
 namespace {
 
-/// Sections whose content softkin does not need: numbers per entry.
-const std::map<std::string, std::size_t>& skipped_sections() {
-  static const std::map<std::string, std::size_t> sections = {{"Corners", 1},
-                                                              {"RequiredVertices", 1},
-                                                              {"ParallelVertices", 1},
-                                                              {"Edges", 3},
-                                                              {"EdgesP2", 4},
-                                                              {"Ridges", 1},
-                                                              {"RequiredEdges", 1},
-                                                              {"ParallelEdges", 1},
-                                                              {"RequiredTriangles", 1},
-                                                              {"ParallelTriangles", 1},
-                                                              {"RequiredQuadrilaterals", 1},
-                                                              {"ParallelQuadrilaterals", 1},
-                                                              {"RequiredTetrahedra", 1},
-                                                              {"Normals", 3},
-                                                              {"NormalAtVertices", 2},
-                                                              {"NormalAtTriangleVertices", 3},
-                                                              {"NormalAtQuadrilateralVertices", 3},
-                                                              {"Tangents", 3},
-                                                              {"TangentAtVertices", 2},
-                                                              {"TangentAtEdges", 3}};
+/// Sections whose content softkin does not need, by the numbers per entry.
+const std::map<std::size_t, std::set<std::string>>& skipped_sections() {
+  static const std::map<std::size_t, std::set<std::string>> sections = {
+      {1,
+       {"Corners", "RequiredVertices", "ParallelVertices", "Ridges", "RequiredEdges", "ParallelEdges",
+        "RequiredTriangles", "ParallelTriangles", "RequiredQuadrilaterals", "ParallelQuadrilaterals",
+        "RequiredTetrahedra"}},
+      {2, {"NormalAtVertices", "TangentAtVertices"}},
+      {3,
+       {"Edges", "Normals", "NormalAtTriangleVertices", "NormalAtQuadrilateralVertices", "Tangents", "TangentAtEdges"}},
+      {4, {"EdgesP2"}}};
   return sections;
 }
 
 std::vector<std::string> known_sections() {
   std::vector<std::string> names = {"Dimension", "Vertices",    "Tetrahedra",     "TetrahedraP2", "Prisms",
                                     "Triangles", "TrianglesP2", "Quadrilaterals", "End"};
-  for (const auto& [name, numbers] : skipped_sections()) names.push_back(name);
+  std::set<std::string> skipped;
+  for (const auto& [numbers, sections] : skipped_sections()) skipped.insert(sections.begin(), sections.end());
+  names.insert(names.end(), skipped.begin(), skipped.end());
   return names;
 }
 
@@ -51,9 +44,8 @@ class MeditReader {
     scanner_.expect("MeshVersionFormatted");
     (void)scanner_.integer("MeshVersionFormatted", 0, 4);
     for (std::string name(scanner_.token("End")); name != "End"; name = scanner_.token("End")) read_section(name);
-    expect_elements(mesh_, scanner_);
-    const std::string refusal =
-        refusal_of_orders(mesh_.tetrahedra.size(), mesh_.edge_nodes.size(), mesh_.prisms.size());
+    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty()) scanner_.fail("the mesh has neither tetrahedra nor prisms");
+    const std::string refusal = refusal_of_orders(mesh_);
     if (!refusal.empty()) scanner_.fail(refusal);
     expect_end(scanner_);
     append_regions(mesh_, std::move(volumes_), "ref_", 3);
@@ -64,7 +56,8 @@ class MeditReader {
  private:
   void read_section(const std::string& name) {
     if (!seen_.insert(name).second) scanner_.fail("section " + name + " appears a second time");
-    const auto skipped = skipped_sections().find(name);
+    const auto skipped = std::find_if(skipped_sections().begin(), skipped_sections().end(),
+                                      [&](const auto& sections) { return sections.second.contains(name); });
     if (name == "Dimension")
       read_dimension();
     else if (name == "Vertices")
@@ -82,7 +75,7 @@ class MeditReader {
     else if (name == "Quadrilaterals")
       read_elements("quadrilaterals", mesh_.quads, surfaces_, &Region::quads);
     else if (skipped != skipped_sections().end())
-      skip_numbers(skipped->first, skipped->second);
+      skip_numbers(name, skipped->first);
     else
       refuse_section(name);
   }

@@ -1,14 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh/gmsh.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
-#include <softkin/io/mesh/stl.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
 #include <softkin/io/mesh/vtk.hpp>
-#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,14 +76,27 @@ void write_boundary(const fs::path& path, const Mesh& mesh) {
   std::vector<EdgeNodes> edge_nodes = mesh.edge_nodes;
   std::vector<Prism> prisms = mesh.prisms;
   for (std::size_t i = 0; i < tetrahedra.size(); ++i)
-    if (signed_volume(mesh.vertices, tetrahedra[i]) < 0)
-      reverse(tetrahedra[i], edge_nodes.empty() ? nullptr : &edge_nodes[i]);
+    if (signed_volume(mesh.vertices, tetrahedra[i]) < 0) {
+      std::swap(tetrahedra[i][2], tetrahedra[i][3]);
+      if (!edge_nodes.empty()) exchange_corners_2_and_3(edge_nodes[i]);
+    }
   for (Prism& p : prisms)
     if (signed_volume(mesh.vertices, p) < 0) p = {p[3], p[4], p[5], p[0], p[1], p[2]};
   write_stl(path, mesh.vertices, boundary_triangles(tetrahedra, edge_nodes, prisms));
 }
 
 }  // namespace
+
+const std::vector<std::string>& length_units() {
+  static const std::vector<std::string> units{"mm", "cm", "m", "um", "in"};
+  return units;
+}
+
+double mm_per(const std::string& unit) {
+  constexpr std::array<double, 5> mm{1, 10, 1000, 0.001, 25.4};
+  const auto found = std::find(length_units().begin(), length_units().end(), unit);
+  return mm.at(static_cast<std::size_t>(found - length_units().begin()));
+}
 
 Mesh read_mesh(const fs::path& path) {
   const Form* form = form_of(path);

@@ -3,15 +3,12 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/json_text.hpp>
-#include <softkin/io/mesh/gmsh.hpp>
-#include <softkin/io/mesh/length_unit.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/mesh_report.hpp>
-#include <softkin/io/mesh/stl.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/scene.hpp>
-#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/model.hpp>
 
 namespace softkin {

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <softkin/model/mesh/mesh_findings.hpp>
-#include <softkin/model/mesh/mesh_measures.hpp>
+#include <softkin/model/mesh/mesh_review.hpp>
 #include <string>
 #include <vector>
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <limits>
 #include <softkin/io/file.hpp>
-#include <softkin/io/mesh/stl.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/scanner.hpp>
 #include <string>
 #include <string_view>

@@ -1,5 +1,5 @@
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
 #include <string>
 #include <string_view>
 #include <utility>

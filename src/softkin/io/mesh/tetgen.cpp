@@ -1,8 +1,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
-#include <softkin/io/mesh/text_meshes.hpp>
 #include <string>
 #include <utility>
 #include <vector>

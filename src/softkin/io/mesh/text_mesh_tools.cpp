@@ -14,6 +14,13 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
+std::string upper_case(std::string_view text) {
+  std::string upper(text);
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return upper;
+}
+
 std::string read_without_comments(const std::filesystem::path& path) {
   std::string content = read_file(path);
   for (std::size_t begin = content.find('#'); begin != std::string::npos; begin = content.find('#', begin)) {
@@ -55,10 +62,6 @@ void expect_end(Scanner& scanner) {
   if (scanner.at_end()) return;
   const std::string extra(scanner.token("the end of the file").substr(0, 40));
   scanner.fail("unexpected '" + extra + "' where the file should end");
-}
-
-void expect_elements(const Mesh& mesh, const Scanner& scanner) {
-  if (mesh.tetrahedra.empty() && mesh.prisms.empty()) scanner.fail("the mesh has neither tetrahedra nor prisms");
 }
 
 void append_regions(Mesh& mesh, LabelledRegions&& regions, const std::string& prefix, int dimension) {

@@ -13,6 +13,8 @@ namespace softkin {
 /// The extension in lower case, with its dot.
 [[nodiscard]] std::string lower_extension(const std::filesystem::path& path);
 
+[[nodiscard]] std::string upper_case(std::string_view text);
+
 /// The file with everything from each '#' to the end of its line replaced by blanks: lines keep their numbers.
 [[nodiscard]] std::string read_without_comments(const std::filesystem::path& path);
 
@@ -33,9 +35,6 @@ Scanner& on_line(Scanner& scanner, const char* what);
 
 /// Fails unless only blanks follow.
 void expect_end(Scanner& scanner);
-
-/// Fails unless the mesh has a tetrahedron or a prism.
-void expect_elements(const Mesh& mesh, const Scanner& scanner);
 
 /// Regions by label, to be named when all are known.
 using LabelledRegions = std::map<Index, Region>;

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <softkin/io/mesh/vtu_bytes.hpp>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -28,83 +25,93 @@ int base64_digit(char c) {
   return c == '/' ? 63 : -1;
 }
 
-}  // namespace
+/// The bytes of one array; errors name it and its place.
+class VtuBytes {
+ public:
+  VtuBytes(std::string_view content, VtuPlace place)
+      : content_(content), place_(std::move(place)), cursor_(place_.begin) {}
 
-VtuBytes::VtuBytes(std::string_view content, Place place)
-    : content_(content), place_(std::move(place)), cursor_(place_.begin) {}
-
-void VtuBytes::fail_at(std::size_t position, const std::string& message) const {
-  Origin origin{place_.file, 0, position, place_.by_byte};
-  if (!place_.by_byte) {
-    const std::string_view before = content_.substr(0, position);
-    origin.line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
-  }
-  throw InvalidInput(origin, "array '" + place_.array + "': " + message);
-}
-
-std::uint64_t VtuBytes::bound() const {
-  const std::uint64_t left = place_.end - cursor_;
-  return place_.base64 ? left / 4 * 3 + (pending_end_ - pending_begin_) : left;
-}
-
-void VtuBytes::skip_blanks() {
-  while (cursor_ < place_.end && is_blank(content_[cursor_])) ++cursor_;
-}
-
-char VtuBytes::next_character(const std::string& what) {
-  skip_blanks();
-  if (cursor_ == place_.end) fail("the base64 text ends within " + what);
-  return content_[cursor_];
-}
-
-void VtuBytes::next_quantum(const std::string& what) {
-  std::uint32_t bits = 0;
-  int padding = 0;
-  for (int i = 0; i < 4; ++i, ++cursor_) {
-    const char c = next_character(what);
-    const int digit = base64_digit(c);
-    if (c == '=' && i >= 2)
-      ++padding;
-    else if (digit < 0 || padding > 0)
-      fail("byte " + std::to_string(static_cast<unsigned char>(c)) + " is not base64 text here");
-    bits = bits << 6 | static_cast<std::uint32_t>(std::max(digit, 0));
-  }
-  for (int i = 0; i < 3; ++i) pending_[i] = static_cast<char>(bits >> (16 - 8 * i) & 0xFF);
-  pending_begin_ = 0;
-  pending_end_ = static_cast<std::size_t>(3 - padding);
-  padded_ = padding > 0;
-}
-
-std::string VtuBytes::read(std::uint64_t count, const std::string& what) {
-  if (count > bound())
-    fail("ends within " + what + ": " + std::to_string(count) + " bytes announced, at most " + std::to_string(bound()) +
-         " follow");
-  if (!place_.base64) {
-    std::string raw(content_.substr(cursor_, count));
-    cursor_ += count;
-    return raw;
-  }
-  std::string bytes;
-  bytes.reserve(count);
-  if (pending_begin_ == pending_end_) padded_ = false;
-  while (bytes.size() < count) {
-    if (pending_begin_ == pending_end_) {
-      if (padded_) fail("base64 padding within " + what);
-      next_quantum(what);
+  /// The next count bytes. A base64 text may end with padding, and begin anew, only between two reads.
+  std::string read(std::uint64_t count, const std::string& what) {
+    if (count > bound())
+      fail("ends within " + what + ": " + std::to_string(count) + " bytes announced, at most " +
+           std::to_string(bound()) + " follow");
+    if (!place_.base64) {
+      std::string raw(content_.substr(cursor_, count));
+      cursor_ += count;
+      return raw;
     }
-    const std::size_t part = std::min<std::size_t>(pending_end_ - pending_begin_, count - bytes.size());
-    bytes.append(pending_ + pending_begin_, part);
-    pending_begin_ += part;
+    std::string bytes;
+    bytes.reserve(count);
+    if (pending_begin_ == pending_end_) padded_ = false;
+    while (bytes.size() < count) {
+      if (pending_begin_ == pending_end_) {
+        if (padded_) fail("base64 padding within " + what);
+        next_quantum(what);
+      }
+      const std::size_t part = std::min<std::size_t>(pending_end_ - pending_begin_, count - bytes.size());
+      bytes.append(pending_ + pending_begin_, part);
+      pending_begin_ += part;
+    }
+    return bytes;
   }
-  return bytes;
-}
 
-void VtuBytes::finish() {
-  skip_blanks();
-  if (pending_begin_ != pending_end_ || cursor_ != place_.end) fail("more data follows than the header announces");
-}
+  /// Fails if anything but blanks is left.
+  void finish() {
+    skip_blanks();
+    if (pending_begin_ != pending_end_ || cursor_ != place_.end) fail("more data follows than the header announces");
+  }
 
-namespace {
+  /// Most bytes that can still follow.
+  [[nodiscard]] std::uint64_t bound() const {
+    const std::uint64_t left = place_.end - cursor_;
+    return place_.base64 ? left / 4 * 3 + (pending_end_ - pending_begin_) : left;
+  }
+
+  [[nodiscard]] std::size_t position() const { return cursor_; }
+  [[noreturn]] void fail(const std::string& message) const { fail_at(cursor_, message); }
+
+  [[noreturn]] void fail_at(std::size_t position, const std::string& message) const {
+    const std::size_t line = place_.by_byte ? 0 : line_of(content_, position);
+    throw InvalidInput({place_.file, line, position, place_.by_byte}, "array '" + place_.array + "': " + message);
+  }
+
+ private:
+  char next_character(const std::string& what) {
+    skip_blanks();
+    if (cursor_ == place_.end) fail("the base64 text ends within " + what);
+    return content_[cursor_];
+  }
+
+  void next_quantum(const std::string& what) {
+    std::uint32_t bits = 0;
+    int padding = 0;
+    for (int i = 0; i < 4; ++i, ++cursor_) {
+      const char c = next_character(what);
+      const int digit = base64_digit(c);
+      if (c == '=' && i >= 2)
+        ++padding;
+      else if (digit < 0 || padding > 0)
+        fail("byte " + std::to_string(static_cast<unsigned char>(c)) + " is not base64 text here");
+      bits = bits << 6 | static_cast<std::uint32_t>(std::max(digit, 0));
+    }
+    for (int i = 0; i < 3; ++i) pending_[i] = static_cast<char>(bits >> (16 - 8 * i) & 0xFF);
+    pending_begin_ = 0;
+    pending_end_ = static_cast<std::size_t>(3 - padding);
+    padded_ = padding > 0;
+  }
+
+  void skip_blanks() {
+    while (cursor_ < place_.end && is_blank(content_[cursor_])) ++cursor_;
+  }
+
+  std::string_view content_;
+  VtuPlace place_;
+  std::size_t cursor_;
+  char pending_[3] = {0, 0, 0};  // decoded and not yet read
+  std::size_t pending_begin_ = 0, pending_end_ = 0;
+  bool padded_ = false;  // the last quantum ended a base64 text
+};
 
 std::uint64_t read_word(VtuBytes& bytes, const VtuEncoding& encoding) {
   std::string raw = bytes.read(encoding.long_header ? 8 : 4, "the header");
@@ -168,13 +175,26 @@ std::string inflate_blocks(VtuBytes& bytes, const Blocks& blocks) {
   return data;
 }
 
-}  // namespace
-
-std::string read_vtu_data(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<std::uint64_t> expected) {
+std::string read_data(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<std::uint64_t> expected) {
   if (encoding.zlib_compressed) return inflate_blocks(bytes, read_blocks(bytes, encoding, expected));
   const std::uint64_t size = read_word(bytes, encoding);
   check_size(bytes, size, expected);
   return bytes.read(size, "its data");
+}
+
+}  // namespace
+
+std::size_t line_of(std::string_view content, std::size_t position) {
+  const std::string_view before = content.substr(0, position);
+  return static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
+}
+
+std::string read_vtu_data(std::string_view content, const VtuPlace& place, const VtuEncoding& encoding,
+                          std::optional<std::uint64_t> expected) {
+  VtuBytes bytes(content, place);
+  std::string data = read_data(bytes, encoding, expected);
+  if (!place.by_byte) bytes.finish();
+  return data;
 }
 
 }  // namespace softkin

@@ -16,44 +16,22 @@ struct VtuEncoding {
   bool zlib_compressed = false;  // in blocks
 };
 
-/// Bytes of one array of a .vtu file: content from begin to end, raw or base64. Nothing is allocated beyond what the
-/// remaining content can hold. Errors name the array and its place: the byte (by_byte) or the line.
-class VtuBytes {
- public:
-  struct Place {
-    std::string file, array;
-    std::size_t begin = 0, end = 0;  // in content
-    bool base64 = false, by_byte = false;
-  };
-  VtuBytes(std::string_view content, Place place);
+/// Of a position in the content, from 1.
+[[nodiscard]] std::size_t line_of(std::string_view content, std::size_t position);
 
-  /// The next count bytes. A base64 text may end with padding, and begin anew, only between two reads.
-  std::string read(std::uint64_t count, const std::string& what);
-  /// Fails if anything but blanks is left.
-  void finish();
-  /// Most bytes that can still follow.
-  [[nodiscard]] std::uint64_t bound() const;
-  [[nodiscard]] std::size_t position() const { return cursor_; }
-  [[noreturn]] void fail(const std::string& message) const { fail_at(cursor_, message); }
-  [[noreturn]] void fail_at(std::size_t position, const std::string& message) const;
-
- private:
-  char next_character(const std::string& what);
-  void next_quantum(const std::string& what);
-  void skip_blanks();
-
-  std::string_view content_;
-  Place place_;
-  std::size_t cursor_;
-  char pending_[3] = {0, 0, 0};  // decoded and not yet read
-  std::size_t pending_begin_ = 0, pending_end_ = 0;
-  bool padded_ = false;  // the last quantum ended a base64 text
+/// Where one array of a .vtu file is: content from begin to end, raw or base64. by_byte: errors name the byte, and other
+/// arrays may follow; else they name the line, and nothing but blanks may follow.
+struct VtuPlace {
+  std::string file, array;
+  std::size_t begin = 0, end = 0;
+  bool base64 = false, by_byte = false;
 };
 
-/// The values of an array as bytes: header, then data, decompressed where the file is compressed.
+/// The values of an array as bytes: header, then data, decompressed where the file is compressed. Nothing is allocated
+/// beyond what the remaining content can hold.
 ///
 /// expected  size that the file's counts ask for, where they do
-[[nodiscard]] std::string read_vtu_data(VtuBytes& bytes, const VtuEncoding& encoding,
+[[nodiscard]] std::string read_vtu_data(std::string_view content, const VtuPlace& place, const VtuEncoding& encoding,
                                         std::optional<std::uint64_t> expected);
 
 }  // namespace softkin

@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <set>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/vtk.hpp>
-#include <softkin/model/mesh/element_order.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -23,28 +24,6 @@ namespace softkin {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 20;  // bytes compressed at a time
-
-/// Text for an XML attribute. Names with control characters cannot stand in XML and are refused before.
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  return result;
-}
 
 bool is_printable(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(),
@@ -96,169 +75,153 @@ class VtuWriter {
 
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InvalidInput({file_}, message); }
-  void check() const;
-  void check_fields(const std::vector<Field>& fields, std::size_t count, const char* kind, bool has_regions) const;
-  void check_regions() const;
+
+  void check() const {
+    if (points_ == 0) fail("nothing to write: there are no points");
+    for (std::size_t i = 0; i < points_; ++i)
+      if (!content_.points.row(static_cast<Index>(i)).allFinite())
+        fail("points: point " + std::to_string(i) + " is not finite");
+    check_vertices(content_.tetrahedra, "tetrahedron");
+    check_vertices(content_.edge_nodes, "tetrahedron");
+    check_vertices(content_.prisms, "prism");
+    check_vertices(content_.triangles, "triangle");
+    const std::string refusal = refusal_of_orders(content_);
+    if (!refusal.empty()) fail(refusal);
+    check_fields(content_.point_fields, points_, "point field", false);
+    check_fields(content_.cell_fields, cells_, "cell field", !content_.cell_regions.empty());
+    check_regions();
+  }
+
+  void check_fields(const std::vector<Field>& fields, std::size_t count, const char* kind, bool has_regions) const {
+    std::set<std::string> names;
+    if (has_regions) names.insert("region");
+    for (const Field& field : fields) {
+      const std::string subject = std::string(kind) + " '" + field.name + "'";
+      if (!is_printable(field.name)) fail(subject + " has an empty or unprintable name");
+      if (!names.insert(field.name).second) fail(subject + " stands twice");
+      if (field.components < 1) fail(subject + " has " + std::to_string(field.components) + " components");
+      if (field.values.size() != count * static_cast<std::size_t>(field.components))
+        fail(subject + " has " + std::to_string(field.values.size()) + " values instead of " + std::to_string(count) +
+             " x " + std::to_string(field.components));
+      const auto bad =
+          std::find_if(field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); });
+      if (bad != field.values.end())
+        fail(subject + ": value " + std::to_string(bad - field.values.begin()) + " is not finite");
+    }
+  }
+
+  void check_regions() const {
+    const std::vector<Index>& regions = content_.cell_regions;
+    if (!regions.empty() && regions.size() != cells_)
+      fail("there are " + std::to_string(regions.size()) + " cell regions for " + std::to_string(cells_) + " cells");
+    std::set<std::string> names;
+    for (const std::string& name : content_.region_names) {
+      if (!is_printable(name)) fail("region '" + name + "' has an empty or unprintable name");
+      if (!names.insert(name).second) fail("region '" + name + "' stands twice");
+    }
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      if (regions[i] < -1 || (regions[i] >= 0 && std::cmp_greater_equal(regions[i], content_.region_names.size())))
+        fail("cell " + std::to_string(i) + " is of region " + std::to_string(regions[i]) + ", but there are " +
+             std::to_string(content_.region_names.size()));
+  }
+
   template <class Cells>
-  void check_vertices(const Cells& cells, const char* kind) const;
-  void write_region_names();
-  void write_fields(const char* element, const std::vector<Field>& fields, const std::vector<Index>& regions);
-  void write_cells();
+  void check_vertices(const Cells& cells, const char* kind) const {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (const Index vertex : cells[i])
+        if (vertex < 0 || std::cmp_greater_equal(vertex, points_))
+          fail(std::string(kind) + " " + std::to_string(i) + " has the vertex " + std::to_string(vertex) +
+               ", outside 0 to " + std::to_string(points_ - 1));
+  }
+
+  /// Numbers only: other readers refuse arrays of strings.
+  void write_region_names() {
+    if (content_.cell_regions.empty()) return;
+    xml_ += "<FieldData>\n";
+    for (std::size_t i = 0; i < content_.region_names.size(); ++i)
+      xml_ += "<DataArray type=\"Int32\" Name=\"region_" + xml_escaped(content_.region_names[i]) +
+              "\" NumberOfTuples=\"1\" format=\"ascii\">" + std::to_string(i) + "</DataArray>\n";
+    xml_ += "</FieldData>\n";
+  }
+
+  void write_fields(const char* element, const std::vector<Field>& fields, const std::vector<Index>& regions) {
+    xml_ += std::string("<") + element + ">\n";
+    for (const Field& field : fields)
+      write_array(field.name, field.components, field.values.data(), field.values.size());
+    if (!regions.empty()) write_array("region", 1, regions.data(), regions.size());
+    xml_ += std::string("</") + element + ">\n";
+  }
+
+  void write_cells() {
+    std::vector<Index> connectivity;
+    std::vector<std::int64_t> offsets;
+    std::vector<std::uint8_t> types;
+    const auto append = [&](const auto& vertices) {
+      connectivity.insert(connectivity.end(), vertices.begin(), vertices.end());
+    };
+    const auto end_cell = [&](std::uint8_t type) {
+      offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+      types.push_back(type);
+    };
+    const bool quadratic = !content_.edge_nodes.empty();
+    for (std::size_t i = 0; i < content_.tetrahedra.size(); ++i) {
+      append(content_.tetrahedra[i]);
+      if (quadratic) append(content_.edge_nodes[i]);  // edges in VTK's order
+      end_cell(quadratic ? 24 : 10);
+    }
+    for (const Prism& prism : content_.prisms) {
+      append(prism);
+      end_cell(13);
+    }
+    for (const Triangle& triangle : content_.triangles) {
+      append(triangle);
+      end_cell(5);
+    }
+    for (std::size_t i = 0; content_.cloud && i < points_; ++i) {
+      connectivity.push_back(static_cast<Index>(i));
+      end_cell(1);
+    }
+    xml_ += "<Cells>\n";
+    write_array("connectivity", 1, connectivity.data(), connectivity.size());
+    write_array("offsets", 1, offsets.data(), offsets.size());
+    write_array("types", 1, types.data(), types.size());
+    xml_ += "</Cells>\n";
+  }
+
   template <class T>
-  void write_array(const std::string& name, int components, const T* values, std::size_t count);
-  void append_compressed(const std::string& bytes);
+  void write_array(const std::string& name, int components, const T* values, std::size_t count) {
+    xml_ += std::string("<DataArray type=\"") + type_name<T>() + "\" Name=\"" + xml_escaped(name) +
+            "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"appended\" offset=\"" +
+            std::to_string(appended_.size()) + "\"/>\n";
+    std::string bytes;
+    bytes.reserve(count * sizeof(T));
+    for (std::size_t i = 0; i < count; ++i) append_little_endian(bytes, values[i]);
+    append_compressed(bytes);
+  }
+
+  void append_compressed(const std::string& bytes) {
+    const std::size_t blocks = (bytes.size() + kBlock - 1) / kBlock;
+    std::vector<std::uint64_t> header{blocks, kBlock, bytes.size() % kBlock};
+    std::string data;
+    for (std::size_t i = 0; i < blocks; ++i) {
+      const std::size_t begin = i * kBlock, size = std::min(kBlock, bytes.size() - begin);
+      uLongf length = compressBound(size);
+      std::string block(length, '\0');
+      const int status = compress2(reinterpret_cast<Bytef*>(block.data()), &length,
+                                   reinterpret_cast<const Bytef*>(bytes.data() + begin), size, Z_BEST_SPEED);
+      if (status != Z_OK) fail("zlib cannot compress the data");
+      header.push_back(length);
+      data.append(block, 0, length);
+    }
+    for (const std::uint64_t word : header) append_little_endian(appended_, word);
+    appended_ += data;
+  }
 
   std::string file_;
   const VtuContent& content_;
   std::size_t points_, cells_;
   std::string xml_, appended_;
 };
-
-void VtuWriter::check() const {
-  if (points_ == 0) fail("nothing to write: there are no points");
-  for (std::size_t i = 0; i < points_; ++i)
-    if (!content_.points.row(static_cast<Index>(i)).allFinite())
-      fail("points: point " + std::to_string(i) + " is not finite");
-  check_vertices(content_.tetrahedra, "tetrahedron");
-  check_vertices(content_.edge_nodes, "tetrahedron");
-  check_vertices(content_.prisms, "prism");
-  check_vertices(content_.triangles, "triangle");
-  const std::string refusal =
-      refusal_of_orders(content_.tetrahedra.size(), content_.edge_nodes.size(), content_.prisms.size());
-  if (!refusal.empty()) fail(refusal);
-  check_fields(content_.point_fields, points_, "point field", false);
-  check_fields(content_.cell_fields, cells_, "cell field", !content_.cell_regions.empty());
-  check_regions();
-}
-
-template <class Cells>
-void VtuWriter::check_vertices(const Cells& cells, const char* kind) const {
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    for (const Index vertex : cells[i])
-      if (vertex < 0 || std::cmp_greater_equal(vertex, points_))
-        fail(std::string(kind) + " " + std::to_string(i) + " has the vertex " + std::to_string(vertex) +
-             ", outside 0 to " + std::to_string(points_ - 1));
-}
-
-void VtuWriter::check_fields(const std::vector<Field>& fields, std::size_t count, const char* kind,
-                             bool has_regions) const {
-  std::set<std::string> names;
-  if (has_regions) names.insert("region");
-  for (const Field& field : fields) {
-    const std::string subject = std::string(kind) + " '" + field.name + "'";
-    if (!is_printable(field.name)) fail(subject + " has an empty or unprintable name");
-    if (!names.insert(field.name).second) fail(subject + " stands twice");
-    if (field.components < 1) fail(subject + " has " + std::to_string(field.components) + " components");
-    if (field.values.size() != count * static_cast<std::size_t>(field.components))
-      fail(subject + " has " + std::to_string(field.values.size()) + " values instead of " + std::to_string(count) +
-           " x " + std::to_string(field.components));
-    const auto bad = std::find_if(field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); });
-    if (bad != field.values.end())
-      fail(subject + ": value " + std::to_string(bad - field.values.begin()) + " is not finite");
-  }
-}
-
-void VtuWriter::check_regions() const {
-  const std::vector<Index>& regions = content_.cell_regions;
-  if (!regions.empty() && regions.size() != cells_)
-    fail("there are " + std::to_string(regions.size()) + " cell regions for " + std::to_string(cells_) + " cells");
-  std::set<std::string> names;
-  for (const std::string& name : content_.region_names) {
-    if (!is_printable(name)) fail("region '" + name + "' has an empty or unprintable name");
-    if (!names.insert(name).second) fail("region '" + name + "' stands twice");
-  }
-  for (std::size_t i = 0; i < regions.size(); ++i)
-    if (regions[i] < -1 || (regions[i] >= 0 && std::cmp_greater_equal(regions[i], content_.region_names.size())))
-      fail("cell " + std::to_string(i) + " is of region " + std::to_string(regions[i]) + ", but there are " +
-           std::to_string(content_.region_names.size()));
-}
-
-/// Numbers only: other readers refuse arrays of strings.
-void VtuWriter::write_region_names() {
-  if (content_.cell_regions.empty()) return;
-  xml_ += "<FieldData>\n";
-  for (std::size_t i = 0; i < content_.region_names.size(); ++i)
-    xml_ += "<DataArray type=\"Int32\" Name=\"region_" + escaped(content_.region_names[i]) +
-            "\" NumberOfTuples=\"1\" format=\"ascii\">" + std::to_string(i) + "</DataArray>\n";
-  xml_ += "</FieldData>\n";
-}
-
-void VtuWriter::write_fields(const char* element, const std::vector<Field>& fields, const std::vector<Index>& regions) {
-  xml_ += std::string("<") + element + ">\n";
-  for (const Field& field : fields) write_array(field.name, field.components, field.values.data(), field.values.size());
-  if (!regions.empty()) write_array("region", 1, regions.data(), regions.size());
-  xml_ += std::string("</") + element + ">\n";
-}
-
-void VtuWriter::write_cells() {
-  std::vector<Index> connectivity;
-  std::vector<std::int64_t> offsets;
-  std::vector<std::uint8_t> types;
-  const auto append = [&](const auto& vertices) {
-    connectivity.insert(connectivity.end(), vertices.begin(), vertices.end());
-  };
-  const auto end_cell = [&](std::uint8_t type) {
-    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-    types.push_back(type);
-  };
-  const bool quadratic = !content_.edge_nodes.empty();
-  for (std::size_t i = 0; i < content_.tetrahedra.size(); ++i) {
-    append(content_.tetrahedra[i]);
-    if (quadratic) append(content_.edge_nodes[i]);  // edges in VTK's order
-    end_cell(quadratic ? 24 : 10);
-  }
-  for (const Prism& prism : content_.prisms) {
-    append(prism);
-    end_cell(13);
-  }
-  for (const Triangle& triangle : content_.triangles) {
-    append(triangle);
-    end_cell(5);
-  }
-  for (std::size_t i = 0; content_.cloud && i < points_; ++i) {
-    connectivity.push_back(static_cast<Index>(i));
-    end_cell(1);
-  }
-  xml_ += "<Cells>\n";
-  write_array("connectivity", 1, connectivity.data(), connectivity.size());
-  write_array("offsets", 1, offsets.data(), offsets.size());
-  write_array("types", 1, types.data(), types.size());
-  xml_ += "</Cells>\n";
-}
-
-template <class T>
-void VtuWriter::write_array(const std::string& name, int components, const T* values, std::size_t count) {
-  xml_ += std::string("<DataArray type=\"") + type_name<T>() + "\" Name=\"" + escaped(name) +
-          "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"appended\" offset=\"" +
-          std::to_string(appended_.size()) + "\"/>\n";
-  std::string bytes;
-  bytes.reserve(count * sizeof(T));
-  for (std::size_t i = 0; i < count; ++i) append_little_endian(bytes, values[i]);
-  append_compressed(bytes);
-}
-
-void VtuWriter::append_compressed(const std::string& bytes) {
-  const std::size_t blocks = (bytes.size() + kBlock - 1) / kBlock;
-  std::vector<std::uint64_t> header{blocks, kBlock, bytes.size() % kBlock};
-  std::string data;
-  for (std::size_t i = 0; i < blocks; ++i) {
-    const std::size_t begin = i * kBlock, size = std::min(kBlock, bytes.size() - begin);
-    uLongf length = compressBound(size);
-    std::string block(length, '\0');
-    const int status = compress2(reinterpret_cast<Bytef*>(block.data()), &length,
-                                 reinterpret_cast<const Bytef*>(bytes.data() + begin), size, Z_BEST_SPEED);
-    if (status != Z_OK) fail("zlib cannot compress the data");
-    header.push_back(length);
-    data.append(block, 0, length);
-  }
-  for (const std::uint64_t word : header) append_little_endian(appended_, word);
-  appended_ += data;
-}
-
-std::string shortest(double value) {
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
 
 }  // namespace
 
@@ -276,8 +239,8 @@ void write_pvd(const std::filesystem::path& path, const std::vector<PvdEntry>& e
       throw InvalidInput({path.string()}, subject + " has a time that is not finite");
     if (!is_printable(entries[i].file))
       throw InvalidInput({path.string()}, subject + " has an empty or unprintable file name");
-    xml += "<DataSet timestep=\"" + shortest(entries[i].time) + "\" group=\"\" part=\"0\" file=\"" +
-           escaped(entries[i].file) + "\"/>\n";
+    xml += "<DataSet timestep=\"" + exact(entries[i].time) + "\" group=\"\" part=\"0\" file=\"" +
+           xml_escaped(entries[i].file) + "\"/>\n";
   }
   write_file(path, xml + "</Collection>\n</VTKFile>\n");
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <softkin/io/picture/color_map.hpp>
 #include <softkin/io/picture/rasterizer.hpp>
 
 namespace softkin {
@@ -149,9 +148,8 @@ Color blended(const Band& solid, const std::vector<ClearBand>& clear, double coi
   std::stable_sort(fragments.begin(), fragments.end(),
                    [](const Fragment& a, const Fragment& b) { return a.sample.depth < b.sample.depth; });
   Color color = solid.samples[i].color;
-  for (const Fragment& f : fragments) {
+  for (const Fragment& f : fragments)
     for (int k = 0; k < 3; ++k) color[k] += f.opacity * (f.sample.color[k] - color[k]);
-  }
   return color;
 }
 
@@ -178,9 +176,8 @@ RgbImage rasterize(const std::vector<ScreenLayer>& layers, double coincident, in
   RgbImage image(width, height);
   Band solid(width);
   std::vector<ClearBand> clear;
-  for (const ScreenLayer& layer : layers) {
+  for (const ScreenLayer& layer : layers)
     if (layer.opacity < 1) clear.push_back({Band(width), layer.opacity});
-  }
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
     solid.clear(row, rows);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace softkin {
@@ -30,5 +31,14 @@ struct RgbImage {
 [[nodiscard]] inline std::uint8_t to_byte(double channel) {
   return static_cast<std::uint8_t>(255 * channel + 0.5);
 }
+
+/// A perceptually uniform colour map that colour-blind readers can read too: dark violet at 0 to yellow at 1.
+///
+/// share   in [0, 1]; clamped
+/// source  viridis of N. Smith and S. van der Walt (matplotlib, 2015, CC0): nine of its colours, linear between them
+[[nodiscard]] Rgb mapped_color(double share);
+
+/// The image as the content of a PNG file (8 bits a channel, sRGB).
+[[nodiscard]] std::string encode_png(const RgbImage& image);
 
 }  // namespace softkin

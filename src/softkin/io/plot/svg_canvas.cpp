@@ -141,20 +141,9 @@ std::string svg_escaped(const std::string& text) {
   std::string safe = text;
   for (std::size_t bad = find_unprintable(safe); bad != std::string::npos; bad = find_unprintable(safe))
     safe[bad] = '?';
-  std::string escaped;
-  for (const char c : safe) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else
-      escaped += c == '\n' || c == '\t' || c == '\r' ? ' ' : c;
-  }
-  return escaped;
+  for (char& c : safe)
+    if (c == '\n' || c == '\t' || c == '\r') c = ' ';
+  return xml_escaped(safe);
 }
 
 double svg_text_width(const std::string& text, double size) {

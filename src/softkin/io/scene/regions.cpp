@@ -63,8 +63,7 @@ std::vector<Index> read_indices(const Node& node, std::int64_t count, const std:
     indices.push_back(static_cast<Index>(index));
   }
   if (indices.empty()) fail(node, node.name + " is an empty list");
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  sort_unique(indices);
   return indices;
 }
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 #include <functional>
-#include <softkin/io/mesh/text_meshes.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/boundary.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/model/compile/parts.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 

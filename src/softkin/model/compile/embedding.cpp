@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 #include <softkin/model/compile/embedding.hpp>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 

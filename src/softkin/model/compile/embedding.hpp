@@ -2,7 +2,7 @@
 
 #include <softkin/model/mesh/box_tree.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/model.hpp>
 
 namespace softkin {

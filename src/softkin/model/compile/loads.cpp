@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <softkin/model/compile/parts.hpp>
-#include <softkin/model/mesh/quadratic_tetrahedron.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 
 namespace softkin {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 #include <softkin/model/compile/regions.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 
@@ -75,11 +75,6 @@ void check_shape(const Selector& selector, const Origin& origin) {
 /// Whether a shape holds the point, or its boundary is within tolerance of it [mm]. Lists hold no point.
 bool holds(const Selector& selector, const Vec3& point, double tolerance) {
   return std::visit(HoldsPoint{point, tolerance}, selector);
-}
-
-void sort_unique(std::vector<Index>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 template <class Cell>

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
-#include <softkin/model/mesh/triangle_geometry.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 

@@ -1,40 +1,34 @@
-#include <algorithm>
 #include <softkin/model/mesh/boundary.hpp>
 
 namespace softkin {
 
 namespace {
 
-template <std::size_t K>
-struct Face {
-  std::array<Index, K> sorted, vertices;
-  Index owner;
-};
-
-template <std::size_t K>
-Face<K> make_face(const Index* element, const int* corners, Index owner) {
-  Face<K> face;
-  for (std::size_t i = 0; i < K; ++i) face.vertices[i] = element[corners[i]];
-  face.sorted = face.vertices;
-  std::sort(face.sorted.begin(), face.sorted.end());
-  face.owner = owner;
-  return face;
+template <std::size_t K, std::size_t N, std::size_t M>
+void append_faces(const std::array<Index, N>& element, const int (&faces)[M][K], Index owner,
+                  std::vector<ElementFace<K>>& all) {
+  for (const auto& corners : faces) {
+    ElementFace<K> face;
+    for (std::size_t i = 0; i < K; ++i) face.vertices[i] = element[static_cast<std::size_t>(corners[i])];
+    face.sorted = face.vertices;
+    std::sort(face.sorted.begin(), face.sorted.end());
+    face.owner = owner;
+    all.push_back(face);
+  }
 }
 
 template <std::size_t K>
-void keep_single(std::vector<Face<K>>& faces, std::vector<std::array<Index, K>>& vertices, std::vector<Index>& owners) {
-  std::sort(faces.begin(), faces.end(), [](const Face<K>& a, const Face<K>& b) {
-    return a.sorted != b.sorted ? a.sorted < b.sorted : a.owner < b.owner;
+void keep_single(std::vector<ElementFace<K>>& faces, std::vector<std::array<Index, K>>& vertices,
+                 std::vector<Index>& owners) {
+  using Face = ElementFace<K>;
+  std::vector<const Face*> single;
+  visit_same_faces(faces, [&](const Face* begin, const Face* end) {
+    if (end == begin + 1) single.push_back(begin);
   });
-  std::vector<const Face<K>*> single;
-  for (std::size_t i = 0, j = 0; i < faces.size(); i = j) {
-    for (j = i + 1; j < faces.size() && faces[j].sorted == faces[i].sorted;) ++j;
-    if (j == i + 1) single.push_back(&faces[i]);
-  }
-  std::sort(single.begin(), single.end(), [](const Face<K>* a, const Face<K>* b) {
+  std::sort(single.begin(), single.end(), [](const Face* a, const Face* b) {
     return a->owner != b->owner ? a->owner < b->owner : a->sorted < b->sorted;
   });
-  for (const Face<K>* face : single) {
+  for (const Face* face : single) {
     vertices.push_back(face->vertices);
     owners.push_back(face->owner);
   }
@@ -42,24 +36,24 @@ void keep_single(std::vector<Face<K>>& faces, std::vector<std::array<Index, K>>&
 
 }  // namespace
 
-Boundary boundary_of(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms) {
-  std::vector<Face<3>> triangles;
-  std::vector<Face<4>> quads;
-  triangles.reserve(4 * tetrahedra.size() + 2 * prisms.size());
-  quads.reserve(3 * prisms.size());
+ElementFaces faces_of(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms) {
+  ElementFaces faces;
+  faces.triangles.reserve(4 * tetrahedra.size() + 2 * prisms.size());
+  faces.quads.reserve(3 * prisms.size());
   Index owner = 0;
-  for (const Tetrahedron& t : tetrahedra) {
-    for (const auto& corners : tetrahedron_faces) triangles.push_back(make_face<3>(t.data(), corners, owner));
-    ++owner;
-  }
+  for (const Tetrahedron& t : tetrahedra) append_faces(t, tetrahedron_faces, owner++, faces.triangles);
   for (const Prism& p : prisms) {
-    for (const auto& corners : prism_triangles) triangles.push_back(make_face<3>(p.data(), corners, owner));
-    for (const auto& corners : prism_quads) quads.push_back(make_face<4>(p.data(), corners, owner));
-    ++owner;
+    append_faces(p, prism_triangles, owner, faces.triangles);
+    append_faces(p, prism_quads, owner++, faces.quads);
   }
+  return faces;
+}
+
+Boundary boundary_of(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms) {
+  ElementFaces faces = faces_of(tetrahedra, prisms);
   Boundary boundary;
-  keep_single(triangles, boundary.triangles, boundary.triangle_owners);
-  keep_single(quads, boundary.quads, boundary.quad_owners);
+  keep_single(faces.triangles, boundary.triangles, boundary.triangle_owners);
+  keep_single(faces.quads, boundary.quads, boundary.quad_owners);
   return boundary;
 }
 

@@ -9,8 +9,35 @@ inline constexpr int tetrahedron_faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3},
 inline constexpr int prism_triangles[2][3] = {{0, 2, 1}, {3, 4, 5}};
 inline constexpr int prism_quads[3][4] = {{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
 
-/// Faces that belong to exactly one of the elements, vertices in the order that makes the normal point outwards
-/// (for positively oriented elements), and whose face it is: elements are numbered tetrahedra first, then prisms.
+/// A face of an element: its vertices in that order, and sorted. Elements are numbered tetrahedra first, then prisms.
+template <std::size_t K>
+struct ElementFace {
+  std::array<Index, K> sorted, vertices;
+  Index owner;
+};
+
+struct ElementFaces {
+  std::vector<ElementFace<3>> triangles;
+  std::vector<ElementFace<4>> quads;
+};
+
+/// The faces of every element, by elements.
+[[nodiscard]] ElementFaces faces_of(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms);
+
+/// Sorts the faces and calls visit(begin, end) for those of the same vertices, by ascending owners.
+template <std::size_t K, class Visit>
+void visit_same_faces(std::vector<ElementFace<K>>& faces, const Visit& visit) {
+  std::sort(faces.begin(), faces.end(), [](const auto& a, const auto& b) {
+    return a.sorted != b.sorted ? a.sorted < b.sorted : a.owner < b.owner;
+  });
+  for (std::size_t i = 0, j = 0; i < faces.size(); i = j) {
+    for (j = i + 1; j < faces.size() && faces[j].sorted == faces[i].sorted;) ++j;
+    visit(faces.data() + i, faces.data() + j);
+  }
+}
+
+/// Faces that belong to exactly one of the elements, with normals outwards (for positively oriented elements), and whose
+/// face it is.
 struct Boundary {
   std::vector<Triangle> triangles;
   std::vector<Index> triangle_owners;

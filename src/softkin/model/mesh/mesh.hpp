@@ -1,11 +1,23 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <softkin/core/types.hpp>
 #include <string>
 #include <vector>
 
 namespace softkin {
+
+[[nodiscard]] inline Vec3 vertex_at(const Points& points, Index i) {
+  return points.row(i).transpose();
+}
+
+/// Ascending, each once.
+template <class Value>
+void sort_unique(std::vector<Value>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
 
 using Tetrahedron = std::array<Index, 4>;
 using Prism = std::array<Index, 6>;  // bottom triangle 0 1 2, top 3 4 5, edges 0-3, 1-4, 2-5
@@ -24,6 +36,7 @@ struct Region {
 };
 
 inline constexpr int tetrahedron_edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+inline constexpr int prism_edges[9][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
 
 /// A volume mesh as it stands in its file: lengths in the file's unit, elements in the file's orientation.
 struct Mesh {

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/mesh_check.hpp>
-#include <softkin/model/mesh/mesh_topology.hpp>
+#include <span>
 #include <unordered_map>
 
 namespace softkin {
@@ -13,10 +14,6 @@ namespace {
 
 constexpr double least_volume = 1e-9;  // over the cube of the longest edge
 constexpr double same_vertex = 1e-9;   // over the diagonal of the bounding box
-
-Vec3 row(const Points& points, Index i) {
-  return points.row(i).transpose();
-}
 
 double determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
   return a.dot(b.cross(c));
@@ -36,7 +33,7 @@ Points normalised(const Points& vertices) {
 template <std::size_t K>
 std::array<Vec3, K> corners_of(const Points& points, const std::array<Index, K>& element) {
   std::array<Vec3, K> corners;
-  for (std::size_t i = 0; i < K; ++i) corners[i] = row(points, element[i]);
+  for (std::size_t i = 0; i < K; ++i) corners[i] = vertex_at(points, element[i]);
   return corners;
 }
 
@@ -47,8 +44,8 @@ struct Shape {
   double quality = 0;
 };
 
-template <std::size_t K>
-void scale_to_edge(std::array<Vec3, K>& p, const std::vector<std::array<std::size_t, 2>>& edges) {
+template <std::size_t K, std::size_t M>
+void scale_to_edge(std::array<Vec3, K>& p, const int (&edges)[M][2]) {
   const Vec3 origin = p[0];
   double longest = 0;
   for (const auto& [a, b] : edges) longest = std::max(longest, (p[a] - p[b]).norm());
@@ -56,9 +53,8 @@ void scale_to_edge(std::array<Vec3, K>& p, const std::vector<std::array<std::siz
 }
 
 Shape shape_of(const Points& points, const Tetrahedron& element) {
-  static const std::vector<std::array<std::size_t, 2>> edges = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   std::array<Vec3, 4> p = corners_of(points, element);
-  scale_to_edge(p, edges);
+  scale_to_edge(p, tetrahedron_edges);
   const Vec3 &a = p[1], &b = p[2], &c = p[3];
   Shape shape;
   shape.volume = determinant(a, b, c) / 6;
@@ -71,10 +67,8 @@ Shape shape_of(const Points& points, const Tetrahedron& element) {
 }
 
 Shape shape_of(const Points& points, const Prism& element) {
-  static const std::vector<std::array<std::size_t, 2>> edges = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5},
-                                                                {5, 3}, {0, 3}, {1, 4}, {2, 5}};
   std::array<Vec3, 6> p = corners_of(points, element);
-  scale_to_edge(p, edges);
+  scale_to_edge(p, prism_edges);
   Points corners(6, 3);
   for (Index i = 0; i < 6; ++i) corners.row(i) = p[static_cast<std::size_t>(i)].transpose();
   Shape shape;
@@ -139,13 +133,14 @@ std::vector<Index> duplicate_vertices(const Points& points) {
       for (std::int64_t y = cell_at(low.y()); y <= cell_at(high.y()); ++y)
         for (std::int64_t z = cell_at(low.z()); z <= cell_at(high.z()); ++z) {
           const auto [begin, end] = cells.equal_range({x, y, z});
-          if (std::any_of(begin, end, [&](const auto& it) { return (row(points, it.second) - p).norm() <= tolerance; }))
+          if (std::any_of(begin, end,
+                          [&](const auto& it) { return (vertex_at(points, it.second) - p).norm() <= tolerance; }))
             return true;
         }
     return false;
   };
   for (Index i = 0; i < points.rows(); ++i) {
-    const Vec3 p = row(points, i);
+    const Vec3 p = vertex_at(points, i);
     if (has_twin(p))
       duplicates.push_back(i);
     else
@@ -153,6 +148,198 @@ std::vector<Index> duplicate_vertices(const Points& points) {
   }
   return duplicates;
 }
+
+std::span<const Index> vertices_of(const Mesh& mesh, Index element) {
+  const auto i = static_cast<std::size_t>(element);
+  if (i < mesh.tetrahedra.size()) return mesh.tetrahedra[i];
+  return mesh.prisms[i - mesh.tetrahedra.size()];
+}
+
+Index element_count(const Mesh& mesh) {
+  return static_cast<Index>(mesh.tetrahedra.size() + mesh.prisms.size());
+}
+
+template <std::size_t K>
+void find_duplicates(const std::vector<std::array<Index, K>>& elements, Index first, std::vector<Index>& duplicates) {
+  std::vector<std::pair<std::array<Index, K>, Index>> sorted;
+  sorted.reserve(elements.size());
+  for (std::array<Index, K> element : elements) {
+    std::sort(element.begin(), element.end());
+    sorted.emplace_back(element, first + static_cast<Index>(sorted.size()));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i].first == sorted[i - 1].first) duplicates.push_back(sorted[i].second);
+}
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
+
+  Index find(Index i) {
+    while (parent(i) != i) i = parent(i) = parent(parent(i));
+    return i;
+  }
+  void join(Index a, Index b) { parent(find(a)) = find(b); }
+
+ private:
+  Index& parent(Index i) { return parents_[static_cast<std::size_t>(i)]; }
+  std::vector<Index> parents_;
+};
+
+class TopologyCheck {
+ public:
+  TopologyCheck(const Mesh& mesh, const Points& points, MeshCheck& check)
+      : mesh_(mesh), points_(points), check_(check), kept_(size(element_count(mesh)), true), solid_(kept_) {}
+
+  void run() {
+    find_duplicates(mesh_.tetrahedra, 0, check_.duplicate_elements);
+    find_duplicates(mesh_.prisms, static_cast<Index>(mesh_.tetrahedra.size()), check_.duplicate_elements);
+    std::sort(check_.duplicate_elements.begin(), check_.duplicate_elements.end());
+    for (const Index element : check_.duplicate_elements) kept_[size(element)] = false;
+    for (const Index element : check_.degenerate) solid_[size(element)] = false;
+    check_faces();
+    check_edges();
+    list_elements_of_vertices();
+    find_edge_nodes();
+    check_vertices();
+    find_parts();
+  }
+
+ private:
+  static std::size_t size(Index i) { return static_cast<std::size_t>(i); }
+
+  void check_faces() {
+    ElementFaces faces = faces_of(mesh_.tetrahedra, mesh_.prisms);
+    check_shared(faces.triangles, check_.nonmanifold_faces);
+    check_shared(faces.quads, check_.nonmanifold_quads);
+    sort_unique(check_.overlapping);
+  }
+
+  template <std::size_t K>
+  void check_shared(std::vector<ElementFace<K>>& faces, std::vector<std::array<Index, K>>& nonmanifold) {
+    std::erase_if(faces, [&](const ElementFace<K>& face) { return !kept_[size(face.owner)]; });
+    visit_same_faces(faces, [&](const ElementFace<K>* begin, const ElementFace<K>* end) {
+      if (end == begin + 1) add_edges(begin->vertices);
+      if (end > begin + 2) nonmanifold.push_back(begin->vertices);
+      if (end > begin + 1) check_sides(begin, end);
+    });
+  }
+
+  /// Among the elements at one face, pairs each with the first on its side.
+  template <std::size_t K>
+  void check_sides(const ElementFace<K>* begin, const ElementFace<K>* end) {
+    Index first[2] = {-1, -1};
+    for (const ElementFace<K>* face = begin; face != end; ++face) {
+      if (!solid_[size(face->owner)]) continue;
+      const double height = height_over(begin->vertices, face->owner);
+      if (height == 0) continue;
+      Index& other = first[height > 0 ? 1 : 0];
+      if (other < 0)
+        other = face->owner;
+      else if (other != face->owner)
+        check_.overlapping.push_back({other, face->owner});
+    }
+  }
+
+  /// Height of an element's mean over the plane of one of its faces, times the face's size: its sign tells the side.
+  template <std::size_t K>
+  double height_over(const std::array<Index, K>& face, Index element) const {
+    Vec3 p[K], foot = Vec3::Zero(), mean = Vec3::Zero();
+    for (std::size_t i = 0; i < K; ++i) {
+      p[i] = vertex_at(points_, face[i]);
+      foot += p[i] / K;
+    }
+    const std::span<const Index> corners = vertices_of(mesh_, element);
+    for (const Index corner : corners) mean += vertex_at(points_, corner) / double(corners.size());
+    const Vec3 normal = K == 4 ? (p[2] - p[0]).cross(p[K - 1] - p[1]) : (p[1] - p[0]).cross(p[2] - p[0]);
+    return normal.dot(mean - foot);
+  }
+
+  template <std::size_t K>
+  void add_edges(const std::array<Index, K>& face) {
+    for (std::size_t i = 0; i < K; ++i) {
+      const auto [low, high] = std::minmax(face[i], face[(i + 1) % K]);
+      boundary_edges_.push_back({low, high});
+    }
+  }
+
+  void check_edges() {
+    std::sort(boundary_edges_.begin(), boundary_edges_.end());
+    for (std::size_t i = 0, j = 0; i < boundary_edges_.size(); i = j) {
+      for (j = i + 1; j < boundary_edges_.size() && boundary_edges_[j] == boundary_edges_[i];) ++j;
+      if (j > i + 2) check_.nonmanifold_edges.push_back(boundary_edges_[i]);
+    }
+  }
+
+  void list_elements_of_vertices() {
+    starts_.assign(size(static_cast<Index>(points_.rows())) + 1, 0);
+    for (Index e = 0; e < element_count(mesh_); ++e)
+      for (const Index v : vertices_of(mesh_, e)) ++starts_[size(v) + 1];
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    around_.resize(starts_.back());
+    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+    for (Index e = 0; e < element_count(mesh_); ++e)
+      for (const Index v : vertices_of(mesh_, e)) around_[next[size(v)]++] = e;
+  }
+
+  void find_edge_nodes() {
+    on_edge_.assign(size(static_cast<Index>(points_.rows())), false);
+    for (const EdgeNodes& nodes : mesh_.edge_nodes)
+      for (const Index v : nodes) on_edge_[size(v)] = true;
+  }
+
+  /// Elements around a vertex belong together where they share another vertex.
+  void check_vertices() {
+    std::vector<Index> seen_from(size(static_cast<Index>(points_.rows())), -1), seen_by(seen_from);
+    for (Index v = 0; v < points_.rows(); ++v) {
+      const std::size_t begin = starts_[size(v)], count = starts_[size(v) + 1] - begin;
+      if (count == 0 && !on_edge_[size(v)]) check_.unreferenced.push_back(v);
+      DisjointSets groups(count);
+      for (std::size_t i = 0; i < count; ++i)
+        for (const Index w : vertices_of(mesh_, around_[begin + i])) {
+          if (w == v) continue;
+          if (seen_from[size(w)] == v) groups.join(static_cast<Index>(i), seen_by[size(w)]);
+          seen_from[size(w)] = v;
+          seen_by[size(w)] = static_cast<Index>(i);
+        }
+      bool one = true;
+      for (std::size_t i = 1; i < count; ++i) one = one && groups.find(static_cast<Index>(i)) == groups.find(0);
+      if (!one) check_.nonmanifold_vertices.push_back(v);
+    }
+  }
+
+  void find_parts() {
+    const auto count = size(static_cast<Index>(points_.rows()));
+    DisjointSets sets(count);
+    for (Index e = 0; e < element_count(mesh_); ++e)
+      for (const Index v : vertices_of(mesh_, e)) sets.join(v, vertices_of(mesh_, e)[0]);
+    for (std::size_t t = 0; t < mesh_.edge_nodes.size(); ++t)
+      for (const Index v : mesh_.edge_nodes[t]) sets.join(v, mesh_.tetrahedra[t][0]);
+    std::vector<Index> part_of_root(count, -1);
+    for (Index v = 0; v < points_.rows(); ++v) {
+      if (starts_[size(v)] == starts_[size(v) + 1] && !on_edge_[size(v)]) continue;
+      Index& part = part_of_root[size(sets.find(v))];
+      if (part < 0) {
+        part = static_cast<Index>(check_.parts.size());
+        check_.parts.emplace_back();
+      }
+      check_.parts[size(part)].push_back(v);
+    }
+    std::stable_sort(check_.parts.begin(), check_.parts.end(),
+                     [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  }
+
+  const Mesh& mesh_;
+  const Points& points_;
+  MeshCheck& check_;
+  std::vector<bool> kept_;   // per element: not a duplicate
+  std::vector<bool> solid_;  // per element: not degenerate
+  std::vector<std::array<Index, 2>> boundary_edges_;
+  std::vector<bool> on_edge_;        // per vertex: the node of an edge
+  std::vector<std::size_t> starts_;  // of each vertex's elements in around_
+  std::vector<Index> around_;
+};
 
 }  // namespace
 
@@ -163,7 +350,7 @@ MeshCheck check_mesh(const Mesh& mesh) {
   check_shapes(points, mesh.tetrahedra, 0, check);
   check_shapes(points, mesh.prisms, prisms_from, check);
   check.duplicate_vertices = duplicate_vertices(points);
-  check_topology(mesh, points, check);
+  TopologyCheck(mesh, points, check).run();
   return check;
 }
 

@@ -1,76 +1,14 @@
-#include <algorithm>
 #include <softkin/core/error.hpp>
+#include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 #include <tuple>
 #include <utility>
 
 namespace softkin {
 
-EdgeTable::EdgeTable(const Mesh& mesh) {
-  edges_.reserve(6 * mesh.edge_nodes.size());
-  for (std::size_t t = 0; t < mesh.edge_nodes.size(); ++t)
-    for (int e = 0; e < 6; ++e) {
-      const auto [low, high] =
-          std::minmax(mesh.tetrahedra[t][tetrahedron_edges[e][0]], mesh.tetrahedra[t][tetrahedron_edges[e][1]]);
-      edges_.push_back({low, high, mesh.edge_nodes[t][e]});
-    }
-  const auto key = [](const Edge& edge) { return std::tie(edge.low, edge.high, edge.node); };
-  std::sort(edges_.begin(), edges_.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
-  edges_.erase(
-      std::unique(edges_.begin(), edges_.end(), [&](const Edge& a, const Edge& b) { return key(a) == key(b); }),
-      edges_.end());
-  const auto twice = std::adjacent_find(
-      edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; });
-  if (twice != edges_.end())
-    throw InvalidInput("the edge between the vertices " + std::to_string(twice->low) + " and " +
-                       std::to_string(twice->high) + " (from 0) has two nodes, " + std::to_string(twice->node) +
-                       " and " + std::to_string(std::next(twice)->node));
-  std::vector<Index> nodes;
-  nodes.reserve(edges_.size());
-  for (const Edge& edge : edges_) nodes.push_back(edge.node);
-  std::sort(nodes.begin(), nodes.end());
-  if (const auto shared = std::adjacent_find(nodes.begin(), nodes.end()); shared != nodes.end())
-    throw InvalidInput("vertex " + std::to_string(*shared) + " (from 0) is the node of two edges");
-}
-
-Index EdgeTable::find(Index a, Index b) const {
-  const auto ends = std::minmax(a, b);
-  const auto found = std::lower_bound(edges_.begin(), edges_.end(), ends, [](const Edge& edge, const auto& wanted) {
-    return std::tie(edge.low, edge.high) < std::tie(wanted.first, wanted.second);
-  });
-  return found != edges_.end() && found->low == ends.first && found->high == ends.second ? found->node : -1;
-}
-
-std::array<Index, 3> EdgeTable::of(const Triangle& triangle) const {
-  return {find(triangle[0], triangle[1]), find(triangle[1], triangle[2]), find(triangle[2], triangle[0])};
-}
-
-std::vector<Index> EdgeTable::between(const std::vector<Index>& vertices) const {
-  const auto held = [&](Index v) { return std::binary_search(vertices.begin(), vertices.end(), v); };
-  std::vector<Index> nodes;
-  for (const Edge& edge : edges_)
-    if (held(edge.low) && held(edge.high)) nodes.push_back(edge.node);
-  return nodes;
-}
-
-void exchange_corners_2_and_3(EdgeNodes& edge_nodes) {
-  // 01 and 23 stay, 12 becomes 13, 02 becomes 03
-  std::swap(edge_nodes[1], edge_nodes[4]);
-  std::swap(edge_nodes[2], edge_nodes[3]);
-}
-
-Index edge_node(const Tetrahedron& element, const EdgeNodes& edge_nodes, Index a, Index b) {
-  for (int e = 0; e < 6; ++e) {
-    const Index start = element[tetrahedron_edges[e][0]], end = element[tetrahedron_edges[e][1]];
-    if ((start == a && end == b) || (start == b && end == a)) return edge_nodes[e];
-  }
-  throw InvalidInput("the vertices " + std::to_string(a) + " and " + std::to_string(b) +
-                     " (from 0) are no edge of the element");
-}
-
 namespace {
 
-using Ends = std::pair<Index, Index>;
+using Ends = std::pair<Index, Index>;  // of an edge, ascending
 
 Ends ends_of(const Tetrahedron& element, int edge) {
   return std::minmax({element[tetrahedron_edges[edge][0]], element[tetrahedron_edges[edge][1]]});
@@ -81,17 +19,124 @@ std::vector<Ends> edges_of(const std::vector<Tetrahedron>& tetrahedra) {
   edges.reserve(6 * tetrahedra.size());
   for (const Tetrahedron& t : tetrahedra)
     for (int e = 0; e < 6; ++e) edges.push_back(ends_of(t, e));
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_unique(edges);
   return edges;
 }
 
-void sort_unique(std::vector<Index>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
+bool same_ends(const EdgeWithNode& a, const EdgeWithNode& b) {
+  return a[0] == b[0] && a[1] == b[1];
+}
+
+/// -1 where no edge has these ends.
+Index node_on(const std::vector<EdgeWithNode>& edges, Index a, Index b) {
+  const EdgeWithNode first{std::min(a, b), std::max(a, b), -1};
+  const auto found = std::lower_bound(edges.begin(), edges.end(), first);
+  return found != edges.end() && same_ends(*found, first) ? (*found)[2] : -1;
+}
+
+std::array<Index, 3> nodes_on(const std::vector<EdgeWithNode>& edges, const Triangle& triangle) {
+  const auto& [a, b, c] = triangle;
+  return {node_on(edges, a, b), node_on(edges, b, c), node_on(edges, c, a)};
 }
 
 }  // namespace
+
+int order_of(const Mesh& mesh) {
+  return mesh.edge_nodes.empty() ? 1 : 2;
+}
+
+std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std::size_t prisms) {
+  if (quadratic == 0) return "";
+  if (quadratic != tetrahedra)
+    return "tetrahedra of order 1 and of order 2 in one mesh are not supported: mesh with one order";
+  if (prisms > 0) return "tetrahedra of order 2 beside prisms are not supported: mesh with order 1";
+  return "";
+}
+
+std::vector<EdgeWithNode> edges_with_nodes(const Mesh& mesh) {
+  std::vector<EdgeWithNode> edges;
+  edges.reserve(6 * mesh.edge_nodes.size());
+  for (std::size_t t = 0; t < mesh.edge_nodes.size(); ++t)
+    for (int e = 0; e < 6; ++e) {
+      const auto [low, high] = ends_of(mesh.tetrahedra[t], e);
+      edges.push_back({low, high, mesh.edge_nodes[t][e]});
+    }
+  sort_unique(edges);
+  return edges;
+}
+
+EdgeTable::EdgeTable(const Mesh& mesh) : edges_(edges_with_nodes(mesh)) {
+  if (const auto twice = std::adjacent_find(edges_.begin(), edges_.end(), same_ends); twice != edges_.end()) {
+    const auto& [low, high, node] = *twice;
+    throw InvalidInput("the edge between the vertices " + std::to_string(low) + " and " + std::to_string(high) +
+                       " (from 0) has two nodes, " + std::to_string(node) + " and " +
+                       std::to_string((*std::next(twice))[2]));
+  }
+  std::vector<Index> nodes;
+  nodes.reserve(edges_.size());
+  for (const EdgeWithNode& edge : edges_) nodes.push_back(edge[2]);
+  std::sort(nodes.begin(), nodes.end());
+  if (const auto shared = std::adjacent_find(nodes.begin(), nodes.end()); shared != nodes.end())
+    throw InvalidInput("vertex " + std::to_string(*shared) + " (from 0) is the node of two edges");
+}
+
+Index EdgeTable::find(Index a, Index b) const {
+  return node_on(edges_, a, b);
+}
+
+std::array<Index, 3> EdgeTable::of(const Triangle& triangle) const {
+  return nodes_on(edges_, triangle);
+}
+
+std::vector<Index> EdgeTable::between(const std::vector<Index>& vertices) const {
+  const auto held = [&](Index v) { return std::binary_search(vertices.begin(), vertices.end(), v); };
+  std::vector<Index> nodes;
+  for (const auto& [low, high, node] : edges_)
+    if (held(low) && held(high)) nodes.push_back(node);
+  return nodes;
+}
+
+void exchange_corners_2_and_3(EdgeNodes& edge_nodes) {
+  // 01 and 23 stay, 12 becomes 13, 02 becomes 03
+  std::swap(edge_nodes[1], edge_nodes[4]);
+  std::swap(edge_nodes[2], edge_nodes[3]);
+}
+
+Index edge_node(const Tetrahedron& element, const EdgeNodes& edge_nodes, Index a, Index b) {
+  for (int e = 0; e < 6; ++e)
+    if (ends_of(element, e) == Ends(std::minmax(a, b))) return edge_nodes[e];
+  throw InvalidInput("the vertices " + std::to_string(a) + " and " + std::to_string(b) +
+                     " (from 0) are no edge of the element");
+}
+
+std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh) {
+  if (mesh.edge_nodes.empty()) return {};
+  const std::vector<EdgeWithNode> edges = edges_with_nodes(mesh);
+  std::vector<QuadraticTriangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const Triangle& corners : mesh.triangles) {
+    const std::array<Index, 3> nodes = nodes_on(edges, corners);
+    if (std::count(nodes.begin(), nodes.end(), -1) > 0) return {};
+    triangles.push_back({corners[0], corners[1], corners[2], nodes[0], nodes[1], nodes[2]});
+  }
+  return triangles;
+}
+
+std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahedra,
+                                         const std::vector<EdgeNodes>& edge_nodes, const std::vector<Prism>& prisms) {
+  const Boundary boundary = boundary_of(tetrahedra, prisms);
+  if (edge_nodes.empty()) return triangulated(boundary);
+  std::vector<Triangle> triangles;
+  triangles.reserve(4 * boundary.triangles.size());
+  for (std::size_t i = 0; i < boundary.triangles.size(); ++i) {
+    const auto& [a, b, c] = boundary.triangles[i];
+    const auto owner = static_cast<std::size_t>(boundary.triangle_owners[i]);
+    const auto node = [&](Index from, Index to) { return edge_node(tetrahedra[owner], edge_nodes[owner], from, to); };
+    const Index ab = node(a, b), bc = node(b, c), ca = node(c, a);
+    triangles.insert(triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+  }
+  return triangles;
+}
 
 Mesh elevated(const Mesh& mesh) {
   if (!mesh.prisms.empty()) throw InvalidInput("a mesh with prisms cannot be of order 2: prisms are linear");

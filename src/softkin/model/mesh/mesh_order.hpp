@@ -1,8 +1,28 @@
 #pragma once
 
+#include <cstddef>
 #include <softkin/model/mesh/mesh.hpp>
+#include <string>
+#include <vector>
 
 namespace softkin {
+
+/// 1 or 2
+[[nodiscard]] int order_of(const Mesh& mesh);
+
+/// Why a mesh of so many tetrahedra, of which so many are of order 2, and prisms cannot be read or written, or "".
+[[nodiscard]] std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std::size_t prisms);
+/// The same of a Mesh, or what has arrays of elements as it has.
+template <class Elements>
+[[nodiscard]] std::string refusal_of_orders(const Elements& mesh) {
+  return refusal_of_orders(mesh.tetrahedra.size(), mesh.edge_nodes.size(), mesh.prisms.size());
+}
+
+/// An edge of tetrahedra of order 2: its ends, ascending, and the node on it.
+using EdgeWithNode = std::array<Index, 3>;
+
+/// Every edge with its node, once, by ascending ends; one that has several nodes is there as often. Order 1: none.
+[[nodiscard]] std::vector<EdgeWithNode> edges_with_nodes(const Mesh& mesh);
 
 /// The nodes of a mesh of order 2 by the ends of their edges; empty for one of order 1.
 class EdgeTable {
@@ -20,10 +40,7 @@ class EdgeTable {
   [[nodiscard]] std::vector<Index> between(const std::vector<Index>& vertices) const;
 
  private:
-  struct Edge {
-    Index low, high, node;
-  };
-  std::vector<Edge> edges_;  // ascending
+  std::vector<EdgeWithNode> edges_;
 };
 
 /// Reorders the edge nodes of an element as exchanging its corners 2 and 3 does.
@@ -31,6 +48,18 @@ void exchange_corners_2_and_3(EdgeNodes& edge_nodes);
 
 /// The node on the edge between two corners of an element, which must be there.
 [[nodiscard]] Index edge_node(const Tetrahedron& element, const EdgeNodes& edge_nodes, Index a, Index b);
+
+/// A triangle of order 2: its corners, then the nodes on its edges 01, 12, 20.
+using QuadraticTriangle = std::array<Index, 6>;
+
+/// The triangles with the nodes on their edges, where every edge is one of a tetrahedron of order 2; else nothing.
+[[nodiscard]] std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh);
+
+/// Boundary as flat triangles with normals outwards (for positively oriented elements): quads in two, faces of order 2
+/// in four. edge_nodes: of every tetrahedron, or empty.
+[[nodiscard]] std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahedra,
+                                                       const std::vector<EdgeNodes>& edge_nodes,
+                                                       const std::vector<Prism>& prisms);
 
 /// A mesh of order 1 with a node in the middle of every edge of a tetrahedron, shared by its elements, after the
 /// vertices that it had. Regions of dimension 1 and 0 get the nodes of the edges both of whose ends they hold.

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <softkin/model/mesh/quadratic_triangle.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
 
 namespace softkin::supports {

@@ -1,11 +1,53 @@
 #pragma once
 
-#include <softkin/io/mesh/gmsh_types.hpp>
+#include <cstdint>
+#include <limits>
 #include <softkin/io/scanner.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace softkin::gmsh {
+
+/// Element types of the MSH format that softkin knows.
+enum class CellType : int {
+  line = 1,
+  triangle = 2,
+  quad = 3,
+  tetrahedron = 4,
+  prism = 6,
+  quadratic_line = 8,
+  quadratic_triangle = 9,
+  quadratic_tetrahedron = 11,
+  point = 15
+};
+
+struct CellShape {
+  int dimension = 0, nodes = 0;
+};
+
+/// By the number of the type; no nodes: not a CellType.
+inline constexpr CellShape kShapes[16] = {{},     {1, 2}, {2, 3}, {2, 4},  {3, 4}, {}, {3, 6}, {},
+                                          {1, 3}, {2, 6}, {},     {3, 10}, {},     {}, {},     {0, 1}};
+inline constexpr std::size_t kMostNodes = 10;
+
+[[nodiscard]] constexpr CellShape shape_of(CellType type) {
+  return kShapes[static_cast<int>(type)];
+}
+
+/// The edge nodes of a tetrahedron from Gmsh's order (edges 01, 12, 02, 03, 23, 13) into softkin's, and back.
+[[nodiscard]] constexpr EdgeNodes reordered(EdgeNodes nodes) {
+  std::swap(nodes[4], nodes[5]);
+  return nodes;
+}
+
+/// Does a name hold what cannot stand between double quotes on one line?
+[[nodiscard]] bool is_unquotable(std::string_view name);
+
+inline constexpr std::int64_t kMaxIndex = std::numeric_limits<Index>::max();
+inline constexpr std::int64_t kMaxInt = std::numeric_limits<std::int32_t>::max();
+inline constexpr std::int64_t kMaxSize = std::numeric_limits<std::int64_t>::max();
 
 /// A .msh file as sections of values: words, one record a line (ASCII), or binary in either byte order.
 class Source {
@@ -25,6 +67,8 @@ class Source {
   /// Values of a record; in binary an int has 4 bytes, a size 8 and a real 8.
   std::int64_t int_value(const char* what, std::int64_t low, std::int64_t high);
   std::int64_t size_value(const char* what, std::int64_t low, std::int64_t high);
+  /// An int that is a CellType, or the failure that says why that type is refused.
+  CellType cell_type(const char* what);
   double real(const char* what);
   void skip_reals(int count, const char* what);
   void end_record();

@@ -41,12 +41,24 @@ struct PartMeasures {
 /// In the order of check.parts.
 [[nodiscard]] std::vector<PartMeasures> measure_parts(const Mesh& mesh, const MeshCheck& check);
 
-/// Mean of vertices [mm].
-template <class Vertices>
-[[nodiscard]] Vec3 mean_position(const Mesh& mesh, const Vertices& vertices) {
-  Vec3 sum = Vec3::Zero();
-  for (const Index v : vertices) sum += mesh.vertices.row(v).transpose();
-  return sum / static_cast<double>(vertices.size());
-}
+enum class MeshSeverity { remark, warning, error };
+
+/// One place of a finding: elements, or vertices (of a face or an edge, too), numbered from 0.
+struct MeshPlace {
+  std::vector<Index> tetrahedra, prisms, vertices;
+  Vec3 position;  // mean [mm]
+};
+
+/// One kind of finding, also where there is none of it (count 0).
+struct MeshFinding {
+  const char* kind;     // "degenerate_elements"
+  const char* meaning;  // for people: what it is or does
+  MeshSeverity severity;
+  std::size_t count = 0;
+  std::vector<MeshPlace> first;  // at most five
+};
+
+/// Every kind that a mesh of its order can be checked for, worst first.
+[[nodiscard]] std::vector<MeshFinding> findings_of(const Mesh& mesh, const MeshCheck& check);
 
 }  // namespace softkin

@@ -1,5 +1,8 @@
+#include <png.h>
+
 #include <algorithm>
-#include <softkin/io/picture/color_map.hpp>
+#include <softkin/io/picture/rgb_image.hpp>
+#include <stdexcept>
 
 namespace softkin {
 
@@ -20,6 +23,20 @@ Rgb mapped_color(double share) {
   const double place = std::clamp(share, 0.0, 1.0) * intervals;
   const int left = std::min(static_cast<int>(place), intervals - 1);
   return mixed(knot(left), knot(left + 1), place - left);
+}
+
+std::string encode_png(const RgbImage& image) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+  std::string content(size, '\0');
+  if (!png_image_write_to_memory(&header, content.data(), &size, 0, image.bytes.data(), 0, nullptr))
+    throw std::runtime_error(std::string("PNG: ") + header.message);
+  content.resize(size);
+  return content;
 }
 
 }  // namespace softkin

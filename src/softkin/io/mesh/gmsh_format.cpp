@@ -1,9 +1,42 @@
+#include <algorithm>
 #include <cmath>
-#include <softkin/io/mesh/gmsh_source.hpp>
+#include <iterator>
+#include <softkin/io/mesh/gmsh_format.hpp>
 
 namespace softkin::gmsh {
 
 namespace {
+
+constexpr std::int64_t kLastType = 140;
+constexpr std::pair<std::int64_t, const char*> kUnreadTypes[] = {
+    {5, "hexahedra"},
+    {7, "pyramids"},
+    {10, "second-order quads"},
+    {12, "second-order hexahedra"},
+    {13, "second-order prisms"},
+    {14, "second-order pyramids"},
+    {16, "second-order quads"},
+    {17, "second-order hexahedra"},
+    {18, "second-order prisms"},
+    {19, "second-order pyramids"},
+    {21, "third-order triangles"},
+    {26, "third-order lines"},
+    {29, "third-order tetrahedra"},
+};
+
+/// Why an element type cannot be read.
+std::string refusal_of_type(std::int64_t type) {
+  const std::string number = std::to_string(type);
+  if (type < 1 || type > kLastType) return "unknown element type " + number;
+  const auto* known = std::find_if(std::begin(kUnreadTypes), std::end(kUnreadTypes),
+                                   [&](const auto& unread) { return unread.first == type; });
+  if (known == std::end(kUnreadTypes))
+    return "elements of type " + number + " are not supported: mesh with order 1 or 2";
+  const std::string name = known->second;
+  if (type == 5 || type == 7) return name + " (type " + number + ") are not supported: mesh with tetrahedra or prisms";
+  return name + " (type " + number + ") are not supported: mesh with order 1" +
+         (name.starts_with("second") ? "" : " or 2");
+}
 
 // Damaged binary files must not put control characters into a message.
 std::string printable(std::string_view text) {
@@ -21,6 +54,13 @@ std::string_view trimmed(std::string_view text) {
 }
 
 }  // namespace
+
+bool is_unquotable(std::string_view name) {
+  return std::any_of(name.begin(), name.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < ' ' || byte == 127 || c == '"';
+  });
+}
 
 Source::Source(const std::string& file, std::string_view content) : scan_(file, content) {
   if (scan_.at_end()) fail("file is empty: expected $MeshFormat");
@@ -112,6 +152,12 @@ std::int64_t Source::size_value(const char* what, std::int64_t low, std::int64_t
   if (value < static_cast<std::uint64_t>(low) || value > static_cast<std::uint64_t>(high))
     fail_range(what, std::to_string(value), low, high);
   return static_cast<std::int64_t>(value);
+}
+
+CellType Source::cell_type(const char* what) {
+  const std::int64_t type = int_value(what, -kMaxInt, kMaxInt);
+  if (type < 1 || type >= std::ssize(kShapes) || kShapes[type].nodes == 0) fail(refusal_of_type(type));
+  return static_cast<CellType>(type);
 }
 
 double Source::real(const char* what) {
