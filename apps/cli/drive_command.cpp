@@ -29,8 +29,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int lowest_baud = 1200, highest_baud = 4'000'000;
-
 /// What the user asks of `softkin drive`. An empty file name: not given.
 struct DriveOptions {
   SolveOptions robot;  // scene alone
@@ -48,22 +46,17 @@ struct DriveOptions {
 };
 
 CLI::Validator baud_rate() {
-  const auto check = [](const std::string& text) -> std::string {
+  return must_be("an integer from 1200 to 4000000 baud", [](const std::string& text) {
     std::int64_t value = 0;
-    if (parse_integer(text, value) && value >= lowest_baud && value <= highest_baud) return "";
-    return "must be an integer from " + std::to_string(lowest_baud) + " to " + std::to_string(highest_baud) +
-           " baud, not " + text;
-  };
-  return CLI::Validator(check, "");
+    return parse_integer(text, value) && value >= 1200 && value <= 4'000'000;
+  });
 }
 
 CLI::Validator seconds() {
-  const auto check = [](const std::string& text) -> std::string {
+  return must_be("0 to 600 s", [](const std::string& text) {
     double value = 0;
-    if (parse_real(text, value) && value >= 0 && value <= 600) return "";
-    return "must be 0 to 600 s, not " + text;
-  };
-  return CLI::Validator(check, "");
+    return parse_real(text, value) && value >= 0 && value <= 600;
+  });
 }
 
 void add_outputs(CLI::App& command, DriveOptions& options) {
