@@ -274,11 +274,6 @@ void check_asked(const DriveOptions& options, const drive::Plan& plan) {
     throw InvalidInput("--schedule " + options.schedule + ": " + options.commands + " commands no chamber");
 }
 
-void write_files(const DriveOptions& options, const drive::Plan& plan) {
-  if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
-  if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
-}
-
 int run_drive(const DriveOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.robot.scene, options.commands, options.hardware_file()};
@@ -295,7 +290,8 @@ int run_drive(const DriveOptions& options) {
   std::optional<drive::SerialPort> port;  // before anything is written
   if (!options.port.empty()) port.emplace(options.port, options.baud);
   if (!options.json) print(plan_text(plan) + (options.dry_run ? dry_text(plan) : ""));
-  write_files(options, plan);
+  if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
+  if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
   std::optional<drive::StreamReport> sent;
   if (port) sent = send_to_board(*port, options, plan.program);
   const bool failed = sent && sent->end != drive::StreamEnd::finished;

@@ -107,10 +107,6 @@ void append_face(const std::string& name, double x, Mesh& mesh) {
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-RegionRef list_of(std::vector<Index> vertices) {
-  return {Selector(VertexList{std::move(vertices)}), {}};
-}
-
 }  // namespace
 
 Mesh bar_mesh(const BarShape& shape) {
@@ -173,7 +169,7 @@ SpecimenTest::SpecimenTest(const SpecimenOptions& options, Formulation formulati
 }
 
 void SpecimenTest::hold(const std::vector<Index>& vertices, std::array<bool, 3> axes) {
-  FixedSpec fixed{list_of(vertices)};
+  FixedSpec fixed{{Selector(VertexList{vertices}), {}}};
   fixed.axes = axes;
   robot_.fixed.push_back(fixed);
 }

@@ -258,36 +258,23 @@ std::vector<PlanePoint> checker_corners(const RgbImage& picture, const BoardSpec
   return points;
 }
 
+/// The dark squares of a tag, its border included.
 void append_tag(std::vector<std::array<double, 4>>& squares, const BoardSpec& board, int number) {
-  const std::vector<std::vector<int>> dark = tag_squares(board.dictionary, board.first + number);
+  const auto tags = dictionary_of(board.dictionary);
+  const int count = tags->markerSize + 2;  // of squares in a row
+  cv::Mat1b image;
+  tags->drawMarker(board.first + number, count, image, 1);
   const Vec2 top_left = tag_places(board, number)[0];
-  const double side = board.tag / static_cast<double>(dark.size());
-  for (std::size_t r = 0; r < dark.size(); ++r)
-    for (std::size_t c = 0; c < dark.size(); ++c) {
-      if (dark[r][c] == 0) continue;
-      squares.push_back(
-          {top_left.x() + static_cast<double>(c) * side, top_left.y() - static_cast<double>(r + 1) * side, side, side});
-    }
+  const double side = board.tag / count;
+  for (int r = 0; r < count; ++r)
+    for (int c = 0; c < count; ++c)
+      if (image(r, c) < 128) squares.push_back({top_left.x() + c * side, top_left.y() - (r + 1) * side, side, side});
 }
 
 }  // namespace
 
 int dictionary_size(const std::string& dictionary) {
   return dictionary_of(dictionary)->bytesList.rows;
-}
-
-std::vector<std::vector<int>> tag_squares(const std::string& dictionary, int number) {
-  const auto tags = dictionary_of(dictionary);
-  if (number < 0 || number >= tags->bytesList.rows)
-    throw InvalidInput("dictionary " + dictionary + " has tags 0 to " + std::to_string(tags->bytesList.rows - 1) +
-                       ", no tag " + std::to_string(number));
-  const int side = tags->markerSize + 2;
-  cv::Mat image;
-  tags->drawMarker(number, side, image, 1);
-  std::vector<std::vector<int>> squares(static_cast<std::size_t>(side));
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) squares[std::size_t(y)].push_back(image.at<std::uint8_t>(y, x) < 128);
-  return squares;
 }
 
 Vec2 Tag::centre() const {

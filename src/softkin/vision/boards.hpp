@@ -21,10 +21,6 @@ struct Tag {
 /// Number of tags in a dictionary, 4x4_50 to 7x7_1000 or original. Throws InvalidInput where there is no such one.
 [[nodiscard]] int dictionary_size(const std::string& dictionary);
 
-/// The squares of a tag row by row from the top left, its dark border included: 1 dark.
-/// throws  InvalidInput: no such dictionary, no such number
-[[nodiscard]] std::vector<std::vector<int>> tag_squares(const std::string& dictionary, int number);
-
 /// All tags of a dictionary in a picture, with corners to some hundredths of a pixel, by number; a number may come
 /// twice.
 [[nodiscard]] std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionary,
