@@ -11,7 +11,7 @@
 #include <softkin/io/table/measurements.hpp>
 #include <softkin/model/names.hpp>
 
-#include "calibrate_command.hpp"
+#include "command.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 
@@ -42,15 +42,13 @@ struct MaterialOptions {
 
 /// A finite number, low < x < high, or also equal to them where closed.
 CLI::Validator real_number(double low, double high, bool low_too = false, bool high_too = false) {
-  const auto check = [=](const std::string& text) -> std::string {
-    double value = 0;
-    const bool is = parse_real(text, value);
-    if (is && (value > low || (low_too && value == low)) && (value < high || (high_too && value == high))) return "";
-    const std::string above = (low_too ? "at least " : "greater than ") + number(low);
-    return "must be a number " + above +
-           (high < 1e9 ? (high_too ? " and at most " : " and less than ") + number(high) : "") + ", not " + text;
-  };
-  return CLI::Validator(check, "");
+  const std::string below = high < 1e9 ? (high_too ? " and at most " : " and less than ") + number(high) : "";
+  return must_be((low_too ? "a number at least " : "a number greater than ") + number(low) + below,
+                 [=](const std::string& text) {
+                   double value = 0;
+                   return parse_real(text, value) && (value > low || (low_too && value == low)) &&
+                          (value < high || (high_too && value == high));
+                 });
 }
 
 void add_inputs(CLI::App& command, MaterialOptions& options) {

@@ -41,7 +41,16 @@ void add_command(CLI::App& app, Run& run, const std::string& name, const std::st
   command->callback([options, act, &run] { run = [options, act] { return act(*options); }; });
 }
 
+/// Refuses a text that is not right: "must be WHAT, not TEXT".
+inline CLI::Validator must_be(const std::string& what, const std::function<bool(const std::string&)>& right) {
+  const auto check = [=](const std::string& text) {
+    return right(text) ? std::string() : "must be " + what + ", not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
 void add_calibrate(CLI::App& app, Run& run);
+void add_calibrate_material(CLI::App& calibrate, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_drive(CLI::App& app, Run& run);
 void add_fk(CLI::App& app, Run& run);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <softkin/calibration/path_report.hpp>
+#include <softkin/calibration/path_comparison.hpp>
 #include <softkin/calibration/path_tracks.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>

@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int lowest_baud = 1200, highest_baud = 4'000'000;
-
 /// What the user asks of `softkin drive`. An empty file name: not given.
 struct DriveOptions {
   SolveOptions robot;  // scene alone
@@ -43,22 +41,17 @@ struct DriveOptions {
 };
 
 CLI::Validator baud_rate() {
-  const auto check = [](const std::string& text) -> std::string {
+  return must_be("an integer from 1200 to 4000000 baud", [](const std::string& text) {
     std::int64_t value = 0;
-    if (parse_integer(text, value) && value >= lowest_baud && value <= highest_baud) return "";
-    return "must be an integer from " + std::to_string(lowest_baud) + " to " + std::to_string(highest_baud) +
-           " baud, not " + text;
-  };
-  return CLI::Validator(check, "");
+    return parse_integer(text, value) && value >= 1200 && value <= 4'000'000;
+  });
 }
 
 CLI::Validator seconds() {
-  const auto check = [](const std::string& text) -> std::string {
+  return must_be("0 to 600 s", [](const std::string& text) {
     double value = 0;
-    if (parse_real(text, value) && value >= 0 && value <= 600) return "";
-    return "must be 0 to 600 s, not " + text;
-  };
-  return CLI::Validator(check, "");
+    return parse_real(text, value) && value >= 0 && value <= 600;
+  });
 }
 
 void add_outputs(CLI::App& command, DriveOptions& options) {
@@ -276,11 +269,6 @@ void check_asked(const DriveOptions& options, const drive::Plan& plan) {
     throw InvalidInput("--schedule " + options.schedule + ": " + options.commands + " commands no chamber");
 }
 
-void write_files(const DriveOptions& options, const drive::Plan& plan) {
-  if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
-  if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
-}
-
 int run_drive(const DriveOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.robot.scene, options.commands, options.hardware_file()};
@@ -297,7 +285,8 @@ int run_drive(const DriveOptions& options) {
   std::optional<drive::SerialPort> port;  // before anything is written
   if (!options.port.empty()) port.emplace(options.port, options.baud);
   if (!options.json) print(plan_text(plan) + (options.dry_run ? dry_text(plan) : ""));
-  write_files(options, plan);
+  if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
+  if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
   std::optional<drive::StreamReport> sent;
   if (port) sent = send_to_board(*port, options, plan.program);
   const bool failed = sent && sent->end != drive::StreamEnd::finished;

@@ -97,6 +97,13 @@ std::string joined(const std::vector<std::string>& lines, const std::string& ind
   return text;
 }
 
+std::string written_text(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string text;
+  for (const auto& [what, file] : files)
+    if (!file.empty()) text += what + ": " + file + "\n";
+  return text;
+}
+
 void print_piece(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
     throw InvalidInput("standard output cannot be written");

@@ -5,6 +5,7 @@
 #include <softkin/core/types.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "command.hpp"
@@ -44,6 +45,9 @@ class ProgressLine {
 [[nodiscard]] std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& lines, const std::string& indent);
+
+/// "plot: F.svg", a line for each file that is given.
+[[nodiscard]] std::string written_text(const std::vector<std::pair<std::string, std::string>>& files);
 
 // Throw InvalidInput where standard output cannot be written.
 void print(const std::string& text);

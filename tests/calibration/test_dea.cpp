@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <softkin/calibration/dielectric.hpp>
-#include <softkin/calibration/voltage.hpp>
+#include <softkin/calibration/actuator_curves.hpp>
+#include <softkin/calibration/actuator_samples.hpp>
 #include <softkin/core/error.hpp>
 
 namespace softkin {

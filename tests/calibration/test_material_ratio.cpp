@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <softkin/calibration/ratio_fit.hpp>
-#include <softkin/calibration/specimen_mesh.hpp>
+#include <softkin/calibration/specimen_test.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/scene/scene.hpp>
 #include <softkin/model/mesh/boundary.hpp>

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <softkin/calibration/curve_fit.hpp>
+#include <softkin/calibration/actuator_curves.hpp>
+#include <softkin/calibration/actuator_samples.hpp>
 #include <softkin/calibration/pressure_check.hpp>
-#include <softkin/calibration/sweeps.hpp>
-#include <softkin/calibration/syringe.hpp>
 #include <softkin/core/error.hpp>
 
 namespace softkin {

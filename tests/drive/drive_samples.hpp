@@ -1,7 +1,7 @@
 #pragma once
 
-#include <softkin/drive/gcode.hpp>
 #include <softkin/drive/machine.hpp>
+#include <softkin/drive/plan.hpp>
 #include <softkin/model/model.hpp>
 
 namespace softkin::testing {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <softkin/drive/pressure_schedule.hpp>
+#include <softkin/drive/plan.hpp>
 #include <softkin/io/scene/hardware.hpp>
 
 #include "drive_samples.hpp"

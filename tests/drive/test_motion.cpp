@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 #include <random>
-#include <softkin/drive/gcode.hpp>
+#include <softkin/drive/plan.hpp>
 
 #include "drive_samples.hpp"
 

@@ -79,7 +79,7 @@ TEST(Film, VideoIsReadFrameByFrameWithItsClock) {
   if (!writer.isOpened()) GTEST_SKIP() << "this OpenCV writes no video";
   for (int i = 0; i < 10; ++i) writer.write(bgr_of(frame_at(i / 12.5)));
   writer.release();
-  Film film(std::filesystem::path(folder / "film.avi"), {});
+  Film film({std::filesystem::path(folder / "film.avi")}, {});
   EXPECT_DOUBLE_EQ(film.rate(), 12.5);
   int count = 0;
   for (auto frame = film.next(); frame; frame = film.next(), ++count) {
@@ -89,7 +89,7 @@ TEST(Film, VideoIsReadFrameByFrameWithItsClock) {
     EXPECT_NEAR(dot.pixel.y(), 119 - 4 * (10 + 3 * frame->time), 0.3);
   }
   EXPECT_EQ(count, 10);
-  Film slow(std::filesystem::path(folder / "film.avi"), 5);
+  Film slow({std::filesystem::path(folder / "film.avi")}, 5);
   (void)slow.next();
   EXPECT_DOUBLE_EQ(slow.next()->time, 0.2);
 }
@@ -99,7 +99,7 @@ TEST(Film, FolderIsReadInTheOrderOfItsNumbers) {
   const TemporaryFolder folder;
   for (const int i : {11, 9, 10}) folder.write("shot" + std::to_string(i) + ".png", encode_png(frame_at(i - 9)));
   folder.write("notes.txt", "no picture");
-  Film film(std::filesystem::path(folder / ""), 2);
+  Film film({std::filesystem::path(folder / "")}, 2);
   for (const int i : {9, 10, 11}) {
     const auto frame = film.next();
     ASSERT_TRUE(frame.has_value());
@@ -108,7 +108,7 @@ TEST(Film, FolderIsReadInTheOrderOfItsNumbers) {
   }
   EXPECT_FALSE(film.next().has_value());
   const auto refused = [&](std::optional<double> rate) {
-    return message_of([&] { (void)Film(std::filesystem::path(folder / ""), rate); });
+    return message_of([&] { (void)Film({std::filesystem::path(folder / "")}, rate); });
   };
   EXPECT_NE(refused({}).find("--fps"), std::string::npos);
   EXPECT_NE(refused(-1).find("above 0"), std::string::npos);
@@ -117,7 +117,7 @@ TEST(Film, FolderIsReadInTheOrderOfItsNumbers) {
   folder.write("last.png", encode_png(frame_at(0)));
   EXPECT_NE(refused(2).find("number"), std::string::npos);
   EXPECT_NE(
-      message_of([&] { (void)Film(std::filesystem::path(folder.write("bad.mp4", "no video")), {}); }).find("bad.mp4"),
+      message_of([&] { (void)Film({std::filesystem::path(folder.write("bad.mp4", "no video"))}, {}); }).find("bad.mp4"),
       std::string::npos);
 }
 

@@ -3,8 +3,7 @@
 #include <fstream>
 #include <softkin/core/error.hpp>
 #include <softkin/vision/boards.hpp>
-#include <softkin/vision/plane_view.hpp>
-#include <softkin/vision/tags.hpp>
+#include <softkin/vision/camera.hpp>
 #include <vision/rendering.hpp>
 
 #include "../cli/run_program.hpp"

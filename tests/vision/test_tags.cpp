@@ -2,8 +2,8 @@
 
 #include <numbers>
 #include <softkin/core/error.hpp>
+#include <softkin/vision/boards.hpp>
 #include <softkin/vision/dots.hpp>
-#include <softkin/vision/tags.hpp>
 
 #include "board_paint.hpp"
 

@@ -17,12 +17,6 @@ double misfit(const std::vector<double>& measured, const std::vector<double>& pr
   return size > 0 ? std::sqrt(difference / size) : 0;
 }
 
-Index index_of(const RobotSpec& spec, const std::string& name) {
-  for (std::size_t a = 0; a < spec.actuators.size(); ++a)
-    if (spec.actuators[a].name == name) return static_cast<Index>(a);
-  throw InvalidInput("no actuator '" + name + "'");
-}
-
 /// The chamber's volume is controlled up to the highest ratio; the other chambers are open.
 void prepare(RobotSpec& spec, std::size_t chamber, double highest) {
   spec.formulation = Formulation::physical;
@@ -39,17 +33,16 @@ void prepare(RobotSpec& spec, std::size_t chamber, double highest) {
   }
 }
 
-/// Of the ratios that both know; none where these are fewer than two.
-std::optional<ModulusCheck> check_branch(const MonotoneCurve& branch, const std::vector<double>& ratios,
-                                         const std::vector<std::optional<double>>& pressures) {
+/// Of the ratios that both know, where these are two or more.
+void add_check(Branch branch, const MonotoneCurve& curve, PressureComparison& comparison) {
   std::vector<double> measured, predicted;
-  for (std::size_t i = 0; i < ratios.size(); ++i) {
-    if (!pressures[i] || ratios[i] < branch.y().front() || ratios[i] > branch.y().back()) continue;
-    measured.push_back(branch.inverse(ratios[i]));
-    predicted.push_back(*pressures[i]);
+  for (std::size_t i = 0; i < comparison.ratios.size(); ++i) {
+    const double ratio = comparison.ratios[i];
+    if (!comparison.predicted[i] || ratio < curve.y().front() || ratio > curve.y().back()) continue;
+    measured.push_back(curve.inverse(ratio));
+    predicted.push_back(*comparison.predicted[i]);
   }
-  if (measured.size() < 2) return std::nullopt;
-  return check_modulus(measured, predicted);
+  if (measured.size() >= 2) comparison.branches.emplace_back(branch, check_modulus(measured, predicted));
 }
 
 }  // namespace
@@ -97,25 +90,17 @@ bool PressureComparison::is_complete() const {
   return std::all_of(predicted.begin(), predicted.end(), [](const auto& pressure) { return pressure.has_value(); });
 }
 
-std::vector<std::pair<Branch, ModulusCheck>> PressureComparison::branches() const {
-  std::vector<std::pair<Branch, ModulusCheck>> all;
-  if (loading) all.emplace_back(Branch::loading, *loading);
-  if (unloading) all.emplace_back(Branch::unloading, *unloading);
-  return all;
-}
-
-PressureComparison compare_with_physics(RobotSpec spec, const std::string& actuator, const ActuatorCurve& curve,
-                                        int threads, const ProgressCallback& progress) {
+PressureComparison compare_with_physics(RobotSpec spec, std::size_t chamber, const ActuatorCurve& curve, int threads,
+                                        const ProgressCallback& progress) {
   constexpr int compared = 8;  // ratios
   const double low = std::max(1.0, curve.loading.ratio.y().front()), high = curve.loading.ratio.y().back();
   if (!(high > 1)) throw InvalidInput("--predict compares ratios above 1, and the loading branch has none");
-  const Index chamber = index_of(spec, actuator);
-  prepare(spec, static_cast<std::size_t>(chamber), high);
-  PressureComparison result{actuator, {}, {}, {}, {}};
+  prepare(spec, chamber, high);
+  PressureComparison result{spec.actuators[chamber].name, {}, {}, {}};
   for (int i = 1; i <= compared; ++i) result.ratios.push_back(i == compared ? high : low + (high - low) * i / compared);
-  result.predicted = predicted_pressures(compile(spec), chamber, result.ratios, threads, progress);
-  result.loading = check_branch(curve.loading.ratio, result.ratios, result.predicted);
-  if (curve.unloading) result.unloading = check_branch(curve.unloading->ratio, result.ratios, result.predicted);
+  result.predicted = predicted_pressures(compile(spec), static_cast<Index>(chamber), result.ratios, threads, progress);
+  add_check(Branch::loading, curve.loading.ratio, result);
+  if (curve.unloading) add_check(Branch::unloading, curve.unloading->ratio, result);
   return result;
 }
 

@@ -38,21 +38,19 @@ struct ModulusCheck {
 struct PressureComparison {
   std::string actuator;
   std::vector<double> ratios;
-  std::vector<std::optional<double>> predicted;    // per ratio [kPa]; none: no equilibrium
-  std::optional<ModulusCheck> loading, unloading;  // none: the branch and the prediction share fewer than two ratios
+  std::vector<std::optional<double>> predicted;           // per ratio [kPa]; none: no equilibrium
+  std::vector<std::pair<Branch, ModulusCheck>> branches;  // those that share two ratios or more with the prediction
 
   [[nodiscard]] bool is_complete() const;
-  /// Those that there are.
-  [[nodiscard]] std::vector<std::pair<Branch, ModulusCheck>> branches() const;
 };
 
 /// Inflates a chamber by volume, the others open, to even ratios of the curve.
 ///
-/// spec    of the scene; solved in the physical formulation
-/// throws  InvalidInput as compile() does, where the scene has no elastic constants; a loading branch without ratios
+/// spec     of the scene; solved in the physical formulation
+/// chamber  its place among the actuators
+/// throws   InvalidInput as compile() does, where the scene has no elastic constants; a loading branch without ratios
 ///         above 1
-[[nodiscard]] PressureComparison compare_with_physics(RobotSpec spec, const std::string& actuator,
-                                                      const ActuatorCurve& curve, int threads,
-                                                      const ProgressCallback& progress = {});
+[[nodiscard]] PressureComparison compare_with_physics(RobotSpec spec, std::size_t chamber, const ActuatorCurve& curve,
+                                                      int threads, const ProgressCallback& progress = {});
 
 }  // namespace softkin::calibration

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/calibration/ratio_fit.hpp>
+#include <softkin/core/error.hpp>
 
 namespace softkin::calibration {
 
@@ -119,18 +120,76 @@ std::optional<Moduli> simulated_moduli(const std::vector<StretchedSpecimen>& spe
   return moduli_from(forces, unit_forces, fit.estimate.ratio);
 }
 
-template <class Specimen>
-std::vector<SpecimenResponse> predicted(const std::vector<Specimen>& specimens, const SpecimenOptions& options,
-                                        Formulation formulation, double log_ratio, const ShareDone& progress) {
-  std::vector<SpecimenResponse> responses;
-  for (const Specimen& specimen : specimens) {
-    if (progress) progress(static_cast<double>(responses.size()) / static_cast<double>(specimens.size()));
-    responses.push_back(SpecimenTest(options, formulation, specimen).at(log_ratio));
-  }
-  return responses;
+}  // namespace
+
+double elasticity_ratio(const StretchedSpecimen& s) {
+  const bool inside = s.interface_mm > 0 && s.interface_mm < s.length_mm && std::isfinite(s.length_mm);
+  const bool moved = s.interface_moved_mm > 0 && s.interface_moved_mm < s.stretch_mm && std::isfinite(s.stretch_mm);
+  if (!inside || !moved) throw InvalidInput("a specimen needs 0 < L1 < L and 0 < dL1 < dL");
+  return s.interface_mm * (s.stretch_mm - s.interface_moved_mm) /
+         ((s.length_mm - s.interface_mm) * s.interface_moved_mm);
 }
 
-}  // namespace
+double rod_share(double ratio, double length_mm, double interface_mm) {
+  return interface_mm / (interface_mm + ratio * (length_mm - interface_mm));
+}
+
+double rod_sensitivity_mm(const StretchedSpecimen& s) {
+  return s.interface_moved_mm * (s.stretch_mm - s.interface_moved_mm) / s.stretch_mm;
+}
+
+RatioEstimate combined_ratio(const std::vector<double>& log_ratios, const std::vector<double>& sensitivities) {
+  if (log_ratios.empty() || log_ratios.size() != sensitivities.size())
+    throw InvalidInput("a ratio needs at least one specimen");
+  double weights = 0, mean = 0;
+  for (std::size_t i = 0; i < log_ratios.size(); ++i) {
+    const double weight = sensitivities[i] * sensitivities[i];
+    weights += weight;
+    mean += weight * log_ratios[i];
+  }
+  mean /= weights;
+  if (!std::isfinite(mean)) throw InvalidInput("a specimen's ratio is not finite");
+  double squares = 0;
+  for (std::size_t i = 0; i < log_ratios.size(); ++i)
+    squares += sensitivities[i] * sensitivities[i] * (log_ratios[i] - mean) * (log_ratios[i] - mean);
+  const auto count = static_cast<double>(log_ratios.size());
+  const auto [least, greatest] = std::minmax_element(log_ratios.begin(), log_ratios.end());
+  RatioEstimate estimate;
+  estimate.ratio = std::exp(mean);
+  if (log_ratios.size() > 1) estimate.spread = std::sqrt(squares / weights * count / (count - 1));
+  estimate.least = std::exp(*least);
+  estimate.greatest = std::exp(*greatest);
+  estimate.specimens = log_ratios.size();
+  return estimate;
+}
+
+RatioEstimate rod_ratio(const std::vector<StretchedSpecimen>& specimens) {
+  std::vector<double> log_ratios, sensitivities;
+  for (const StretchedSpecimen& s : specimens) {
+    log_ratios.push_back(std::log(elasticity_ratio(s)));
+    sensitivities.push_back(rod_sensitivity_mm(s));
+  }
+  return combined_ratio(log_ratios, sensitivities);
+}
+
+double stiffness_of_shape_ratio(double shape_ratio) {
+  return 6 * shape_ratio / (2 + shape_ratio);
+}
+
+double poisson_ratio_of_shape_ratio(double shape_ratio) {
+  return (1 - shape_ratio) / (2 + shape_ratio);
+}
+
+double shape_ratio_of_poisson_ratio(double poisson_ratio) {
+  return (1 - 2 * poisson_ratio) / (1 + poisson_ratio);
+}
+
+double closed_form_log_ratio(double elasticity_ratio, double stiffer) {
+  const double softer_stiffness = stiffness_of_shape_ratio(stiffer) * std::exp(-std::abs(std::log(elasticity_ratio)));
+  const double softer = 2 * softer_stiffness / (6 - softer_stiffness);
+  const double log_ratio = std::log(stiffer / softer);
+  return elasticity_ratio >= 1 ? log_ratio : -log_ratio;
+}
 
 RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
                    Formulation formulation, const ShareDone& progress) {
@@ -166,27 +225,15 @@ RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const Specim
 }
 
 std::optional<Moduli> rod_moduli(const std::vector<StretchedSpecimen>& specimens, double area_mm2) {
-  std::vector<double> forces, unit_forces, log_ratios, sensitivities;
+  std::vector<double> forces, unit_forces;
   for (const StretchedSpecimen& s : specimens) {
-    log_ratios.push_back(std::log(elasticity_ratio(s)));
-    sensitivities.push_back(rod_sensitivity_mm(s));
     if (!s.force_n) continue;
     const double strain_b = (s.stretch_mm - s.interface_moved_mm) / (s.length_mm - s.interface_mm);
     forces.push_back(*s.force_n);
     unit_forces.push_back(s.area_mm2.value_or(area_mm2) * strain_b);
   }
   if (forces.empty()) return std::nullopt;
-  return moduli_from(forces, unit_forces, combined_ratio(log_ratios, sensitivities).ratio);
-}
-
-std::vector<SpecimenResponse> predict(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
-                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
-  return predicted(specimens, options, formulation, log_ratio, progress);
-}
-
-std::vector<SpecimenResponse> predict(const std::vector<TwistedSpecimen>& specimens, const SpecimenOptions& options,
-                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
-  return predicted(specimens, options, formulation, log_ratio, progress);
+  return moduli_from(forces, unit_forces, rod_ratio(specimens).ratio);
 }
 
 }  // namespace softkin::calibration

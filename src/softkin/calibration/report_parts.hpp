@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <softkin/core/text.hpp>
+#include <softkin/io/json_text.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/table/table.hpp>
 #include <string>
 
@@ -10,15 +12,13 @@
 
 namespace softkin::calibration {
 
-using Json = nlohmann::ordered_json;
-
 template <class Value>
 [[nodiscard]] Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
 
 [[nodiscard]] inline std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 [[nodiscard]] inline std::string text_of(const Table& table) {
@@ -46,6 +46,14 @@ template <class Value>
 
 [[nodiscard]] inline Cell count_cell(std::size_t count) {
   return static_cast<std::int64_t>(count);
+}
+
+[[nodiscard]] inline PlotPanel panel_of(const std::string& title, const std::string& x, const std::string& y) {
+  PlotPanel panel;
+  panel.title = title;
+  panel.x.label = x;
+  panel.y.label = y;
+  return panel;
 }
 
 /// A table of these columns, by their keys, without rows.

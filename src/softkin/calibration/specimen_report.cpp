@@ -1,11 +1,19 @@
 #include <cmath>
 #include <softkin/calibration/report_parts.hpp>
 #include <softkin/calibration/specimen_report.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/io/plain_text.hpp>
 #include <softkin/model/names.hpp>
 
 namespace softkin::calibration {
 
 namespace {
+
+/// How a simulated tensile test of a specimen ended, and why.
+std::pair<Status, std::string> end_of(const SimulatedTests& tests, std::size_t specimen) {
+  if (tests.fit) return {tests.fit->specimens[specimen].status, tests.fit->specimens[specimen].remark};
+  return {tests.stretched[specimen].status, tests.stretched[specimen].remark};
+}
 
 /// Difference over what was measured [%].
 double off_percent(double found, double measured) {
@@ -155,7 +163,57 @@ Json target_json(const RatioFit& fit, double rod_ratio, double stiffer) {
   return json;
 }
 
-}  // namespace
+PlotSeries points(const std::string& label, int style = -1) {
+  return {.label = label, .x = {}, .y = {}, .line = false, .style = style};
+}
+
+/// Delta L_1 / Delta L over L_1 / L.
+void add_share(PlotSeries& series, const StretchedSpecimen& specimen, double moved_mm) {
+  series.x.push_back(specimen.interface_mm / specimen.length_mm);
+  series.y.push_back(moved_mm / specimen.stretch_mm);
+}
+
+PlotSeries rod_curve(double ratio) {
+  PlotSeries series{.label = "rod, E_A / E_B " + decimal(ratio, 2), .x = {}, .y = {}, .marks = false};
+  for (int i = 0; i <= 100; ++i) {
+    series.x.push_back(0.01 * i);
+    series.y.push_back(i == 100 ? 1 : rod_share(ratio, 1, 0.01 * i));
+  }
+  return series;
+}
+
+PlotPanel stretch_panel(const SpecimenResults& results) {
+  PlotPanel panel = panel_of("Stretched", "L1 / L [-]", "dL1 / dL [-]");
+  panel.series = {rod_curve(results.rod.ratio), points("measured")};
+  for (const StretchedSpecimen& s : results.specimens) add_share(panel.series.back(), s, s.interface_moved_mm);
+  for (const SimulatedTests& tests : results.simulated) {
+    PlotSeries& series = panel.series.emplace_back(points(tests.name));
+    for (std::size_t i = 0; i < tests.stretched.size(); ++i)
+      add_share(series, results.specimens[i], tests.stretched[i].moved_mm);
+  }
+  return panel;
+}
+
+PlotPanel twist_panel(const SpecimenResults& results) {
+  PlotPanel panel = panel_of("Twisted", "free end [deg]", "interface [deg]");
+  PlotSeries measured = points("measured", 1);
+  for (const TwistedSpecimen& t : results.twists) {
+    if (!t.interface_deg) continue;
+    measured.x.push_back(t.twist_deg);
+    measured.y.push_back(*t.interface_deg);
+  }
+  if (!measured.x.empty()) panel.series.push_back(measured);
+  int style = results.fit(Formulation::physical) != nullptr ? 2 : 3;
+  for (const SimulatedTests& tests : results.simulated) {
+    PlotSeries series = points(tests.name, style++);
+    for (std::size_t i = 0; i < tests.twisted.size(); ++i) {
+      series.x.push_back(results.twists[i].twist_deg);
+      series.y.push_back(tests.twisted[i].turned_deg);
+    }
+    if (!series.x.empty()) panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
 
 Table stretch_table(const SpecimenResults& results) {
   Table table{{significant("line", ""), significant("L", "mm"), significant("L1", "mm"), significant("dL", "mm"),
@@ -199,6 +257,94 @@ Table twist_table(const SpecimenResults& results) {
     }
   }
   return table;
+}
+
+}  // namespace
+
+const RatioFit* SpecimenResults::fit(Formulation formulation) const {
+  for (const SimulatedTests& tests : simulated)
+    if (tests.is(formulation)) return &*tests.fit;
+  return nullptr;
+}
+
+SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen> specimens,
+                         std::vector<TwistedSpecimen> twists,
+                         const std::function<void(const std::string&, double)>& progress) {
+  const auto told = [&](const std::string& what) -> ShareDone {
+    if (!progress) return {};
+    return [&progress, what](double share) { progress(what, share); };
+  };
+  SpecimenResults results{std::move(specimens), std::move(twists), {}, {}, {}};
+  results.rod = rod_ratio(results.specimens);
+  results.rod_moduli = rod_moduli(results.specimens, task.options.width_mm * task.options.height_mm);
+  const auto fit = [&](Formulation formulation) {
+    SimulatedTests tests{formulation_name(formulation), {}, 1, {}, {}};
+    tests.fit = fit_ratio(results.specimens, task.options, formulation, told(tests.name + " tensile tests"));
+    tests.ratio = tests.fit->estimate.ratio;
+    for (const SpecimenFit& each : tests.fit->specimens) tests.stretched.push_back(each.response);
+    if (tests.fit->estimate.specimens > 0)
+      tests.twisted =
+          predict(results.twists, task.options, formulation, std::log(tests.ratio), told(tests.name + " twist tests"));
+    results.simulated.push_back(std::move(tests));
+  };
+  if (task.physical) fit(Formulation::physical);
+  if (!task.target_shape) return results;
+  fit(Formulation::target_shape);
+  for (const double ratio : task.tried) {
+    const auto predicted = [&](const auto& tests) {
+      return predict(tests, task.options, Formulation::target_shape, std::log(ratio), told("ratios to try"));
+    };
+    results.simulated.push_back(
+        {"R_A / R_B " + number(ratio), std::nullopt, ratio, predicted(results.specimens), predicted(results.twists)});
+  }
+  return results;
+}
+
+std::string failure(const SpecimenTask& task, const SpecimenResults& results) {
+  const auto words = [](const std::string& file, std::size_t line, const std::string& what, Status status,
+                        const std::string& remark) {
+    return file + ":" + std::to_string(line) + ": the simulated " + what + " test has status " + name_of(status) +
+           (remark.empty() ? "" : ": " + remark);
+  };
+  for (const SimulatedTests& tests : results.simulated) {
+    const std::string name = tests.fit ? tests.name : "--try";
+    for (std::size_t i = 0; i < results.specimens.size(); ++i)
+      if (const auto [status, remark] = end_of(tests, i); status != Status::converged)
+        return words(task.file, results.specimens[i].line, name + " tensile", status, remark);
+    for (std::size_t i = 0; i < tests.twisted.size(); ++i)
+      if (tests.twisted[i].status != Status::converged)
+        return words(task.twist_file, results.twists[i].line, name + " twist", tests.twisted[i].status,
+                     tests.twisted[i].remark);
+  }
+  return "";
+}
+
+std::string specimens_fragment(const SpecimenTask& task, const SpecimenResults& results) {
+  std::string a = "  - {region: " + task.regions[0], b = "  - {region: " + task.regions[1];
+  std::string remark;
+  const RatioFit *physical = results.fit(Formulation::physical), *target = results.fit(Formulation::target_shape);
+  if (target != nullptr) {
+    const ShapeRatios shape = shape_ratios(std::log(target->estimate.ratio), task.options.stiffer_shape_ratio);
+    a += ", shape_ratio: " + number(shape.a, 5);
+    b += ", shape_ratio: " + number(shape.b, 5);
+  }
+  if (physical != nullptr) {
+    const double ratio = physical->estimate.ratio;
+    std::optional<Moduli> moduli = physical->moduli;
+    if (!moduli && task.modulus_b) moduli = Moduli{ratio * *task.modulus_b, *task.modulus_b};
+    if (moduli) {
+      const Law law = task.options.law;
+      const std::string rest = ", poisson_ratio: " + number(task.options.poisson_ratio) +
+                               (law == Law::neo_hookean ? "" : std::string(", law: ") + law_name(law));
+      a += ", youngs_modulus: " + number(moduli->a_mpa, 5) + rest;
+      b += ", youngs_modulus: " + number(moduli->b_mpa, 5) + rest;
+    } else {
+      remark = "  # physical: youngs_modulus of " + task.regions[0] + " = " + number(ratio, 5) + " x that of " +
+               task.regions[1] + "; a column force_n or --modulus-b gives both\n";
+    }
+  }
+  if (target == nullptr && !remark.empty()) return "# no materials without a modulus\n" + remark;
+  return "materials:   # softkin calibrate material " + printable(task.file) + "\n" + a + "}\n" + b + "}\n" + remark;
 }
 
 std::string specimens_text(const SpecimenTask& task, const SpecimenResults& results) {
@@ -249,6 +395,12 @@ Table residual_table(const SpecimenResults& results) {
     }
   }
   return table;
+}
+
+Plot specimens_plot(const SpecimenTask& task, const SpecimenResults& results) {
+  std::vector<PlotPanel> panels{stretch_panel(results)};
+  if (!results.twists.empty()) panels.push_back(twist_panel(results));
+  return {.title = "Two materials: " + task.file, .rows = {panels}, .panel_height = 320};
 }
 
 }  // namespace softkin::calibration

@@ -54,8 +54,6 @@ struct SpecimenResults {
 
 // The results, for people and programs. Files have no part of them where a simulation is not converged.
 
-[[nodiscard]] Table stretch_table(const SpecimenResults& results);
-[[nodiscard]] Table twist_table(const SpecimenResults& results);
 [[nodiscard]] std::string specimens_text(const SpecimenTask& task, const SpecimenResults& results);
 [[nodiscard]] std::string specimens_json(const SpecimenTask& task, const SpecimenResults& results);
 [[nodiscard]] Plot specimens_plot(const SpecimenTask& task, const SpecimenResults& results);

@@ -1,7 +1,9 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
-#include <softkin/calibration/specimen_mesh.hpp>
 #include <softkin/calibration/specimen_test.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/statics/physical/body.hpp>
 
@@ -9,13 +11,119 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double most_tetrahedra = 1e6;
 
-RegionRef list_of(std::vector<Index> vertices) {
-  return {Selector(VertexList{std::move(vertices)}), {}};
+/// Vertices along x, y, z.
+struct Grid {
+  std::vector<double> x, y, z;
+  std::size_t before = 0;  // cells along x before the interface
+
+  [[nodiscard]] Index vertex(std::size_t i, std::size_t j, std::size_t k) const {
+    return static_cast<Index>(i + x.size() * (j + y.size() * k));
+  }
+};
+
+void append_even(std::vector<double>& places, double from, double to, double cell) {
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::round((to - from) / cell)));
+  if (places.empty()) places.push_back(from);
+  for (std::size_t i = 1; i < count; ++i)
+    places.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(count));
+  places.push_back(to);
 }
 
+Grid grid_of(const BarShape& shape) {
+  const double cell = shape.height_mm / shape.cells;
+  Grid grid;
+  append_even(grid.x, 0, shape.interface_mm, cell);
+  grid.before = grid.x.size() - 1;
+  append_even(grid.x, shape.interface_mm, shape.length_mm, cell);
+  append_even(grid.y, -shape.width_mm / 2, shape.width_mm / 2, cell);
+  append_even(grid.z, -shape.height_mm / 2, shape.height_mm / 2, cell);
+  return grid;
+}
+
+void check(const BarShape& shape) {
+  const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
+  if (!positive(shape.length_mm) || !positive(shape.width_mm) || !positive(shape.height_mm))
+    throw InvalidInput("a specimen needs length, width and height above 0");
+  if (!(shape.interface_mm > 0 && shape.interface_mm < shape.length_mm))
+    throw InvalidInput("a specimen's interface must lie between its ends");
+  if (shape.cells < 1) throw InvalidInput("a specimen needs at least one cell across its height");
+  const double cell = shape.height_mm / shape.cells;
+  const double count = 5 * (shape.length_mm / cell + 2) * (shape.width_mm / cell + 1) * shape.cells;
+  if (!(count < most_tetrahedra))
+    throw InvalidInput("the specimen is too long or too wide for " + std::to_string(shape.cells) +
+                       " cells across its height: its mesh would have more than a million tetrahedra");
+}
+
+/// Corner c of the cell is at (c & 1, c >> 1 & 1, c >> 2); the faces' diagonals of neighbours meet.
+void append_cell(const std::array<Index, 8>& v, bool odd, std::vector<Tetrahedron>& tetrahedra) {
+  constexpr int corners[5][4] = {{0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 2, 7, 4}, {1, 2, 4, 7}};
+  for (const auto& [a, b, c, d] : corners) {
+    if (odd)
+      tetrahedra.push_back({v[a ^ 1], v[b ^ 1], v[d ^ 1], v[c ^ 1]});
+    else
+      tetrahedra.push_back({v[a], v[b], v[c], v[d]});
+  }
+}
+
+void append_cells(const Grid& grid, Mesh& mesh) {
+  Region a, b;
+  a.name = "A";
+  b.name = "B";
+  for (std::size_t k = 0; k + 1 < grid.z.size(); ++k)
+    for (std::size_t j = 0; j + 1 < grid.y.size(); ++j)
+      for (std::size_t i = 0; i + 1 < grid.x.size(); ++i) {
+        std::array<Index, 8> corners{};
+        for (std::size_t c = 0; c < 8; ++c) corners[c] = grid.vertex(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+        const std::size_t first = mesh.tetrahedra.size();
+        append_cell(corners, (i + j + k) % 2 != 0, mesh.tetrahedra);
+        Region& region = i < grid.before ? a : b;
+        for (std::size_t t = first; t < mesh.tetrahedra.size(); ++t) region.tetrahedra.push_back(static_cast<Index>(t));
+      }
+  mesh.regions.push_back(std::move(a));
+  mesh.regions.push_back(std::move(b));
+}
+
+/// The faces of the tetrahedra at one place along x, each once.
+void append_face(const std::string& name, double x, Mesh& mesh) {
+  constexpr int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  Region region;
+  region.name = name;
+  region.dimension = 2;
+  const bool last = name == "free_end";
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    for (const auto& face : faces) {
+      const auto on = [&](int corner) { return mesh.vertices(t[corner], 0) == x; };
+      if (!on(face[0]) || !on(face[1]) || !on(face[2])) continue;
+      const int apex = 6 - face[0] - face[1] - face[2];
+      const bool element_before = mesh.vertices(t[apex], 0) < x;
+      if (element_before != last) continue;  // an inner face counts with the element beyond it
+      region.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+      mesh.triangles.push_back({t[face[0]], t[face[1]], t[face[2]]});
+    }
+  mesh.regions.push_back(std::move(region));
+}
+
+constexpr double degrees = 180 / std::numbers::pi;
+
 }  // namespace
+
+Mesh bar_mesh(const BarShape& shape) {
+  check(shape);
+  const Grid grid = grid_of(shape);
+  Mesh mesh;
+  mesh.vertices.resize(static_cast<Index>(grid.x.size() * grid.y.size() * grid.z.size()), 3);
+  for (std::size_t k = 0; k < grid.z.size(); ++k)
+    for (std::size_t j = 0; j < grid.y.size(); ++j)
+      for (std::size_t i = 0; i < grid.x.size(); ++i)
+        mesh.vertices.row(grid.vertex(i, j, k)) << grid.x[i], grid.y[j], grid.z[k];
+  append_cells(grid, mesh);
+  append_face("base", 0, mesh);
+  append_face("interface", shape.interface_mm, mesh);
+  append_face("free_end", shape.length_mm, mesh);
+  return mesh;
+}
 
 int cells_across(const SpecimenOptions& options, Formulation formulation) {
   constexpr int quadratic = 3, linear = 4;
@@ -61,7 +169,7 @@ SpecimenTest::SpecimenTest(const SpecimenOptions& options, Formulation formulati
 }
 
 void SpecimenTest::hold(const std::vector<Index>& vertices, std::array<bool, 3> axes) {
-  FixedSpec fixed{list_of(vertices)};
+  FixedSpec fixed{{Selector(VertexList{vertices}), {}}};
   fixed.axes = axes;
   robot_.fixed.push_back(fixed);
 }

@@ -97,6 +97,22 @@ std::vector<double> stresses(const FittedLaw& law, const std::vector<double>& st
   return all;
 }
 
+Table law_table(const TensileTask& task, const TensileResults& results) {
+  Table table{{{.key = "law", .left = true},
+               {.key = "constants, incompressible", .unit = "MPa", .left = true},
+               significant("E at rest", "MPa", 5),
+               decimals("R^2", "", 5),
+               significant("rms", "MPa", 3),
+               significant("largest", "MPa", 3),
+               significant("in a scene at nu " + number(task.poisson_ratio) + ": rms", "MPa", 3)}};
+  for (const FittedLaw& each : results.laws) {
+    const FitQuality& quality = each.fit.quality;
+    table.rows.push_back({name_of(each), constants_text(each.fit.law), each.fit.law.youngs_modulus(), quality.r_squared,
+                          quality.rms_mpa, quality.largest_mpa, each.scene_quality.rms_mpa});
+  }
+  return table;
+}
+
 }  // namespace
 
 TensileResults evaluate(const TensileTask& task, TensileCurve curve) {
@@ -113,22 +129,6 @@ TensileResults evaluate(const TensileTask& task, TensileCurve curve) {
   }
   results.chosen = task.law.empty() ? choose(results) : task.law;
   return results;
-}
-
-Table law_table(const TensileTask& task, const TensileResults& results) {
-  Table table{{{.key = "law", .left = true},
-               {.key = "constants, incompressible", .unit = "MPa", .left = true},
-               significant("E at rest", "MPa", 5),
-               decimals("R^2", "", 5),
-               significant("rms", "MPa", 3),
-               significant("largest", "MPa", 3),
-               significant("in a scene at nu " + number(task.poisson_ratio) + ": rms", "MPa", 3)}};
-  for (const FittedLaw& each : results.laws) {
-    const FitQuality& quality = each.fit.quality;
-    table.rows.push_back({name_of(each), constants_text(each.fit.law), each.fit.law.youngs_modulus(), quality.r_squared,
-                          quality.rms_mpa, quality.largest_mpa, each.scene_quality.rms_mpa});
-  }
-  return table;
 }
 
 std::string tensile_text(const TensileTask& task, const TensileResults& results) {
@@ -160,11 +160,8 @@ std::string tensile_json(const TensileTask& task, const TensileResults& results)
 Plot tensile_plot(const TensileTask& task, const TensileResults& results) {
   const TensileCurve& curve = results.curve;
   const LinearRange& linear = results.linear;
-  PlotPanel curves, off;
-  curves.title = "Tensile test";
-  off.title = "Fit less measurement";
-  curves.x.label = off.x.label = "nominal strain [-]";
-  curves.y.label = off.y.label = "nominal stress [MPa]";
+  PlotPanel curves = panel_of("Tensile test", "nominal strain [-]", "nominal stress [MPa]");
+  PlotPanel off = panel_of("Fit less measurement", curves.x.label, curves.y.label);
   curves.series = {{"measured", curve.strain, curve.stress, false},
                    {"E " + number(linear.modulus_mpa, 4) + " MPa",
                     {0, linear.end_strain},
@@ -183,11 +180,7 @@ Plot tensile_plot(const TensileTask& task, const TensileResults& results) {
     for (std::size_t i = 0; i < left.y.size(); ++i) left.y[i] -= curve.stress[i];
     off.series.push_back(std::move(left));
   }
-  Plot plot;
-  plot.title = task.file;
-  plot.rows = {{curves, off}};
-  plot.panel_height = 320;
-  return plot;
+  return {.title = task.file, .rows = {{curves, off}}, .panel_height = 320};
 }
 
 Table residual_table(const TensileResults& results) {

@@ -39,7 +39,6 @@ struct TensileResults {
 
 // The results, for people and programs.
 
-[[nodiscard]] Table law_table(const TensileTask& task, const TensileResults& results);
 [[nodiscard]] std::string tensile_text(const TensileTask& task, const TensileResults& results);
 [[nodiscard]] std::string tensile_json(const TensileTask& task, const TensileResults& results);
 [[nodiscard]] Plot tensile_plot(const TensileTask& task, const TensileResults& results);

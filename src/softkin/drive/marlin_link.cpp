@@ -1,6 +1,4 @@
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <softkin/core/text.hpp>
 #include <softkin/drive/marlin_answer.hpp>
 #include <softkin/drive/marlin_link.hpp>
@@ -16,10 +14,6 @@ constexpr double slice_s = 0.05;         // between two looks at the user's orde
 constexpr double report_step_mm = 0.01;  // M114 prints two decimals
 constexpr int foreign_limit = 3;         // requests for a number that is not of the stream: a damaged one comes alone
 constexpr int position_attempts = 5;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// The stream is over.
 struct Ended {
@@ -90,7 +84,7 @@ class Session {
   std::optional<MarlinAnswer> read(double deadline) {
     for (;;) {
       (void)order();
-      const double left = deadline - now();
+      const double left = deadline - seconds_now();
       switch (port_.read_line(line_, std::max(0.0, std::min(left, slice_s)))) {
         case SerialPort::Read::lost:
           throw Ended{StreamEnd::port_lost, "the port is gone: the position is unknown"};
@@ -119,7 +113,7 @@ class Session {
   void drain() {
     disturbed_ = false;
     since_silence_ = 0;
-    while (const auto answer = read(now() + options_.quiet_s))
+    while (const auto answer = read(seconds_now() + options_.quiet_s))
       if (answer->kind == Kind::resend) obey(*answer->number);
     disturbed_ = false;
   }
@@ -163,14 +157,14 @@ class Session {
 
   /// Sends the line at the cursor; returns once it is accepted, or another one is asked for.
   void exchange() {
-    while (const auto answer = read(now())) {  // nothing should be there
+    while (const auto answer = read(seconds_now())) {  // nothing should be there
       disturbed_ = disturbed_ || answer->kind == Kind::ok;
       if (answer->kind == Kind::resend) obey(*answer->number);
     }
     if (disturbed_ || since_silence_ >= options_.checkpoint_lines) drain();
     if (cursor_ >= entries_.size()) return;
     transmit(failures_ > 0);
-    double deadline = now() + options_.timeout_s + entries_[cursor_].patience_s;
+    double deadline = seconds_now() + options_.timeout_s + entries_[cursor_].patience_s;
     bool again = false;
     for (;;) {
       const auto answer = read(deadline);
@@ -180,9 +174,9 @@ class Session {
         log('!', "no answer: sent again");
         transmit(true);
         again = true;
-        deadline = now() + options_.timeout_s;
+        deadline = seconds_now() + options_.timeout_s;
       } else if (answer->kind == Kind::busy) {
-        deadline = std::max(deadline, now() + options_.timeout_s);
+        deadline = std::max(deadline, seconds_now() + options_.timeout_s);
       } else if (answer->kind == Kind::ok) {
         if (answer->number && *answer->number != base + 1 + static_cast<long>(cursor_)) continue;  // of another line
         ++cursor_;
@@ -234,7 +228,7 @@ class Session {
     for (int i = 0; i < position_attempts; ++i) {
       position_.reset();
       send("M114", patience);
-      for (const double deadline = now() + options_.timeout_s; !position_;)
+      for (const double deadline = seconds_now() + options_.timeout_s; !position_;)
         if (!read(deadline)) break;
       std::string now_wrong = position_ ? fault(expected) : "";
       if (position_ && now_wrong.empty()) {
@@ -254,7 +248,7 @@ class Session {
   // --- the stream
 
   void wait_for_boot() {
-    const double deadline = now() + options_.boot_s;
+    const double deadline = seconds_now() + options_.boot_s;
     try {
       while (read(deadline)) {
       }
@@ -282,7 +276,7 @@ class Session {
     failures_ = 0;
     drain();
     write("\n" + numbered_line(base, "M110 N" + std::to_string(base)));
-    for (const double deadline = now() + options_.timeout_s;;) {
+    for (const double deadline = seconds_now() + options_.timeout_s;;) {
       const auto answer = read(deadline);
       if (!answer) throw Restart{"no answer to M110"};
       if (answer->kind == Kind::ok) break;
@@ -312,7 +306,8 @@ class Session {
     log('!', "paused");
     Order asked = Order::pause;
     while ((asked = order()) == Order::pause)
-      if (const auto answer = read(now() + slice_s); answer && answer->kind == Kind::resend) obey(*answer->number);
+      if (const auto answer = read(seconds_now() + slice_s); answer && answer->kind == Kind::resend)
+        obey(*answer->number);
     log('!', "goes on");
     return asked;
   }
@@ -370,25 +365,9 @@ StreamReport stream(SerialPort& port, const GcodeProgram& program, const LinkOpt
 }
 
 const char* name_of(StreamEnd end) {
-  switch (end) {
-    case StreamEnd::finished:
-      return "finished";
-    case StreamEnd::stopped:
-      return "stopped";
-    case StreamEnd::quick_stopped:
-      return "quick stopped";
-    case StreamEnd::rebooted:
-      return "rebooted";
-    case StreamEnd::halted:
-      return "halted";
-    case StreamEnd::wrong_position:
-      return "wrong position";
-    case StreamEnd::port_lost:
-      return "port lost";
-    case StreamEnd::no_answer:
-      break;
-  }
-  return "no answer";
+  constexpr const char* names[] = {"finished", "stopped",   "quick stopped",  "rebooted",
+                                   "halted",   "no answer", "wrong position", "port lost"};  // in the enum's order
+  return names[static_cast<std::size_t>(end)];
 }
 
 }  // namespace softkin::drive

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <softkin/drive/gcode.hpp>
+#include <softkin/drive/plan.hpp>
 #include <softkin/drive/serial_port.hpp>
 
 namespace softkin::drive {

@@ -1,7 +1,8 @@
+// The kernel's own header has rates that <termios.h> has not, and cannot stand beside it.
+#include <asm/termbits.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/ioctl.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,7 +11,6 @@
 #include <cstring>
 #include <ctime>
 #include <softkin/core/error.hpp>
-#include <softkin/drive/serial_baud.hpp>
 #include <softkin/drive/serial_port.hpp>
 
 namespace softkin::drive {
@@ -19,14 +19,10 @@ namespace {
 
 constexpr std::size_t longest_line = 4096;  // garbage without an end is thrown away
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// False where nothing happened until then.
 bool wait_for(int file, short events, double deadline) {
   for (;;) {
-    const double left = std::max(0.0, deadline - now());
+    const double left = std::max(0.0, deadline - seconds_now());
     timespec time = {};
     time.tv_sec = static_cast<time_t>(left);
     time.tv_nsec = static_cast<long>(1e9 * (left - std::floor(left)));
@@ -37,31 +33,41 @@ bool wait_for(int file, short events, double deadline) {
   }
 }
 
-void set_raw(int file) {
-  termios settings = {};
-  if (::tcgetattr(file, &settings) != 0) throw InvalidInput("is no serial port");
-  ::cfmakeraw(&settings);
-  settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
+/// Raw, 8N1, at any rate that the driver takes, such as the 250000 baud of many boards.
+void set_up(int file, int baud) {
+  termios2 settings = {};
+  if (::ioctl(file, TCGETS2, &settings) != 0) throw InvalidInput("is no serial port");
+  settings.c_iflag &= ~static_cast<tcflag_t>(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL | IXON);
+  settings.c_oflag &= ~static_cast<tcflag_t>(OPOST);
+  settings.c_lflag &= ~static_cast<tcflag_t>(ECHO | ECHONL | ICANON | ISIG | IEXTEN);
+  settings.c_cflag &= ~static_cast<tcflag_t>(CSIZE | PARENB | CSTOPB | CRTSCTS);
+  settings.c_cflag |= CS8 | CLOCAL | CREAD;
   settings.c_cc[VMIN] = 0;
   settings.c_cc[VTIME] = 0;
-  if (::tcsetattr(file, TCSANOW, &settings) != 0) throw InvalidInput("cannot be set up");
+  if (::ioctl(file, TCSETS2, &settings) != 0) throw InvalidInput("cannot be set up");
+  if (::ioctl(file, TIOCEXCL) != 0) throw InvalidInput("cannot be had alone");
+  settings.c_cflag &= ~static_cast<tcflag_t>(CBAUD);
+  settings.c_cflag |= BOTHER;
+  settings.c_ispeed = settings.c_ospeed = static_cast<speed_t>(baud);
+  if (::ioctl(file, TCSETS2, &settings) != 0) throw InvalidInput("does not take " + std::to_string(baud) + " baud");
 }
 
 }  // namespace
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 SerialPort::SerialPort(const std::string& path, int baud) {
   file_ = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (file_ < 0) throw InvalidInput("port " + path + ": " + std::strerror(errno));
   try {
-    set_raw(file_);
-    if (::ioctl(file_, TIOCEXCL) != 0) throw InvalidInput("cannot be had alone");
-    if (!set_baud(file_, baud)) throw InvalidInput("does not take " + std::to_string(baud) + " baud");
+    set_up(file_, baud);
   } catch (const InvalidInput& error) {
     ::close(file_);
     throw InvalidInput("port " + path + ": " + error.what());
   }
-  ::tcflush(file_, TCIOFLUSH);
+  (void)::ioctl(file_, TCFLSH, TCIOFLUSH);
 }
 
 SerialPort::~SerialPort() {
@@ -70,12 +76,12 @@ SerialPort::~SerialPort() {
 }
 
 bool SerialPort::write(std::string_view bytes, double timeout_s) {
-  double deadline = now() + timeout_s;
+  double deadline = seconds_now() + timeout_s;
   while (!bytes.empty()) {
     const ssize_t count = ::write(file_, bytes.data(), bytes.size());
     if (count > 0) {
       bytes.remove_prefix(static_cast<std::size_t>(count));
-      deadline = now() + timeout_s;
+      deadline = seconds_now() + timeout_s;
     } else if (count < 0 && errno != EAGAIN && errno != EINTR) {
       return false;
     } else if (!wait_for(file_, POLLOUT, deadline)) {
@@ -100,7 +106,7 @@ bool SerialPort::take_line(std::string& line) {
 }
 
 SerialPort::Read SerialPort::read_line(std::string& line, double timeout_s) {
-  const double deadline = now() + timeout_s;
+  const double deadline = seconds_now() + timeout_s;
   for (;;) {
     if (take_line(line)) return Read::line;
     char bytes[1024];
@@ -110,7 +116,7 @@ SerialPort::Read SerialPort::read_line(std::string& line, double timeout_s) {
       continue;
     }
     if (count < 0 && errno != EAGAIN && errno != EINTR) return Read::lost;
-    if (now() >= deadline || !wait_for(file_, POLLIN, deadline)) return Read::nothing;
+    if (seconds_now() >= deadline || !wait_for(file_, POLLIN, deadline)) return Read::nothing;
     // a port that is gone is always ready, and has nothing
     pollfd state = {file_, POLLIN, 0};
     if (::poll(&state, 1, 0) > 0 && (state.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0 &&

@@ -5,6 +5,9 @@
 
 namespace softkin::drive {
 
+/// Of a clock that never jumps.
+[[nodiscard]] double seconds_now();
+
 /// A serial port in raw mode, 8N1, for one program at a time.
 class SerialPort {
  public:

@@ -1,16 +1,154 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
+#include <optional>
 #include <softkin/core/error.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/vision/boards.hpp>
+#include <softkin/vision/camera.hpp>
 #include <softkin/vision/pixels.hpp>
-#include <softkin/vision/plane_view.hpp>
-#include <softkin/vision/tags.hpp>
 
 namespace softkin::vision {
 
 namespace {
+
+constexpr double step = 0.5;           // along a profile [px]
+constexpr double least_contrast = 25;  // of 255
+constexpr double far_off = 0.5;        // of a line: on something else [px]
+constexpr double end_share = 0.12;     // of an edge: left out at both ends, where blur rounds the corner
+
+using Line = Eigen::Hyperplane<double, 2>;
+
+cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
+  static const std::vector<std::string> names{"4x4_50",  "4x4_100",  "4x4_250", "4x4_1000", "5x5_50",  "5x5_100",
+                                              "5x5_250", "5x5_1000", "6x6_50",  "6x6_100",  "6x6_250", "6x6_1000",
+                                              "7x7_50",  "7x7_100",  "7x7_250", "7x7_1000", "original"};
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw InvalidInput("no dictionary '" + name + "'" + suggest_name(name, names));
+  return cv::aruco::getPredefinedDictionary(static_cast<int>(found - names.begin()));  // in OpenCV's order
+}
+
+/// Distance from the middle of a profile at which it passes the level upwards, nearest to the middle.
+std::optional<double> passage(const cv::Mat1f& profile, double reach, double level) {
+  std::optional<double> best;
+  for (int i = 0; i + 1 < profile.cols; ++i) {
+    if (!(profile(i) <= level && profile(i + 1) > level)) continue;
+    const double s = -reach + step * (i + (level - profile(i)) / (profile(i + 1) - profile(i)));
+    if (!best || std::abs(s) < std::abs(*best)) best = s;
+  }
+  return best;
+}
+
+/// An edge, distortion taken out.
+std::optional<Line> edge_line(const cv::Mat& gray, const Vec2& from, const Vec2& to, const Vec2& middle, double module,
+                              const std::optional<Camera>& camera) {
+  const double length = (to - from).norm();
+  Vec2 outwards = Vec2(to.y() - from.y(), from.x() - to.x()) / length;
+  if (outwards.dot(middle - from) > 0) outwards = -outwards;
+  const double depth = 2 * std::abs(outwards.dot(middle - from));  // of the square behind this edge
+  const double reach = std::clamp(0.75 * module * depth, 1.5, 5.0);
+  // profiles across the edge, from inside (dark) outwards
+  cv::Mat1f profiles(std::clamp(static_cast<int>(length), 10, 60), static_cast<int>(2 * reach / step + 1e-9) + 1), mean;
+  const auto place = [&](int i) {
+    return Vec2(from + (end_share + (1 - 2 * end_share) * (i + 0.5) / profiles.rows) * (to - from));
+  };
+  for (int i = 0; i < profiles.rows; ++i)
+    for (int k = 0; k < profiles.cols; ++k)
+      profiles(i, k) = between<float>(gray, place(i) + (step * k - reach) * outwards);
+  // darkest on the inner half and lightest on the outer half: ink and paper, also where the dark border and the margin
+  // are hardly wider than the blur
+  cv::reduce(profiles, mean, 0, cv::REDUCE_AVG);
+  double dark = 0, light = 0;
+  cv::minMaxLoc(mean.colRange(0, (mean.cols + 1) / 2), &dark, nullptr);
+  cv::minMaxLoc(mean.colRange((mean.cols + 1) / 2, mean.cols), nullptr, &light);
+  if (!(light - dark > least_contrast)) return std::nullopt;
+  std::vector<cv::Point2f> points;
+  for (int i = 0; i < profiles.rows; ++i)
+    if (const auto s = passage(profiles.row(i), reach, (dark + light) / 2)) {
+      const Vec2 seen = place(i) + *s * outwards, ideal = camera ? undistorted(*camera, seen) : seen;
+      points.emplace_back(cv::Point2d(ideal.x(), ideal.y()));
+    }
+  cv::Vec4f line;
+  for (int round = 0; round < 2; ++round) {
+    if (points.size() < 5) return std::nullopt;
+    cv::fitLine(points, line, cv::DIST_L2, 0, 0, 0);
+    std::erase_if(points, [&](const cv::Point2f& p) {
+      return std::abs((p.x - line[2]) * line[1] - (p.y - line[3]) * line[0]) > far_off;
+    });
+  }
+  return Line(Vec2(line[1], -line[0]), Vec2(line[2], line[3]));
+}
+
+std::optional<std::array<Vec2, 4>> refined(const cv::Mat& gray, std::array<Vec2, 4> corners, double module,
+                                           const std::optional<Camera>& camera) {
+  std::array<Vec2, 4> ideal;
+  for (int round = 0; round < 2; ++round) {
+    const Vec2 middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+    std::vector<Line> lines;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto line = edge_line(gray, corners[i], corners[(i + 1) % 4], middle, module, camera);
+      if (!line) return std::nullopt;
+      lines.push_back(*line);
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      ideal[i] = lines[i].intersection(lines[(i + 3) % 4]);
+      const Vec2 seen = camera ? distorted(*camera, ideal[i]) : ideal[i];
+      // a corner that runs away is that of something else
+      if (!((seen - corners[i]).norm() < 5)) return std::nullopt;
+      corners[i] = seen;
+    }
+  }
+  return ideal;
+}
+
+void read_size(BoardSpec& board, const std::string& part) {
+  const std::size_t times = part.find('x');
+  const auto columns = whole_number(part.substr(0, times)),
+             rows = times == std::string::npos ? std::nullopt : whole_number(part.substr(times + 1));
+  if (!columns || !rows || *columns < 1 || *rows < 1 || *columns > 100 || *rows > 100)
+    throw InvalidInput("board: '" + part + "' is no number of columns x rows such as 5x4 (at most 100x100)");
+  board.columns = *columns;
+  board.rows = *rows;
+}
+
+void read_key(BoardSpec& board, const std::string& part) {
+  const std::size_t equals = part.find('=');
+  const std::string key = part.substr(0, equals), value = part.substr(equals + 1);
+  std::vector<std::string> keys;
+  if (board.kind == BoardSpec::Kind::grid) keys = {"tag", "gap", "dictionary", "first"};
+  if (board.kind == BoardSpec::Kind::charuco) keys = {"square", "tag", "dictionary"};
+  if (board.kind == BoardSpec::Kind::checker) keys = {"square"};
+  if (std::find(keys.begin(), keys.end(), key) == keys.end())
+    throw InvalidInput("board: unknown key '" + key + "'" + suggest_name(key, keys));
+  if (key == "dictionary") {
+    board.dictionary = value;
+  } else if (key == "first") {
+    const auto first = whole_number(value);
+    if (!first) throw InvalidInput("board: first='" + value + "' is no whole number");
+    board.first = *first;
+  } else {
+    (key == "tag" ? board.tag : key == "gap" ? board.gap : board.square) = parse_length(value, "board: " + key);
+  }
+}
+
+void check(const BoardSpec& board) {
+  const bool grid = board.kind == BoardSpec::Kind::grid, checker = board.kind == BoardSpec::Kind::checker;
+  if (board.columns == 0) throw InvalidInput("board: no number of columns x rows such as 5x4");
+  if (!checker && !(board.tag > 0)) throw InvalidInput("board: the side of a tag is missing, such as tag=12mm");
+  if (grid && board.columns * board.rows > 1 && !(board.gap > 0))
+    throw InvalidInput("board: the gap between tags is missing, such as gap=3mm");
+  if (!grid && !(board.square > 0)) throw InvalidInput("board: the side of a square is missing, such as square=10mm");
+  if (board.kind == BoardSpec::Kind::charuco && !(board.tag < board.square))
+    throw InvalidInput("board: a tag must be smaller than its square");
+  if (board.kind == BoardSpec::Kind::charuco && board.rows % 2 == 0)
+    throw InvalidInput("board: a charuco board has an odd number of rows; programs disagree about the others");
+  if (!grid && (board.columns < 3 || board.rows < 3))
+    throw InvalidInput("board: a board of squares has 3x3 or more; inner corners are what is measured");
+}
 
 constexpr double least_share = 0.4;  // of a board's tags or corners: fewer fix its perspective badly
 
@@ -120,19 +258,104 @@ std::vector<PlanePoint> checker_corners(const RgbImage& picture, const BoardSpec
   return points;
 }
 
+/// The dark squares of a tag, its border included.
 void append_tag(std::vector<std::array<double, 4>>& squares, const BoardSpec& board, int number) {
-  const std::vector<std::vector<int>> dark = tag_squares(board.dictionary, board.first + number);
+  const auto tags = dictionary_of(board.dictionary);
+  const int count = tags->markerSize + 2;  // of squares in a row
+  cv::Mat1b image;
+  tags->drawMarker(board.first + number, count, image, 1);
   const Vec2 top_left = tag_places(board, number)[0];
-  const double side = board.tag / static_cast<double>(dark.size());
-  for (std::size_t r = 0; r < dark.size(); ++r)
-    for (std::size_t c = 0; c < dark.size(); ++c) {
-      if (dark[r][c] == 0) continue;
-      squares.push_back(
-          {top_left.x() + static_cast<double>(c) * side, top_left.y() - static_cast<double>(r + 1) * side, side, side});
-    }
+  const double side = board.tag / count;
+  for (int r = 0; r < count; ++r)
+    for (int c = 0; c < count; ++c)
+      if (image(r, c) < 128) squares.push_back({top_left.x() + c * side, top_left.y() - (r + 1) * side, side, side});
 }
 
 }  // namespace
+
+int dictionary_size(const std::string& dictionary) {
+  return dictionary_of(dictionary)->bytesList.rows;
+}
+
+Vec2 Tag::centre() const {
+  return Line::Through(corners[0], corners[2]).intersection(Line::Through(corners[1], corners[3]));
+}
+
+std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionary,
+                           const std::optional<Camera>& camera) {
+  const auto known = dictionary_of(dictionary);
+  const cv::Ptr<cv::aruco::DetectorParameters> parameters = cv::aruco::DetectorParameters::create();
+  // OpenCV's own refinement may jump to a corner of the pattern beside; refine_quad starts from the contour
+  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
+  std::vector<std::vector<cv::Point2f>> corners;
+  std::vector<int> numbers;
+  const cv::Mat gray = gray_of(picture);
+  cv::aruco::detectMarkers(gray, known, corners, numbers, parameters);
+  std::vector<Tag> tags;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::array<Vec2, 4> rough;
+    for (std::size_t k = 0; k < 4; ++k) rough[k] = Vec2(corners[i][k].x, corners[i][k].y);
+    const auto corner = refined(gray, rough, 1.0 / (known->markerSize + 2), camera);
+    if (corner) tags.push_back({numbers[i], *corner});
+  }
+  std::stable_sort(tags.begin(), tags.end(), [](const Tag& a, const Tag& b) { return a.number < b.number; });
+  return tags;
+}
+
+std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture, const std::array<Vec2, 4>& corners,
+                                               double module, const std::optional<Camera>& camera) {
+  return refined(gray_of(picture), corners, module, camera);
+}
+
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(',', from), text.size());
+    parts.push_back(text.substr(from, end - from));
+    from = end + 1;
+  }
+  return parts;
+}
+
+std::optional<int> whole_number(const std::string& text) {
+  if (text.empty() || text.size() > 6 || text.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+  return std::stoi(text);
+}
+
+double parse_length(const std::string& text, const std::string& what) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  if (end == text.c_str() || !(value > 0) || !std::isfinite(value))
+    throw InvalidInput(what + " '" + text + "' is no length above 0 such as 25mm");
+  for (const std::string& known : length_units())
+    if (unit == known && std::isfinite(value * mm_per(unit))) return value * mm_per(unit);
+  if (unit.empty()) throw InvalidInput(what + " '" + text + "' has no unit; write it as 25mm");
+  throw InvalidInput(what + " '" + text + "' has no unit of length" + suggest_name(unit, length_units()));
+}
+
+BoardSpec parse_board(const std::string& text) {
+  BoardSpec board;
+  std::vector<std::string> parts = parts_of(text);
+  if (parts[0] == "charuco") board.kind = BoardSpec::Kind::charuco;
+  if (parts[0] == "checker") board.kind = BoardSpec::Kind::checker;
+  if (parts[0] == "grid" || parts[0] == "charuco" || parts[0] == "checker") parts.erase(parts.begin());
+  for (const std::string& part : parts) {
+    if (part.find('=') == std::string::npos)
+      read_size(board, part);
+    else
+      read_key(board, part);
+  }
+  check(board);
+  return board;
+}
+
+Vec2 grid_corner(const BoardSpec& board, int number, int corner) {
+  const int column = number % board.columns, row = number / board.columns;
+  const double pitch = board.tag + board.gap;
+  const double left = column * pitch, top = board.height() - row * pitch;
+  return {corner == 1 || corner == 2 ? left + board.tag : left, corner >= 2 ? top - board.tag : top};
+}
 
 std::vector<PlanePoint> find_board(const RgbImage& picture, const BoardSpec& board,
                                    const std::optional<Camera>& camera) {

@@ -9,6 +9,34 @@
 
 namespace softkin::vision {
 
+/// A square tag (ArUco) in a picture.
+struct Tag {
+  int number = 0;
+  std::array<Vec2, 4> corners;  // lens distortion taken out; top left of the tag, then clockwise [px]
+
+  /// Where its diagonals cross: its centre from any side [px, without distortion].
+  [[nodiscard]] Vec2 centre() const;
+};
+
+/// Number of tags in a dictionary, 4x4_50 to 7x7_1000 or original. Throws InvalidInput where there is no such one.
+[[nodiscard]] int dictionary_size(const std::string& dictionary);
+
+/// All tags of a dictionary in a picture, with corners to some hundredths of a pixel, by number; a number may come
+/// twice.
+[[nodiscard]] std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionary,
+                                         const std::optional<Camera>& camera);
+
+/// Corners of a dark square on light ground, to a few hundredths of a pixel: lines through the places where the picture
+/// is half way between dark and light, which blur does not move, and where these lines cross.
+///
+/// corners  as found roughly, in order around the square [px]
+/// module   width of the dark border by that of the square [-]
+/// camera   its distortion is taken out, so that edges are straight
+/// returns  the corners as a camera without distortion would see them [px]; none where an edge is not to be seen
+[[nodiscard]] std::optional<std::array<Vec2, 4>> refine_quad(const RgbImage& picture,
+                                                             const std::array<Vec2, 4>& corners, double module,
+                                                             const std::optional<Camera>& camera);
+
 /// A printed flat pattern of known size.
 ///
 /// Rows and columns count from the top left as printed. Its frame [mm]: x to the right, y up, the origin at the lower

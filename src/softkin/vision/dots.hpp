@@ -1,7 +1,7 @@
 #pragma once
 
-#include <softkin/vision/colour.hpp>
-#include <softkin/vision/plane_view.hpp>
+#include <softkin/vision/camera.hpp>
+#include <softkin/vision/pictures.hpp>
 
 namespace softkin::vision {
 

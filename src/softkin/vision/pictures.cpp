@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
@@ -10,6 +9,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/vision/pictures.hpp>
+#include <softkin/vision/pixels.hpp>
 #include <utility>
 
 namespace softkin::vision {
@@ -71,8 +71,44 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
   return pictures;
 }
 
-void check_rate(double rate, const std::string& name) {
-  if (!(rate > 0 && rate <= 1e6)) throw InvalidInput({name}, "frames per second must be above 0, at most 1e6");
+constexpr double hue_tolerance = 20;      // around the hue of #rrggbb [degrees]
+constexpr double least_saturation = 0.3;  // printed and painted colours under room light have 0.4 to 1
+constexpr double least_value = 50;        // of 255: darker pixels have no hue that can be trusted
+
+struct Known {
+  const char* name;
+  std::array<double, 3> low, high;
+};
+
+constexpr Known by_hue(const char* name, double from, double to) {
+  return {name, {from, least_saturation, least_value}, {to, 1, 255}};
+}
+
+constexpr std::array<Known, 9> all_known{by_hue("red", -20, 15),
+                                         by_hue("orange", 15, 42),
+                                         by_hue("yellow", 42, 70),
+                                         by_hue("green", 70, 165),
+                                         by_hue("cyan", 165, 200),
+                                         by_hue("blue", 200, 265),
+                                         by_hue("magenta", 265, 340),
+                                         Known{"black", {0, 0, 0}, {360, 1, 80}},
+                                         Known{"white", {0, 0, 190}, {360, 0.15, 255}}};
+
+Known known(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Known& each : all_known) {
+    if (name == each.name) return each;
+    names.emplace_back(each.name);
+  }
+  if (name.size() != 7 || name[0] != '#' || name.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+    throw InvalidInput("no colour '" + name + "'" + suggest_name(name, names) + " (or #rrggbb)");
+  const auto bits = std::strtol(name.c_str() + 1, nullptr, 16);
+  cv::Mat3f pixel(1, 1, cv::Vec3f(float(bits >> 16), float((bits >> 8) & 255), float(bits & 255)));
+  cv::cvtColor(pixel, pixel, cv::COLOR_RGB2HSV);
+  const double hue = pixel(0)[0];
+  if (pixel(0)[1] < least_saturation || pixel(0)[2] < least_value)
+    throw InvalidInput("colour " + name + " has no hue; take one of more saturation, or black, or white");
+  return by_hue("", hue - hue_tolerance, hue + hue_tolerance);
 }
 
 }  // namespace
@@ -113,14 +149,17 @@ bool is_film(const fs::path& path) {
   return false;
 }
 
-Film::Film(const fs::path& path, std::optional<double> rate) : name_(path.string()) {
-  if (fs::is_directory(path)) {
-    pictures_ = pictures_in(path);
+Film::Film(std::vector<fs::path> files, std::optional<double> rate) : name_(files.at(0).string()) {
+  const bool folder = fs::is_directory(files[0]);
+  if (files.size() > 1 || folder) {
+    pictures_ = files.size() > 1 ? std::move(files) : pictures_in(files[0]);
     frames_ = pictures_.size();
-    if (!rate) throw InvalidInput({name_}, "a folder of pictures has no clock: give --fps, the frames per second");
+    if (!rate && folder)
+      throw InvalidInput({name_}, "a folder of pictures has no clock: give --fps, the frames per second");
+    if (!rate) throw InvalidInput("pictures have no clock: give --fps, the frames per second");
     rate_ = *rate;
   } else {
-    (void)fs::file_size(path);  // names what is wrong with the file
+    (void)fs::file_size(files[0]);  // names what is wrong with the file
     video_ = std::make_unique<Video>();
     try {
       video_->capture.open(name_);
@@ -132,14 +171,7 @@ Film::Film(const fs::path& path, std::optional<double> rate) : name_(path.string
     if (!rate && !(rate_ > 0)) throw InvalidInput({name_}, "the video does not say its frames per second: give --fps");
     frames_ = static_cast<std::size_t>(std::max(0.0, video_->capture.get(cv::CAP_PROP_FRAME_COUNT)));
   }
-  check_rate(rate_, name_);
-}
-
-Film::Film(std::vector<fs::path> pictures, std::optional<double> rate)
-    : name_(pictures.at(0).string()), pictures_(std::move(pictures)), frames_(pictures_.size()) {
-  if (!rate) throw InvalidInput("pictures have no clock: give --fps, the frames per second");
-  rate_ = *rate;
-  check_rate(rate_, name_);
+  if (!(rate_ > 0 && rate_ <= 1e6)) throw InvalidInput({name_}, "frames per second must be above 0, at most 1e6");
 }
 
 Film::~Film() = default;
@@ -166,6 +198,14 @@ std::optional<Frame> Film::next() {
   if (frame.picture.width != width_ || frame.picture.height != height_)
     throw InvalidInput({frame.name}, "the picture is not of the size of the first");
   return frame;
+}
+
+Colour::Colour(const std::string& asked) : name(asked), low(known(asked).low), high(known(asked).high) {}
+
+double clipped_share(const RgbImage& picture) {
+  cv::Mat clipped;
+  cv::inRange(mat_of(picture), cv::Scalar::all(254), cv::Scalar::all(255), clipped);
+  return cv::countNonZero(clipped) / static_cast<double>(clipped.total());
 }
 
 }  // namespace softkin::vision

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -27,10 +28,10 @@ struct Frame {
 /// another.
 class Film {
  public:
-  /// rate  frames in a second; none: what the video says
+  /// files  the video, the folder, or the pictures
+  /// rate   frames in a second; none: what the video says
   /// throws  InvalidInput: cannot be read, no frame, no rate, a rate that is not > 0
-  Film(const std::filesystem::path& path, std::optional<double> rate);
-  Film(std::vector<std::filesystem::path> pictures, std::optional<double> rate);
+  Film(std::vector<std::filesystem::path> files, std::optional<double> rate);
   ~Film();
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
@@ -54,5 +55,19 @@ class Film {
 
 /// Is this a film: a folder, or a file with the extension of a video?
 [[nodiscard]] bool is_film(const std::filesystem::path& path);
+
+/// A colour that a pixel has or has not: red, orange, yellow, green, cyan, blue, magenta by hue; black, white; or the
+/// hue of "#rrggbb".
+struct Colour {
+  std::string name;
+  // hue [degrees], from low to high around the circle; saturation [-]; value, of 255
+  std::array<double, 3> low, high;
+
+  /// throws  InvalidInput: no such colour, or a "#rrggbb" without hue
+  explicit Colour(const std::string& name);
+};
+
+/// Share of pixels at full white in all channels, where nothing can be measured any more [-].
+[[nodiscard]] double clipped_share(const RgbImage& picture);
 
 }  // namespace softkin::vision

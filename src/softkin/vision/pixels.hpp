@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <softkin/vision/camera.hpp>
-#include <softkin/vision/colour.hpp>
+#include <softkin/vision/pictures.hpp>
 
 // Pictures as OpenCV has them: for sources of this room only.
 namespace softkin::vision {

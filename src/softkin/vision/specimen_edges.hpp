@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <softkin/vision/colour.hpp>
-#include <softkin/vision/plane_view.hpp>
+#include <softkin/vision/camera.hpp>
+#include <softkin/vision/pictures.hpp>
 
 namespace softkin::vision {
 

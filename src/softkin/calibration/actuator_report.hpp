@@ -1,11 +1,12 @@
 #pragma once
 
-#include <softkin/calibration/curve_fit.hpp>
-#include <softkin/calibration/dielectric.hpp>
+#include <optional>
+#include <softkin/calibration/actuator_curves.hpp>
+#include <softkin/calibration/actuator_samples.hpp>
 #include <softkin/calibration/pressure_check.hpp>
-#include <softkin/calibration/syringe.hpp>
 #include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/table/table.hpp>
+#include <softkin/model/measurements.hpp>
 #include <string>
 #include <vector>
 
@@ -18,18 +19,9 @@ struct FittedCurve {
   std::vector<CurveSample> samples{};
 };
 
-/// fit_curve's branches as an actuator's curve. name: its file, for messages. Throws as fit_curve does.
-[[nodiscard]] FittedCurve fitted_curve(const std::string& name, CurveInput input, double atmosphere_kPa,
-                                       std::vector<CurveSample> samples);
-
 /// "loading: 3 sweeps, 120 rows, 15 points, ...", a line for each branch.
 [[nodiscard]] std::string quality_text(const FittedCurve& fitted);
 
-/// Ratios of both branches at even inputs, with their spread, and the width of the hysteresis.
-[[nodiscard]] Table ratio_table(const ActuatorCurve& curve);
-/// Inputs of both branches at even ratios.
-[[nodiscard]] Table input_table(const ActuatorCurve& curve);
-/// Both as text.
 [[nodiscard]] std::string curve_text(const ActuatorCurve& curve);
 
 /// Samples and both branches.
@@ -47,5 +39,39 @@ struct FittedCurve {
                                         const FittedCurve& fitted, const PressureComparison* comparison);
 [[nodiscard]] std::string dea_json(const std::vector<std::string>& tests, const FittedCurve& fitted,
                                    const DielectricCurve* computed);
+
+/// Syringe tests of a chamber.
+struct SyringeTask {
+  std::vector<std::string> tests;      // CSV
+  std::optional<PressureScale> scale;  // of a column p_kpa
+  SyringeSetup setup;
+};
+
+struct SyringeResults {
+  FittedCurve fitted;
+  std::string head;  // what was read, in words
+  std::vector<SyringeSample> samples;
+};
+
+/// Reads the tests and fits their curve. name: of the curve's file, for messages.
+/// throws  InvalidInput as read_syringe_runs, chamber_ratios and fit_curve do
+[[nodiscard]] SyringeResults evaluate(const SyringeTask& task, const std::string& name);
+
+/// A dielectric elastomer: its tests, or what it is made of.
+struct DeaTask {
+  std::vector<std::string> tests;  // CSV
+  std::string law;                 // in place of tests: "neo-hookean" or "gent"
+  std::optional<double> permittivity, thickness_mm, shear_modulus_MPa, prestretch, stretch_limit, breakdown_kV_mm;
+};
+
+struct DeaResults {
+  FittedCurve fitted;
+  std::string head;                           // what was read or computed, in words
+  std::optional<DielectricCurve> computed{};  // none: measured
+};
+
+/// Reads the tests and fits their curve, or computes it.
+/// throws  InvalidInput naming the option that is missing, and as read_voltage_runs, fit_curve and dielectric_curve do
+[[nodiscard]] DeaResults evaluate(const DeaTask& task, const std::string& name);
 
 }  // namespace softkin::calibration

@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <softkin/calibration/curve_report.hpp>
+#include <softkin/calibration/actuator_report.hpp>
+#include <softkin/calibration/actuator_samples.hpp>
 #include <softkin/calibration/report_parts.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/io/table/measurements.hpp>
 
 namespace softkin::calibration {
 
@@ -9,6 +13,9 @@ namespace {
 
 constexpr int table_rows = 10;
 constexpr int drawn_points = 200;
+constexpr int curve_points = 65;
+constexpr double rest_remark = 1e-3;      // from 1, beyond which the table's area ratio without voltage is told
+constexpr double rest_tolerance = 0.005;  // of the atmosphere, beyond which a sensor's rest is remarked on
 
 std::string unit(const ActuatorCurve& curve) {
   return unit_of_input(curve.input) + 1;
@@ -48,10 +55,6 @@ std::vector<std::pair<std::string, const CurveBranch*>> branches(const ActuatorC
   return all;
 }
 
-Cell input_cell(const MonotoneCurve& branch, double ratio) {
-  return holds(branch.y(), ratio) ? Cell(branch.inverse(ratio)) : Cell("-");
-}
-
 std::string branch_quality(const std::string& name, const CurveBranch& branch, const BranchQuality& quality,
                            const ActuatorCurve& curve) {
   const std::vector<double>&x = branch.ratio.x(), &y = branch.ratio.y();
@@ -68,21 +71,17 @@ std::string branch_quality(const std::string& name, const CurveBranch& branch, c
 }
 
 PlotSeries branch_series(const CurveBranch& branch, const std::string& label, int style) {
-  PlotSeries series;
-  series.label = label;
-  series.marks = false;
-  series.style = style;
-  series.x = even(branch.ratio.x().front(), branch.ratio.x().back(), drawn_points);
+  PlotSeries series{.label = label,
+                    .x = even(branch.ratio.x().front(), branch.ratio.x().back(), drawn_points),
+                    .y = {},
+                    .marks = false,
+                    .style = style};
   for (const double x : series.x) series.y.push_back(branch.ratio.value(x));
   return series;
 }
 
 PlotSeries sample_series(const FittedCurve& fitted, const std::string& branch, int style) {
-  PlotSeries series;
-  series.label = branch + ", rows";
-  series.line = false;
-  series.style = style;
-  series.mark_radius = 2;
+  PlotSeries series{.label = branch + ", rows", .x = {}, .y = {}, .line = false, .style = style, .mark_radius = 2};
   for (const CurveSample& sample : fitted.samples) {
     if (branch_name(sample.branch) != branch) continue;
     series.x.push_back(sample.input);
@@ -115,23 +114,10 @@ Json curve_json(const FittedCurve& fitted) {
 Json comparison_json(const PressureComparison& comparison) {
   Json json{{"ratio", comparison.ratios}, {"predicted_kPa", Json::array()}};
   for (const std::optional<double>& pressure : comparison.predicted) json["predicted_kPa"].push_back(or_null(pressure));
-  for (const auto& [branch, check] : comparison.branches())
+  for (const auto& [branch, check] : comparison.branches)
     json[branch_name(branch)] = {
         {"factor", check.factor}, {"misfit_before", check.misfit_before}, {"misfit_after", check.misfit_after}};
   return json;
-}
-
-Table comparison_table(const PressureComparison& comparison, const ActuatorCurve& curve) {
-  Table table;
-  table.columns.push_back(significant("volume ratio", "-", 5));
-  for (const auto& [name, branch] : branches(curve)) table.columns.push_back(decimals(name, "kPa", 2));
-  table.columns.push_back(decimals("predicted", "kPa", 2));
-  for (std::size_t i = 0; i < comparison.ratios.size(); ++i) {
-    Row& row = table.rows.emplace_back(Row{comparison.ratios[i]});
-    for (const auto& [name, branch] : branches(curve)) row.push_back(input_cell(branch->ratio, comparison.ratios[i]));
-    row.push_back(comparison.predicted[i] ? Cell(*comparison.predicted[i]) : Cell("no equilibrium"));
-  }
-  return table;
 }
 
 /// What to write into the scene: the loading branch is what a robot under slow inflation follows.
@@ -152,7 +138,19 @@ std::string suggestions(double factor, const RobotSpec& spec) {
   return text;
 }
 
-}  // namespace
+/// The runs of all files. head: a line for each file; more: what else is told of a file's first run
+template <class Read, class More>
+auto read_all(const std::vector<std::string>& files, const Read& read, std::string& head, const More& more) {
+  decltype(read(files.front())) all;
+  for (const std::string& file : files) {
+    const auto runs = read(file);
+    std::size_t rows = 0;
+    for (const auto& run : runs) rows += run.rows.size();
+    head += file + ": " + counted(runs.size(), "run") + ", " + counted(rows, "row") + more(runs.front()) + "\n";
+    all.insert(all.end(), runs.begin(), runs.end());
+  }
+  return all;
+}
 
 FittedCurve fitted_curve(const std::string& name, CurveInput input, double atmosphere_kPa,
                          std::vector<CurveSample> samples) {
@@ -163,12 +161,76 @@ FittedCurve fitted_curve(const std::string& name, CurveInput input, double atmos
           std::move(samples)};
 }
 
-std::string quality_text(const FittedCurve& fitted) {
-  const std::string loading = branch_quality("loading", fitted.curve.loading, fitted.loading, fitted.curve);
-  if (!fitted.curve.unloading) return loading + "unloading: no row; the curve has the loading branch alone\n";
-  return loading + branch_quality("unloading", *fitted.curve.unloading, fitted.unloading, fitted.curve);
+DeaResults measured(const DeaTask& task, const std::string& name) {
+  std::string head;
+  const std::vector<VoltageRun> runs = read_all(task.tests, read_voltage_runs, head, [](const auto&) { return ""; });
+  VoltageSamples samples = voltage_samples(runs);
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    if (std::abs(samples.rest_ratios[r] - 1) > rest_remark)
+      head += runs[r].file + ", " + runs[r].name + ": area ratio without voltage " + number(samples.rest_ratios[r], 5) +
+              "; the others are taken over it\n";
+  return {fitted_curve(name, CurveInput::voltage, 100, std::move(samples.samples)), head};
 }
 
+Dielectric elastomer_of(const DeaTask& task) {
+  Dielectric d;
+  d.law = task.law == "gent" ? DielectricLaw::gent : DielectricLaw::neo_hookean;
+  const auto need = [&](const std::optional<double>& value, const char* option) {
+    if (!value) throw InvalidInput("--law " + task.law + " needs " + option);
+    return *value;
+  };
+  d.shear_modulus_MPa = need(task.shear_modulus_MPa, "--shear-modulus");
+  d.relative_permittivity = need(task.permittivity, "--permittivity");
+  d.thickness_mm = need(task.thickness_mm, "--thickness");
+  d.prestretch = task.prestretch.value_or(1);
+  if (d.law == DielectricLaw::gent) d.stretch_limit = need(task.stretch_limit, "--stretch-limit");
+  return d;
+}
+
+std::string elastomer_text(const DeaTask& task, const Dielectric& d) {
+  std::string text = task.law + " elastomer in equal-biaxial tension: shear modulus " + number(d.shear_modulus_MPa) +
+                     " MPa, relative permittivity " + number(d.relative_permittivity) + ", " + number(d.thickness_mm) +
+                     " mm thick before any stretch, prestretch " + number(d.prestretch) +
+                     (task.prestretch ? "" : " (default)");
+  if (d.law == DielectricLaw::gent) text += ", J_lim " + number(d.stretch_limit);
+  return text + "; constant forces at its edge\n";
+}
+
+std::string pull_in_text(const Dielectric& d, const PullIn& pull_in) {
+  return "pull-in at " + number(pull_in.voltage_kV, 5) + " kV: stretch " + number(pull_in.stretch, 5) +
+         " (area ratio " + number(std::pow(pull_in.stretch / d.prestretch, 2), 5) +
+         " to that without voltage), field " + number(pull_in.field_kV_mm, 4) +
+         " kV/mm; beyond it no equilibrium follows\n";
+}
+
+DeaResults computed(const DeaTask& task, const std::string& name) {
+  const Dielectric d = elastomer_of(task);
+  const DielectricCurve curve = dielectric_curve(d, curve_points, task.breakdown_kV_mm.value_or(0));
+  std::string head = elastomer_text(task, d);
+  head += curve.pull_in ? pull_in_text(d, *curve.pull_in)
+                        : "no pull-in: the voltage rises up to 95 % of the limit of the chains\n";
+  if (curve.broken_down)
+    head += "breakdown field of " + number(*task.breakdown_kV_mm) + " kV/mm reached at " +
+            number(curve.voltages.back(), 5) + " kV, " + (curve.pull_in ? "before pull-in" : "and") +
+            ": the curve ends there\n";
+  else
+    head += "true field at the end of the curve: " + number(curve.end_field_kV_mm, 4) + " kV/mm" +
+            (task.breakdown_kV_mm ? "" : " (no --breakdown-field given: not checked)") + "\n";
+  const std::string end = curve.broken_down ? "breakdown" : curve.pull_in ? "pull-in" : "the limit of the chains";
+  const CurveBranch branch{MonotoneCurve(curve.voltages, curve.area_ratios), {}};
+  return {{{name, CurveInput::voltage, 100, end, branch, std::nullopt}}, head, curve};
+}
+
+/// By Eq. (19) the ratio is 1 at rest only where the sensor then reads the atmosphere.
+std::string remark_on_rest(const SyringeSetup& setup, const SyringeRun& run) {
+  const std::optional<double> rest = rest_pressure(setup, run);
+  if (!rest || std::abs(*rest - setup.atmosphere_kPa) <= rest_tolerance * setup.atmosphere_kPa) return "";
+  return "note: " + run.file + ", " + run.name + ": the sensor reads " + number(*rest, 5) +
+         " kPa absolute with the syringe at rest, and the atmosphere counts as " + number(setup.atmosphere_kPa, 5) +
+         " kPa: if the sensor is right, give --atmosphere " + number(*rest, 5) + "\n";
+}
+
+/// Ratios of the branches at even inputs, with their spread, and the width of the hysteresis.
 Table ratio_table(const ActuatorCurve& curve) {
   Table table{{significant(input_name(curve), unit(curve), 5)}};
   double low = curve.loading.ratio.x().front(), high = curve.loading.ratio.x().back();
@@ -194,35 +256,42 @@ Table ratio_table(const ActuatorCurve& curve) {
   return table;
 }
 
-Table input_table(const ActuatorCurve& curve) {
+/// Inputs of the branches at these ratios.
+Table input_table(const ActuatorCurve& curve, const std::vector<double>& ratios, int digits) {
   Table table{{significant(ratio_name(curve), "-", 5)}};
-  for (const auto& [name, branch] : branches(curve)) table.columns.push_back(decimals(name, unit(curve), 3));
-  for (const double ratio : even(curve.loading.ratio.y().front(), curve.loading.ratio.y().back(), table_rows)) {
+  for (const auto& [name, branch] : branches(curve)) table.columns.push_back(decimals(name, unit(curve), digits));
+  for (const double ratio : ratios) {
     Row& row = table.rows.emplace_back(Row{ratio});
-    for (const auto& [name, branch] : branches(curve)) row.push_back(input_cell(branch->ratio, ratio));
+    for (const auto& [name, branch] : branches(curve))
+      row.push_back(holds(branch->ratio.y(), ratio) ? Cell(branch->ratio.inverse(ratio)) : Cell("-"));
   }
   return table;
 }
 
+}  // namespace
+
+std::string quality_text(const FittedCurve& fitted) {
+  const std::string loading = branch_quality("loading", fitted.curve.loading, fitted.loading, fitted.curve);
+  if (!fitted.curve.unloading) return loading + "unloading: no row; the curve has the loading branch alone\n";
+  return loading + branch_quality("unloading", *fitted.curve.unloading, fitted.unloading, fitted.curve);
+}
+
 std::string curve_text(const ActuatorCurve& curve) {
-  return text_of(ratio_table(curve)) + "\n" + text_of(input_table(curve));
+  const std::vector<double>& ratios = curve.loading.ratio.y();
+  return text_of(ratio_table(curve)) + "\n" +
+         text_of(input_table(curve, even(ratios.front(), ratios.back(), table_rows), 3));
 }
 
 Plot curve_plot(const FittedCurve& fitted, const std::string& title) {
-  PlotPanel panel;
-  panel.x.label = std::string(input_name(fitted.curve)) + " [" + unit(fitted.curve) + "]";
-  panel.y.label = std::string(ratio_name(fitted.curve)) + " [-]";
+  PlotPanel panel = panel_of("", std::string(input_name(fitted.curve)) + " [" + unit(fitted.curve) + "]",
+                             std::string(ratio_name(fitted.curve)) + " [-]");
   int style = 0;
   for (const auto& [name, branch] : branches(fitted.curve)) {
     PlotSeries rows = sample_series(fitted, name, style);
     if (!rows.x.empty()) panel.series.push_back(std::move(rows));
     panel.series.push_back(branch_series(*branch, name, style++));
   }
-  Plot plot;
-  plot.title = title;
-  plot.panel_height = 420;
-  plot.rows = {{panel}};
-  return plot;
+  return {.title = title, .rows = {{panel}}, .panel_height = 420};
 }
 
 Table syringe_table(const SyringeSetup& setup, const std::vector<SyringeSample>& samples) {
@@ -236,13 +305,17 @@ Table syringe_table(const SyringeSetup& setup, const std::vector<SyringeSample>&
 
 std::string comparison_text(const PressureComparison& comparison, const ActuatorCurve& curve, const RobotSpec& spec) {
   const auto percent = [](double share) { return number(100 * share, 3) + " %"; };
+  Table table = input_table(curve, comparison.ratios, 2);
+  table.columns.push_back(decimals("predicted", "kPa", 2));
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    table.rows[i].push_back(comparison.predicted[i] ? Cell(*comparison.predicted[i]) : Cell("no equilibrium"));
   std::string text = "gauge pressures of the physical formulation of " + spec.name + ", " + comparison.actuator +
-                     " inflated, other chambers open:\n" + text_of(comparison_table(comparison, curve));
-  for (const auto& [branch, check] : comparison.branches())
+                     " inflated, other chambers open:\n" + text_of(table);
+  for (const auto& [branch, check] : comparison.branches)
     text += std::string(branch_name(branch)) + ": measured = " + number(check.factor, 4) +
             " x predicted; they differ by " + percent(check.misfit_before) + " rms, with the factor by " +
             percent(check.misfit_after) + "\n";
-  if (!comparison.branches().empty()) text += suggestions(comparison.branches().front().second.factor, spec);
+  if (!comparison.branches.empty()) text += suggestions(comparison.branches.front().second.factor, spec);
   return text;
 }
 
@@ -273,6 +346,25 @@ std::string dea_json(const std::vector<std::string>& tests, const FittedCurve& f
   }
   json.update(curve_json(fitted));
   return text_of(json);
+}
+
+SyringeResults evaluate(const SyringeTask& task, const std::string& name) {
+  std::string head;
+  const std::vector<SyringeRun> runs = read_all(
+      task.tests, [&](const std::string& file) { return read_syringe_runs(file, task.scale); }, head,
+      [](const SyringeRun& run) {
+        return run.scale == PressureScale::absolute ? ", absolute pressures" : ", gauge pressures";
+      });
+  std::vector<SyringeSample> samples = chamber_ratios(task.setup, runs);
+  std::vector<CurveSample> points;
+  for (const SyringeSample& each : samples) points.push_back(each.sample);
+  FittedCurve fitted = fitted_curve(name, CurveInput::pressure, task.setup.atmosphere_kPa, std::move(points));
+  for (const SyringeRun& run : runs) head += remark_on_rest(task.setup, run);
+  return {std::move(fitted), head, std::move(samples)};
+}
+
+DeaResults evaluate(const DeaTask& task, const std::string& name) {
+  return task.tests.empty() ? computed(task, name) : measured(task, name);
 }
 
 }  // namespace softkin::calibration

@@ -1,9 +1,25 @@
 #pragma once
 
-#include <softkin/calibration/curve_fit.hpp>
+#include <cstddef>
+#include <softkin/calibration/actuator_curves.hpp>
+#include <softkin/model/actuator_curve.hpp>
 #include <softkin/model/measurements.hpp>
+#include <vector>
 
 namespace softkin::calibration {
+
+/// Rows from one turning point of what drives a test to the next, both included.
+struct Sweep {
+  std::size_t begin = 0, end = 0;  // [begin, end)
+  Branch branch = Branch::loading;
+};
+
+/// Cuts a test where its drive turns. A turn is a retreat by more than a tenth of the drive's range: smaller ones are
+/// noise. Rows before the first turn and after the last are sweeps as well.
+///
+/// drive    what the experimenter moves, row by row in time; finite
+/// returns  none where the drive does not change
+[[nodiscard]] std::vector<Sweep> sweeps_of(const std::vector<double>& drive);
 
 /// Volumes of the closed air of a syringe test at its start, under atmospheric pressure.
 struct SyringeSetup {
@@ -39,5 +55,16 @@ struct SyringeSample {
 /// Mean pressure [kPa absolute] of the rows of a run in which the syringe has not moved by more than a fiftieth of its
 /// way; none where there is no such row.
 [[nodiscard]] std::optional<double> rest_pressure(const SyringeSetup& setup, const SyringeRun& run);
+
+/// Samples of the runs of a dielectric elastomer, cut where the voltage turns, areas over that without voltage.
+struct VoltageSamples {
+  std::vector<CurveSample> samples;
+  std::vector<double> rest_ratios;  // per run: area ratio of the table without voltage; the others were divided by it
+};
+
+/// A run's rows within a fiftieth of its highest voltage count as without voltage; those of its first sweep are taken.
+///
+/// throws  InvalidInput naming file and run: no row without voltage, a voltage that does not change
+[[nodiscard]] VoltageSamples voltage_samples(const std::vector<VoltageRun>& runs);
 
 }  // namespace softkin::calibration

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <softkin/calibration/sweeps.hpp>
-#include <softkin/calibration/syringe.hpp>
+#include <softkin/calibration/actuator_samples.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 
@@ -10,9 +8,43 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double rest_share = 0.02;                   // of the syringe's way
+constexpr double noise_share = 0.1;                   // of the drive's range
+constexpr double rest_share = 0.02;                   // of the drive's greatest value
 constexpr double least_ratio = 0.2, most_ratio = 20;  // of a chamber that anybody builds
 constexpr double rounding = 1e-9;
+
+/// Where the drive turns, with its first row and its last extreme.
+std::vector<std::size_t> turns_of(const std::vector<double>& drive, double noise) {
+  std::vector<std::size_t> turns{0};
+  std::size_t extreme = 0;
+  int direction = 0;  // not known yet
+  for (std::size_t i = 1; i < drive.size(); ++i) {
+    const double from_extreme = drive[i] - drive[extreme];
+    if (direction == 0) {
+      if (from_extreme > noise || from_extreme < -noise) {
+        direction = from_extreme > 0 ? 1 : -1;
+        extreme = i;
+      }
+    } else if (direction * from_extreme >= 0) {
+      extreme = i;
+    } else if (-direction * from_extreme > noise) {
+      turns.push_back(extreme);
+      direction = -direction;
+      extreme = i;
+    }
+  }
+  turns.push_back(extreme);
+  return turns;
+}
+
+template <class Run, class Row>
+std::vector<Sweep> sweeps_of(const Run& run, double Row::*drive, const char* constant) {
+  std::vector<double> values;
+  for (const Row& row : run.rows) values.push_back(row.*drive);
+  std::vector<Sweep> sweeps = calibration::sweeps_of(values);
+  if (sweeps.empty()) throw InvalidInput({run.file}, run.name + ": " + constant);
+  return sweeps;
+}
 
 const char* scale_name(PressureScale scale) {
   return scale == PressureScale::absolute ? "absolute" : "gauge";
@@ -31,12 +63,6 @@ struct Reading {
   PressureScale scale;
   double volume_factor = 1;
 };
-
-std::vector<double> drive_of(const SyringeRun& run) {
-  std::vector<double> drive;
-  for (const SyringeRow& row : run.rows) drive.push_back(row.syringe_mm3);
-  return drive;
-}
 
 /// All ratios plausible, and those of the lowest and highest pressure in order.
 bool makes_sense(const SyringeSetup& setup, const SyringeRun& run, const Reading& reading) {
@@ -63,16 +89,23 @@ bool makes_sense(const SyringeSetup& setup, const SyringeRun& run, const Reading
                                      ", or --pressure " + scale_name(right) + ")");
 }
 
-/// Pressures at rest as the run has them; none where it has no row at rest.
-std::optional<double> given_at_rest(const SyringeRun& run) {
-  double way = 0, sum = 0, count = 0;
-  for (const SyringeRow& row : run.rows) way = std::max(way, std::abs(row.syringe_mm3));
-  for (const SyringeRow& row : run.rows) {
-    if (std::abs(row.syringe_mm3) > rest_share * way) continue;
-    sum += row.pressure_kPa;
-    ++count;
+/// Mean value of the first `count` rows at rest, where what drives the test is nearly 0; none where no row is.
+template <class Row>
+std::optional<double> mean_at_rest(const std::vector<Row>& rows, std::size_t count, double Row::*drive,
+                                   double Row::*value) {
+  double greatest = 0, sum = 0, found = 0;
+  for (const Row& row : rows) greatest = std::max(greatest, std::abs(row.*drive));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::abs(rows[i].*drive) > rest_share * greatest) continue;
+    sum += rows[i].*value;
+    ++found;
   }
-  return count > 0 ? std::optional(sum / count) : std::nullopt;
+  return found > 0 ? std::optional(sum / found) : std::nullopt;
+}
+
+/// Pressures at rest as the run has them.
+std::optional<double> given_at_rest(const SyringeRun& run) {
+  return mean_at_rest(run.rows, run.rows.size(), &SyringeRow::syringe_mm3, &SyringeRow::pressure_kPa);
 }
 
 void check_scale(const SyringeSetup& setup, const SyringeRun& run) {
@@ -124,6 +157,19 @@ void check_setup(const SyringeSetup& setup) {
 
 }  // namespace
 
+std::vector<Sweep> sweeps_of(const std::vector<double>& drive) {
+  if (drive.empty()) return {};
+  const auto [low, high] = std::minmax_element(drive.begin(), drive.end());
+  if (*low == *high) return {};
+  std::vector<std::size_t> turns = turns_of(drive, noise_share * (*high - *low));
+  std::vector<Sweep> sweeps;
+  for (std::size_t t = 0; t + 1 < turns.size(); ++t)
+    sweeps.push_back(
+        {turns[t], turns[t + 1] + 1, drive[turns[t + 1]] > drive[turns[t]] ? Branch::loading : Branch::unloading});
+  sweeps.back().end = drive.size();  // what dwells at the last extreme belongs to the way there
+  return sweeps;
+}
+
 double chamber_ratio(const SyringeSetup& setup, double absolute_kPa, double syringe_mm3) {
   const double atmosphere = setup.atmosphere_kPa;
   return (atmosphere * setup.chamber_mm3 + absolute_kPa * syringe_mm3 -
@@ -148,8 +194,7 @@ std::vector<SyringeSample> chamber_ratios(const SyringeSetup& setup, const std::
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const SyringeRun& run = runs[r];
     check_scale(setup, run);
-    const std::vector<Sweep> sweeps = sweeps_of(drive_of(run));
-    if (sweeps.empty()) throw InvalidInput({run.file}, run.name + ": the syringe does not move");
+    const std::vector<Sweep> sweeps = sweeps_of(run, &SyringeRow::syringe_mm3, "the syringe does not move");
     for (const Sweep& sweep : sweeps) {
       for (std::size_t i = sweep.begin; i < sweep.end; ++i) {
         const double gauge = absolute(setup, run.scale, run.rows[i].pressure_kPa) - setup.atmosphere_kPa;
@@ -160,6 +205,29 @@ std::vector<SyringeSample> chamber_ratios(const SyringeSetup& setup, const std::
   }
   if (samples.empty()) throw InvalidInput("syringe test: no run");
   return samples;
+}
+
+VoltageSamples voltage_samples(const std::vector<VoltageRun>& runs) {
+  VoltageSamples result;
+  std::size_t repeat = 0;
+  for (const VoltageRun& run : runs) {
+    const std::vector<Sweep> sweeps = sweeps_of(run, &VoltageRow::voltage_kV, "the voltage does not change");
+    const std::optional<double> rest =
+        mean_at_rest(run.rows, sweeps.front().end, &VoltageRow::voltage_kV, &VoltageRow::area_ratio);
+    if (!rest)
+      throw InvalidInput({run.file}, run.name +
+                                         ": its first sweep has no row without voltage, over whose area the "
+                                         "others could be taken");
+    result.rest_ratios.push_back(*rest);
+    for (const Sweep& sweep : sweeps) {
+      for (std::size_t i = sweep.begin; i < sweep.end; ++i)
+        result.samples.push_back(
+            {run.rows[i].voltage_kV, run.rows[i].area_ratio / result.rest_ratios.back(), sweep.branch, repeat});
+      ++repeat;
+    }
+  }
+  if (result.samples.empty()) throw InvalidInput("voltage test: no run");
+  return result;
 }
 
 }  // namespace softkin::calibration
