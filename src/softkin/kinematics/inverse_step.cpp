@@ -1,6 +1,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <softkin/kinematics/inverse_step.hpp>
@@ -36,16 +37,13 @@ struct Region {
   }
 };
 
-/// Directions that change the terms, and the rest; of J^T J.
-struct Split {
-  Eigen::MatrixXd blind;  // f by the number of directions that move nothing
-
-  Split(const Eigen::MatrixXd& normal, double resolution_mm) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-    const auto small = (eigen.eigenvalues().array() < resolution_mm * resolution_mm).count();
-    blind = eigen.eigenvectors().leftCols(small);  // ascending
-  }
-};
+/// Directions that move nothing, as columns: by the singular values of the slopes, as those of J^T J are known to the
+/// root of rounding only.
+Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, double resolution_mm) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeFullV);
+  const auto seen = (svd.singularValues().array() >= resolution_mm).count();
+  return svd.matrixV().rightCols(slopes.cols() - seen);
+}
 
 /// Positive definite: the magnitudes of its curvatures. Directions that move nothing are made stiff: over them rounding
 /// would decide.
@@ -192,10 +190,10 @@ InverseStep find_step(const Pose& pose, const Slopes& slopes, const Eigen::Matri
                                   slopes.terms.transpose() * pose.terms, region.rows, region.bounds);
   step.predicted = predicted_reduction(pose, slopes, curvature, step.move);
   step.predicted_norm = (pose.terms + slopes.terms * step.move).norm();
-  const Split split(normal, limits.resolution_mm);
+  const Eigen::MatrixXd blind = blind_directions(slopes.terms, limits.resolution_mm);
   // where the goals stay out of reach, how near they are comes before how near the actuation is
-  if (split.blind.cols() > 0 && (pose.miss <= 1 || step.predicted_norm < 0.5 * pose.terms.norm())) {
-    const Eigen::VectorXd more = sideways_move(pose, split.blind, region, step.move, preferred);
+  if (blind.cols() > 0 && (pose.miss <= 1 || step.predicted_norm < 0.5 * pose.terms.norm())) {
+    const Eigen::VectorXd more = sideways_move(pose, blind, region, step.move, preferred);
     step.sideways = more.cwiseAbs().maxCoeff();
     step.move += more * std::min(1.0, limits.sideways / std::max(step.sideways, 1e-300));
   }

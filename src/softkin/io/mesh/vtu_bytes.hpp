@@ -19,8 +19,8 @@ struct VtuEncoding {
 /// Of a position in the content, from 1.
 [[nodiscard]] std::size_t line_of(std::string_view content, std::size_t position);
 
-/// Where one array of a .vtu file is: content from begin to end, raw or base64. by_byte: errors name the byte, and other
-/// arrays may follow; else they name the line, and nothing but blanks may follow.
+/// Where one array of a .vtu file is: content from begin to end, raw or base64. by_byte: errors name the byte, and
+/// other arrays may follow; else they name the line, and nothing but blanks may follow.
 struct VtuPlace {
   std::string file, array;
   std::size_t begin = 0, end = 0;

@@ -36,8 +36,8 @@ void visit_same_faces(std::vector<ElementFace<K>>& faces, const Visit& visit) {
   }
 }
 
-/// Faces that belong to exactly one of the elements, with normals outwards (for positively oriented elements), and whose
-/// face it is.
+/// Faces that belong to exactly one of the elements, with normals outwards (for positively oriented elements), and
+/// whose face it is.
 struct Boundary {
   std::vector<Triangle> triangles;
   std::vector<Index> triangle_owners;
