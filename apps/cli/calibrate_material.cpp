@@ -12,6 +12,7 @@
 #include <softkin/model/names.hpp>
 
 #include "command.hpp"
+#include "run_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 
@@ -28,7 +29,7 @@ struct MaterialOptions {
   std::string law;                        // empty: neo-hookean, or with --tensile the one that fits
   std::string grip = "clamped";
   std::vector<std::string> regions{"A", "B"};
-  bool json = false;
+  bool json = false, resume = false;
   std::set<std::string> given;  // options that the user gave
 
   [[nodiscard]] std::vector<Output> outputs() const {
@@ -68,6 +69,8 @@ void add_outputs(CLI::App& command, MaterialOptions& options) {
   add_value(command, "--plot", options.plot, "F.svg", "Measured and fitted");
   add_value(command, "--residuals", options.residuals, "F.csv", "Measured, fitted and their difference, a row each");
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
+  command.add_flag("--resume", options.resume,
+                   "Go on where the same command was interrupted or killed; needs\n--output");
 }
 
 void add_set_up(CLI::App& command, MaterialOptions& options) {
@@ -149,11 +152,13 @@ void check(MaterialOptions& options) {
   must_end_in("--residuals", options.residuals, ".csv");
   check_names(options.regions, "--regions");
   check_names({options.tensile.region}, "--region");
+  if (options.resume && options.fragment.empty())
+    throw CLI::ValidationError("--resume", "needs the --output of the run that was interrupted");
   if (!options.tensile.file.empty()) {
     check_law(options, {"linear", "neo-hookean", "mooney-rivlin", "yeoh"});
     return check_belonging(options,
                            {"--twist", "--formulation", "--width", "--height", "--grip", "--stiffer", "--cells",
-                            "--modulus-b", "--try", "--regions", "--threads"},
+                            "--modulus-b", "--try", "--regions", "--threads", "--resume"},
                            "is of specimens of two materials: it does not go with --tensile");
   }
   check_law(options, {"neo-hookean", "corotational", "st-venant-kirchhoff"});
@@ -234,7 +239,7 @@ std::string files_text(const MaterialOptions& options) {
 }
 
 int calibrate_specimens(const MaterialOptions& options) {
-  const calibration::SpecimenTask& task = options.task;
+  calibration::SpecimenTask task = options.task;
   std::vector<StretchedSpecimen> specimens = read_stretched_specimens(task.file);
   std::vector<TwistedSpecimen> twists;
   std::vector<std::filesystem::path> inputs{task.file};
@@ -246,16 +251,25 @@ int calibrate_specimens(const MaterialOptions& options) {
   check_outputs(options.outputs(), inputs);
   const OutputFolders folders(options.outputs());
   remark_on_area(task, specimens);
+  const std::string journal = options.fragment.empty() ? "" : options.fragment + ".run";
+  calibration::TestLog log(journal, tests_set_up(task, specimens, twists), options.resume);
+  const std::size_t all = number_of_tests(task, specimens.size(), twists.size());
+  if (options.resume && !options.json) print(resumed_text(log.size(), all, "simulated test") + "\n");
+  catch_interrupt();
+  task.options.log = &log;
+  task.options.go_on = [] { return !interrupted(); };
   ProgressLine line;
   const calibration::SpecimenResults results =
       calibration::evaluate(task, std::move(specimens), std::move(twists),
                             [&](const std::string& what, double share) { line.show(share, what); });
   line.clear();
+  if (results.interrupted) return tell_stopped(log.size(), all, "simulated test", journal, !journal.empty());
   const std::string failure = calibration::failure(task, results);
   if (failure.empty())
     write(options, specimens_fragment(task, results), specimens_plot(task, results), residual_table(results));
   print(options.json ? specimens_json(task, results)
                      : specimens_text(task, results) + (failure.empty() ? files_text(options) : ""));
+  log.remove();
   if (failure.empty()) return done;
   std::fprintf(stderr, "softkin: %s%s\n", failure.c_str(), options.outputs().empty() ? "" : "; no file was written");
   return not_converged;

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "run_program.hpp"
+#include "start_program.hpp"
 
 namespace softkin {
 namespace {
@@ -46,6 +48,46 @@ double interface_x(const std::string& scene, const std::string& formulation) {
 }
 
 }  // namespace
+
+TEST(CalibrateMaterial, StoppedAndResumedEndsWithTheSameBytes) {
+  const TemporaryFolder folder;
+  const auto arguments = [&](const std::string& output, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {bar + "specimens.csv", "--twist", bar + "twist.csv", "--threads", "1", "--formulation",
+                               "target-shape", "-o", output});
+    return command(more);
+  };
+  const std::string whole = folder / "whole.yaml", parts = folder / "parts.yaml", journal = parts + ".run";
+  const ProgramResult undisturbed = run_program(arguments(whole, {"--json"}));
+  ASSERT_EQ(undisturbed.exit_code, 0) << undisturbed.errors;
+  const auto lines = [&] {
+    const std::string text = std::filesystem::exists(journal) ? read_text(journal) : "";
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  std::vector<std::string> more;
+  std::string errors;
+  for (const auto& [signal_number, least] : {std::pair{SIGKILL, 3}, std::pair{SIGINT, 8}}) {  // the first line: set-up
+    testing::StartedProgram program(folder, arguments(parts, more));
+    ASSERT_TRUE(program.wait_until([&, least = least] { return lines() >= least; }));
+    program.send(signal_number);
+    errors = program.wait().errors;
+    more = {"--resume"};
+  }
+  EXPECT_FALSE(std::filesystem::exists(parts));
+  const std::string kept_in =
+      " of 12 simulated tests; they are in " + journal + ", the same command with --resume goes on\n";
+  EXPECT_NE(errors.find(kept_in), std::string::npos) << errors;
+  const auto kept = lines() - 1;
+  const ProgramResult told = run_program(arguments(parts, {"--resume", "--grip", "sliding"}));
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_NE(told.errors.find("it is of other specimens, options or softkin"), std::string::npos) << told.errors;
+  EXPECT_EQ(lines() - 1, kept);
+  const ProgramResult resumed = run_program(arguments(parts, {"--json", "--resume"}));
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+  EXPECT_EQ(resumed.output, undisturbed.output);
+  EXPECT_EQ(read_text(parts), read_text(whole));
+  EXPECT_FALSE(std::filesystem::exists(journal));
+  expect_refused({bar + "specimens.csv", "--resume"}, {"--resume", "needs the --output"});
+}
 
 /// Made with E_A = 45, E_B = 12 MPa; the example's mesh is not the specimen's.
 TEST(CalibrateMaterial, RecoversTheSpecimensOfTheExample) {

@@ -3,6 +3,8 @@
 #include <limits>
 #include <softkin/calibration/ratio_fit.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/model/names.hpp>
 
 namespace softkin::calibration {
 
@@ -120,6 +122,44 @@ std::optional<Moduli> simulated_moduli(const std::vector<StretchedSpecimen>& spe
   return moduli_from(forces, unit_forces, fit.estimate.ratio);
 }
 
+/// "physical tensile 3".
+std::string test_name(Formulation formulation, const std::string& kind, std::size_t number) {
+  return std::string(formulation_name(formulation)) + " " + kind + " " + std::to_string(number);
+}
+
+SpecimenFit once(const SpecimenOptions& options, const std::string& test, const std::function<SpecimenFit()>& make) {
+  return options.log != nullptr ? options.log->once(test, make) : make();
+}
+
+/// Of one test at a ratio, from rest, so that it is the same whatever was simulated before.
+template <class Specimen>
+SpecimenResponse response_of(const Specimen& specimen, const SpecimenOptions& options, Formulation formulation,
+                             double log_ratio, const std::string& kind, std::size_t number) {
+  const std::string test = test_name(formulation, kind, number) + " at " + exact(log_ratio);
+  return once(options, test,
+              [&] {
+                SpecimenFit fit;
+                fit.response = SpecimenTest(options, formulation, specimen).at(log_ratio);
+                fit.status = fit.response.status;
+                return fit;
+              })
+      .response;
+}
+
+template <class Specimen>
+std::vector<SpecimenResponse> responses_of(const std::vector<Specimen>& specimens, const SpecimenOptions& options,
+                                           Formulation formulation, double log_ratio, const std::string& kind,
+                                           const ShareDone& progress) {
+  std::vector<SpecimenResponse> responses;
+  for (const Specimen& specimen : specimens) {
+    const std::size_t number = responses.size();
+    if (progress) progress(static_cast<double>(number) / static_cast<double>(specimens.size()));
+    responses.push_back(response_of(specimen, options, formulation, log_ratio, kind, number));
+    if (responses.back().status == Status::interrupted) break;
+  }
+  return responses;
+}
+
 }  // namespace
 
 double elasticity_ratio(const StretchedSpecimen& s) {
@@ -193,35 +233,53 @@ double closed_form_log_ratio(double elasticity_ratio, double stiffer) {
 
 RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
                    Formulation formulation, const ShareDone& progress) {
+  if (specimens.empty()) throw InvalidInput("a ratio needs at least one specimen");
   RatioFit result;
   result.formulation = formulation;
-  std::vector<SpecimenTest> tests;
   std::vector<double> log_ratios, sensitivities;
   for (const StretchedSpecimen& specimen : specimens) {
-    if (progress) progress(static_cast<double>(tests.size()) / static_cast<double>(specimens.size()));
-    const double guess = guess_of(specimen, options, formulation);
-    tests.emplace_back(options, formulation, specimen);
-    SpecimenFit& fit = result.specimens.emplace_back();
-    Search(specimen, tests.back()).run(guess, fit);
+    const std::size_t number = result.specimens.size();
+    if (progress) progress(static_cast<double>(number) / static_cast<double>(specimens.size()));
+    result.specimens.push_back(once(options, test_name(formulation, "tensile", number), [&] {
+      SpecimenFit fit;
+      SpecimenTest test(options, formulation, specimen);
+      Search(specimen, test).run(guess_of(specimen, options, formulation), fit);
+      return fit;
+    }));
+    const SpecimenFit& fit = result.specimens.back();
+    if (fit.status == Status::interrupted) {
+      result.status = fit.status;
+      return result;
+    }
     if (fit.status != Status::converged) continue;
     log_ratios.push_back(fit.own_log_ratio);
     sensitivities.push_back(fit.sensitivity_mm);
   }
-  if (specimens.empty()) throw InvalidInput("a ratio needs at least one specimen");
   if (log_ratios.empty()) return result;
   result.estimate = combined_ratio(log_ratios, sensitivities);
   result.status = Status::converged;
   for (std::size_t i = 0; i < specimens.size(); ++i) {
     SpecimenFit& fit = result.specimens[i];
     if (fit.status == Status::converged) {
-      fit.response = tests[i].at(std::log(result.estimate.ratio));
+      fit.response = response_of(specimens[i], options, formulation, std::log(result.estimate.ratio), "tensile", i);
       fit.status = fit.response.status;
       fit.remark = fit.response.remark;
     }
     if (fit.status != Status::converged) result.status = fit.status;
+    if (fit.status == Status::interrupted) return result;
   }
   if (formulation == Formulation::physical) result.moduli = simulated_moduli(specimens, options, result);
   return result;
+}
+
+std::vector<SpecimenResponse> predict(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
+                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
+  return responses_of(specimens, options, formulation, log_ratio, "tensile", progress);
+}
+
+std::vector<SpecimenResponse> predict(const std::vector<TwistedSpecimen>& specimens, const SpecimenOptions& options,
+                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
+  return responses_of(specimens, options, formulation, log_ratio, "twist", progress);
 }
 
 std::optional<Moduli> rod_moduli(const std::vector<StretchedSpecimen>& specimens, double area_mm2) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <softkin/calibration/specimen_test.hpp>
+#include <softkin/calibration/test_log.hpp>
 #include <softkin/model/measurements.hpp>
 #include <vector>
 
@@ -51,16 +51,6 @@ struct RatioEstimate {
 /// ln(R_omega A / R_omega B) of that closed form for an E_A / E_B; the stiffer one has the R_omega given.
 [[nodiscard]] double closed_form_log_ratio(double elasticity_ratio, double stiffer);
 
-/// What a specimen says about a ratio, by simulations of its test.
-struct SpecimenFit {
-  Status status = Status::not_converged;  // limit: no ratio from 1e-4 to 1e4 moves its interface so far
-  std::string remark;                     // why, where status is not converged
-  double own_log_ratio = 0;               // at which the simulated interface moves as the measured one did
-  double sensitivity_mm = 0;              // by how much its move falls where the logarithm grows by 1
-  int simulations = 0;
-  SpecimenResponse response;  // at the ratio of all specimens
-};
-
 /// Young's moduli from the forces of the testing machine, least squares over the specimens that have one.
 struct Moduli {
   double a_mpa = 0, b_mpa = 0;
@@ -82,6 +72,7 @@ using ShareDone = std::function<void(double share)>;
 /// The ratio at which simulated tensile tests move the interface as the measured ones did: for every specimen by
 /// bisection, shortened by the secant, from the closed form on; then all together.
 ///
+/// returns status interrupted, and what was done, where options.go_on has ended it
 /// source  Fang et al. 2020, Section IV-B, Fig. 7(c)
 /// throws  InvalidInput on no specimen, one that is none, or one that cannot be meshed
 [[nodiscard]] RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
@@ -92,18 +83,15 @@ using ShareDone = std::function<void(double share)>;
 /// area_mm2  of the cross-section of specimens that do not state theirs
 [[nodiscard]] std::optional<Moduli> rod_moduli(const std::vector<StretchedSpecimen>& specimens, double area_mm2);
 
-/// What the tests do at a given ratio, found or not: stretched (Fig. 7c) or twisted (Fig. 7d).
-/// log_ratio: as of SpecimenTest::at.
-template <class Specimen>
-[[nodiscard]] std::vector<SpecimenResponse> predict(const std::vector<Specimen>& specimens,
+/// What the tests do at a given ratio, found or not: stretched (Fig. 7c) or twisted (Fig. 7d). An interrupted one is
+/// the last.
+///
+/// log_ratio  as of SpecimenTest::at
+[[nodiscard]] std::vector<SpecimenResponse> predict(const std::vector<StretchedSpecimen>& specimens,
                                                     const SpecimenOptions& options, Formulation formulation,
-                                                    double log_ratio, const ShareDone& progress = {}) {
-  std::vector<SpecimenResponse> responses;
-  for (const Specimen& specimen : specimens) {
-    if (progress) progress(static_cast<double>(responses.size()) / static_cast<double>(specimens.size()));
-    responses.push_back(SpecimenTest(options, formulation, specimen).at(log_ratio));
-  }
-  return responses;
-}
+                                                    double log_ratio, const ShareDone& progress = {});
+[[nodiscard]] std::vector<SpecimenResponse> predict(const std::vector<TwistedSpecimen>& specimens,
+                                                    const SpecimenOptions& options, Formulation formulation,
+                                                    double log_ratio, const ShareDone& progress = {});
 
 }  // namespace softkin::calibration

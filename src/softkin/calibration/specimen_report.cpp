@@ -2,6 +2,7 @@
 #include <softkin/calibration/report_parts.hpp>
 #include <softkin/calibration/specimen_report.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/core/version.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/model/names.hpp>
 
@@ -267,6 +268,28 @@ const RatioFit* SpecimenResults::fit(Formulation formulation) const {
   return nullptr;
 }
 
+std::string tests_set_up(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens,
+                         const std::vector<TwistedSpecimen>& twists) {
+  const SpecimenOptions& o = task.options;
+  Json json{{"softkin", version()},
+            {"width_mm", o.width_mm},
+            {"height_mm", o.height_mm},
+            {"cells", o.cells},
+            {"clamped", o.grip == Grip::clamped},
+            {"law", law_name(o.law)},
+            {"poisson_ratio", o.poisson_ratio},
+            {"stiffer_shape_ratio", o.stiffer_shape_ratio}};
+  for (const StretchedSpecimen& s : specimens)
+    json["stretched"].push_back({s.length_mm, s.interface_mm, s.stretch_mm, s.interface_moved_mm});
+  for (const TwistedSpecimen& s : twists) json["twisted"].push_back({s.length_mm, s.interface_mm, s.twist_deg});
+  return json.dump();
+}
+
+std::size_t number_of_tests(const SpecimenTask& task, std::size_t specimens, std::size_t twists) {
+  const std::size_t formulations = (task.physical ? 1 : 0) + (task.target_shape ? 1 : 0);
+  return formulations * (2 * specimens + twists) + (task.target_shape ? task.tried.size() : 0) * (specimens + twists);
+}
+
 SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen> specimens,
                          std::vector<TwistedSpecimen> twists,
                          const std::function<void(const std::string&, double)>& progress) {
@@ -274,28 +297,35 @@ SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen
     if (!progress) return {};
     return [&progress, what](double share) { progress(what, share); };
   };
-  SpecimenResults results{std::move(specimens), std::move(twists), {}, {}, {}};
+  SpecimenResults results{std::move(specimens), std::move(twists), {}, {}, {}, false};
   results.rod = rod_ratio(results.specimens);
   results.rod_moduli = rod_moduli(results.specimens, task.options.width_mm * task.options.height_mm);
+  const auto add = [&](SimulatedTests tests) {
+    const auto stopped = [](const std::vector<SpecimenResponse>& responses) {
+      return !responses.empty() && responses.back().status == Status::interrupted;
+    };
+    results.interrupted =
+        stopped(tests.stretched) || stopped(tests.twisted) || (tests.fit && tests.fit->status == Status::interrupted);
+    results.simulated.push_back(std::move(tests));
+  };
   const auto fit = [&](Formulation formulation) {
     SimulatedTests tests{formulation_name(formulation), {}, 1, {}, {}};
     tests.fit = fit_ratio(results.specimens, task.options, formulation, told(tests.name + " tensile tests"));
     tests.ratio = tests.fit->estimate.ratio;
     for (const SpecimenFit& each : tests.fit->specimens) tests.stretched.push_back(each.response);
-    if (tests.fit->estimate.specimens > 0)
+    if (tests.fit->status != Status::interrupted && tests.fit->estimate.specimens > 0)
       tests.twisted =
           predict(results.twists, task.options, formulation, std::log(tests.ratio), told(tests.name + " twist tests"));
-    results.simulated.push_back(std::move(tests));
+    add(std::move(tests));
   };
   if (task.physical) fit(Formulation::physical);
-  if (!task.target_shape) return results;
-  fit(Formulation::target_shape);
+  if (task.target_shape && !results.interrupted) fit(Formulation::target_shape);
   for (const double ratio : task.tried) {
+    if (!task.target_shape || results.interrupted) break;
     const auto predicted = [&](const auto& tests) {
       return predict(tests, task.options, Formulation::target_shape, std::log(ratio), told("ratios to try"));
     };
-    results.simulated.push_back(
-        {"R_A / R_B " + number(ratio), std::nullopt, ratio, predicted(results.specimens), predicted(results.twists)});
+    add({"R_A / R_B " + number(ratio), std::nullopt, ratio, predicted(results.specimens), predicted(results.twists)});
   }
   return results;
 }

@@ -38,10 +38,17 @@ struct SpecimenResults {
   RatioEstimate rod;  // Eq. (16)
   std::optional<Moduli> rod_moduli;
   std::vector<SimulatedTests> simulated;  // physical, target-shape, then the ratios to look at
+  bool interrupted = false;               // the last simulation; nothing else may be asked of the results then
 
   /// Null where it was not asked for.
   [[nodiscard]] const RatioFit* fit(Formulation formulation) const;
 };
+
+/// One line that says what the tests of a task depend on, for TestLog.
+[[nodiscard]] std::string tests_set_up(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens,
+                                       const std::vector<TwistedSpecimen>& twists);
+/// How many tests TestLog keeps of a task that is done, if all of them converge.
+[[nodiscard]] std::size_t number_of_tests(const SpecimenTask& task, std::size_t specimens, std::size_t twists);
 
 /// Fits the ratios by simulated tests. progress: what is simulated, and the share of it that is done.
 /// throws  InvalidInput as fit_ratio does

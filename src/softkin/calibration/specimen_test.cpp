@@ -243,7 +243,8 @@ SpecimenResponse SpecimenTest::at(double log_ratio) {
   const Statics statics(model);
   State start = statics.rest();
   if (last_.rows() > 0) start = {last_};
-  const Equilibrium found = statics.solve(Actuation(0), start, options_.statics);
+  const Equilibrium found = statics.solve(Actuation(0), start, options_.statics,
+                                          [&](const Progress&) { return !options_.go_on || options_.go_on(); });
   SpecimenResponse response;
   response.status = found.report.status;
   response.remark = found.report.remark;

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <softkin/model/measurements.hpp>
 #include <softkin/model/mesh/mesh.hpp>
 #include <softkin/statics/statics.hpp>
 
 namespace softkin::calibration {
+
+class TestLog;
 
 /// A bar of two materials along x, from 0 to length; its axis is y = z = 0.
 struct BarShape {
@@ -31,6 +34,8 @@ struct SpecimenOptions {
   double poisson_ratio = 0.45;           // physical, of both materials [-], -1 < nu < 0.5
   double stiffer_shape_ratio = 1;        // target-shape: R_omega of the stiffer material, 0 < R <= 1
   StaticsOptions statics;
+  std::function<bool()> go_on;  // false: a simulation ends at once, status interrupted
+  TestLog* log = nullptr;       // where tests that are done are kept
 };
 
 /// Cells across the height, as they are or as 0 stands for.

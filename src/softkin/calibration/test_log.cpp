@@ -1,0 +1,85 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <softkin/calibration/test_log.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/records_json.hpp>
+#include <softkin/runs/store.hpp>
+
+namespace softkin::calibration {
+
+namespace {
+
+using runs::known;
+
+double number_at(const Json& json, const char* key) {
+  return json.at(key).is_null() ? NAN : json.at(key).get<double>();
+}
+
+Status status_of(const std::string& name) {
+  for (const Status status : {Status::converged, Status::not_converged, Status::limit})
+    if (name == name_of(status)) return status;
+  throw InvalidInput("no status '" + name + "'");
+}
+
+std::string line_of(const std::string& test, const SpecimenFit& fit) {
+  const SpecimenResponse& r = fit.response;
+  return runs::line_of({{"test", test},
+                        {"status", name_of(fit.status)},
+                        {"remark", fit.remark},
+                        {"own_log_ratio", known(fit.own_log_ratio)},
+                        {"sensitivity_mm", known(fit.sensitivity_mm)},
+                        {"simulations", fit.simulations},
+                        {"moved_mm", known(r.moved_mm)},
+                        {"turned_deg", known(r.turned_deg)},
+                        {"force_n", known(r.force_n)},
+                        {"response_status", name_of(r.status)},
+                        {"response_remark", r.remark}});
+}
+
+SpecimenFit fit_of(const Json& json) {
+  SpecimenFit fit;
+  fit.status = status_of(json.at("status"));
+  fit.remark = json.at("remark");
+  fit.own_log_ratio = number_at(json, "own_log_ratio");
+  fit.sensitivity_mm = number_at(json, "sensitivity_mm");
+  fit.simulations = json.at("simulations");
+  fit.response = {status_of(json.at("response_status")), json.at("response_remark"), number_at(json, "moved_mm"),
+                  number_at(json, "turned_deg"), number_at(json, "force_n")};
+  return fit;
+}
+
+}  // namespace
+
+TestLog::TestLog(const std::filesystem::path& path, const std::string& set_up, bool resume)
+    : store_(std::make_unique<runs::Store>(path, set_up + "\n", resume)) {
+  if (store_->head() != set_up + "\n")
+    throw InvalidInput({path.string()},
+                       "--resume cannot go on from this journal: it is of other specimens, options or softkin");
+  store_->each([&](std::size_t number, std::string_view line) {
+    try {
+      const Json json = Json::parse(line);
+      done_[json.at("test")] = fit_of(json);
+    } catch (const std::exception& error) {
+      throw InvalidInput({.file = path.string(), .line = number + 2},
+                         std::string("--resume cannot go on from this journal: ") + error.what());
+    }
+    return true;
+  });
+}
+
+TestLog::~TestLog() = default;
+
+SpecimenFit TestLog::once(const std::string& test, const std::function<SpecimenFit()>& make) {
+  if (const auto found = done_.find(test); found != done_.end()) return found->second;
+  const SpecimenFit fit = make();
+  if (fit.status == Status::interrupted || fit.response.status == Status::interrupted) return fit;
+  store_->append(line_of(test, fit));
+  return done_[test] = fit;
+}
+
+void TestLog::remove() {
+  store_->remove();
+}
+
+}  // namespace softkin::calibration
