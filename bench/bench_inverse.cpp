@@ -119,7 +119,6 @@ class Bench {
       reach_mm = std::max(reach_mm, (tip_of(model_, made.state) - tip_of(model_, rest_)).norm());
       const Answer answer = solve(tip_of(model_, made.state), rest_);
       near.add(model_, answer);
-      tell("reachable", i, answer.result);
     }
     print("reachable", near);
     std::uniform_real_distribution<double> any(-1, 1);
@@ -128,7 +127,6 @@ class Bench {
       // twice as far from the tip at rest as any point that was reached
       const Answer answer = solve(tip_of(model_, rest_) + 2 * reach_mm * direction.normalized(), rest_);
       far.add(model_, answer);
-      tell("unreachable", i, answer.result);
     }
     print("out of reach", far);
     return 0;
@@ -195,14 +193,6 @@ class Bench {
     Answer answer{solve_inverse(model_, statics_, {{PositionGoal{0, target}}}, start, inverse_), 0};
     answer.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     return answer;
-  }
-
-  static void tell(const char* what, int number, const InverseResult& result) {
-    if (std::getenv("SOFTKIN_BENCH_VERBOSE") == nullptr) return;
-    std::printf("  %s %d: status %d, error %.3g mm, slope %.3g mm, %d iterations, %d equilibria, %.2f s %s\n", what,
-                number, static_cast<int>(result.status), result.errors_mm.maxCoeff(), result.slope, result.iterations,
-                result.equilibria, result.seconds, result.remark.c_str());
-    std::fflush(stdout);
   }
 
   static void print(const char* what, const Tally& t) {

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
@@ -302,17 +301,15 @@ int run_drive(const DriveOptions& options) {
 }  // namespace
 
 void add_drive(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("drive", "Hardware: stepper moves and pressures from a file of commands");
-  const auto options = std::make_shared<DriveOptions>();
-  add_options(*command, *options);
-  command->footer(
+  add_command(
+      app, run, "drive", "Hardware: stepper moves and pressures from a file of commands",
       "The whole file is checked against all limits before anything is written or sent. While it sends, Ctrl-C stops\n"
       "after the moves that the board has, a second Ctrl-C at once (the position is then unknown), Ctrl-Z pauses and\n"
       "goes on. Exit code: 0 done, 1 stopped or failed on the way, 2 bad usage or bad input.\n"
       "Example:\n"
       "  softkin drive examples/three_tendon_finger/three_tendon_finger.yaml \\\n"
-      "      examples/three_tendon_finger/path.csv --dry-run");
-  command->callback([options, &run] { run = [options] { return run_drive(*options); }; });
+      "      examples/three_tendon_finger/path.csv --dry-run",
+      add_options, run_drive);
 }
 
 }  // namespace softkin::cli

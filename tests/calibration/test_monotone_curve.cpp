@@ -65,14 +65,6 @@ TEST(MonotoneCurve, NeverOvershootsAndTheInverseInverts) {
   }
 }
 
-TEST(MonotoneCurve, SlopeIsThatOfFiniteDifferences) {
-  const MonotoneCurve curve({0, 1, 2.5, 3}, {0, 1, 1.2, 4});
-  for (const double x : {0.2, 0.9, 1.7, 2.8}) {
-    const double h = 1e-6, difference = (curve.value(x + h) - curve.value(x - h)) / (2 * h);
-    EXPECT_NEAR(curve.slope(x), difference, 1e-7);
-  }
-}
-
 TEST(MonotoneCurve, RefusesWhatDoesNotAscend) {
   EXPECT_THROW(MonotoneCurve({0}, {1}), InvalidInput);
   EXPECT_THROW(MonotoneCurve({0, 1}, {1, 2, 3}), InvalidInput);

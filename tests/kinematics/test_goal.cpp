@@ -2,7 +2,7 @@
 
 #include <limits>
 #include <softkin/core/error.hpp>
-#include <softkin/kinematics/goal_terms.hpp>
+#include <softkin/kinematics/inverse_response.hpp>
 
 #include "statics/difference.hpp"
 #include "statics/physical_samples.hpp"

@@ -3,7 +3,7 @@
 #include <mutex>
 #include <set>
 #include <softkin/kinematics/workspace.hpp>
-#include <softkin/statics/neighbourhood.hpp>
+#include <softkin/statics/statics.hpp>
 
 #include "statics/physical_samples.hpp"
 

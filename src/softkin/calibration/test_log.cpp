@@ -1,4 +1,3 @@
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <softkin/calibration/test_log.hpp>
 #include <softkin/core/error.hpp>
@@ -11,16 +10,8 @@ namespace softkin::calibration {
 namespace {
 
 using runs::known;
-
-double number_at(const Json& json, const char* key) {
-  return json.at(key).is_null() ? NAN : json.at(key).get<double>();
-}
-
-Status status_of(const std::string& name) {
-  for (const Status status : {Status::converged, Status::not_converged, Status::limit})
-    if (name == name_of(status)) return status;
-  throw InvalidInput("no status '" + name + "'");
-}
+using runs::number_or_nan;
+using runs::status_of;
 
 std::string line_of(const std::string& test, const SpecimenFit& fit) {
   const SpecimenResponse& r = fit.response;
@@ -41,11 +32,11 @@ SpecimenFit fit_of(const Json& json) {
   SpecimenFit fit;
   fit.status = status_of(json.at("status"));
   fit.remark = json.at("remark");
-  fit.own_log_ratio = number_at(json, "own_log_ratio");
-  fit.sensitivity_mm = number_at(json, "sensitivity_mm");
+  fit.own_log_ratio = number_or_nan(json.at("own_log_ratio"));
+  fit.sensitivity_mm = number_or_nan(json.at("sensitivity_mm"));
   fit.simulations = json.at("simulations");
-  fit.response = {status_of(json.at("response_status")), json.at("response_remark"), number_at(json, "moved_mm"),
-                  number_at(json, "turned_deg"), number_at(json, "force_n")};
+  fit.response = {status_of(json.at("response_status")), json.at("response_remark"), number_or_nan(json.at("moved_mm")),
+                  number_or_nan(json.at("turned_deg")), number_or_nan(json.at("force_n"))};
   return fit;
 }
 

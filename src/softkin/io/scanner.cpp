@@ -33,12 +33,8 @@ Scanner::Scanner(const std::filesystem::path& path) : owned_(read_file(path)), f
 
 Scanner::Scanner(std::string file, std::string_view content) : file_(std::move(file)), content_(content) {}
 
-bool Scanner::is_separator(char c) const {
-  return is_blank(c) || separators_.find(c) != std::string_view::npos;
-}
-
 void Scanner::skip_blanks() {
-  while (cursor_ < content_.size() && is_separator(content_[cursor_])) {
+  while (cursor_ < content_.size() && is_blank(content_[cursor_])) {
     if (content_[cursor_] == '\n') ++line_;
     ++cursor_;
   }
@@ -55,7 +51,7 @@ std::string_view Scanner::token(const char* what) {
   token_byte_ = cursor_;
   if (cursor_ == content_.size()) fail(std::string("file ends before ") + what);
   const std::size_t begin = cursor_;
-  while (cursor_ < content_.size() && !is_separator(content_[cursor_])) ++cursor_;
+  while (cursor_ < content_.size() && !is_blank(content_[cursor_])) ++cursor_;
   return content_.substr(begin, cursor_ - begin);
 }
 
@@ -71,7 +67,7 @@ std::string_view Scanner::line() {
 }
 
 bool Scanner::line_has_more() {
-  while (cursor_ < content_.size() && content_[cursor_] != '\n' && is_separator(content_[cursor_])) ++cursor_;
+  while (cursor_ < content_.size() && content_[cursor_] != '\n' && is_blank(content_[cursor_])) ++cursor_;
   return cursor_ < content_.size() && content_[cursor_] != '\n';
 }
 

@@ -19,9 +19,6 @@ class Scanner {
   Scanner(const Scanner&) = delete;
   Scanner& operator=(const Scanner&) = delete;
 
-  /// Characters that end a token beside blanks (",": Abaqus; "": default).
-  void set_separators(std::string_view separators) { separators_ = separators; }
-
   [[nodiscard]] bool at_end();               // after blanks
   std::string_view token(const char* what);  // next word; fails at the end of the file: "file ends before WHAT"
   std::string_view line();                   // rest of this line without its end; moves to the next line
@@ -59,12 +56,10 @@ class Scanner {
 
  private:
   void skip_blanks();
-  [[nodiscard]] bool is_separator(char c) const;
 
   std::string owned_;
   std::string file_;
   std::string_view content_;
-  std::string_view separators_;
   std::size_t cursor_ = 0;
   std::size_t line_ = 1;        // of the cursor
   std::size_t token_line_ = 1;  // of the last token

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/error.hpp>
-#include <softkin/kinematics/goal_terms.hpp>
+#include <softkin/kinematics/inverse_response.hpp>
 #include <string>
 
 namespace softkin {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <softkin/kinematics/goal_terms.hpp>
+#include <softkin/kinematics/inverse_response.hpp>
 #include <softkin/kinematics/inverse_robot.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <utility>

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/error.hpp>
-#include <softkin/kinematics/goal_terms.hpp>
+#include <softkin/kinematics/inverse_response.hpp>
 #include <softkin/kinematics/inverse_step.hpp>
 #include <softkin/kinematics/trajectory.hpp>
 #include <utility>

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/workspace.hpp>
-#include <softkin/statics/neighbourhood.hpp>
+#include <softkin/statics/statics.hpp>
 #include <thread>
 
 namespace softkin {

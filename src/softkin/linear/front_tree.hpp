@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/linear/block_columns.hpp>
+#include <softkin/linear/block_matrix.hpp>
 
 namespace softkin::linear {
 

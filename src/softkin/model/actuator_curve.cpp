@@ -77,14 +77,6 @@ double MonotoneCurve::value(double x) const {
   return cubic(i, (x - x_[i]) / (x_[i + 1] - x_[i]));
 }
 
-double MonotoneCurve::slope(double x) const {
-  check_inside(x_, x);
-  const std::size_t i = interval_of(x_, x);
-  const double h = x_[i + 1] - x_[i], secant = (y_[i + 1] - y_[i]) / h, t = (x - x_[i]) / h;
-  const double a = slopes_[i], b = slopes_[i + 1];
-  return a + t * (2 * (3 * secant - 2 * a - b) + t * 3 * (a + b - 2 * secant));
-}
-
 double MonotoneCurve::inverse(double y) const {
   check_inside(y_, y);
   if (y == y_.back()) return x_.back();
@@ -121,13 +113,6 @@ double ActuatorCurve::ratio(double asked, Branch which) const {
                      unit_of_input(input) + " is outside the " + branch_name(which) + " branch of curve " + file +
                      ", " + range_text(curve.x(), unit_of_input(input)) +
                      (beyond_end ? " (it ends there by " + end + ")" : ""));
-}
-
-double ActuatorCurve::input_of(double asked, Branch which) const {
-  const MonotoneCurve& curve = branch(which).ratio;
-  if (asked >= curve.y().front() && asked <= curve.y().back()) return curve.inverse(asked);
-  throw InvalidInput("the ratio " + number(asked) + " is outside the " + branch_name(which) + " branch of curve " +
-                     file + ", " + range_text(curve.y(), " [-]"));
 }
 
 }  // namespace softkin

@@ -23,7 +23,6 @@ class MonotoneCurve {
 
   /// throws  InvalidInput outside x().front() to x().back()
   [[nodiscard]] double value(double x) const;
-  [[nodiscard]] double slope(double x) const;
   /// The x whose value is y, to rounding.
   ///
   /// throws  InvalidInput outside y().front() to y().back()
@@ -60,7 +59,6 @@ struct ActuatorCurve {
   [[nodiscard]] const CurveBranch& branch(Branch which) const;
   /// throws  InvalidInput, naming file, branch and range, outside the branch; nothing is extrapolated
   [[nodiscard]] double ratio(double input, Branch which) const;
-  [[nodiscard]] double input_of(double ratio, Branch which) const;
 };
 
 [[nodiscard]] const char* branch_name(Branch branch);

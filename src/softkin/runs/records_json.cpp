@@ -26,10 +26,6 @@ Value named(const std::array<Value, N>& values, const std::string& name) {
   throw std::out_of_range("no such status: " + name);
 }
 
-double number_or_nan(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
 void write_number(double value, Json& json) {
   json = known(value);
 }
@@ -191,6 +187,14 @@ const std::string& marker_name(const Model& model, const MarkerPath& path, std::
 
 }  // namespace
 
+double number_or_nan(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+Status status_of(const std::string& name) {
+  return named(statuses, name);
+}
+
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -239,7 +243,7 @@ Json to_json(const Model& model, const WalkRecord& record) {
 
 void from_json(const Model& model, const Json& json, StepRecord& record) {
   record.actuation = by_actuator(model, json.at("actuation"));
-  record.status = named(statuses, json.at("status").get<std::string>());
+  record.status = status_of(json.at("status").get<std::string>());
   if (const Json& reached = json.at("reached"); !reached.is_null()) record.reached_share = reached.get<double>();
   record.remark = json.at("remark").get<std::string>();
   if (const Json& shape = json.at("shape_actuation"); !shape.is_null())

@@ -21,5 +21,8 @@ void from_json(const Model& model, const Json& json, WalkRecord& record);
 [[nodiscard]] std::string line_of(const Json& json);
 /// JSON knows no NaN: what a diverged solve does not know is null.
 [[nodiscard]] Json known(double value);
+[[nodiscard]] double number_or_nan(const Json& json);
+/// throws  std::out_of_range where it is none
+[[nodiscard]] Status status_of(const std::string& name);
 
 }  // namespace softkin::runs

@@ -5,10 +5,9 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/statics/deformation.hpp>
-#include <softkin/statics/neighbourhood.hpp>
 #include <softkin/statics/physical/equilibria.hpp>
 #include <softkin/statics/physical/lease.hpp>
-#include <softkin/statics/physical/predictor.hpp>
+#include <softkin/statics/physical/newton.hpp>
 #include <softkin/statics/statics.hpp>
 #include <softkin/statics/target_shape/local_global.hpp>
 #include <softkin/statics/target_shape/newton.hpp>

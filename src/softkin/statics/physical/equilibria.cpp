@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/statics/physical/lease.hpp>
-#include <softkin/statics/physical/predictor.hpp>
+#include <softkin/statics/physical/newton.hpp>
 
 namespace softkin::physical {
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <softkin/linear/block_columns.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/supports/rigid_body.hpp>

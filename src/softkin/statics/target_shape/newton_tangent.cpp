@@ -3,7 +3,7 @@
 #include <cmath>
 #include <softkin/energy/target_shape_stiffness.hpp>
 #include <softkin/linear/krylov.hpp>
-#include <softkin/statics/target_shape/blocks.hpp>
+#include <softkin/statics/target_shape/element_sets.hpp>
 #include <softkin/statics/target_shape/newton_tangent.hpp>
 
 namespace softkin::target_shape {

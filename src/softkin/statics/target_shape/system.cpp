@@ -1,4 +1,4 @@
-#include <softkin/statics/target_shape/blocks.hpp>
+#include <softkin/statics/target_shape/element_sets.hpp>
 #include <softkin/statics/target_shape/system.hpp>
 
 namespace softkin::target_shape {

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <softkin/energy/target_shape_stiffness.hpp>
-#include <softkin/statics/target_shape/blocks.hpp>
+#include <softkin/statics/target_shape/element_sets.hpp>
 #include <softkin/statics/target_shape/system.hpp>
 
 namespace softkin::target_shape {
