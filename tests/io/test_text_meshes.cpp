@@ -162,6 +162,46 @@ TEST(TextMeshes, AbaqusPartAndInstance) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 3, 1}}));
 }
 
+/// As Gmsh writes all groups of a model, and meshio and CalculiX their own names of elements.
+TEST(TextMeshes, AbaqusFlatElementsAndLinesAreRegions) {
+  TemporaryFolder folder;
+  const Mesh mesh = read_abaqus(
+      folder.write("a.inp",
+                   "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,1,0,1\n6,0,1,1\n"
+                   "*ELEMENT, type=T3D2, ELSET=Line1\n1, 1, 2\n2, 2, 3\n"
+                   "*ELEMENT, type=CPS3, ELSET=Surface1\n3, 1, 3, 2\n*ELEMENT, TYPE=S3R, ELSET=top\n4, 4, 5, 6\n"
+                   "*ELEMENT, TYPE=R3D4, ELSET=side\n5, 1, 2, 5, 4\n"
+                   "*ELEMENT, type=C3D6, ELSET=Volume1\n6, 1, 2, 3, 4, 5, 6\n"
+                   "*ELSET, ELSET=both\nSurface1, Volume1\n*ELSET, ELSET=faces\ntop, side, Line1\n"
+                   "*NSET, NSET=of_line, ELSET=Line1\n*SURFACE, NAME=lid\ntop, SPOS\n6, S1\n"
+                   "*SURFACE, NAME=some, TYPE=NODE\nof_line, 1.\n4, 1.\n"));
+  expect_consistent(mesh);
+  EXPECT_EQ(mesh.prisms.size(), 1u);
+  EXPECT_EQ(region(mesh, "Line1", 1).vertices, (Indices{0, 1, 2}));
+  EXPECT_EQ(region(mesh, "Surface1", 2).triangles, Indices{0});
+  EXPECT_EQ(region(mesh, "side", 2).quads, Indices{0});
+  EXPECT_EQ(region(mesh, "both", 3).prisms, Indices{0});
+  EXPECT_TRUE(region(mesh, "both", 3).triangles.empty());
+  EXPECT_EQ(region(mesh, "faces", 2).triangles, Indices{1});
+  EXPECT_EQ(region(mesh, "faces", 2).quads, Indices{0});
+  EXPECT_EQ(region(mesh, "lid", 2).triangles, (Indices{1, 2}));
+  EXPECT_EQ(mesh.triangles[2], (Triangle{0, 1, 2}));
+  EXPECT_EQ(region(mesh, "some", 0).vertices, (Indices{0, 1, 2, 3}));
+}
+
+TEST(TextMeshes, AbaqusFormulationsOfATetrahedronAreOneShape) {
+  TemporaryFolder folder;
+  std::string file = text_mesh_tests::quadratic_abaqus_file;
+  const Mesh plain = read_abaqus(folder.write("a.inp", file));
+  for (const char* type : {"C3D10M", "C3D10H", "C3D10MH", "C3D10T"}) {
+    std::string other = file;
+    for (std::size_t at = 0; (at = other.find("C3D10,", at)) != std::string::npos; at += 6) other.replace(at, 5, type);
+    const Mesh mesh = read_abaqus(folder.write("b.inp", other));
+    EXPECT_EQ(mesh.tetrahedra, plain.tetrahedra) << type;
+    EXPECT_EQ(mesh.edge_nodes, plain.edge_nodes) << type;
+  }
+}
+
 TEST(TextMeshes, AbaqusSetsOfSetsStaySmall) {
   // each set names its predecessor 30 times: without care 30^40 entries
   std::string deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n*NSET,NSET=s0\n1,3\n";

@@ -62,11 +62,7 @@ class MeshBuilder {
     add_elements();
     for (const AbaqusSet& card : cards_.sets)
       if (card.kind != AbaqusSetKind::surface) resolve(card);
-    add_regions(element_sets_, 3, [&](Region& region, Index element) {
-      const auto i = static_cast<std::size_t>(element);
-      auto& members = cards_.elements[i].is_tetrahedron() ? region.tetrahedra : region.prisms;
-      members.push_back(static_cast<Index>(place_[i]));
-    });
+    for (const NamedSet& set : element_sets_.sets()) add_region_of_elements(set);
     for (const AbaqusSet& card : cards_.sets)
       if (card.kind == AbaqusSetKind::surface) resolve_surface(card);
     add_regions(surfaces_, 2, [&](Region& region, Index face) {
@@ -90,8 +86,6 @@ class MeshBuilder {
   }
 
   void add_elements() {
-    if (cards_.elements.empty())
-      throw InvalidInput(cards_.origin(cards_.last_line), "the mesh has neither tetrahedra nor prisms");
     elements_.reserve(cards_.elements.size());
     for (const AbaqusElement& element : cards_.elements) {
       if (!elements_.emplace(element.id, static_cast<Index>(elements_.size())).second)
@@ -101,15 +95,69 @@ class MeshBuilder {
       const std::string refusal = refusal_of_orders(mesh_);
       if (!refusal.empty()) throw InvalidInput(cards_.origin(element.line), refusal);
     }
+    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty())
+      throw InvalidInput(cards_.origin(cards_.last_line), "the mesh has neither tetrahedra nor prisms");
   }
 
   void add_element(const AbaqusElement& element) {
-    place_.push_back(element.is_tetrahedron() ? mesh_.tetrahedra.size() : mesh_.prisms.size());
-    if (element.is_tetrahedron())
-      mesh_.tetrahedra.push_back(nodes_of<4>(element, 0));
-    else
-      mesh_.prisms.push_back(nodes_of<6>(element, 0));
-    if (element.count == 10) mesh_.edge_nodes.push_back(nodes_of<6>(element, 4));  // edges in softkin's order
+    switch (element.shape) {
+      case AbaqusShape::tetrahedron:
+        add_cell(nodes_of<4>(element, 0), mesh_.tetrahedra);
+        if (element.count == 10) mesh_.edge_nodes.push_back(nodes_of<6>(element, 4));  // edges in softkin's order
+        break;
+      case AbaqusShape::prism:
+        add_cell(nodes_of<6>(element, 0), mesh_.prisms);
+        break;
+      case AbaqusShape::triangle:
+        add_cell(nodes_of<3>(element, 0), mesh_.triangles);
+        break;
+      case AbaqusShape::quad:
+        add_cell(nodes_of<4>(element, 0), mesh_.quads);
+        break;
+      case AbaqusShape::line: {
+        std::vector<Index> nodes;  // where the middle one stands differs between types
+        for (std::size_t i = 0; i < element.count; ++i) nodes.push_back(node_of(element, element.nodes[i]));
+        add_cell(nodes, lines_);
+        break;
+      }
+    }
+  }
+
+  template <class Cell>
+  void add_cell(const Cell& cell, std::vector<Cell>& cells) {
+    place_.push_back(cells.size());
+    cells.push_back(cell);
+  }
+
+  static int dimension_of(AbaqusShape shape) {
+    if (shape == AbaqusShape::line) return 1;
+    return shape == AbaqusShape::triangle || shape == AbaqusShape::quad ? 2 : 3;
+  }
+
+  /// Of a set's elements those of the highest dimension.
+  void add_region_of_elements(const NamedSet& set) {
+    Region region;
+    region.name = set.name;
+    region.dimension = 1;
+    const auto shape_of = [&](Index element) { return cards_.elements[static_cast<std::size_t>(element)].shape; };
+    for (const Index element : set.members)
+      region.dimension = std::max(region.dimension, dimension_of(shape_of(element)));
+    for (const Index element : set.members) {
+      const AbaqusShape shape = shape_of(element);
+      if (dimension_of(shape) != region.dimension) continue;
+      const std::size_t place = place_[static_cast<std::size_t>(element)];
+      if (shape == AbaqusShape::line) {
+        region.vertices.insert(region.vertices.end(), lines_[place].begin(), lines_[place].end());
+        continue;
+      }
+      auto& members = shape == AbaqusShape::tetrahedron ? region.tetrahedra
+                      : shape == AbaqusShape::prism     ? region.prisms
+                      : shape == AbaqusShape::triangle  ? region.triangles
+                                                        : region.quads;
+      members.push_back(static_cast<Index>(place));
+    }
+    sort_unique(region.vertices);
+    mesh_.regions.push_back(std::move(region));
   }
 
   template <std::size_t N>
@@ -163,16 +211,27 @@ class MeshBuilder {
 
   /// The corners of an element, from 0.
   std::pair<const Index*, std::size_t> corners_of(Index element) const {
-    const auto i = static_cast<std::size_t>(element);
-    if (cards_.elements[i].is_tetrahedron()) return {mesh_.tetrahedra[place_[i]].data(), 4};
-    return {mesh_.prisms[place_[i]].data(), 6};
+    const std::size_t i = static_cast<std::size_t>(element), place = place_[i];
+    switch (cards_.elements[i].shape) {
+      case AbaqusShape::tetrahedron:
+        return {mesh_.tetrahedra[place].data(), 4};
+      case AbaqusShape::prism:
+        return {mesh_.prisms[place].data(), 6};
+      case AbaqusShape::triangle:
+        return {mesh_.triangles[place].data(), 3};
+      case AbaqusShape::quad:
+        return {mesh_.quads[place].data(), 4};
+      case AbaqusShape::line:
+        break;
+    }
+    return {lines_[place].data(), lines_[place].size()};
   }
 
   void append_nodes_of(const std::vector<Index>& elements, std::vector<Index>& members) const {
     for (const Index element : elements) {
       const auto [corners, count] = corners_of(element);
       members.insert(members.end(), corners, corners + count);
-      if (mesh_.edge_nodes.empty()) continue;
+      if (mesh_.edge_nodes.empty() || !is_solid(element)) continue;
       const EdgeNodes& nodes = mesh_.edge_nodes[place_[static_cast<std::size_t>(element)]];
       members.insert(members.end(), nodes.begin(), nodes.end());
     }
@@ -194,7 +253,9 @@ class MeshBuilder {
 
   /// The number of an element's face among the surface cells; new ones are added to the mesh.
   Index face_of(Index element, const AbaqusItem& item) {
+    if (!is_solid(element)) return own_face_of(element, item);
     const auto [corners, count] = corners_of(element);
+    if (item.face == 0) throw InvalidInput(cards_.origin(item.line), "a solid's face must be S1 to S5");
     if (item.face > (count == 4 ? 4 : 5))
       throw InvalidInput(cards_.origin(item.line), "a tetrahedron has no face S" + std::to_string(item.face));
     const auto key = std::int64_t{element} * 8 + item.face;
@@ -208,6 +269,20 @@ class MeshBuilder {
       faces_.emplace_back(true, static_cast<Index>(mesh_.quads.size()));
       mesh_.quads.push_back({corners[face[0] - 1], corners[face[1] - 1], corners[face[2] - 1], corners[face[3] - 1]});
     }
+    return found->second;
+  }
+
+  [[nodiscard]] bool is_solid(Index element) const {
+    return dimension_of(cards_.elements[static_cast<std::size_t>(element)].shape) == 3;
+  }
+
+  /// The cell that a shell is, seen from either side.
+  Index own_face_of(Index element, const AbaqusItem& item) {
+    const auto i = static_cast<std::size_t>(element);
+    if (cards_.elements[i].shape == AbaqusShape::line)
+      throw InvalidInput(cards_.origin(item.line), "a truss or beam has no face");
+    const auto [found, added] = face_numbers_.emplace(std::int64_t{element} * 8, static_cast<Index>(faces_.size()));
+    if (added) faces_.emplace_back(cards_.elements[i].shape == AbaqusShape::quad, static_cast<Index>(place_[i]));
     return found->second;
   }
 
@@ -225,7 +300,8 @@ class MeshBuilder {
   const AbaqusCards& cards_;
   Mesh mesh_;
   Numbers nodes_, elements_;
-  std::vector<std::size_t> place_;  // of each element among the tetrahedra or the prisms
+  std::vector<std::size_t> place_;         // of each element among those of its shape
+  std::vector<std::vector<Index>> lines_;  // their nodes
   SetTable node_sets_, element_sets_, surfaces_;
   Numbers face_numbers_;                       // from 8 * element + face to the index into faces_
   std::vector<std::pair<bool, Index>> faces_;  // is it a quad, and which

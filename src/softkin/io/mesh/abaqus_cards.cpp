@@ -162,6 +162,26 @@ class AbaqusDeck {
   bool continued_ = false;
 };
 
+struct ElementType {
+  std::string_view name;  // without its formulation
+  AbaqusShape shape;
+  std::size_t nodes;
+};
+
+constexpr ElementType element_types[] = {
+    {"C3D4", AbaqusShape::tetrahedron, 4}, {"C3D10", AbaqusShape::tetrahedron, 10}, {"C3D6", AbaqusShape::prism, 6},
+    {"CPS3", AbaqusShape::triangle, 3},    {"CPE3", AbaqusShape::triangle, 3},      {"CAX3", AbaqusShape::triangle, 3},
+    {"S3", AbaqusShape::triangle, 3},      {"STRI3", AbaqusShape::triangle, 3},     {"R3D3", AbaqusShape::triangle, 3},
+    {"M3D3", AbaqusShape::triangle, 3},    {"SFM3D3", AbaqusShape::triangle, 3},    {"CPS6", AbaqusShape::triangle, 6},
+    {"CPE6", AbaqusShape::triangle, 6},    {"CAX6", AbaqusShape::triangle, 6},      {"S6", AbaqusShape::triangle, 6},
+    {"STRI65", AbaqusShape::triangle, 6},  {"M3D6", AbaqusShape::triangle, 6},      {"CPS4", AbaqusShape::quad, 4},
+    {"CPE4", AbaqusShape::quad, 4},        {"CAX4", AbaqusShape::quad, 4},          {"S4", AbaqusShape::quad, 4},
+    {"R3D4", AbaqusShape::quad, 4},        {"M3D4", AbaqusShape::quad, 4},          {"SFM3D4", AbaqusShape::quad, 4},
+    {"CPS8", AbaqusShape::quad, 8},        {"CPE8", AbaqusShape::quad, 8},          {"CAX8", AbaqusShape::quad, 8},
+    {"S8", AbaqusShape::quad, 8},          {"M3D8", AbaqusShape::quad, 8},          {"T3D2", AbaqusShape::line, 2},
+    {"T3D3", AbaqusShape::line, 3},        {"T2D2", AbaqusShape::line, 2},          {"B31", AbaqusShape::line, 2},
+    {"B32", AbaqusShape::line, 3},         {"B21", AbaqusShape::line, 2},           {"B22", AbaqusShape::line, 3}};
+
 class CardReader {
  public:
   explicit CardReader(const std::filesystem::path& path) : deck_(path) { cards_.file = path.string(); }
@@ -215,31 +235,33 @@ class CardReader {
   void read_elements() {
     deck_.allow({"TYPE", "ELSET"});
     refuse_in_assembly();
-    const std::size_t count = nodes_of(upper_case(deck_.required("TYPE")));
+    const ElementType type = type_of(upper_case(deck_.required("TYPE")));
     const std::size_t line = deck_.line();
     const std::string set = deck_.has("ELSET") ? deck_.required("ELSET") : "";
     std::vector<AbaqusItem> numbers;
     while (deck_.next_data()) {
-      cards_.elements.push_back(read_element(count));
+      cards_.elements.push_back(read_element(type));
       append_number(numbers, cards_.elements.back().id);
     }
     if (!set.empty()) add_set(set, AbaqusSetKind::elements, std::move(numbers), line);
   }
 
-  std::size_t nodes_of(const std::string& type) const {
-    if (type == "C3D4" || type == "C3D4H") return 4;
-    if (type == "C3D6" || type == "C3D6H") return 6;
-    if (type == "C3D10") return 10;
-    const std::string only = "; only C3D4, C3D4H, C3D6, C3D6H and C3D10 are read";
-    if (type.starts_with("C3D10"))
-      deck_.fail("element type " + type + " is another formulation than the tetrahedron of order 2" + only);
-    for (const char* second_order : {"C3D15", "C3D20", "C3D27"})
-      if (type.starts_with(second_order)) deck_.fail("second-order element type " + type + " is not supported" + only);
-    deck_.fail("element type " + type.substr(0, 40) + " is not supported" + only);
+  /// What follows the name of a shape is its formulation (H, R, M, ...), which is no business of a mesh.
+  ElementType type_of(const std::string& type) const {
+    for (const ElementType& known : element_types) {
+      if (!type.starts_with(known.name)) continue;
+      const char next = type.size() > known.name.size() ? type[known.name.size()] : 'X';
+      if (next >= 'A' && next <= 'Z') return known;
+    }
+    deck_.fail("element type " + type.substr(0, 40) +
+               " is not supported; read are the solids C3D4, C3D10 and C3D6, shells and flat elements of 3, 4, 6 or 8 "
+               "nodes, and trusses and beams");
   }
 
-  AbaqusElement read_element(std::size_t nodes) {
+  AbaqusElement read_element(const ElementType& type) {
+    const std::size_t nodes = type.nodes;
     AbaqusElement element;
+    element.shape = type.shape;
     element.count = nodes;
     element.line = deck_.line();
     element.id = deck_.integer(0, "element number");
@@ -298,19 +320,26 @@ class CardReader {
     deck_.allow({"NAME", "TYPE", "INTERNAL"});
     const std::string name = deck_.required("NAME");
     const std::size_t line = deck_.line();
-    if (deck_.has("TYPE") && upper_case(deck_.value("TYPE")) != "ELEMENT")
-      deck_.fail("surface '" + name + "' has TYPE=" + deck_.value("TYPE") + "; only TYPE=ELEMENT is read");
+    const std::string type = deck_.has("TYPE") ? upper_case(deck_.value("TYPE")) : "ELEMENT";
+    if (type != "ELEMENT" && type != "NODE")
+      deck_.fail("surface '" + name + "' has TYPE=" + deck_.value("TYPE") +
+                 "; only TYPE=ELEMENT and TYPE=NODE are read");
+    const bool of_nodes = type == "NODE";
     std::vector<AbaqusItem> items;
     while (deck_.next_data()) {
-      if (deck_.fields().size() != 2) deck_.fail("a line of *SURFACE is an element or element set and a face S1 to S5");
-      const std::string face = upper_case(deck_.fields()[1]);
-      if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '5')
-        deck_.fail("face must be S1 to S5, not '" + face.substr(0, 40) + "'");
+      if (deck_.fields().size() > 2) deck_.fail("a line of *SURFACE is an element or element set and a face S1 to S5");
       AbaqusItem item = make_item(deck_.fields()[0]);
-      item.face = face[1] - '0';
+      if (!of_nodes) item.face = face_in(deck_.fields().size() == 2 ? upper_case(deck_.fields()[1]) : "");
       items.push_back(std::move(item));
     }
-    add_set(name, AbaqusSetKind::surface, std::move(items), line);
+    add_set(name, of_nodes ? AbaqusSetKind::nodes : AbaqusSetKind::surface, std::move(items), line);
+  }
+
+  [[nodiscard]] int face_in(const std::string& face) const {
+    if (face.empty() || face == "SPOS" || face == "SNEG") return 0;
+    if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '5')
+      deck_.fail("face must be S1 to S5, or SPOS or SNEG of a shell, not '" + face.substr(0, 40) + "'");
+    return face[1] - '0';
   }
 
   /// A number, or the name of a set; an assembly may write INSTANCE.NUMBER and INSTANCE.NAME.

@@ -18,20 +18,22 @@ struct AbaqusNode {
   std::size_t line = 0;
 };
 
+/// line: of a truss or beam. triangle, quad: of a shell or a flat element.
+enum class AbaqusShape { line, triangle, quad, tetrahedron, prism };
+
 struct AbaqusElement {
   std::int64_t id = 0;
-  std::array<std::int64_t, 10> nodes{};
-  std::size_t count = 0;  // of nodes; 4: C3D4, 6: C3D6, 10: C3D10
+  AbaqusShape shape = AbaqusShape::tetrahedron;
+  std::array<std::int64_t, 10> nodes{};  // corners first
+  std::size_t count = 0;
   std::size_t line = 0;
-
-  [[nodiscard]] bool is_tetrahedron() const { return count != 6; }
 };
 
 /// A set by name, or the numbers first, first + step, ... last.
 struct AbaqusItem {
   std::string name;
   std::int64_t first = 0, last = 0, step = 1;
-  int face = 0;                // of a surface: 1 to 5
+  int face = 0;                // of a surface: 1 to 5; 0: the shell itself
   bool element_nodes = false;  // the nodes of the element set `name`
   std::size_t line = 0;
 };
