@@ -34,6 +34,8 @@ struct LineFaults {
   bool silent_reboot = false;    // its "start" is lost
   long mute_after_moves = -1;    // then it answers nothing any more
   bool advanced_ok = false;
+  bool other_words = false;             // as of another maker: errors in his words, M114 answered on the line of "ok"
+  long refuse_once = -1;                // this line, with its number, is refused when it comes first
   std::string axes = "XYZ";             // that the board has
   std::function<double(double)> clamp;  // soft endstops of X
 };
@@ -166,7 +168,8 @@ class FaultyMarlin {
 
   bool refuse(const std::string& why) {
     ++refused_;
-    say("Error:" + why + ", Last Line: " + std::to_string(last_));
+    say(faults_.other_words ? "Error:that was not understood"
+                            : "Error:" + why + ", Last Line: " + std::to_string(last_));
     say("Resend: " + std::to_string(last_ + 1));
     if (chance() < faults_.ok_after_resend) say("ok");
     return false;
@@ -188,6 +191,10 @@ class FaultyMarlin {
       unsigned char checksum = 0;
       for (std::size_t i = 0; i < star; ++i) checksum = static_cast<unsigned char>(checksum ^ line[i]);
       if (std::strtol(line.c_str() + star + 1, nullptr, 10) != checksum) return refuse("checksum mismatch");
+      if (n == faults_.refuse_once) {
+        faults_.refuse_once = -1;
+        return refuse("checksum mismatch");
+      }
       last_ = n;
       number = std::to_string(n);
       line = line.substr(0, star);
@@ -197,7 +204,8 @@ class FaultyMarlin {
       ++quick_stops_;
     }
     execute(line.substr(0, line.find('*')));
-    if (!boots_) say(faults_.advanced_ok && !number.empty() ? "ok N" + number + " P15 B3" : "ok");
+    const std::string tail = std::exchange(on_ok_, "");
+    if (!boots_) say("ok" + (faults_.advanced_ok && !number.empty() ? " N" + number + " P15 B3" : tail));
     if (boots_) boot();
     return true;
   }
@@ -249,7 +257,10 @@ class FaultyMarlin {
       std::snprintf(number, sizeof number, "%c:%.2f ", axis, found == position_.end() ? 0.0 : found->second);
       text += number;
     }
-    say(text + "Count X:0 Y:0 Z:0");
+    if (faults_.other_words)
+      on_ok_ = " " + text;
+    else
+      say(text + "Count X:0 Y:0 Z:0");
   }
 
   void boot() {
@@ -271,7 +282,7 @@ class FaultyMarlin {
   std::atomic<bool> quit_ = false;
   std::atomic<long> move_count_ = 0;
 
-  std::string command_;
+  std::string command_, on_ok_;
   bool comment_ = false, escaped_ = false, flush_ = false, boots_ = false, mute_ = false;
   long last_ = 0;
   Position position_;

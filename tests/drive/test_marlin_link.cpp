@@ -118,6 +118,31 @@ TEST(MarlinLink, CleanLineNeedsEachLineOnce) {
   }
 }
 
+TEST(MarlinLink, AnotherMakersWordsAreUnderstood) {
+  const GcodeProgram program = sample_program(60);
+  LineFaults faults;
+  faults.other_words = true;
+  faults.refuse_once = 10002;  // of the set-up
+  FaultyMarlin board(faults);
+  LinkOptions options = quick_options();
+  options.timeout_s = 5;
+  options.quiet_s = 0.01;
+  const StreamReport report = stream_to(board, program, options);
+  EXPECT_EQ(report.end, StreamEnd::finished) << report.message;
+  EXPECT_TRUE(report.position_known);
+  EXPECT_EQ(board.refused(), 1);
+  EXPECT_EQ(report.resends, 1u);
+  const auto begins = [](const std::string& command) { return command.starts_with("M110"); };
+  EXPECT_EQ(std::count_if(board.executed().begin(), board.executed().end(), begins), 1);
+  EXPECT_EQ(board.motions().size(), expected_motions(program).size());
+
+  faults.refuse_once = 10020;  // while it moves
+  FaultyMarlin again(faults);
+  const StreamReport moving = stream_to(again, program, options);
+  EXPECT_EQ(moving.end, StreamEnd::finished) << moving.message;
+  EXPECT_EQ(again.motions().size(), expected_motions(program).size());
+}
+
 TEST(MarlinLink, WorseLinesOfAllKinds) {
   const GcodeProgram program = sample_program(400);
   for (unsigned seed = 1; seed <= 10; ++seed) {
@@ -302,6 +327,12 @@ TEST(MarlinAnswer, KnowsWhatMarlinSays) {
   EXPECT_EQ(parse_answer("ok N123 P15 B3").number, 123);
   EXPECT_EQ(parse_answer("ok T:20.1 /0.0").number, std::nullopt);
   EXPECT_EQ(kind("okok"), Kind::other);
+  const MarlinAnswer on_ok = parse_answer("ok X:1.50 Y:-2.00 Z:0.00 E:0.00 Count: A:120");
+  EXPECT_EQ(on_ok.kind, Kind::ok);
+  ASSERT_EQ(on_ok.position.size(), 4u);
+  EXPECT_EQ(on_ok.position[1].second, -2);
+  EXPECT_TRUE(parse_answer("ok X:1.50 Y:-2.0").position.size() == 2 && parse_answer("ok X:1.50 Y:").position.empty());
+  EXPECT_EQ(kind("Error:something that nobody knows"), Kind::error);
   EXPECT_EQ(parse_answer("Resend: 12").number, 12);
   EXPECT_EQ(parse_answer("rs 12").number, 12);
   for (const char* line : {"Resend: ", "Resend: 1x", "Resend: -3", "Resend: 99999999999999999999"})

@@ -24,38 +24,46 @@ bool has(std::string_view line, std::string_view part) {
   return line.find(part) != std::string_view::npos;
 }
 
+/// "X:1.00 Y:2.00"; nothing where a coordinate is not whole: half a report is none.
+std::optional<std::vector<std::pair<char, double>>> coordinates(std::string_view text) {
+  std::vector<std::pair<char, double>> position;
+  while (!(text = without_blanks(text)).empty()) {
+    if (text.size() < 3 || text[1] != ':') return std::nullopt;
+    double value = 0;
+    const auto [end, failure] = std::from_chars(text.data() + 2, text.data() + text.size(), value);
+    if (failure != std::errc() || (end != text.data() + text.size() && *end != ' ')) return std::nullopt;
+    position.emplace_back(text[0], value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+  return position;
+}
+
 MarlinAnswer parse_ok(std::string_view line) {
   MarlinAnswer answer{MarlinAnswer::Kind::ok, {}, {}};
-  if (const std::size_t at = line.find(" N"); at != std::string_view::npos)
+  if (line.starts_with("ok X:")) {
+    if (auto position = coordinates(line.substr(3, line.find(" Count") - 3))) answer.position = std::move(*position);
+  } else if (const std::size_t at = line.find(" N"); at != std::string_view::npos) {
     answer.number = number_in(line.substr(at + 2, line.find(' ', at + 2) - at - 2));
+  }
   return answer;
 }
 
 /// One damaged byte leaves a mark of these messages whole, so that noise is not taken for a fault of the board.
 MarlinAnswer parse_error(std::string_view line) {
   const bool of_a_line = has(line, "Last Line") || has(line, "hecksum") || has(line, "Line Number");
-  if (!of_a_line) return {MarlinAnswer::Kind::halted, {}, {}};
+  if (!of_a_line) return {has(line, "halted") ? MarlinAnswer::Kind::halted : MarlinAnswer::Kind::error, {}, {}};
   MarlinAnswer answer{MarlinAnswer::Kind::line_error, {}, {}};
   if (const std::size_t at = line.rfind("Last Line: "); at != std::string_view::npos)
     answer.number = number_in(line.substr(at + 11));
   return answer;
 }
 
-/// Nothing where a coordinate is not whole: half a report is none.
 std::optional<MarlinAnswer> parse_position(std::string_view line) {
-  MarlinAnswer answer{MarlinAnswer::Kind::position, {}, {}};
   const std::size_t count = line.find(" Count");
   if (count == std::string_view::npos) return std::nullopt;
-  line = line.substr(0, count);
-  while (!(line = without_blanks(line)).empty()) {
-    if (line.size() < 3 || line[1] != ':') return std::nullopt;
-    double value = 0;
-    const auto [end, failure] = std::from_chars(line.data() + 2, line.data() + line.size(), value);
-    if (failure != std::errc() || (end != line.data() + line.size() && *end != ' ')) return std::nullopt;
-    answer.position.emplace_back(line[0], value);
-    line.remove_prefix(static_cast<std::size_t>(end - line.data()));
-  }
-  return answer;
+  auto position = coordinates(line.substr(0, count));
+  if (!position) return std::nullopt;
+  return MarlinAnswer{MarlinAnswer::Kind::position, {}, std::move(*position)};
 }
 
 }  // namespace

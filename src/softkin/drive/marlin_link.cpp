@@ -97,11 +97,25 @@ class Session {
       log('<', line_);
       MarlinAnswer answer = parse_answer(line_);
       if (answer.kind == Kind::started) booted();
-      if (answer.kind == Kind::halted)
-        throw Ended{StreamEnd::halted, "the board reports: " + line_ + "; the position is unknown"};
-      if (answer.kind == Kind::position) position_ = answer.position;
+      if (answer.kind == Kind::error) return what_follows(line_);
+      if (answer.kind == Kind::halted) halted(line_);
+      if (!answer.position.empty()) position_ = answer.position;
       return answer;
     }
+  }
+
+  [[noreturn]] void halted(const std::string& line) const {
+    throw Ended{StreamEnd::halted, "the board reports: " + line + "; the position is unknown"};
+  }
+
+  /// An error in words that Marlin does not use is one of the line where the board asks for it again.
+  MarlinAnswer what_follows(const std::string error) {
+    const double deadline = seconds_now() + options_.timeout_s;
+    while (auto answer = read(deadline)) {
+      if (answer->kind == Kind::resend) return *answer;
+      if (answer->kind == Kind::ok) break;
+    }
+    halted(error);
   }
 
   void booted() const {
@@ -130,9 +144,9 @@ class Session {
   /// The board expects this number. True where it is one of this stream.
   bool obey(long number) {
     disturbed_ = true;
-    if (!started_) throw Restart{"the board asked for line " + std::to_string(number)};
     const long index = number - base - 1;
     if (index < 0 || index > static_cast<long>(high_)) {
+      if (!started_) throw Restart{"the board asked for line " + std::to_string(number)};
       foreign_ = number == foreign_number_ ? foreign_ + 1 : 1;
       foreign_number_ = number;
       if (foreign_ >= foreign_limit)
