@@ -150,10 +150,11 @@ MeasureRequest understood(const MeasureOptions& options) {
   MeasureRequest request;
   std::set<std::string> names;
   request.given = options;
-  (void)dictionary_size(options.dictionary);
+  if (!options.board.empty()) request.board = parse_board(options.board);
+  if (options.dictionary.empty()) request.given.dictionary = (request.board ? *request.board : BoardSpec()).dictionary;
+  (void)dictionary_size(request.given.dictionary);
   if (!options.dots.empty()) read_dots(request, options.dots, names);
   if (!options.tags.empty()) read_tags(request, options.tags, names);
-  if (!options.board.empty()) request.board = parse_board(options.board);
   if (!options.scale.empty()) request.scale = read_scale(options.scale);
   if (!options.interface.empty()) {
     const std::vector<std::string> parts = parts_of(options.interface);

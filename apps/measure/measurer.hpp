@@ -16,7 +16,7 @@ using namespace vision;
 /// What the user asked for, as typed.
 struct MeasureOptions {
   std::vector<std::string> pictures;
-  std::string board, scale, camera, dots, tags, dictionary = "4x4_50", interface, origin, x_axis, output;
+  std::string board, scale, camera, dots, tags, dictionary, interface, origin, x_axis, output;
   std::vector<std::string> angles;
   double fps = 0;  // 0: not given
   int threads = 0;

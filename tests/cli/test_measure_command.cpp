@@ -251,6 +251,8 @@ TEST_F(Measure, RefusesOptionsByName) {
   refused({"--dots", "red", "--scale-board", "5x4,tag=12,gap=3mm"}, {"tag", "no unit"});
   refused({"--dots", "red", "--scale-board", "checker,9x6,square=10mm"}, {"upside down"});
   refused({"--tags=99", "--scale", "0,0,100,0=20mm"}, {"--tags", "no tag 99"});
+  refused({"--tags=250", "--scale-board", "5x4,tag=12mm,gap=3mm,dictionary=6x6_250"},
+          {"--tags", "dictionary 6x6_250 has no tag 250"});
   refused({"--tags", "--dictionary", "4x4", "--scale", "0,0,100,0=20mm"}, {"dictionary", "4x4"});
   refused({"--dots", "red", "--scale", "0,0,100,0=20mm", "--fps", "-1"}, {"--fps"});
   refused({"--interface", "red", "--scale", "0,0,100,0=20mm"}, {"--interface"});
