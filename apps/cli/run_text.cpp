@@ -15,8 +15,6 @@ namespace softkin::cli {
 
 namespace {
 
-constexpr double least_share = 0.02;  // of the work, before which the time left is not worth telling
-
 std::string grouped(std::size_t count) {
   std::string text = std::to_string(count);
   for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
@@ -120,7 +118,7 @@ void RunProgress::show(const std::string& detail, double share) {
   const double done = static_cast<double>(at_ - first_) + share_, all = static_cast<double>(all_ - first_);
   const double elapsed = seconds_now() - start_;
   std::string text = std::to_string(at_) + "/" + std::to_string(all_) + " " + what_ + "s, " + duration(elapsed);
-  if (done / all > least_share) text += ", " + duration(elapsed * (all - done) / done) + " left";
+  if (const auto left = left_.at(elapsed, done / all)) text += ", " + duration(*left) + " left";
   line_.show((static_cast<double>(at_) + share_) / static_cast<double>(all_), text + ", " + detail);
 }
 

@@ -51,7 +51,8 @@ class RunProgress {
   ProgressLine line_;
   std::size_t first_, all_, at_;
   std::string what_;
-  double start_;      // [s]
+  double start_;  // [s]
+  TimeLeft left_;
   double share_ = 0;  // of this record
 };
 

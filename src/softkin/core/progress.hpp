@@ -1,6 +1,9 @@
 #pragma once
 
+#include <deque>
 #include <functional>
+#include <optional>
+#include <utility>
 
 namespace softkin {
 
@@ -14,5 +17,17 @@ struct Progress {
 
 /// Called now and then; returning false stops the computation, which then reports status interrupted.
 using ProgressCallback = std::function<bool(const Progress&)>;
+
+/// Time left at the pace of late: work that slows down says so, instead of promising what its beginning did.
+class TimeLeft {
+ public:
+  /// seconds  since the work began
+  /// share    of it that is done, 0 to 1
+  /// returns  [s]; none before there is a pace, and where the work stands still
+  [[nodiscard]] std::optional<double> at(double seconds, double share);
+
+ private:
+  std::deque<std::pair<double, double>> seen_;
+};
 
 }  // namespace softkin
