@@ -51,6 +51,28 @@ TEST(VtkXml, ReadsInformationKeysAndWrappedBase64) {
   expect_reference_mesh(read_text(file));
 }
 
+TEST(VtkXml, RefusesToUnpackWhatIsNoMesh) {
+  const TempFolder folder;
+  XmlForm form{Format::raw};
+  form.long_header = form.compressed = true;
+  form.block = 1 << 20;
+  XmlWriter writer(form);
+  constexpr std::size_t points = 3'000'000;  // zeros: 72 MB of them in 70 kB
+  std::string xml =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
+      std::to_string(points) + "\" NumberOfCells=\"0\">\n<Points>\n" +
+      writer.array("Float64", "Points", 3, std::vector<double>(3 * points, 0.0)) +
+      "</Points>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_" + writer.appended +
+      "\n</AppendedData>\n</VTKFile>\n";
+  const std::string file = folder.write("bomb.vtu", xml);
+  ASSERT_LT(xml.size(), 200'000u);
+  const std::string why = refusal([&] { (void)read_vtu_points(file); });
+  EXPECT_NE(why.find("unpacks to 72000000 bytes, which makes more than a hundred times the file's size"),
+            std::string::npos)
+      << why;
+}
+
 TEST(VtkXml, ReadsPointsAlone) {
   const TempFolder folder;
   const Points points = read_vtu_points(folder.write("a.vtu", xml_file({Format::raw, true, true, true})));

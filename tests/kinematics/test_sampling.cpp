@@ -152,6 +152,7 @@ TEST(Sampling, RefusesWhatCannotBeSampled) {
   expect_refused(unit_ranges(3), {Sampling::grid, 100, 0}, "the nearest grid has 5 values each, 125 samples");
   expect_refused(unit_ranges(3), {Sampling::sobol, 0, 0}, "must be 1 or more");
   expect_refused(unit_ranges(9), {Sampling::sobol, 10, 0}, "8 actuators at most");
+  expect_refused(unit_ranges(64), {Sampling::grid, 100, 0}, "at least 1.84e+19 samples");
   expect_refused(ranges({{1, 1}}), {Sampling::random, 10, 0}, "no actuator whose range is more than one value");
 }
 

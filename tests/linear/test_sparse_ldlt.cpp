@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <random>
 #include <set>
+#include <softkin/core/error.hpp>
 #include <softkin/linear/ordering.hpp>
 #include <softkin/linear/sparse_ldlt.hpp>
 
@@ -199,6 +200,18 @@ TEST(SparseLdlt, NothingToSolve) {
   EXPECT_EQ(factor.factorise({}, 1e-12, alone).negative, 0);
   Eigen::MatrixXd empty(0, 1);
   factor.solve(empty, alone);
+}
+
+TEST(SparseLdlt, AFactorThatDoesNotFitIsRefusedBeforeItIsBegun) {
+  FrontTree tree = make_front_tree(BlockColumns{});
+  EXPECT_NO_THROW(require_memory(tree));
+  tree.values = std::int64_t{1} << 50;
+  try {
+    require_memory(tree);
+    FAIL() << "not refused";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("takes 8388608.0 GiB of memory"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace softkin::linear

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/kinematics/sampling.hpp>
 
 namespace softkin {
@@ -157,6 +158,9 @@ std::vector<Index> varied_actuators(const Model& model) {
 
 Index nearest_grid(const Model& model, Index samples) {
   const std::size_t dimensions = varied_or_refuse(model);
+  if (grid_samples(2, dimensions) > std::numeric_limits<Index>::max())
+    throw InvalidInput("a grid over " + std::to_string(dimensions) + " actuators has at least " +
+                       number(grid_samples(2, dimensions), 3) + " samples, more than can be solved: sample at random");
   const auto root = static_cast<Index>(std::pow(samples, 1 / static_cast<double>(dimensions)));
   Index best = std::max<Index>(2, root - 1);
   for (Index values = best + 1; values <= root + 2; ++values)

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <softkin/core/error.hpp>
+#include <softkin/core/memory.hpp>
 #include <softkin/linear/front_kernel.hpp>
 #include <softkin/linear/front_tree.hpp>
 
@@ -259,6 +261,16 @@ FrontTree make_front_tree(BlockColumns columns) {
   plan_arenas(tree);
   place_rows(pattern, tree);
   return tree;
+}
+
+void require_memory(const FrontTree& tree) {
+  double values = static_cast<double>(tree.values);
+  for (const std::int64_t arena : tree.arena_sizes) values += static_cast<double>(arena);
+  const double needed = values * sizeof(double), there = free_memory_bytes();
+  if (needed > there)
+    throw InvalidInput("the factor of a robot with " + std::to_string(tree.pattern.size()) + " unknowns takes " +
+                       memory_text(needed) + " of memory, and " + memory_text(there) +
+                       " are free: take a coarser mesh, or order 1");
 }
 
 }  // namespace softkin::linear

@@ -42,4 +42,7 @@ struct FrontTree {
 ///         zeros that this stores are few
 [[nodiscard]] FrontTree make_front_tree(BlockColumns pattern);
 
+/// throws  InvalidInput where the machine has not the memory that a factorisation takes
+void require_memory(const FrontTree& tree);
+
 }  // namespace softkin::linear

@@ -133,7 +133,8 @@ struct Blocks {
   std::vector<std::uint64_t> compressed;
 };
 
-Blocks read_blocks(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<std::uint64_t> expected) {
+Blocks read_blocks(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<std::uint64_t> expected,
+                   std::uint64_t allowed) {
   const std::uint64_t count = read_word(bytes, encoding), size = read_word(bytes, encoding);
   const std::uint64_t partial = read_word(bytes, encoding);
   if (count > bytes.bound() / (encoding.long_header ? 8 : 4))
@@ -144,6 +145,9 @@ Blocks read_blocks(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<s
     bytes.fail("announces blocks of " + std::to_string(size) + " bytes, more than the compressed data can hold");
   Blocks blocks{size, partial > 0 ? partial : size, whole * size + (count > 0 ? partial : 0), {}};
   check_size(bytes, blocks.total, expected);
+  if (blocks.total > allowed)
+    bytes.fail("unpacks to " + std::to_string(blocks.total) +
+               " bytes, which makes more than a hundred times the file's size: no mesh does");
   std::uint64_t sum = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t compressed = read_word(bytes, encoding);
@@ -175,8 +179,9 @@ std::string inflate_blocks(VtuBytes& bytes, const Blocks& blocks) {
   return data;
 }
 
-std::string read_data(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<std::uint64_t> expected) {
-  if (encoding.zlib_compressed) return inflate_blocks(bytes, read_blocks(bytes, encoding, expected));
+std::string read_data(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<std::uint64_t> expected,
+                      std::uint64_t most) {
+  if (encoding.zlib_compressed) return inflate_blocks(bytes, read_blocks(bytes, encoding, expected, most));
   const std::uint64_t size = read_word(bytes, encoding);
   check_size(bytes, size, expected);
   return bytes.read(size, "its data");
@@ -190,9 +195,9 @@ std::size_t line_of(std::string_view content, std::size_t position) {
 }
 
 std::string read_vtu_data(std::string_view content, const VtuPlace& place, const VtuEncoding& encoding,
-                          std::optional<std::uint64_t> expected) {
+                          std::optional<std::uint64_t> expected, std::uint64_t most) {
   VtuBytes bytes(content, place);
-  std::string data = read_data(bytes, encoding, expected);
+  std::string data = read_data(bytes, encoding, expected, most);
   if (!place.by_byte) bytes.finish();
   return data;
 }

@@ -31,7 +31,8 @@ struct VtuPlace {
 /// beyond what the remaining content can hold.
 ///
 /// expected  size that the file's counts ask for, where they do
+/// most      bytes that it may unpack to
 [[nodiscard]] std::string read_vtu_data(std::string_view content, const VtuPlace& place, const VtuEncoding& encoding,
-                                        std::optional<std::uint64_t> expected);
+                                        std::optional<std::uint64_t> expected, std::uint64_t most);
 
 }  // namespace softkin

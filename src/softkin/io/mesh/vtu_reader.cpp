@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::int64_t kMost = std::numeric_limits<Index>::max();
 constexpr std::string_view kBlanks = " \t\r\n";
+/// Coordinates pack to a half, connectivity to a tenth: who unpacks to more than this many times the file wants to fill
+/// the memory. Nothing small does.
+constexpr std::uint64_t kMostUnpacked = 100, kSmall = 1 << 26;
 
 /// Where <AppendedData> begins, outside comments, or npos.
 std::size_t find_appended_tag(std::string_view content) {
@@ -232,7 +235,7 @@ class VtuDocument {
       const Range range = inline_text(array);
       place.begin = range.begin;
       place.end = range.end;
-      return read_vtu_data(content_, place, encoding_, expected);
+      return unpacked(place, expected);
     }
     if (!appended_) fail(array, "appended data, but the file has no AppendedData");
     const std::size_t size = appended_->end - appended_->begin;
@@ -244,7 +247,14 @@ class VtuDocument {
     place.end = appended_->end;
     place.base64 = appended_base64_;
     place.by_byte = true;
-    return read_vtu_data(content_, place, encoding_, expected);
+    return unpacked(place, expected);
+  }
+
+  [[nodiscard]] std::string unpacked(const VtuPlace& place, std::optional<std::uint64_t> expected) const {
+    const std::uint64_t most = std::max<std::uint64_t>(kSmall, kMostUnpacked * content_.size());
+    std::string data = read_vtu_data(content_, place, encoding_, expected, most - std::min(most, unpacked_));
+    unpacked_ += data.size();
+    return data;
   }
 
   [[nodiscard]] bool is_ascii(pugi::xml_node array) const {
@@ -291,6 +301,7 @@ class VtuDocument {
   pugi::xml_document xml_;
   pugi::xml_node grid_;
   VtuEncoding encoding_;
+  mutable std::uint64_t unpacked_ = 0;  // bytes
   bool knows_byte_order_ = false;
   std::optional<Range> appended_;  // after the underscore
   bool appended_base64_ = false;

@@ -27,6 +27,7 @@ System::System(const Model& model)
   pattern_ = std::make_unique<linear::BlockPattern>(static_cast<Index>(model.rest.rows()), cliques);
   freedoms_ = std::make_unique<supports::Freedoms>(model, *pattern_);
   symbolic_ = std::make_shared<const linear::FrontTree>(linear::make_front_tree(freedoms_->columns()));
+  linear::require_memory(*symbolic_);  // before what takes long
   turning_ = std::make_unique<supports::GlobalStep>(model, elastic_.laplacian(), freedoms_->vertex_order());
 }
 

@@ -135,6 +135,7 @@ Unknowns::Unknowns(const Model& robot, const System& target_shapes)
 
 Tangent::Tangent(const Unknowns& unknowns)
     : unknowns_(unknowns), factor_(unknowns.symbolic), work_(unknowns.system.make_scratch()) {
+  linear::require_memory(*unknowns.symbolic);
   const Index size = unknowns.freedoms.size();
   column_.resize(size, 1);
   turned_.resize(size);
