@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/statics/target_shape/local_global.hpp>
+#include <utility>
 
 namespace softkin::target_shape {
 
@@ -37,6 +38,29 @@ class ErrorEstimate {
 };
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// Notices iterations that go round in circles: so many of which the least step is hardly shorter than before, and the
+/// least energy no smaller. Where that is the pace, no number of iterations that anybody waits for is enough.
+class Stall {
+ public:
+  static constexpr int window = 2000;
+
+  [[nodiscard]] bool add(const IterationRecord& record) {
+    constexpr double hardly = 0.9, no_smaller = 1 - 1e-6;
+    step_mm_ = std::min(step_mm_, record.step_mm);
+    energy_ = std::min(energy_, record.energy);
+    if (++count_ % window != 0) return false;
+    const bool stalled = step_mm_ > hardly * best_step_mm_ && energy_ > no_smaller * best_energy_;
+    best_step_mm_ = std::min(best_step_mm_, std::exchange(step_mm_, unlimited));
+    best_energy_ = std::min(best_energy_, std::exchange(energy_, unlimited));
+    return stalled;
+  }
+
+ private:
+  double step_mm_ = unlimited, energy_ = unlimited;  // least in this window
+  double best_step_mm_ = unlimited, best_energy_ = unlimited;
+  int count_ = 0;
+};
 
 }  // namespace
 
@@ -94,6 +118,7 @@ void solve_local_global(const System& system, const supports::GlobalStep& global
   LocalGlobal iteration(system, global, options.anderson, result.state.positions);
   System::Scratch scratch = system.make_scratch();
   ErrorEstimate estimate;
+  Stall stall;
   while (report.iterations < options.max_iterations) {
     IterationRecord record;
     if (!iteration.iterate(result.actuation, scratch, team, record)) break;
@@ -105,6 +130,10 @@ void solve_local_global(const System& system, const supports::GlobalStep& global
     }
     if (progress && !progress({report.iterations, report.step_mm, report.tolerance_mm})) {
       report.status = Status::interrupted;
+      break;
+    }
+    if (stall.add(record)) {
+      report.remark = "the last " + std::to_string(Stall::window) + " iterations led nowhere";
       break;
     }
     if (report.iterations < options.max_iterations) iteration.extrapolate();

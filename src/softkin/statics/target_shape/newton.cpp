@@ -327,7 +327,9 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
     report.continuation_steps = 1;
     solve_local_global(unknowns_.system, global_, options, progress, team, result);
     report.solver = "newton";
-    if (report.status != Status::converged) report.remark = "neither Newton's method nor Algorithm 1 converged";
+    if (report.status != Status::converged)
+      report.remark = "neither Newton's method nor Algorithm 1 converged" +
+                      (report.remark.empty() ? "" : " (" + report.remark + ")");
     return;
   }
   report.status = end == End::converged     ? Status::converged
