@@ -39,10 +39,12 @@ int main(int argc, char** argv) {
   cli::add_measure(app, run);
   cli::add_walk(app, run);
   cli::add_workspace(app, run);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return cli::answer_usage(app, error, chosen_command(app));
-  }
-  return cli::outcome_of(run);
+  return cli::outcome_of([&] {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return cli::answer_usage(app, error, chosen_command(app));
+    }
+    return run();
+  });
 }

@@ -114,11 +114,20 @@ void print(const std::string& text) {
   if (std::fflush(stdout) != 0) throw InvalidInput("standard output cannot be written");
 }
 
+namespace {
+
+/// An error is one line, whatever the names of files in it hold.
+void complain(std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = c == '\n' || c == '\t' ? ' ' : '?';
+  std::fprintf(stderr, "softkin: %s\n", message.c_str());
+}
+
+}  // namespace
+
 int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::string& command) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-  std::string message = error.what();
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  std::fprintf(stderr, "softkin: %s (%s --help tells more)\n", message.c_str(), command.c_str());
+  complain(std::string(error.what()) + " (" + command + " --help tells more)");
   return bad_input;
 }
 
@@ -126,13 +135,13 @@ int outcome_of(const Run& run) {
   try {
     return run();
   } catch (const InvalidInput& error) {
-    std::fprintf(stderr, "softkin: %s\n", error.what());
+    complain(error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    std::fprintf(stderr, "softkin: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
+    complain(error.path1().string() + ": " + error.code().message());
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "softkin: out of memory\n");
+    complain("out of memory");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "softkin: internal error, please report it: %s\n", error.what());
+    complain(std::string("internal error, please report it: ") + error.what());
   }
   return bad_input;
 }

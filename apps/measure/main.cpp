@@ -166,7 +166,8 @@ void add_what(CLI::App& app, MeasureOptions& options) {
          "--tags", options.tags,
          "Centres of ArUco tags: --tags for all in the first picture but those of the board, --tags=3,tip=7 for these")
       ->type_name("NUMBERS");
-  add_value(app, "--dictionary", options.dictionary, "NAME", "Of --tags: 4x4_50 (default) to 7x7_1000, original");
+  add_value(app, "--dictionary", options.dictionary, "NAME",
+            "Of --tags: 4x4_50 to 7x7_1000, original (default: that of the board, else 4x4_50)");
   add_value(app, "--interface", options.interface, "A,B",
             "A bar of two colours, that at the fixed end first: lengths L and L_1, and from the second picture on "
             "Delta L and Delta L_1 against the first, for softkin calibrate material");
@@ -276,10 +277,12 @@ int main(int argc, char** argv) {
   add_photos(app, run);
   add_camera(app, run);
   add_board(app, run);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return answer_usage(app, error, "softkin measure");
-  }
-  return outcome_of(run);
+  return outcome_of([&] {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return answer_usage(app, error, "softkin measure");
+    }
+    return run();
+  });
 }

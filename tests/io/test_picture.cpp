@@ -471,7 +471,7 @@ TEST_F(PictureTest, AFolderThatIsNotThereIsNamed) {
     write_picture(nowhere, {square(0)}, from_above(64, 64));
     FAIL() << "not refused";
   } catch (const InvalidInput& refusal) {
-    EXPECT_EQ(std::string(refusal.what()), nowhere.string() + ": cannot be written");
+    EXPECT_EQ(std::string(refusal.what()), nowhere.string() + ": cannot be written: No such file or directory");
   }
 }
 

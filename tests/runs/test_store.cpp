@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
 #include <softkin/runs/store.hpp>
 
 #include "cli/run_program.hpp"
@@ -206,6 +207,20 @@ TEST(Store, TakesBackARecordThatTheDiskHasNoRoomFor) {
   }
   store.append("long enough to need the room");
   EXPECT_EQ(records_of(store), (std::vector<std::string>{"a", "short", "long enough to need the room"}));
+}
+
+TEST(WriteFile, SaysWhyAndLeavesWhatWasThere) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("report.json", "before");
+  {
+    const SmallDisk disk(10);
+    const std::string why = message_of([&] { write_file(file, std::string(100'000, 'x')); });
+    EXPECT_NE(why.find("report.json: cannot be written: File too large"), std::string::npos) << why;
+  }
+  EXPECT_EQ(read_text(file), "before");
+  EXPECT_EQ(folder.files(), 1u);
+  write_file(file, "after");
+  EXPECT_EQ(read_text(file), "after");
 }
 
 TEST(Store, WithoutANameLeavesNothing) {

@@ -1,4 +1,6 @@
+#include <softkin/core/error.hpp>
 #include <softkin/core/team.hpp>
+#include <system_error>
 
 namespace softkin {
 
@@ -28,15 +30,40 @@ std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint
 
 }  // namespace
 
-Team::Team(int threads) {
-  const int size = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  for (int i = 1; i < size; ++i) workers_.emplace_back([this] { work(); });
+std::vector<std::thread> start_threads(int count, const std::function<void()>& work,
+                                       const std::function<void()>& stop) {
+  std::vector<std::thread> threads;
+  const auto give_up = [&](const std::string& why) {
+    stop();
+    for (std::thread& thread : threads) thread.join();
+    throw InvalidInput("only " + std::to_string(threads.size()) + " of " + std::to_string(count) +
+                       " more threads could be started (" + why + "): ask for fewer with --threads");
+  };
+  try {
+    threads.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) threads.emplace_back(work);
+  } catch (const std::system_error& error) {
+    give_up(error.code().message());
+  } catch (const std::bad_alloc&) {
+    give_up("out of memory");
+  }
+  return threads;
 }
 
-Team::~Team() {
+Team::Team(int threads) {
+  const int size = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  workers_ = start_threads(
+      size - 1, [this] { work(); }, [this] { end(); });
+}
+
+void Team::end() {
   ended_.store(true);
   loops_.fetch_add(1, std::memory_order_release);
   loops_.notify_all();
+}
+
+Team::~Team() {
+  end();
   for (std::thread& worker : workers_) worker.join();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <softkin/core/types.hpp>
@@ -11,12 +12,19 @@
 
 namespace softkin {
 
+/// Threads that all run `work`.
+///
+/// stop    called where not all can be started: makes `work` return
+/// throws  InvalidInput where the machine does not let so many start; those that did have ended by then
+[[nodiscard]] std::vector<std::thread> start_threads(int count, const std::function<void()>& work,
+                                                     const std::function<void()>& stop);
+
 /// Threads that work on one loop after another. Idle ones sleep, and a loop waits only for threads that have begun a
 /// piece of it: a busy machine slows the team down no more than its share of the processors does (OpenMP's barriers,
 /// which wait for every thread, were five times slower there). A team of one may be shared by several threads.
 class Team {
  public:
-  /// threads >= 1, the caller's included; 0: as many as the machine has.
+  /// threads >= 1, the caller's included; 0: as many as the machine has. Throws as start_threads
   explicit Team(int threads);
   ~Team();
   Team(const Team&) = delete;
@@ -42,6 +50,7 @@ class Team {
 
  private:
   using Call = void (*)(const void*, Index);
+  void end();
   void run(Index count, Call call, const void* body);
   void work();
   void take_pieces();
@@ -71,7 +80,7 @@ class TeamPool {
   using Lent = std::unique_ptr<Team, GiveBack>;
 
   /// A team of so many threads, >= 1; one is made where none is idle, so that there are as many as were ever lent at
-  /// once. May be called on several threads at once.
+  /// once. May be called on several threads at once. Throws as start_threads
   [[nodiscard]] Lent lend(int threads);
 
  private:

@@ -1,7 +1,10 @@
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <set>
@@ -19,6 +22,8 @@ std::string read_file(const fs::path& path) {
   std::error_code failure;
   if (!fs::exists(path, failure)) throw InvalidInput({path.string()}, "no such file");
   if (fs::is_directory(path, failure)) throw InvalidInput({path.string()}, "is a folder, not a file");
+  if (fs::is_character_file(path, failure) || fs::is_block_file(path, failure))  // may never end
+    throw InvalidInput({path.string()}, "is a device, not a file");
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream content;
   if (!stream || !(content << stream.rdbuf())) {
@@ -34,17 +39,35 @@ void write_file(const fs::path& path, std::string_view content) {
   });
 }
 
+namespace {
+
+/// Makes what was written outlive the machine: else a crash may leave the new name with nothing in it.
+void sync(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  (void)::fsync(descriptor);  // a disk may know none
+  ::close(descriptor);
+}
+
+}  // namespace
+
 void write_file(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   const fs::path part = path.string() + "." + std::to_string(::getpid()) + ".part";
+  errno = 0;
   std::ofstream stream(part, std::ios::binary);
-  write(stream);
+  if (stream) write(stream);
   stream.close();
+  std::string why = errno != 0 ? std::strerror(errno) : "the disk does not take it";
   std::error_code failure;
-  if (stream) fs::rename(part, path, failure);
+  if (stream) {
+    sync(part);
+    fs::rename(part, path, failure);
+    why = failure.message();
+  }
   if (!stream || failure) {
     std::error_code ignored;
     fs::remove(part, ignored);
-    throw InvalidInput({path.string()}, "cannot be written");
+    throw InvalidInput({path.string()}, "cannot be written: " + why);
   }
 }
 

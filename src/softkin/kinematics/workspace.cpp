@@ -3,6 +3,7 @@
 #include <exception>
 #include <mutex>
 #include <softkin/core/error.hpp>
+#include <softkin/core/team.hpp>
 #include <softkin/kinematics/workspace.hpp>
 #include <softkin/statics/statics.hpp>
 #include <thread>
@@ -165,8 +166,7 @@ void solve_groups(const Model& model, const Statics& statics, const WorkspacePla
       stopped = true;
     }
   };
-  std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) others.emplace_back(work);
+  std::vector<std::thread> others = start_threads(threads - 1, work, [&] { stopped = true; });
   work();
   for (std::thread& other : others) other.join();
   if (failure) std::rethrow_exception(failure);

@@ -75,6 +75,7 @@ class Run {
       resumed_ = true;
       return Advance::interrupted;
     }
+    log_.begin();
     const std::size_t number = done();
     if (number > 0 && number % fresh_every == 0) job_.go_on(number, last_, positions_);
     auto made = job_.make(number, progress);
@@ -89,8 +90,7 @@ class Run {
 
   /// The report and the series' collection, of what is done.
   void finish() {
-    if (done() == 0) return;
-    if (!files_.shapes.empty()) {
+    if (done() > 0 && !files_.shapes.empty()) {
       std::vector<PvdEntry> entries;
       log_.each([&](std::size_t number, const Record& record) {
         entries.push_back({record.time_s.value_or(static_cast<double>(number)), record.shape});

@@ -25,13 +25,15 @@ struct RecordLog::Parts {
   [[nodiscard]] fs::path journal() const {
     return files.report.empty() ? fs::path() : fs::path(files.report.string() + ".run");
   }
-  void begin() { store.emplace(journal(), line_of(head) + "\n", false); }
 };
 
 RecordLog::RecordLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same)
     : parts_(new Parts{model, std::move(files), Json::parse(head), std::move(same), {}, 0}) {}
 
-RecordLog::~RecordLog() = default;
+RecordLog::~RecordLog() {
+  if (parts_ && parts_->store && size() == 0) parts_->store->remove();
+}
+
 RecordLog::RecordLog(RecordLog&&) noexcept = default;
 
 void RecordLog::refuse(const std::string& why) const {
@@ -115,8 +117,12 @@ void RecordLog::add_shape(StepRecord& record, const Points& positions, const Ele
   record.shape_fingerprint = fingerprint_of(positions);
 }
 
+void RecordLog::begin() {
+  if (!parts_->store) parts_->store.emplace(parts_->journal(), line_of(parts_->head) + "\n", false);
+}
+
 void RecordLog::add(std::string_view line, double seconds) {
-  if (!parts_->store) parts_->begin();
+  begin();
   parts_->store->append(line);
   parts_->seconds += seconds;
 }
@@ -152,7 +158,7 @@ void RecordLog::report(const std::function<void(std::string_view)>& write) const
 
 void RecordLog::finish() {
   if (!parts_->store) return;
-  if (!parts_->files.report.empty())
+  if (!parts_->files.report.empty() && size() > 0)
     write_file(parts_->files.report, [this](std::ostream& stream) {
       report([&](std::string_view piece) { stream.write(piece.data(), static_cast<std::streamsize>(piece.size())); });
     });

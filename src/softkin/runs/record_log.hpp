@@ -52,6 +52,10 @@ class RecordLog {
 
   [[nodiscard]] std::size_t size() const;
 
+  /// Takes the journal before the first record is made, so that no second softkin writes beside this one; nothing where
+  /// that is done. Throws as Store
+  void begin();
+
   /// Writes the shape into the series and the record, with its shape, behind the others.
   void add_shape(StepRecord& record, const Points& positions, const ElementDeformation& deformation) const;
   void add(std::string_view line, double seconds);
@@ -63,7 +67,7 @@ class RecordLog {
   void note(const std::string& key, const std::vector<double>& values);
   /// The report, piece by piece.
   void report(const std::function<void(std::string_view piece)>& write) const;
-  /// Writes the report, and removes the journal.
+  /// Writes the report of what there is, and removes the journal.
   void finish();
 
  private:

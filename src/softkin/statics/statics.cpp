@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <softkin/core/error.hpp>
@@ -86,11 +87,17 @@ struct Statics::Parts {
     target_shape::Newton newton;
   };
   [[nodiscard]] TeamPool::Lent team(const StaticsOptions& options) {
-    return teams.lend(options.threads > 0 ? options.threads : worthwhile);
+    if (options.threads > 0) return teams.lend(options.threads);
+    try {
+      return teams.lend(worthwhile);
+    } catch (const InvalidInput&) {  // nobody asked for so many; the result is the same
+      worthwhile = 1;
+      return teams.lend(1);
+    }
   }
 
   const Model& model;
-  int worthwhile = 1;  // threads
+  std::atomic<int> worthwhile = 1;  // threads
   TeamPool teams;
   std::optional<TargetShape> target_shape;
   std::optional<physical::Equilibria> physical;

@@ -49,10 +49,11 @@ std::optional<long> number_of(const fs::path& path) {
 /// In the order of their numbers. A gap would shift the clock, so it is refused.
 std::vector<fs::path> pictures_in(const fs::path& folder) {
   std::vector<std::pair<long, fs::path>> found;
+  std::error_code failure;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string extension = lower_extension(entry.path());
     for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".ppm", ".pgm", ".webp"}) {
-      if (!entry.is_regular_file() || extension != known) continue;
+      if (extension != known || !entry.is_regular_file(failure)) continue;
       const auto number = number_of(entry.path());
       if (!number) throw InvalidInput({entry.path().string()}, "a frame needs a number in its name");
       found.emplace_back(*number, entry.path());
@@ -142,7 +143,8 @@ RgbImage read_picture(const fs::path& path) {
 }
 
 bool is_film(const fs::path& path) {
-  if (fs::is_directory(path)) return true;
+  std::error_code failure;  // a link to itself: told where it is read
+  if (fs::is_directory(path, failure)) return true;
   const std::string extension = lower_extension(path);
   for (const char* known : {".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv"})
     if (extension == known) return true;
@@ -150,7 +152,8 @@ bool is_film(const fs::path& path) {
 }
 
 Film::Film(std::vector<fs::path> files, std::optional<double> rate) : name_(files.at(0).string()) {
-  const bool folder = fs::is_directory(files[0]);
+  std::error_code failure;
+  const bool folder = fs::is_directory(files[0], failure);
   if (files.size() > 1 || folder) {
     pictures_ = files.size() > 1 ? std::move(files) : pictures_in(files[0]);
     frames_ = pictures_.size();
