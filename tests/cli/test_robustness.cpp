@@ -16,7 +16,8 @@ std::string block_scene(const TemporaryFolder& folder) {
   return folder.write("block.yaml",
                       "softkin: 1\nmesh: {file: block.msh}\nmaterials: [{youngs_modulus: 1, poisson_ratio: 0.3}]\n"
                       "fixed: [{region: base}]\n"
-                      "actuators: [{name: air, kind: pneumatic, region: chamber, range: [0.5, 3]}]\n");
+                      "actuators: [{name: air, kind: pneumatic, region: chamber, range: [0.5, 3]}]\n"
+                      "markers: [{name: tip, region: base}]\n");
 }
 
 /// Refused as it should be: one line, exit code 2.
