@@ -98,7 +98,7 @@ class IkRun {
                               number(record.error_mm, 2) + " mm off";
     if (!options_.output.empty()) runs::write_shape(options_.output, model_, positions, deformation, true);
     if (!options_.show.image.empty())
-      runs::write_image(options_.show.image, model_, positions, options_.show.view, title);
+      runs::write_image(options_.show.image, model_, positions, options_.show.view, title, search_.goals);
     if (!options_.show.plot.empty())
       write_svg(options_.show.plot, ik_plot(found_, search_.inverse.tolerance_mm, title));
     if (!options_.json) {

@@ -299,6 +299,55 @@ TEST_F(PictureTest, SeeThroughLayersHideWhereTheyNearlyCoincide) {
   EXPECT_TRUE(near(drawn({solid, wide}, from_above(200, 100)).at(20, 50), {255, 128, 128}, 1)) << "on the background";
 }
 
+TEST_F(PictureTest, ALayerBehindLeavesTheSolidOneAsItIs) {
+  PictureLayer ghost = rectangle(-2, 2, -1, 1, 1);  // nearer than the solid one
+  ghost.color = {1, 0, 0};
+  ghost.opacity = 0.5;
+  ghost.behind = true;
+  const Picture picture = drawn({square(0), ghost}, from_above(200, 100));
+  EXPECT_EQ(picture.at(100, 50), (Pixel{0, 0, 255}));
+  EXPECT_TRUE(near(picture.at(20, 50), {255, 128, 128}, 1)) << "on the background";
+}
+
+/// Drawing area 180 x 180, so that 1 mm is 90 pixels and the middle is at (100, 100).
+TEST_F(PictureTest, MarksStandOverTheLayersWhereTheyAre) {
+  const Pixel red{255, 0, 0}, blue{0, 0, 255};
+  const auto place = [](double x, double y) { return std::pair(int(100 + 90 * x), int(100 - 90 * y)); };
+  PictureMark line;
+  line.points.resize(3, 3);
+  line.points << -0.5, -0.5, -3, 0.5, -0.5, 0, 0.5, 0.5, 3;  // also behind the square
+  line.color = {1, 0, 0};
+  PictureMark dot{Points::Constant(1, 3, 0), "", {1, 0, 0}};
+  PictureMark cross = dot;
+  cross.points << -0.5, 0.5, 0;
+  cross.sign = PictureMark::Sign::cross;
+  write_picture(path(), {square(0)}, from_above(200, 200), {line, dot, cross});
+  const Picture picture = read_png(path());
+  for (const auto& [x, y] :
+       {place(-0.5, -0.5), place(0, -0.5), place(0.5, 0), place(0.5, 0.5), place(0, 0), place(-0.5, 0.5)})
+    EXPECT_TRUE(near(picture.at(x, y), red, 90)) << x << " " << y;
+  const auto [x, y] = place(-0.5, 0.5);
+  for (const int way : {-1, 1}) {
+    EXPECT_TRUE(near(picture.at(x + 2 * way, y + 2 * way), red, 90)) << "an arm of the cross";
+    EXPECT_FALSE(near(picture.at(x + 3 * way, y), red, 90)) << "between its arms";
+  }
+  EXPECT_EQ(picture.at(70, 110), blue) << "away from all marks";
+}
+
+TEST_F(PictureTest, MarksAreInThePictureWhereverTheyAre) {
+  PictureMark far{Points::Constant(1, 3, 0), "", {1, 0, 0}};
+  far.points << 3, 0, 0;
+  write_picture(path(), {square(0)}, from_above(200, 100), {far});
+  const Picture picture = read_png(path());  // 4 mm on 180 pixels
+  EXPECT_EQ(picture.at(190, 50), (Pixel{255, 0, 0}));
+  EXPECT_EQ(picture.at(55, 50), (Pixel{0, 0, 255}));
+  EXPECT_EQ(picture.at(150, 50), white);
+  far.points << std::nan(""), 0, 0;
+  EXPECT_THROW(write_picture(path(), {square(0)}, from_above(200, 100), {far}), InvalidInput);
+  far.points.resize(0, 3);
+  EXPECT_THROW(write_picture(path(), {square(0)}, from_above(200, 100), {far}), InvalidInput);
+}
+
 TEST_F(PictureTest, EdgesAreThinAndDark) {
   PictureLayer layer = square(0, {1, 1, 0});
   layer.edges = true;

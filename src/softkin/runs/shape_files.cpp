@@ -28,6 +28,43 @@ std::vector<ElementRole> all_roles(const Model& model) {
   return roles;
 }
 
+constexpr std::array<double, 3> cable_color{0.80, 0.33, 0.10}, marker_color{0.13, 0.13, 0.15},
+    target_color{0.80, 0.10, 0.35};
+
+/// A line to where a goal wants its marker, with a cross at its end; nothing of a direction.
+void add_target(const Goal& goal, const Model& model, const Points& positions, std::vector<PictureMark>& marks) {
+  Vec3 from, to;
+  if (const auto* at = std::get_if<PositionGoal>(&goal.what)) {
+    from = to = model.markers[at->marker].point.at(positions);
+    for (int axis = 0; axis < 3; ++axis)
+      if (at->axes[axis]) to[axis] = at->target[axis];
+  } else if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) {
+    const Vec3 normal = plane->normal.stableNormalized();
+    from = model.markers[plane->marker].point.at(positions);
+    to = from - normal.dot(from - plane->point) * normal;
+  } else {
+    return;
+  }
+  Points line(2, 3);
+  line << from.transpose(), to.transpose();
+  marks.push_back({line, "", target_color});
+  marks.push_back({to.transpose(), "", target_color, PictureMark::Sign::cross});
+}
+
+std::vector<PictureMark> marks_of(const Model& model, const Points& positions, const std::vector<Goal>& goals) {
+  std::vector<PictureMark> marks;
+  for (const Actuator& actuator : model.actuators) {
+    if (actuator.kind != ActuatorKind::cable) continue;
+    Points line(static_cast<Index>(actuator.points.size()), 3);
+    for (Index i = 0; i < line.rows(); ++i) line.row(i) = actuator.points[i].at(positions).transpose();
+    marks.push_back({line, "", cable_color});
+  }
+  for (const Goal& goal : goals) add_target(goal, model, positions, marks);
+  for (const Marker& marker : model.markers)
+    marks.push_back({marker.point.at(positions).transpose(), marker.name, marker_color});
+  return marks;
+}
+
 }  // namespace
 
 void write_shape(const fs::path& path, const Model& model, const Points& positions,
@@ -56,7 +93,7 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
 }
 
 void write_image(const fs::path& path, const Model& model, const Points& positions, const std::vector<double>& view,
-                 const std::string& title) {
+                 const std::string& title, const std::vector<Goal>& goals) {
   const std::vector<Triangle> surface = visible_surface(model);
   PictureLayer shape, ghost;
   shape.points = positions;
@@ -66,13 +103,14 @@ void write_image(const fs::path& path, const Model& model, const Points& positio
   ghost.points = model.rest;
   ghost.triangles = surface;
   ghost.opacity = 0.15;
+  ghost.behind = true;
   ghost.edges = false;
   PictureOptions options;
   if (!view.empty()) options.view = Vec3(view[0], view[1], view[2]).stableNormalized();
   if (options.view.head<2>().norm() < 1e-6) options.up = Vec3::UnitY();  // from above or below
   options.title = title;
   options.value_label = "displacement [mm]";
-  write_picture(path, {shape, ghost}, options);
+  write_picture(path, {shape, ghost}, options, marks_of(model, positions, goals));
 }
 
 }  // namespace softkin::runs

@@ -68,6 +68,14 @@ class Checker {
     if (triangles == 0) refuse("a picture needs at least one triangle");
   }
 
+  void check(const std::vector<PictureMark>& marks) const {
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+      const std::string where = "picture mark " + std::to_string(i) + ": ";
+      if (marks[i].points.rows() == 0) refuse(where + "it has no point");
+      if (!marks[i].points.allFinite()) refuse(where + "a point is not finite");
+    }
+  }
+
  private:
   void check(const PictureLayer& layer, const std::string& where) const {
     for (Eigen::Index i = 0; i < layer.points.rows(); ++i)
@@ -152,6 +160,9 @@ class Legend {
     const double right = margin * cell_ + (has_values() ? color_bar_space() : 0);
     return {{margin * cell_, top}, {options_.width - right, options_.height - footer_height * cell_}};
   }
+
+  /// Size of a cell of the font [pixel].
+  [[nodiscard]] double cell() const { return cell_; }
 
   void draw(double pixels_per_mm, RgbImage& image) const {
     if (!shown_) return;
@@ -241,7 +252,7 @@ class Legend {
   const Interval& values_;
   const Mat3& camera_;
   const bool shown_ = options_.width >= legend_width && options_.height >= legend_height;
-  const double cell_ = std::max(1.0, std::min(options_.width / 640.0, options_.height / 400.0));  // of the font [pixel]
+  const double cell_ = std::max(1.0, std::min(options_.width / 640.0, options_.height / 400.0));
 };
 
 /// Where a point of the scene falls on the screen: pixel = scale * (seen - center) + middle.
@@ -254,12 +265,16 @@ struct Screen {
   [[nodiscard]] Vec3 at(const Vec3& point) const { return scale * (camera * point - center) + middle; }
 };
 
-Screen fit(const std::vector<PictureLayer>& layers, const Mat3& camera, const Area& area, const Checker& checker) {
+Screen fit(const std::vector<PictureLayer>& layers, const std::vector<PictureMark>& marks, const Mat3& camera,
+           const Area& area, const Checker& checker) {
   std::array<Interval, 3> extent;
-  for_each_corner(layers, [&](const PictureLayer& layer, Index v) {
-    const Vec3 seen = camera * Vec3(layer.points.row(v));
+  const auto include = [&](const Vec3& point) {
+    const Vec3 seen = camera * point;
     for (int k = 0; k < 3; ++k) extent[k].include(seen[k]);
-  });
+  };
+  for_each_corner(layers, [&](const PictureLayer& layer, Index v) { include(layer.points.row(v)); });
+  for (const PictureMark& mark : marks)
+    for (const auto& point : mark.points.rowwise()) include(point);
   const Place space = filled / 2 * (area.high - area.low);
   const Vec3 half(extent[0].half_length(), extent[1].half_length(), extent[2].half_length());
   Screen screen;
@@ -306,6 +321,26 @@ std::vector<ScreenTriangle> on_screen(const PictureLayer& layer, const Screen& s
   return triangles;
 }
 
+/// A mark with a white rim, so that it shows on any colour.
+void draw_mark(const PictureMark& mark, const Screen& screen, double cell, Canvas& canvas) {
+  std::vector<Place> places;
+  for (const auto& point : mark.points.rowwise()) places.push_back(screen.at(point).head<2>());
+  std::vector<Canvas::Stroke> strokes;
+  const double arm = 3.5 * cell, width = 1.4 * cell, rim = 1.2 * cell;
+  for (std::size_t i = 1; i < places.size(); ++i) strokes.push_back({places[i - 1], places[i]});
+  const Place& last = places.back();
+  double thickness = width;
+  if (strokes.empty() && mark.sign == PictureMark::Sign::cross) {
+    for (const Place& way : {Place(arm, arm), Place(arm, -arm)}) strokes.push_back({last - way, last + way});
+  } else if (strokes.empty()) {
+    strokes.push_back({last, last});
+    thickness = 4 * cell;
+  }
+  canvas.strokes(strokes, thickness + rim, {1, 1, 1});
+  canvas.strokes(strokes, thickness, mark.color);
+  if (!mark.label.empty()) canvas.text(last + Place(6 * cell, -5 * cell), mark.label, cell, mark.color);
+}
+
 void refuse_edge_on(const std::vector<ScreenLayer>& layers, const Checker& checker) {
   for (const ScreenLayer& layer : layers)
     for (const ScreenTriangle& t : layer.triangles)
@@ -316,18 +351,22 @@ void refuse_edge_on(const std::vector<ScreenLayer>& layers, const Checker& check
 }  // namespace
 
 void write_picture(const std::filesystem::path& path, const std::vector<PictureLayer>& layers,
-                   const PictureOptions& options) {
+                   const PictureOptions& options, const std::vector<PictureMark>& marks) {
   const Checker checker(path);
   checker.check(options);
   checker.check(layers);
+  checker.check(marks);
   const Mat3 camera = make_camera(options, checker);
   const Interval values = value_range(layers);
   const Legend legend(options, values, camera);
-  const Screen screen = fit(layers, camera, legend.area(), checker);
+  const Screen screen = fit(layers, marks, camera, legend.area(), checker);
   std::vector<ScreenLayer> drawn;
-  for (const PictureLayer& layer : layers) drawn.push_back({on_screen(layer, screen, values), layer.opacity});
+  for (const PictureLayer& layer : layers)
+    drawn.push_back({on_screen(layer, screen, values), layer.opacity, layer.behind});
   refuse_edge_on(drawn, checker);
   RgbImage image = rasterize(drawn, coincident * screen.size, options.width, options.height);
+  Canvas canvas(image);
+  for (const PictureMark& mark : marks) draw_mark(mark, screen, legend.cell(), canvas);
   legend.draw(screen.scale, image);
   write_file(path, encode_png(image));
 }

@@ -16,6 +16,17 @@ struct PictureLayer {
   std::array<double, 3> color{0.75, 0.75, 0.75};  // where there are no values
   double opacity = 1;                             // in (0, 1]; below 1: see-through, only its nearest surface shows
   bool edges = true;                              // draw the triangles' edges thinly, where they are large enough
+  bool behind = false;                            // see-through: shows only where nothing solid does
+};
+
+/// A polyline over the layers, hidden by none of them; one point is a dot or a cross.
+struct PictureMark {
+  enum class Sign { dot, cross };
+
+  Points points;      // [mm], at least one
+  std::string label;  // beside its last point
+  std::array<double, 3> color{0, 0, 0};
+  Sign sign = Sign::dot;
 };
 
 struct PictureOptions {
@@ -32,12 +43,12 @@ struct PictureOptions {
 /// map's very colour, the light comes from the upper left. The triangles fill 90 % of the area left to them; pictures
 /// below 320 x 240 have no title, bars or axes and are all area. Text outside ASCII appears as empty boxes. A
 /// see-through surface hides where it is not nearer than the solid one by 0.5 % of the layers' size: there both are the
-/// same place.
+/// same place. Marks count as part of what the picture has to hold.
 ///
 /// throws  InvalidInput, naming the path and what is wrong: no triangle, or none with an area in this view; points or
-///         values that are not finite; a value count other than the points'; triangles that name no point; colour,
+///         values that are not finite, a mark without points; a value count other than the points'; triangles that name no point; colour,
 ///         opacity, width or height out of range; view and up zero or parallel; a path that cannot be written
 void write_picture(const std::filesystem::path& path, const std::vector<PictureLayer>& layers,
-                   const PictureOptions& options = {});
+                   const PictureOptions& options = {}, const std::vector<PictureMark>& marks = {});
 
 }  // namespace softkin

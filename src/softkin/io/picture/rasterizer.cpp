@@ -38,6 +38,7 @@ struct Band {
 struct ClearBand {
   Band band;
   double opacity;
+  bool behind;
 };
 
 /// The distance to a side of a triangle, positive inside [sample], as a linear function of the place.
@@ -141,8 +142,9 @@ struct Fragment {
 Color blended(const Band& solid, const std::vector<ClearBand>& clear, double coincident, std::size_t i,
               std::vector<Fragment>& fragments) {
   fragments.clear();
-  for (const auto& [band, opacity] : clear) {
+  for (const auto& [band, opacity, behind] : clear) {
     const Sample& sample = band.samples[i];
+    if (behind && std::isfinite(solid.samples[i].depth)) continue;
     if (sample.depth > solid.samples[i].depth + coincident) fragments.push_back({sample, float(opacity)});
   }
   std::stable_sort(fragments.begin(), fragments.end(),
@@ -177,7 +179,7 @@ RgbImage rasterize(const std::vector<ScreenLayer>& layers, double coincident, in
   Band solid(width);
   std::vector<ClearBand> clear;
   for (const ScreenLayer& layer : layers)
-    if (layer.opacity < 1) clear.push_back({Band(width), layer.opacity});
+    if (layer.opacity < 1) clear.push_back({Band(width), layer.opacity, layer.behind});
   for (int row = 0; row < height; row += band_rows) {
     const int rows = std::min(band_rows, height - row);
     solid.clear(row, rows);

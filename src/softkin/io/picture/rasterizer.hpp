@@ -20,6 +20,7 @@ struct ScreenTriangle {
 struct ScreenLayer {
   std::vector<ScreenTriangle> triangles;
   double opacity = 1;
+  bool behind = false;  // of opacity < 1: only where nothing solid shows
 };
 
 /// Draws with hidden surfaces removed and 2 x 2 samples a pixel, on white. Of a layer with opacity < 1 only the nearest
