@@ -53,7 +53,7 @@ int compare_steps(const CompareOptions& options) {
   std::string text;
   for (std::size_t p = 0; p < found.paths.size(); ++p)
     text += std::to_string(p + 1) + ": " + found.paths[p].method + " (" + found.paths[p].file + ")\n";
-  print(text + joined(found.steps().lines(), "") + "\n" + joined(found.times().lines(), "") +
+  print(text + table_text(found.steps()) + "\n" + table_text(found.times()) +
         (options.plot.empty() ? "" : "plot: " + options.plot + "\n"));
   return done;
 }
@@ -72,10 +72,10 @@ int compare_paths(const CompareOptions& options) {
     return done;
   }
   const Table waypoints = report.waypoints();
-  std::string text = joined(report.heads(), "") + joined(waypoints.lines(), "");
+  std::string text = joined(report.heads(), "") + table_text(waypoints);
   if (const std::size_t all = report.tracks[0].points.size(); waypoints.rows.size() < all)
     text += std::to_string(waypoints.rows.size()) + " of " + counted(all, "waypoint") + " shown; all: -o F.csv\n";
-  text += "\n" + joined(report.summary().lines(), "");
+  text += "\n" + table_text(report.summary());
   if (!options.output.empty()) text += "errors: " + options.output + "\n";
   if (!options.plot.empty()) text += "plot: " + options.plot + "\n";
   print(text);

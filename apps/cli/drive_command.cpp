@@ -114,7 +114,7 @@ std::string tendon_table(const drive::Plan& plan) {
                           use.turns ? decimal(*use.turns, 2) : "-", decimal(use.fastest_mm_per_s, 2),
                           decimal(tendon.max_speed_mm_per_s, 2)});
   }
-  return joined(table.lines(), "");
+  return table_text(table);
 }
 
 std::string chamber_table(const drive::Plan& plan) {
@@ -126,7 +126,7 @@ std::string chamber_table(const drive::Plan& plan) {
     table.rows.push_back({printable(chamber.name), printable(chamber.channel), range(low, high),
                           range(chamber.low_kpa, chamber.high_kpa)});
   }
-  return joined(table.lines(), "");
+  return table_text(table);
 }
 
 std::string times_text(const drive::Plan& plan) {

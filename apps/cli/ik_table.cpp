@@ -95,7 +95,7 @@ std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goa
     reached.rows.push_back({goals[i].name, asked_text(goals[i].goal),
                             found_text(model, goals[i].goal, found.equilibrium.state.positions),
                             found.errors_mm[static_cast<Index>(i)]});
-  return joined(actuators.lines(), "") + joined(reached.lines(), "");
+  return table_text(actuators) + table_text(reached);
 }
 
 std::string ik_summary(const InverseResult& found) {

@@ -78,7 +78,8 @@ using runs::StepRecord;
 template <class Record, class Tell, class Row>
 runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std::string& what, bool quiet, Tell tell,
                           Row row) {
-  if (!quiet && !run.is_complete()) print(table.header() + "\n");
+  const bool fits = fits_output(table.header());
+  if (fits && !quiet && !run.is_complete()) print(table.header() + "\n");
   RunProgress line(run.done(), run.size(), what);
   while (!run.is_complete()) {
     line.begin(run.done());
@@ -89,7 +90,7 @@ runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std:
     const runs::Advance end = interrupted() ? runs::Advance::interrupted : run.advance(go_on);
     if (end != runs::Advance::made) return end;
     line.clear();
-    if (!quiet) print(table.line(row()) + "\n");
+    if (!quiet) print(fits ? table.line(row()) + "\n" : joined(table.turned(row()), "") + "\n");
   }
   return runs::Advance::made;
 }

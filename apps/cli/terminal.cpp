@@ -24,9 +24,15 @@ void on_interrupt(int signal_number) {
   ::raise(signal_number);
 }
 
-std::size_t terminal_width() {
+/// 0 where it is not known.
+std::size_t width_of(int descriptor) {
   winsize size = {};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  return ::ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+std::size_t terminal_width() {
+  const std::size_t width = width_of(STDERR_FILENO);
+  return width > 0 ? width : 80;
 }
 
 }  // namespace
@@ -95,6 +101,15 @@ std::string joined(const std::vector<std::string>& lines, const std::string& ind
   std::string text;
   for (const std::string& line : lines) text += indent + line + "\n";
   return text;
+}
+
+bool fits_output(const std::string& line) {
+  const std::size_t width = width_of(STDOUT_FILENO);
+  return width == 0 || characters(line) <= width;
+}
+
+std::string table_text(const Table& table) {
+  return joined(table.lines(width_of(STDOUT_FILENO)), "");
 }
 
 std::string written_text(const std::vector<std::pair<std::string, std::string>>& files) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <softkin/core/text.hpp>
 #include <softkin/core/types.hpp>
+#include <softkin/io/table/table.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,6 +46,12 @@ class ProgressLine {
 [[nodiscard]] std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& lines, const std::string& indent);
+
+/// Does a line fit the terminal? On standard output that is none everything does.
+[[nodiscard]] bool fits_output(const std::string& line);
+
+/// The table, its rows turned where it is wider than the terminal.
+[[nodiscard]] std::string table_text(const Table& table);
 
 /// "plot: F.svg", a line for each file that is given.
 [[nodiscard]] std::string written_text(const std::vector<std::pair<std::string, std::string>>& files);

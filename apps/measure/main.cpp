@@ -105,7 +105,7 @@ std::string text_of(const Camera& camera, const std::vector<BoardSight>& boards,
   for (std::size_t i = 0; i < boards.size(); ++i)
     table.rows.push_back(
         {printable(boards[i].file), static_cast<std::int64_t>(boards[i].points.size()), decimal(errors[i], 3)});
-  return joined(table.lines(), "") + "reprojection error: " + decimal(camera.reprojection_error, 3) +
+  return table_text(table) + "reprojection error: " + decimal(camera.reprojection_error, 3) +
          " pixels (root of the mean square)\nfocal length: " + decimal(camera.fx, 2) + ", " + decimal(camera.fy, 2) +
          " +- " + decimal(camera.focal_error, 2) + " pixels; centre: " + decimal(camera.cx, 2) + ", " +
          decimal(camera.cy, 2) + " pixels\ndistortion: k1 " + number(camera.k1, 5) + ", k2 " + number(camera.k2, 5) +

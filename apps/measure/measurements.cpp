@@ -102,7 +102,7 @@ std::string marker_text(const std::vector<Photo>& photos) {
                              angle.degrees - photos[0].seen.angles[i].degrees});
     }
   }
-  return joined(places.lines(), "") + (angles.rows.empty() ? "" : joined(angles.lines(), ""));
+  return table_text(places) + (angles.rows.empty() ? "" : table_text(angles));
 }
 
 /// The pictures after the first against the first.
@@ -153,7 +153,7 @@ std::string specimen_text(const std::vector<Photo>& photos) {
          with_error(s.shift(), s.shift_error(), 3),
          has_ratio(s) ? with_error(s.elasticity_ratio(), s.elasticity_ratio_error(), 3) : "not stretched"});
   }
-  return joined(parts.lines(), "") + (stretches.empty() ? "" : joined(moves.lines(), ""));
+  return table_text(parts) + (stretches.empty() ? "" : table_text(moves));
 }
 
 Json specimen_json(const SpecimenView& view) {

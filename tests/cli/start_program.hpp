@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,8 +20,10 @@ namespace softkin::testing {
 /// softkin on its way, to be sent signals; ended when it goes out of scope. Output goes to files of the folder.
 class StartedProgram {
  public:
-  /// terminal: standard error is a (pseudo) terminal.
-  StartedProgram(const TemporaryFolder& folder, const std::vector<std::string>& arguments, bool terminal = false)
+  /// terminal: standard error is a (pseudo) terminal. columns > 0: standard output too, and it is so wide; what it
+  /// shows is then among the errors.
+  StartedProgram(const TemporaryFolder& folder, const std::vector<std::string>& arguments, bool terminal = false,
+                 int columns = 0)
       : output_(folder / "stdout.txt"), errors_(folder / "stderr.txt") {
     std::vector<std::string> words{SOFTKIN_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -29,9 +32,14 @@ class StartedProgram {
     argv.push_back(nullptr);
     const int output = open_to_write(output_);
     const int errors = terminal ? open_terminal() : open_to_write(errors_);
+    if (columns > 0) {
+      winsize size = {};
+      size.ws_col = static_cast<unsigned short>(columns);
+      ::ioctl(errors, TIOCSWINSZ, &size);
+    }
     process_ = ::fork();
     if (process_ == 0) {
-      ::dup2(output, STDOUT_FILENO);
+      ::dup2(columns > 0 ? errors : output, STDOUT_FILENO);
       ::dup2(errors, STDERR_FILENO);
       ::execv(argv[0], argv.data());
       ::_exit(127);

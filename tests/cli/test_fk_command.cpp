@@ -375,6 +375,21 @@ TEST(FkProgress, IsShownOnATerminalOnly) {
   EXPECT_EQ(quiet.errors.rfind("softkin: not converged in steps 0 to 7", 0), 0u) << quiet.errors;
 }
 
+TEST(FkTable, IsTurnedOnItsSideWhereTheTerminalIsTooNarrow) {
+  const TemporaryFolder folder;
+  folder.write("block.msh", Block(5).mesh.text());
+  const std::string scene = folder.write("block.yaml", block_scene());
+  const auto shown_on = [&](int columns) {
+    StartedProgram program(folder, {"fk", scene, "--set", "air=1.1"}, true, columns);
+    return program.wait().errors;
+  };
+  const std::string narrow = shown_on(40), wide = shown_on(200);
+  EXPECT_NE(narrow.find("\nair [-]              1.1000\r\n"), std::string::npos) << narrow;
+  EXPECT_NE(narrow.find("\nstatus               converged\r\n"), std::string::npos) << narrow;
+  EXPECT_NE(wide.find("step  "), std::string::npos) << wide;
+  EXPECT_EQ(wide.find("\nair [-]"), std::string::npos) << wide;
+}
+
 TEST(FkHelp, NamesEveryOptionInALine) {
   const ProgramResult help = run_program({"fk", "--help"});
   EXPECT_EQ(help.exit_code, 0);

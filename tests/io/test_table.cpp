@@ -31,6 +31,14 @@ TEST(Table, TextIsAlignedByCharactersNotBytes) {
                                       "Gelenk ü        0.33         7  converged", "b             -20.00  12345678"}));
 }
 
+TEST(Table, ATableThatIsTooWideIsTurnedOnItsSide) {
+  EXPECT_EQ(sample().lines(41), sample().lines());
+  EXPECT_EQ(sample().lines(40), (std::vector<std::string>{"name        Gelenk ü", "tip x [mm]  0.33", "steps       7",
+                                                          "status      converged", "", "name        b",
+                                                          "tip x [mm]  -20.00", "steps       12345678"}));
+  EXPECT_EQ((Table{sample().columns}.lines(10).size()), 1U) << "no rows: the titles";
+}
+
 TEST(Table, BodyLeavesTheTitlesOut) {
   EXPECT_EQ(sample().body(), (std::vector<std::string>{"Gelenk ü    0.33         7  converged",  //
                                                        "b         -20.00  12345678"}));

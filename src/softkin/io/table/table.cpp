@@ -89,10 +89,27 @@ std::string Table::line(const Row& row) const {
   return aligned(cells_of(row, columns), columns, widths_of(columns));
 }
 
-std::vector<std::string> Table::lines() const {
+std::vector<std::string> Table::lines(std::size_t most) const {
   std::vector<std::vector<std::string>> texts{titles_of(columns)};
   for (const Row& row : rows) texts.push_back(cells_of(row, columns));
-  return aligned(texts, columns, widths_of(columns));
+  std::vector<std::string> all = aligned(texts, columns, widths_of(columns));
+  const auto too_wide = [&](const std::string& line) { return most > 0 && characters(line) > most; };
+  if (rows.empty() || std::none_of(all.begin(), all.end(), too_wide)) return all;
+  all.clear();
+  for (const Row& row : rows) {
+    if (!all.empty()) all.emplace_back();
+    const std::vector<std::string> lines = turned(row);
+    all.insert(all.end(), lines.begin(), lines.end());
+  }
+  return all;
+}
+
+std::vector<std::string> Table::turned(const Row& row) const {
+  const std::vector<std::string> cells = cells_of(row, columns);
+  std::vector<std::vector<std::string>> texts;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (!cells[i].empty()) texts.push_back({title_of(columns[i]), cells[i]});
+  return aligned(texts, {Column{.left = true}, Column{.left = true}}, {0, 0});
 }
 
 std::vector<std::string> Table::body() const {

@@ -34,8 +34,11 @@ struct Table {
   [[nodiscard]] std::string header() const;
   [[nodiscard]] std::string line(const Row& row) const;
 
-  /// Header and all rows, every column as wide as it needs, a line each.
-  [[nodiscard]] std::vector<std::string> lines() const;
+  /// Header and all rows, every column as wide as it needs, a line each; where they are wider than `most` characters,
+  /// every row turned instead, with an empty line between them. 0: as wide as they are
+  [[nodiscard]] std::vector<std::string> lines(std::size_t most = 0) const;
+  /// A row on its side: a line of title and value for each cell that is not nothing.
+  [[nodiscard]] std::vector<std::string> turned(const Row& row) const;
   /// The rows alone, every column as wide as their cells need; titles do not count.
   [[nodiscard]] std::vector<std::string> body() const;
 
