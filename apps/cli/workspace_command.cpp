@@ -239,13 +239,16 @@ class WorkspaceRun {
   }
 
   [[nodiscard]] int judge() const {
-    const auto complain = [&](Status status, const char* what) {
+    const auto complain = [&](Status status, const std::string& what) {
       if (const Index count = file_->count(status); count > 0)
-        std::fprintf(stderr, "softkin: %d of %zu samples %s (status %s); they are rows without values\n", count,
-                     samples(), what, workspace_status(status));
+        std::fprintf(stderr, "softkin: %d of %zu samples %s\n", count, samples(), what.c_str());
     };
-    complain(Status::limit, "have no equilibrium that could be followed to");
-    complain(Status::not_converged, "did not converge");
+    const Index shapeless = file_->count_without_shape() - file_->count(Status::not_converged);
+    complain(Status::limit,
+             "have no equilibrium that could be followed to (status limit); their rows hold the last good "
+             "shape" +
+                 (shapeless == 0 ? "" : ", but " + std::to_string(shapeless) + " have none"));
+    complain(Status::not_converged, "did not converge (status not_converged); they are rows without values");
     return file_->count(Status::converged) == asked_.plan.samples() ? done : not_converged;
   }
 

@@ -14,10 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 const WorkspaceColumns columns{{"air_kPa", "tendon"}, {"tip_x_mm", "tip_y_mm", "tip_z_mm"}, {"tendon_tension_N"}, {1}};
-const WorkspaceHead head{{"softkin workspace", "format 1"}, {"robot", "0123"}, {"samples", "3"}};
+const WorkspaceHead head{{"softkin workspace", "format 2"}, {"robot", "0123"}, {"samples", "3"}};
 const std::string header =
-    "# softkin workspace: format 1\n# robot: 0123\n# samples: 3\n"
-    "sample,air_kPa,tendon,tip_x_mm,tip_y_mm,tip_z_mm,tendon_tension_N,status,iterations\n";
+    "# softkin workspace: format 2\n# robot: 0123\n# samples: 3\n"
+    "sample,air_kPa,tendon,tip_x_mm,tip_y_mm,tip_z_mm,tendon_tension_N,status,reached,iterations\n";
 
 class WorkspaceTables : public ::testing::Test {
  protected:
@@ -54,6 +54,7 @@ WorkspaceSample sample(Index number, std::mt19937& generator) {
   WorkspaceSample made;
   made.number = number;
   made.status = Status::converged;
+  made.reached = 1;
   made.iterations = 7;
   made.actuation = Eigen::Vector2d(anything(generator), anything(generator) * 1e-9);
   made.markers.resize(1, 3);
@@ -89,9 +90,11 @@ TEST_F(WorkspaceTables, SamplesWithoutAnEquilibriumHaveEmptyCells) {
   for (const Status status : {Status::limit, Status::not_converged}) {
     WorkspaceSample missed = sample(0, generator);
     missed.status = status;
+    missed.markers.resize(0, 3);
+    missed.multipliers.resize(0);
     missed.actuation = Eigen::Vector2d(0.25, -0.0);
     const std::string row = workspace_row(missed, columns);
-    EXPECT_EQ(row, std::string("0,0.25,0,,,,,") + workspace_status(status) + ",7\n");
+    EXPECT_EQ(row, std::string("0,0.25,0,,,,,") + workspace_status(status) + ",,7\n");
     const WorkspaceTable table = read(header + row);
     ASSERT_EQ(table.samples.size(), 1u);
     EXPECT_EQ(table.samples[0].status, status);
@@ -100,8 +103,19 @@ TEST_F(WorkspaceTables, SamplesWithoutAnEquilibriumHaveEmptyCells) {
   }
 }
 
+TEST_F(WorkspaceTables, SamplesAtALimitKeepTheLastGoodShape) {
+  const std::string row = "0,0.25,0,1,2,3,4,limit,0.75,7\n";
+  const WorkspaceTable table = read(header + row);
+  EXPECT_EQ(table.samples[0].reached, 0.75);
+  EXPECT_EQ(table.samples[0].markers(0, 2), 3);
+  EXPECT_EQ(workspace_row(table.samples[0], columns), row);
+  for (const char* wrong : {"limit,1", "limit,0", "limit,-0.1", "converged,0.5", "not_converged,0.5"})
+    expect_refused(header + "0,0.25,0,1,2,3,4," + wrong + ",7\n", "w.csv:5: column 'reached' must be 1 where");
+  expect_refused(header + "0,0.25,0,1,2,3,4,limit,,7\n", "without an equilibrium has values");
+}
+
 TEST_F(WorkspaceTables, LastLineThatIsTornIsNoRowWhereverItIsTorn) {
-  const std::string first = "0,1,2,3,4,5,6,converged,7\n", second = "1,1,2,3,4,5,6,converged,8\n";
+  const std::string first = "0,1,2,3,4,5,6,converged,1,7\n", second = "1,1,2,3,4,5,6,converged,1,8\n";
   for (std::size_t length = 0; length < second.size(); ++length) {
     const WorkspaceTable table = read(header + first + second.substr(0, length));
     EXPECT_EQ(table.samples.size(), 1u) << length;
@@ -113,21 +127,22 @@ TEST_F(WorkspaceTables, LastLineThatIsTornIsNoRowWhereverItIsTorn) {
 TEST_F(WorkspaceTables, RefusesWhatIsNoWorkspaceOfTheRobot) {
   expect_refused("", "is not a workspace that softkin wrote");
   expect_refused("a,b\n1,2\n", "is not a workspace that softkin wrote");
-  expect_refused("# softkin workspace: format 1\nsample,air,status,iterations\n", "w.csv:2: the columns are those of");
+  expect_refused("# softkin workspace: format 2\nsample,air,status,iterations\n", "w.csv:2: the columns are those of");
   expect_refused(header.substr(0, header.size() - 3), "the columns are those of another robot");
 }
 
 TEST_F(WorkspaceTables, RefusesRowsThatAreNone) {
-  const std::string row = "0,1,2,3,4,5,6,converged,7\n";
-  expect_refused(header + "x,1,2,3,4,5,6,converged,7\n", "w.csv:5: column 'sample' must hold a whole number, not 'x'");
-  expect_refused(header + "-1,1,2,3,4,5,6,converged,7\n", "column 'sample' must hold a whole number");
-  expect_refused(header + "0,nan,2,3,4,5,6,converged,7\n", "column 'air_kPa' must hold a finite number");
-  expect_refused(header + "0,1,2,3,inf,5,6,converged,7\n", "column 'tip_y_mm' must hold a finite number");
-  expect_refused(header + "0,1,2,3,4,5,,converged,7\n", "column 'tendon_tension_N' must hold a finite number");
-  expect_refused(header + "0,1,2,3,4,5,6,unsure,7\n", "must hold converged, not_converged or limit, not 'unsure'");
-  expect_refused(header + "0,1,2,3,4,5,6,limit,7\n", "a sample without an equilibrium has values");
+  const std::string row = "0,1,2,3,4,5,6,converged,1,7\n";
+  expect_refused(header + "x,1,2,3,4,5,6,converged,1,7\n",
+                 "w.csv:5: column 'sample' must hold a whole number, not 'x'");
+  expect_refused(header + "-1,1,2,3,4,5,6,converged,1,7\n", "column 'sample' must hold a whole number");
+  expect_refused(header + "0,nan,2,3,4,5,6,converged,1,7\n", "column 'air_kPa' must hold a finite number");
+  expect_refused(header + "0,1,2,3,inf,5,6,converged,1,7\n", "column 'tip_y_mm' must hold a finite number");
+  expect_refused(header + "0,1,2,3,4,5,,converged,1,7\n", "column 'tendon_tension_N' must hold a finite number");
+  expect_refused(header + "0,1,2,3,4,5,6,unsure,,7\n", "must hold converged, not_converged or limit, not 'unsure'");
+  expect_refused(header + "0,1,2,3,4,5,6,limit,,7\n", "a sample without an equilibrium has values");
   expect_refused(header + "0,1,2,3,4,5,6,converged\n", "fewer cells");
-  expect_refused(header + "0,1,2,3,4,5,6,converged,7,8\n", "more cells");
+  expect_refused(header + "0,1,2,3,4,5,6,converged,1,7,8\n", "more cells");
   expect_refused(header + "\n" + row, "w.csv:5");
   expect_refused(header + row + row, "w.csv:6: sample 0 stands twice");
 }

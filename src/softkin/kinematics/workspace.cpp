@@ -90,7 +90,9 @@ class Group {
     sample.actuation = found.actuation;
     sample.status = found.report.status;
     sample.iterations = found.report.iterations;
-    if (sample.status != Status::converged) return sample;
+    const bool limit = sample.status == Status::limit && found.report.reached > 0;
+    if (sample.status != Status::converged && !limit) return sample;
+    sample.reached = limit ? found.report.reached : 1;
     sample.multipliers = found.state.multipliers;
     sample.markers.resize(static_cast<Index>(model_.markers.size()), 3);
     for (std::size_t p = 0; p < model_.markers.size(); ++p)

@@ -55,9 +55,10 @@ struct Equilibrium {
 struct WorkspaceSample {
   Index number = 0;
   Actuation actuation;            // m, as asked for
-  Points markers{};               // #markers by 3 [mm]; no rows where status is not converged
-  Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa]; empty where status is not converged
+  Points markers{};               // #markers by 3 [mm]; of the last good shape where status is limit; else no rows
+  Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa]; empty where there are no markers
   Status status = Status::not_converged;
+  double reached = 0;  // share of the way from rest to the actuation at which the markers are [-]
   int iterations = 0;
 };
 

@@ -110,7 +110,7 @@ WorkspaceHead workspace_head(const Model& model, const SamplingOptions& sampling
   for (const Actuator& actuator : model.actuators)
     ranges += (ranges.empty() ? "" : ", ") + actuator.name + " " + number(actuator.low, 17) + " to " +
               command_text(actuator, actuator.high, 17);
-  return {{"softkin workspace", "format 1"},
+  return {{"softkin workspace", "format 2"},
           {"softkin", SOFTKIN_VERSION},
           {"robot", fingerprint_of(model)},
           {"solver", solver_text(solver)},
@@ -142,8 +142,13 @@ void WorkspaceFile::take(const WorkspaceTable& table, const WorkspaceHead& head,
   for (const WorkspaceSample& sample : table.samples) {
     if (sample.number >= plan.samples() || plan.actuations.row(sample.number).transpose() != sample.actuation)
       cannot("sample " + std::to_string(sample.number) + " is of another actuation");
-    known_[static_cast<std::size_t>(sample.number)] = sample.status;
+    note(sample);
   }
+}
+
+void WorkspaceFile::note(const WorkspaceSample& sample) {
+  known_[static_cast<std::size_t>(sample.number)] = sample.status;
+  if (sample.markers.rows() == 0) ++without_shape_;
 }
 
 Index WorkspaceFile::count(Status status) const {
@@ -155,7 +160,7 @@ void WorkspaceFile::add(const WorkspaceSample& sample) {
   std::string row = workspace_row(sample, columns_);
   row.pop_back();  // the end of the line
   store_->append(row);
-  known_[static_cast<std::size_t>(sample.number)] = sample.status;
+  note(sample);
 }
 
 std::vector<WorkspaceSample> WorkspaceFile::finish() {

@@ -43,6 +43,8 @@ class WorkspaceFile {
   [[nodiscard]] bool was_torn() const { return store_->was_torn(); }
   /// Samples that ended so.
   [[nodiscard]] Index count(Status status) const;
+  /// Samples of which there is no shape, not even a last good one.
+  [[nodiscard]] Index count_without_shape() const { return without_shape_; }
   [[nodiscard]] const std::optional<Status>& known(Index sample) const {
     return known_[static_cast<std::size_t>(sample)];
   }
@@ -54,11 +56,13 @@ class WorkspaceFile {
   [[nodiscard]] std::vector<WorkspaceSample> finish();
 
  private:
+  void note(const WorkspaceSample& sample);
   void take(const WorkspaceTable& table, const WorkspaceHead& head, const WorkspacePlan& plan);
 
   std::filesystem::path path_;
   const WorkspaceColumns& columns_;
   std::vector<std::optional<Status>> known_;  // per sample
+  Index without_shape_ = 0;
   std::optional<Store> store_;
 };
 

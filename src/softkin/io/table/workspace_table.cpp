@@ -19,7 +19,7 @@ std::vector<std::string> all_columns(const WorkspaceColumns& columns) {
   std::vector<std::string> all{"sample"};
   for (const auto* part : {&columns.actuators, &columns.markers, &columns.loads})
     all.insert(all.end(), part->begin(), part->end());
-  all.insert(all.end(), {"status", "iterations"});
+  all.insert(all.end(), {"status", "reached", "iterations"});
   return all;
 }
 
@@ -97,8 +97,9 @@ class Reader {
     return static_cast<Index>(value);
   }
 
-  double real(const std::string& column) {
-    const std::string_view text = cell();
+  double real(const std::string& column) { return real(cell(), column); }
+
+  double real(std::string_view text, const std::string& column) const {
     double value = 0;
     if (!parse_real(text, value))
       fail("column " + excerpt(column) + " must hold a finite number, not " + excerpt(text));
@@ -124,16 +125,31 @@ class Reader {
     const std::size_t values = cursor_;
     for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i) (void)cell();
     sample.status = status();
+    const bool has_values = read_reached(sample);
     sample.iterations = integer("iterations");
     if (!ended_) fail("the row has more cells than the header has columns");
     cursor_ = values;
     ended_ = false;
-    if (sample.status == Status::converged)
+    if (has_values)
       read_values(sample);
     else
       for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i)
         if (!cell().empty()) fail("a sample without an equilibrium has values of markers or loads");
     return sample;
+  }
+
+  /// Has the sample a shape?
+  bool read_reached(WorkspaceSample& sample) {
+    const std::string_view text = cell();
+    if (sample.status != Status::converged && text.empty()) return false;
+    sample.reached = real(text, "reached");
+    const bool whole = sample.status == Status::converged;
+    if (sample.status == Status::not_converged || !(sample.reached > 0 && sample.reached <= 1) ||
+        whole != (sample.reached == 1))
+      fail(
+          "column 'reached' must be 1 where a sample converged, between 0 and 1 or empty at a limit, and empty where "
+          "it did not converge");
+    return true;
   }
 
   void read_values(WorkspaceSample& sample) {
@@ -179,13 +195,16 @@ std::string workspace_row(const WorkspaceSample& sample, const WorkspaceColumns&
     add_number(line, value);
   };
   for (Index a = 0; a < sample.actuation.size(); ++a) add(sample.actuation[a]);
-  if (sample.status == Status::converged) {
+  const bool has_values = sample.markers.rows() > 0 || sample.status == Status::converged;
+  if (has_values) {
     for (Index i = 0; i < sample.markers.size(); ++i) add(sample.markers.data()[i]);
     for (const Index a : columns.loaded) add(sample.multipliers[a]);
   } else {
     line.append(columns.markers.size() + columns.loads.size(), ',');
   }
-  return line + "," + workspace_status(sample.status) + "," + std::to_string(sample.iterations) + "\n";
+  line += std::string(",") + workspace_status(sample.status) + ",";
+  if (has_values) add_number(line, sample.reached);
+  return line + "," + std::to_string(sample.iterations) + "\n";
 }
 
 const char* workspace_status(Status status) {

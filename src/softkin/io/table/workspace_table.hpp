@@ -9,7 +9,7 @@
 namespace softkin {
 
 /// Names of the columns of a workspace, in the order of the file: sample, actuators, markers, loads, status,
-/// iterations. Names carry their units: air_kPa, tip_x_mm, tendon_tension_N.
+/// reached, iterations. Names carry their units: air_kPa, tip_x_mm, tendon_tension_N.
 struct WorkspaceColumns {
   std::vector<std::string> actuators;  // commands
   std::vector<std::string> markers;    // x, y, z of each
@@ -31,8 +31,8 @@ struct WorkspaceTable {
 /// throws  InvalidInput on a name that a CSV file cannot hold, and on one that stands twice
 [[nodiscard]] std::string workspace_header(const WorkspaceHead& head, const WorkspaceColumns& columns);
 
-/// A line of the file, its end included. Numbers are the shortest texts that read back as they were. Where status is
-/// not converged the cells of markers and loads are empty.
+/// A line of the file, its end included. Numbers are the shortest texts that read back as they were. Without
+/// markers their cells, those of loads and that of reached are empty.
 [[nodiscard]] std::string workspace_row(const WorkspaceSample& sample, const WorkspaceColumns& columns);
 
 /// "converged", "not_converged" or "limit".
