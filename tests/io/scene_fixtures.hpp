@@ -4,8 +4,8 @@
 #include <string>
 
 /// Loaders in the place of files. Meshes: five vertices and two tetrahedra; "square.msh": five and five; "huge.msh":
-/// coordinates near the largest double; "quadratic.msh": of order 2. Sidecars: "tets.txt", "vertices.txt", "odd.txt"
-/// (three rows). Others are absent.
+/// coordinates near the largest double; "quadratic.msh": of order 2; "parts.msh" has regions. Sidecars: "tets.txt",
+/// "vertices.txt", "odd.txt" (three rows). Others are absent.
 inline softkin::SceneFiles fake_files() {
   using namespace softkin;
   namespace fs = std::filesystem;
@@ -18,6 +18,11 @@ inline softkin::SceneFiles fake_files() {
     if (path.filename() == "huge.msh") mesh.vertices *= 1e307;
     mesh.tetrahedra.assign(path.filename() == "square.msh" ? 5 : 2, {0, 1, 2, 3});
     if (path.filename() == "quadratic.msh") mesh.edge_nodes.assign(2, {4, 4, 4, 4, 4, 4});
+    if (path.filename() == "parts.msh") {
+      mesh.triangles = {{0, 1, 2}};
+      mesh.regions = {
+          {"body", 3, {0, 1}, {}, {}, {}, {}}, {"base", 2, {}, {}, {0}, {}, {}}, {"tip", 0, {}, {}, {}, {}, {4}}};
+    }
     return mesh;
   };
   files.surface = [](const fs::path& path) {

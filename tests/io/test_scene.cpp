@@ -283,6 +283,32 @@ TEST(Scene, FilesAreBesideTheScene) {
   EXPECT_EQ(asked, "/data/a.msh");
 }
 
+TEST(Scene, SeveralMeshesAreOneWhereTheirTransformsPutThem) {
+  const RobotSpec spec = parse(
+      "softkin: 1\nunits: {length: m}\nmeshes:\n"
+      "  - {file: parts.msh}\n"
+      "  - {file: parts.msh, name: b, scale: 2, move: [0, 0.1, 0], rotate: {axis: [0, 0, 3], degrees: 90}}\n"
+      "  - {file: parts.msh, rotate: {axis: [1, 0, 0], degrees: -90, about: [0, 0.01, 0]}}\n");
+  const Mesh& mesh = spec.mesh;
+  ASSERT_EQ(mesh.vertices.rows(), 15);
+  EXPECT_LT((mesh.vertices.row(1) - Eigen::RowVector3d(120, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((mesh.vertices.row(5) - Eigen::RowVector3d(-100, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((mesh.vertices.row(6) - Eigen::RowVector3d(-100, 240, 0)).norm(), 1e-12);  // (240, 100, 0) turned
+  EXPECT_LT((mesh.vertices.row(8) - Eigen::RowVector3d(-100, 0, 50)).norm(), 1e-12);
+  EXPECT_LT((mesh.vertices.row(12) - Eigen::RowVector3d(0, 10, -15)).norm(), 1e-12);  // 15 mm beyond the axis
+  ASSERT_EQ(mesh.tetrahedra.size(), 6u);
+  EXPECT_EQ(mesh.tetrahedra[2], (Tetrahedron{5, 6, 7, 8}));
+  EXPECT_EQ(mesh.triangles[2], (Triangle{10, 11, 12}));
+  std::vector<std::string> names;
+  for (const Region& region : mesh.regions) names.push_back(region.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"body", "base", "tip", "b.body", "b.base", "b.tip"}));
+  EXPECT_EQ(mesh.regions[0].tetrahedra, (std::vector<Index>{0, 1, 4, 5}));
+  EXPECT_EQ(mesh.regions[1].triangles, (std::vector<Index>{0, 2}));
+  EXPECT_EQ(mesh.regions[5].vertices, (std::vector<Index>{9}));
+  // the axis keeps its place, and lengths stay as they are
+  EXPECT_LT((mesh.vertices.row(13) - Eigen::RowVector3d(0, 35, 10)).norm(), 1e-12);
+}
+
 TEST(Scene, AliasesShareAValue) {
   const RobotSpec spec = parse_body(
       "fixed: [{box: &feet [[0, 0, 0], [1, 1, 1]]}]\n"
@@ -315,7 +341,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     begin += fence.size();
     specs.push_back(parse(manual.substr(begin, manual.find("```", begin) - begin)));
   }
-  ASSERT_EQ(specs.size(), 2u);
+  ASSERT_EQ(specs.size(), 3u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);

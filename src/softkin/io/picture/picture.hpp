@@ -46,8 +46,9 @@ struct PictureOptions {
 /// same place. Marks count as part of what the picture has to hold.
 ///
 /// throws  InvalidInput, naming the path and what is wrong: no triangle, or none with an area in this view; points or
-///         values that are not finite, a mark without points; a value count other than the points'; triangles that name no point; colour,
-///         opacity, width or height out of range; view and up zero or parallel; a path that cannot be written
+///         values that are not finite, a mark without points; a value count other than the points'; triangles that
+///         name no point; colour, opacity, width or height out of range; view and up zero or parallel; a path that
+///         cannot be written
 void write_picture(const std::filesystem::path& path, const std::vector<PictureLayer>& layers,
                    const PictureOptions& options = {}, const std::vector<PictureMark>& marks = {});
 

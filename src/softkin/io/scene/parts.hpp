@@ -44,6 +44,8 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 [[nodiscard]] RegionRef read_place(const Context& context, const Map& map);
 [[nodiscard]] RegionRef read_region_name(const Node& node);
 
+/// The mesh of a scene, or its meshes as one, in mm.
+void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] std::vector<RegionSpec> read_regions(const Context& context, const Node& node);
 /// Target-shape keys, elastic constants, or both.
 [[nodiscard]] MaterialSpec read_material(const Node& node);

@@ -24,25 +24,6 @@ double read_length_unit(const Node& node) {
   return length ? mm_per(length_units()[choice(*length, length_units())]) : 1;
 }
 
-std::int64_t read_order(const Node& node) {
-  const std::int64_t order = integer(node);
-  if (order != 1 && order != 2) fail(node, node.name + " must be 1 or 2, not " + node.text);
-  return order;
-}
-
-void read_mesh_of(const Context& context, const Node& node, RobotSpec& spec) {
-  const Map map(node, {"file", "order"});
-  const Node& file = map.at("file");
-  const Node* order = map.find("order");
-  const bool quadratic = order && read_order(*order) == 2;
-  spec.mesh = load_file(context, file, context.files.mesh);
-  spec.mesh.vertices *= context.to_mm;
-  if (!spec.mesh.vertices.allFinite()) fail(file, "the mesh's coordinates are too large");
-  if (order && !quadratic && !spec.mesh.edge_nodes.empty())
-    fail(*order, "'order' is 1, but the tetrahedra of the mesh are of order 2");
-  spec.quadratic = quadratic;
-}
-
 Formulation read_formulation(const Map& map, const std::vector<MaterialSpec>& materials) {
   if (const Node* node = map.find("formulation"))
     return choice(*node, {"target-shape", "physical"}) == 0 ? Formulation::target_shape : Formulation::physical;
@@ -134,13 +115,13 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
   const auto root = scene::parse_yaml(yaml_text, file_name);
   scene::check_version(*root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
-  const scene::Map map(*root, {"softkin", "units", "mesh", "formulation", "regions", "materials", "void", "fixed",
-                               "rigid", "actuators", "gravity", "forces", "markers", "feet"});
+  const scene::Map map(*root, {"softkin", "units", "mesh", "meshes", "formulation", "regions", "materials", "void",
+                               "fixed", "rigid", "actuators", "gravity", "forces", "markers", "feet"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   RobotSpec spec;
   spec.name = file_name;
-  scene::read_mesh_of(context, map.at("mesh"), spec);
+  scene::read_mesh_of(context, map, spec);
   context.vertices = spec.mesh.vertices.rows();
   context.tetrahedra = static_cast<std::int64_t>(spec.mesh.tetrahedra.size());
   scene::read_parts(context, map, spec);

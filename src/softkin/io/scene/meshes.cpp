@@ -1,0 +1,127 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+#include <softkin/core/error.hpp>
+#include <softkin/io/scene/parts.hpp>
+
+namespace softkin::scene {
+
+namespace {
+
+std::int64_t read_order(const Node& node) {
+  const std::int64_t order = integer(node);
+  if (order != 1 && order != 2) fail(node, node.name + " must be 1 or 2, not " + node.text);
+  return order;
+}
+
+/// One file of `mesh` or `meshes`, in mm, where its transform puts it.
+struct MeshFile {
+  Mesh mesh;
+  bool quadratic = false;
+};
+
+void rotate(const Context& context, const Node& node, Points& vertices) {
+  const Map map(node, {"axis", "degrees", "about"});
+  const Vec3 axis = read_vector(map.at("axis"));
+  if (!(axis.stableNorm() > 0)) fail(map.at("axis"), "'axis' has no direction");
+  const Vec3 about = map.find("about") ? read_position(context, map.at("about")) : Vec3::Zero();
+  const Eigen::AngleAxisd turn(number(map.at("degrees")) * std::numbers::pi / 180, axis.stableNormalized());
+  const Mat3 matrix = turn.toRotationMatrix();
+  vertices = ((vertices.rowwise() - about.transpose()) * matrix.transpose()).rowwise() + about.transpose();
+}
+
+MeshFile read_file_of(const Context& context, const Map& map) {
+  const Node& file = map.at("file");
+  const Node* order = map.find("order");
+  MeshFile read{load_file(context, file, context.files.mesh), order && read_order(*order) == 2};
+  Points& vertices = read.mesh.vertices;
+  vertices *= context.to_mm;
+  if (const Node* scale = map.find("scale")) vertices *= positive(*scale);
+  if (const Node* move = map.find("move")) vertices.rowwise() += read_position(context, *move).transpose();
+  if (const Node* turn = map.find("rotate")) rotate(context, *turn, vertices);
+  if (!vertices.allFinite()) fail(file, "the mesh's coordinates are too large");
+  if (order && !read.quadratic && !read.mesh.edge_nodes.empty())
+    fail(*order, "'order' is 1, but the tetrahedra of the mesh are of order 2");
+  return read;
+}
+
+template <class Cell>
+void append(std::vector<Cell>& all, const std::vector<Cell>& part, Index first) {
+  for (Cell cell : part) {
+    for (Index& vertex : cell) vertex += first;
+    all.push_back(cell);
+  }
+}
+
+void append(std::vector<Index>& all, const std::vector<Index>& part, std::size_t first) {
+  for (const Index i : part) all.push_back(i + static_cast<Index>(first));
+}
+
+/// Appends a mesh; its regions join those of the same name.
+void append(Mesh& all, const Mesh& part) {
+  const auto first = static_cast<Index>(all.vertices.rows());
+  for (const Region& region : part.regions) {
+    auto found = std::find_if(all.regions.begin(), all.regions.end(), [&](const Region& known) {
+      return known.name == region.name && known.dimension == region.dimension;
+    });
+    if (found == all.regions.end()) {
+      found = all.regions.emplace(all.regions.end());
+      found->name = region.name;
+      found->dimension = region.dimension;
+    }
+    append(found->tetrahedra, region.tetrahedra, all.tetrahedra.size());
+    append(found->prisms, region.prisms, all.prisms.size());
+    append(found->triangles, region.triangles, all.triangles.size());
+    append(found->quads, region.quads, all.quads.size());
+    append(found->vertices, region.vertices, static_cast<std::size_t>(first));
+  }
+  append(all.tetrahedra, part.tetrahedra, first);
+  append(all.edge_nodes, part.edge_nodes, first);
+  append(all.prisms, part.prisms, first);
+  append(all.triangles, part.triangles, first);
+  append(all.quads, part.quads, first);
+  all.vertices.conservativeResize(first + part.vertices.rows(), 3);
+  all.vertices.bottomRows(part.vertices.rows()) = part.vertices;
+}
+
+void check_joinable(const Node& node, const MeshFile& first, const MeshFile& next) {
+  if (first.quadratic != next.quadratic) fail(node, "'order' must be the same in every entry of 'meshes'");
+  if (first.mesh.edge_nodes.empty() == next.mesh.edge_nodes.empty()) return;
+  fail(node,
+       "its elements are of order " + std::string(next.mesh.edge_nodes.empty() ? "1" : "2") +
+           ", those of the meshes before it of the other: give files of one order, or of order 1 with 'order: 2'");
+}
+
+}  // namespace
+
+void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
+  const Node* several = scene.find("meshes");
+  if (several == nullptr || scene.find("mesh") != nullptr) {
+    if (several != nullptr) (void)scene.one_of({"mesh", "meshes"});
+    MeshFile read = read_file_of(context, Map(scene.at("mesh"), {"file", "order"}));
+    spec.mesh = std::move(read.mesh);
+    spec.quadratic = read.quadratic;
+    return;
+  }
+  if (list(*several).empty()) fail(*several, "'meshes' is empty");
+  Names names;
+  std::optional<MeshFile> all;
+  for (const auto& item : list(*several)) {
+    const Map map(*item, {"file", "order", "name", "scale", "rotate", "move"});
+    MeshFile read = read_file_of(context, map);
+    if (const Node* name = map.find("name")) {
+      const std::string before = names.add_label(*name) + ".";
+      for (Region& region : read.mesh.regions) region.name.insert(0, before);
+    }
+    if (!all) {
+      all = std::move(read);
+      continue;
+    }
+    check_joinable(*item, *all, read);
+    append(all->mesh, read.mesh);
+  }
+  spec.mesh = std::move(all->mesh);
+  spec.quadratic = all->quadratic;
+}
+
+}  // namespace softkin::scene
