@@ -57,7 +57,7 @@ void add_options(CLI::App& command, FkOptions& options) {
                "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest");
   add_force(command, options);
   add_view(command, options.show);
-  add_solver(command, options, "--tolerance");
+  add_solver(command, options);
   add_run(command, options, "Go on where the same command was interrupted; needs --path,\n--report and -o F.pvd",
           "Print the report instead of the table");
 }

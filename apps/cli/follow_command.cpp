@@ -73,7 +73,7 @@ void add_options(CLI::App& command, FollowOptions& options) {
             "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)");
   add_value(command, "--plot", options.plot_file, "F.svg", "The plot, instead of path.svg in the folder");
   add_force(command, options);
-  add_solver(command, options, "--solver-tolerance");
+  add_solver(command, options);
   add_run(command, options, "Go on where the same command was interrupted", "Print the report instead of the table");
 }
 

@@ -221,7 +221,7 @@ void add_options(CLI::App& command, IkOptions& options) {
   add_search(command, options);
   add_files(command, options);
   add_force(command, options);
-  add_solver(command, options, "--solver-tolerance");
+  add_solver(command, options);
   command.add_flag("--json", options.json, "Print the report instead of the table");
 }
 

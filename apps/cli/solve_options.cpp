@@ -70,7 +70,7 @@ void add_force(CLI::App& command, SolveOptions& options) {
                "physical; repeatable");
 }
 
-void add_solver(CLI::App& command, SolveOptions& options, const std::string& tolerance, const std::string& threads) {
+void add_solver(CLI::App& command, SolveOptions& options, const std::string& threads) {
   const StaticsOptions defaults;
   add_value(command, "--formulation", options.formulation, "NAME",
             "physical: elastic laws, pressures, tensions and forces;\ntarget-shape: Fang et al. 2020; default: "
@@ -80,7 +80,7 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& tol
             "newton (default), or local-global: Algorithm 1 of Fang et al.\n2020, target-shape only, with the "
             "same equilibria but slower",
             one_of({"newton", "local-global"}));
-  add_value(command, tolerance, options.tolerance_mm, "MM",
+  add_value(command, "--solver-tolerance", options.tolerance_mm, "MM",
             "Stop when no vertex moves farther than this in an iteration\n[mm]; default: 8e-8 of the robot's "
             "diagonal, which is the\npaper's 1e-5 mm on its robots",
             finite_number(false));

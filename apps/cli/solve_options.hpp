@@ -42,8 +42,7 @@ struct ShowOptions {
 
 void add_scene(CLI::App& command, SolveOptions& options);
 void add_force(CLI::App& command, SolveOptions& options);
-/// tolerance: the name of the option for the solver's tolerance.
-void add_solver(CLI::App& command, SolveOptions& options, const std::string& tolerance,
+void add_solver(CLI::App& command, SolveOptions& options,
                 const std::string& threads = "0: as many as the machine has (default)");
 
 void add_run(CLI::App& command, RunOptions& options, const std::string& resume, const std::string& json);

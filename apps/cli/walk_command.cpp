@@ -55,7 +55,7 @@ void add_options(CLI::App& command, WalkOptions& options) {
             "How often the gait is walked (default: " + std::to_string(WalkOptions().cycles) + ")",
             integer_from(1, 100'000));
   add_force(command, options);
-  add_solver(command, options, "--tolerance");
+  add_solver(command, options);
   add_run(command, options, "Go on where the same command was interrupted, or with more\n--cycles",
           "Print the report instead of the table");
 }

@@ -264,7 +264,7 @@ void add_options(CLI::App& command, WorkspaceOptions& options) {
   add_files(command, options);
   add_sampling(command, options);
   add_force(command, options);
-  add_solver(command, options, "--tolerance",
+  add_solver(command, options,
              "Samples solved at once, each on one thread; 0: as many as the\nmachine has (default); under mpirun: "
              "of each rank");
   add_run(command, options, "Go on where the same command was interrupted or killed", "Print a summary as JSON");

@@ -42,7 +42,7 @@ def shapes():
                                                f"mesh info examples/{folder}/{folder}.msh"])
     yield Case("example local-global",
                ["fk examples/pneumatic_finger/pneumatic_finger.yaml --formulation target-shape --set air=1.1 "
-                                        "--solver local-global --tolerance 1e-3 --max-iterations 300 --report r.json"],
+                                        "--solver local-global --solver-tolerance 1e-3 --max-iterations 300 --report r.json"],
                ends=None)
 
 

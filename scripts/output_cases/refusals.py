@@ -96,7 +96,7 @@ def fk():
         yield several(f"fk --set {text}", [["fk", "block.yaml", "--set", text, "-o", "new/a.vtu"]], files)
     options = ["--set air=1.1 --set air=1.1", "--view 1 2 3", "--image i.png --view 0 0 0",
                "--image i.png --view nan 0 1",
-               "--image i.png --view 1 2", "--tolerance nan", "--tolerance -1", "--tolerance inf", "--max-iterations 0",
+               "--image i.png --view 1 2", "--solver-tolerance nan", "--solver-tolerance -1", "--solver-tolerance inf", "--max-iterations 0",
                "--max-iterations 1e5", "--anderson 21 --solver local-global", "--anderson 6", "--solver gauss",
                "--formulation elastic",
                "--formulation physical", "--resume", "other.yaml", "--threads -1", "--threads many",

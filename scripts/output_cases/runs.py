@@ -37,7 +37,7 @@ def fk_target():
                    files | {"block.yaml": s.target_scene().replace("block.msh", "block.msh, order: 2")})
         yield Case(f"fk target {solver} uniform", [f"{run} --set air=1.3 --report r.json"],
                    s.target(air="range: [1, 2], distribution: uniform, weight: 2"))
-        yield Case(f"fk target {solver} tolerance", [f"{run} --set air=1.4 --tolerance 0.01 --report r.json"], files)
+        yield Case(f"fk target {solver} tolerance", [f"{run} --set air=1.4 --solver-tolerance 0.01 --report r.json"], files)
         yield Case(f"fk target {solver} not converged",
                    [f"{run} --set air=1.9 --max-iterations 2 -o s.vtu --report r.json"],
                    files, ends=1)

@@ -105,9 +105,9 @@ TEST(FkCommand, RefusesOptions) {
   refused({"--image", image, "--view", "nan", "0", "1"}, "--view: must be a finite number, not nan");
   refused({"--image", image, "--view", "1", "2"}, "--view: At least 3 required");
   refused({"--view", "1", "2", "3"}, "--view is the view of the picture: it needs --image");
-  refused({"--tolerance", "nan"}, "--tolerance: must be a finite number, 0 or more, not nan");
-  refused({"--tolerance", "-1"}, "--tolerance: must be a finite number, 0 or more, not -1");
-  refused({"--tolerance", "inf"}, "--tolerance: must be a finite number");
+  refused({"--solver-tolerance", "nan"}, "--solver-tolerance: must be a finite number, 0 or more, not nan");
+  refused({"--solver-tolerance", "-1"}, "--solver-tolerance: must be a finite number, 0 or more, not -1");
+  refused({"--solver-tolerance", "inf"}, "--solver-tolerance: must be a finite number");
   refused({"--max-iterations", "0"}, "--max-iterations: must be an integer from 1 to 1000000000, not 0");
   refused({"--max-iterations", "1e5"}, "--max-iterations: must be an integer");
   refused({"--anderson", "21"}, "--anderson: must be an integer from 0 to 20, not 21");
@@ -191,10 +191,10 @@ TEST(FkCommand, ResultsDoNotDependOnThreads) {
   std::vector<std::string> shapes;
   for (const std::string threads : {"0", "1", "2", "3"}) {
     const std::string file = folder / ("a" + threads + ".vtu");
-    EXPECT_EQ(
-        run_program({"fk", folder.scene, "--set", "air=1.2", "--tolerance", "1e-3", "--threads", threads, "-o", file})
-            .exit_code,
-        0);
+    EXPECT_EQ(run_program({"fk", folder.scene, "--set", "air=1.2", "--solver-tolerance", "1e-3", "--threads", threads,
+                           "-o", file})
+                  .exit_code,
+              0);
     shapes.push_back(read_text(file));
   }
   EXPECT_EQ(std::count(shapes.begin(), shapes.end(), shapes[0]), 4);
@@ -355,11 +355,19 @@ TEST(FkProgress, IsShownOnATerminalOnly) {
   const std::string scene = folder.write("block.yaml", block_scene());
   std::string rows = "air\n";
   for (int i = 0; i < 8; ++i) rows += std::to_string(1.2 + 0.1 * i) + "\n";
-  const std::vector<std::string> arguments{
-      "fk",          scene,         "--path",           folder.write("path.csv", rows),
-      "--threads",   "1",           "--max-iterations", "2500",
-      "--json",      "--tolerance", "1e-300",           "--solver",
-      "local-global"};
+  const std::vector<std::string> arguments{"fk",
+                                           scene,
+                                           "--path",
+                                           folder.write("path.csv", rows),
+                                           "--threads",
+                                           "1",
+                                           "--max-iterations",
+                                           "2500",
+                                           "--json",
+                                           "--solver-tolerance",
+                                           "1e-300",
+                                           "--solver",
+                                           "local-global"};
   StartedProgram program(folder, arguments, true);
   const std::string shown = program.wait().errors;
   EXPECT_NE(shown.find("[##"), std::string::npos) << shown;
@@ -396,7 +404,7 @@ TEST(FkHelp, NamesEveryOptionInALine) {
   EXPECT_EQ(help.errors, "");
   for (const char* option :
        {"SCENE", "--set", "--path", "-o,--output", "--report", "--image", "--view", "--solver", "--formulation",
-        "--force", "--tolerance", "--max-iterations", "--anderson", "--threads", "--resume", "--json"})
+        "--force", "--solver-tolerance", "--max-iterations", "--anderson", "--threads", "--resume", "--json"})
     EXPECT_NE(help.output.find(std::string("\n  ") + option), std::string::npos) << option;
   for (const std::string& line : lines_of(help.output)) EXPECT_LE(line.size(), 112u) << line;
   EXPECT_NE(help.output.find("Exit code: 0 done, 1 not converged, a limit or\ninterrupted, 2 bad usage or bad input."),

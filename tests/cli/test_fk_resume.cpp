@@ -324,7 +324,7 @@ TEST(FkInterrupt, OfASingleSolveLeavesNothing) {
   folder.write("block.msh", Block(40).mesh.text());
   const std::string scene = folder.write("block.yaml", block_scene());
   StartedProgram program(
-      folder, {"fk", scene, "--set", "air=1.9", "--tolerance", "1e-300", "--max-iterations", "1000000000", "-o",
+      folder, {"fk", scene, "--set", "air=1.9", "--solver-tolerance", "1e-300", "--max-iterations", "1000000000", "-o",
                folder / "new/shape.vtu", "--threads", "1", "--solver", "local-global"});
   ASSERT_TRUE(program.wait_until([&] { return read_text(folder / "stdout.txt").find("status") != std::string::npos; }));
   program.send(SIGINT);

@@ -230,10 +230,10 @@ TEST(WorkspaceCommand, GoesOnOnlyWithTheSameSolverOptions) {
   const std::vector<std::string> few{"--samples", "4", "--resume"};
   ASSERT_EQ(folder.run({"--samples", "4"}).exit_code, 0);
   EXPECT_EQ(lines_of(folder.text())[3], "# solver: newton");
-  expect_refusal(folder, joined(few, {"--tolerance", "1e-7"}),
+  expect_refusal(folder, joined(few, {"--solver-tolerance", "1e-7"}),
                  "its solver is 'newton', not 'newton, tolerance 1e-07 mm'");
   expect_refusal(folder, joined(few, {"--max-iterations", "70"}), "not 'newton, at most 70 iterations'");
-  const std::vector<std::string> other{"--tolerance", "1e-07", "--max-iterations", "70"};
+  const std::vector<std::string> other{"--solver-tolerance", "1e-07", "--max-iterations", "70"};
   ASSERT_EQ(folder.run(joined({"--samples", "4"}, other)).exit_code, 0);
   EXPECT_EQ(lines_of(folder.text())[3], "# solver: newton, tolerance 1e-07 mm, at most 70 iterations");
   EXPECT_EQ(folder.run(joined(few, other)).exit_code, 0);
