@@ -10,7 +10,8 @@
 
 #include "fuzz/targets.hpp"
 
-// softkin_fuzz --target=NAME [options of libFuzzer] [corpora]; softkin_fuzz --list names targets and dictionaries.
+// softkin_fuzz --target=NAME [options of libFuzzer] [corpora or inputs]; --list names targets and dictionaries, --show
+// tells of every input why it was refused.
 
 namespace softkin::fuzz {
 
@@ -53,6 +54,7 @@ namespace {
 struct Run {
   Target target{};
   fs::path folder;
+  bool show = false;
 
   ~Run() {
     std::error_code ignored;
@@ -99,6 +101,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
   for (int i = 1; i < *count; ++i) {
     const std::string argument = (*arguments)[i];
     if (argument == "--list") fuzz::list_targets();
+    if (argument == "--show") fuzz::the_run().show = true;
     if (argument.starts_with(option)) name = argument.substr(option.size());
   }
   fuzz::Run& run = fuzz::the_run();
@@ -119,6 +122,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     run.target.run({{reinterpret_cast<const char*>(data), size}, run.folder});
   } catch (const InvalidInput& error) {
     fuzz::check_refusal(error.what());
+    if (run.show) std::fprintf(stderr, "refused: %s\n", error.what());
   }
   return 0;
 }

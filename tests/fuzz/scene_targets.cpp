@@ -40,16 +40,23 @@ void check(const Model& model) {
   (void)fingerprint_of(model);
 }
 
+/// Ten tetrahedra, one of which is the region chamber: large enough for every key, small enough to be quick.
+Mesh small_mesh() {
+  Mesh mesh = testing::block_mesh({2, 1, 1}, {30, 15, 15}, testing::Split::five);
+  testing::add_volume_region(mesh, "chamber", [](const Vec3& p) { return (p - Vec3(7.5, 7.5, 7.5)).norm() < 1; });
+  return mesh;
+}
+
 /// Files that a scene may name: meshes and a surface that are there, and the second part as a mesh, the third as a
 /// curve, the fourth as a sidecar.
 SceneFiles files_of(const Input& input) {
-  static const Mesh hollow = testing::hollow_mesh();
+  static const Mesh block = small_mesh();
   static const Mesh sheet = testing::block_mesh({2, 1, 1}, {20, 10, 1}, testing::Split::prisms);
-  static const TriangleSurface box = testing::box_surface({12, 12, 12}, {6, 6, 6});
+  static const TriangleSurface box = testing::box_surface({18, 5, 5}, {5, 5, 5});
   const auto absent = [](const std::filesystem::path& path) { return InvalidInput({path.string()}, "no such file"); };
   SceneFiles files;
   files.mesh = [&input, absent](const std::filesystem::path& path) {
-    if (path == "hollow.msh") return hollow;
+    if (path == "block.msh") return block;
     if (path == "sheet.msh") return sheet;
     if (path == "mesh.msh" && input.parts() > 1) return read_gmsh("mesh.msh", input.part(1));
     throw absent(path);
