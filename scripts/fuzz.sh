@@ -23,6 +23,7 @@ fuzz() {
   local target=$1 dictionary=$2 corpus=$3 log=$rows/$1.log failed=0
   shift 3
   mkdir -p "$corpus" "$out/finds"
+  local begin=$(date +%s%3N)
   TMPDIR=$rows "$program" "--target=$target" "-dict=$corpora/$dictionary" "${limits[@]}" "$@" \
     "-artifact_prefix=$out/finds/$target-" "$corpus" "$corpora/corpus/$target" >"$log" 2>&1 || failed=1
   inputs=$(last_number 'number_of_executed_units:' "$log")
@@ -32,7 +33,7 @@ fuzz() {
     find=${find:-"no input; its end: $(tail -n 1 "$log")"}
     cp "$log" "$out/finds/$target.log"
   fi
-  echo "$target ${inputs:=0} $(last_number 'average_exec_per_sec:' "$log") $(last_number 'cov:' "$log") $find" >>"$rows/$target.row"
+  echo "$target ${inputs:=0} $(($(date +%s%3N) - begin)) $(last_number 'cov:' "$log") $find" >>"$rows/$target.row"
   return $failed
 }
 
@@ -43,7 +44,7 @@ run_quick() {
 run_full() {
   local done_file=$out/$1.inputs done=0
   [ ! -f "$done_file" ] || done=$(<"$done_file")
-  echo "$1 $done - - none" >>"$rows/$1.row"
+  echo "$1 $done 0 0 none" >>"$rows/$1.row"   # of earlier calls
   while [ "$done" -lt "$runs" ]; do
     local left=$((runs - done))
     fuzz "$1" "$2" "$out/$1" "-seed=$((seed + done))" "-runs=$((left < chunk ? left : chunk))" || return 0
@@ -52,14 +53,17 @@ run_full() {
   done
 }
 
-# The rows of one target together: inputs summed, the last speed and coverage.
+# The rows of a target together. A row: TARGET INPUTS MILLISECONDS COVERAGE FIND, no milliseconds for earlier calls.
 print_table() {
   printf '%-16s %10s %9s %9s  %s\n' target inputs inputs/s coverage failed
   cat "$rows"/*.row | awk '
-    { inputs[$1] += $2; if ($3 != "-") { speed[$1] = $3; cover[$1] = $4 }
-      find = $0; sub(/^[^ ]+ [^ ]+ [^ ]* [^ ]* /, "", find); if (find != "none") { found[$1] = find; failed = 1 } }
-    END { for (t in inputs) printf "%-16s %10d %9s %9s  %s\n", t, inputs[t], speed[t], cover[t], found[t] | "sort"
-          close("sort"); exit failed }'
+    { inputs[$1] += $2
+      if ($3 > 0) { fresh[$1] += $2; time[$1] += $3; cover[$1] = $4 }
+      if ($5 != "none") { found[$1] = substr($0, index($0, $5)); failed = 1 } }
+    END { for (t in inputs)
+            printf "%-16s %10d %9d %9s  %s\n", t, inputs[t], time[t] ? 1000 * fresh[t] / time[t] : 0, cover[t], found[t] | "sort"
+          close("sort")
+          exit failed }'
 }
 
 if [ "${1:-}" = --one ]; then   # for xargs below: MODE TARGET DICTIONARY
