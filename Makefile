@@ -19,12 +19,13 @@ sanitized := core model io statics kinematics drive runs
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
 
-.PHONY: help setup build run test test-release test-sanitize test-threads bench format format-check clean
+.PHONY: help setup build run test test-release test-sanitize test-threads test-fuzz build-fuzz fuzz bench format format-check clean
 
 help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
 	@echo 'make test          install what is missing, build everything, run all tests and checks'
 	@echo 'make build         build build/softkin'
+	@echo 'make fuzz          2 million damaged inputs to every reader (hours; goes on where it was); RUNS=1000 less'
 	@echo 'make bench         build and run the benchmarks (docs/benchmarks.md); BENCH="newton large" runs these alone'
 	@echo 'make format        format the sources; make format-check only looks'
 	@echo 'make clean         remove the build folders'
@@ -60,6 +61,7 @@ test:
 	$(MAKE) --no-print-directory test-release
 	$(MAKE) --no-print-directory test-sanitize
 	$(MAKE) --no-print-directory test-threads
+	$(MAKE) --no-print-directory test-fuzz
 
 test-release:
 	cmake --preset release -DSOFTKIN_TESTS=ON -DSOFTKIN_BENCH=ON
@@ -76,6 +78,18 @@ test-threads:
 	cmake --build --preset sanitize-threads --target test_threads
 	ctest --test-dir build-threads --no-tests=error --tests-regex '^threads$$'
 
+build-fuzz:
+	cmake --preset fuzz
+	cmake --build --preset fuzz --target softkin_fuzz
+
+test-fuzz: build-fuzz
+	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz quick
+
+fuzz:
+	@$(SETUP) --tests
+	$(MAKE) --no-print-directory build-fuzz
+	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz full $(TARGETS)
+
 bench: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON
 	cmake --build --preset release --target $(BENCH:%=bench_%)
@@ -91,4 +105,4 @@ format-check:
 	@$(CLANG_FORMAT) --dry-run --Werror $(sources)
 
 clean:
-	rm -rf build build-debug build-sanitize build-threads
+	rm -rf build build-debug build-sanitize build-threads build-fuzz

@@ -2,13 +2,11 @@
 
 # For this project alone: nothing of it reaches whoever links softkin.
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Werror -fno-math-errno -ffp-contract=fast)
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  add_compile_options(-Wno-psabi)  # no vector type crosses a library boundary
-  if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # gcc 12 reports its own AVX-512 header and std::string
-    add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds
-                        -Wno-stringop-overflow)
-  endif()
+add_compile_options(-Wno-psabi)  # no vector type crosses a library boundary
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # gcc 12 reports its own AVX-512 header and std::string
+  add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds
+                      -Wno-stringop-overflow)
 endif()
 add_compile_definitions(SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
 if(SOFTKIN_ARCH)

@@ -7,7 +7,7 @@ packages=(g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev
           libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev)
 case "${1:-}" in
   "") ;;
-  --tests) packages+=(libgtest-dev clang-format-14 libopencv-dev) ;;
+  --tests) packages+=(libgtest-dev clang-format-14 libopencv-dev clang libclang-rt-dev) ;;
   *) echo "usage: scripts/setup.sh [--tests]" >&2; exit 2 ;;
 esac
 
@@ -23,7 +23,8 @@ fi
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "$system has no apt; softkin is made for Debian 12 and Ubuntu 24.04." \
        "Install a C++20 compiler (gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
-       "pugixml, zlib, libpng, CLI11, METIS, nanoflann and Qhull, with their headers; for the tests also GoogleTest and clang-format 14;" \
+       "pugixml, zlib, libpng, CLI11, METIS, nanoflann and Qhull, with their headers; for the tests also GoogleTest, clang-format 14 and clang 14 or later" \
+       "with libFuzzer;" \
        "for softkin measure OpenCV 4.5 or 4.6." \
        "Then run make again with SETUP=true, e.g.: make run SETUP=true"
 fi

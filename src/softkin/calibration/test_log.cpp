@@ -49,7 +49,7 @@ TestLog::TestLog(const std::filesystem::path& path, const std::string& set_up, b
                        "--resume cannot go on from this journal: it is of other specimens, options or softkin");
   store_->each([&](std::size_t number, std::string_view line) {
     try {
-      const Json json = Json::parse(line);
+      const Json json = parse_json(line);
       done_[json.at("test")] = fit_of(json);
     } catch (const std::exception& error) {
       throw InvalidInput({.file = path.string(), .line = number + 2},

@@ -2,6 +2,7 @@
 #include <limits>
 #include <numeric>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 
 namespace softkin {
 
@@ -11,8 +12,10 @@ std::string Origin::text() const {
   return file;
 }
 
+InvalidInput::InvalidInput(const std::string& message) : std::runtime_error(on_one_line(message)) {}
+
 InvalidInput::InvalidInput(const Origin& origin, const std::string& message)
-    : std::runtime_error(origin.file.empty() ? message : origin.text() + ": " + message) {}
+    : InvalidInput(origin.file.empty() ? message : origin.text() + ": " + message) {}
 
 namespace {
 

@@ -17,10 +17,11 @@ struct Origin {
   [[nodiscard]] std::string text() const;
 };
 
-/// Input that softkin refuses. what() is one sentence that begins with the origin.
+/// Input that softkin refuses. what() is one sentence that begins with the origin, on one line and safe to print
+/// whatever it repeats of a file.
 class InvalidInput : public std::runtime_error {
  public:
-  explicit InvalidInput(const std::string& message) : std::runtime_error(message) {}
+  explicit InvalidInput(const std::string& message);
   InvalidInput(const Origin& origin, const std::string& message);
 };
 

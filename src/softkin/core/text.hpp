@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace softkin {
@@ -26,6 +27,12 @@ namespace softkin {
 
 /// Characters, not bytes: those that continue a UTF-8 character do not count.
 [[nodiscard]] std::size_t characters(const std::string& text);
+
+/// Bytes of the UTF-8 character that text begins with; 0: malformed (RFC 3629). text: not empty
+[[nodiscard]] std::size_t character_length(std::string_view text);
+
+/// The text on one line and safe to print: control characters and bytes that are no UTF-8 as '?'.
+[[nodiscard]] std::string on_one_line(std::string_view text);
 
 inline constexpr const char* axis_names[] = {"x", "y", "z"};
 

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cstdint>
+#include <softkin/core/text.hpp>
 #include <softkin/io/plain_text.hpp>
 
 namespace softkin {
@@ -10,22 +10,6 @@ constexpr std::size_t longest_excerpt = 60;  // bytes
 
 bool is_continuation(char c) {
   return (static_cast<unsigned char>(c) & 0xC0) == 0x80;
-}
-
-/// Bytes of the UTF-8 character that text begins with; 0: malformed (RFC 3629).
-std::size_t character_length(std::string_view text) {
-  const auto lead = static_cast<unsigned char>(text[0]);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-  if (lead < 0xC2 || lead > 0xF4 || length > text.size()) return 0;
-  std::uint32_t code = lead & (0x7Fu >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    if (!is_continuation(text[i])) return 0;
-    code = (code << 6) | (static_cast<unsigned char>(text[i]) & 0x3Fu);
-  }
-  const std::uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-  return code < least[length] || surrogate || code > 0x10FFFF ? 0 : length;
 }
 
 bool is_control(char c) {

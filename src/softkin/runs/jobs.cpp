@@ -18,7 +18,7 @@ Codec<Record> codec_of(std::function<Json(const Record&)> write, Read read) {
           [read](std::string_view line) {
             Record record;
             try {
-              read(Json::parse(line), record);
+              read(parse_json(line), record);
             } catch (const std::out_of_range&) {
               throw InvalidInput("it is not a report that this command wrote");
             } catch (const Json::exception&) {

@@ -72,9 +72,9 @@ void RecordLog::resume(const std::function<const StepRecord&(std::size_t, std::s
     Json before;
     if (journal) {
       log.store.emplace(log.journal(), line_of(log.head) + "\n", true);
-      before = Json::parse(log.store->head());
+      before = parse_json(log.store->head());
     } else {
-      before = Json::parse(read_file(log.files.report), nullptr, false);
+      before = parse_json(read_file(log.files.report));
     }
     if (const std::string why = difference(before, log.head, log.same); !why.empty()) refuse(why);
     if (!journal) {

@@ -166,7 +166,7 @@ Column fixed(const std::string& title, int decimals) {
 
 ReportedPath read_reported_path(const std::string& file) {
   try {
-    ReportedPath path = path_of(file, Json::parse(read_file(file)));
+    ReportedPath path = path_of(file, parse_json(read_file(file)));
     if (path.steps.empty()) throw InvalidInput({file}, "the report has no steps");
     return path;
   } catch (const Json::exception&) {

@@ -1,3 +1,4 @@
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
@@ -165,6 +166,8 @@ std::shared_ptr<const Node> parse_yaml(const std::string& text, const std::strin
     if (parser.HandleNextDocument(more))
       throw InvalidInput(more.start(), "a second YAML document begins; a scene is one document");
     return builder.root();
+  } catch (const YAML::DeepRecursion& error) {
+    throw InvalidInput({file, static_cast<std::size_t>(error.mark.line) + 1}, "lists and maps are nested too deeply");
   } catch (const YAML::Exception& error) {
     const std::size_t line = error.mark.is_null() ? 0 : static_cast<std::size_t>(error.mark.line) + 1;
     throw InvalidInput({file, line}, "not valid YAML: " + (error.msg.empty() ? "cannot be parsed" : error.msg));

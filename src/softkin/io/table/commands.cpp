@@ -4,6 +4,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
+#include <softkin/io/json_text.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/csv.hpp>
@@ -132,8 +133,6 @@ class PathReader {
   ActuationStep start_;
 };
 
-using Json = nlohmann::json;
-
 constexpr const char* pressure_end = "_pressure_kPa";
 
 bool is_commanded_by_volume(const Actuator& actuator) {
@@ -200,7 +199,7 @@ class Reader {
     if (chambers.empty())
       throw InvalidInput("--pressures " + file + ": " + commands_.file + " commands no chamber by its volume");
     try {
-      const Json steps = Json::parse(read_file(file)).at("steps");
+      const Json steps = parse_json(read_file(file)).at("steps");
       if (steps.size() != commands_.rows.size())
         throw InvalidInput({file}, "it has " + counted(steps.size(), "step") + ", but " + commands_.file + " has " +
                                        counted(commands_.rows.size(), "row") + "; it is of another run");
