@@ -132,17 +132,17 @@ void print(const std::string& text) {
 namespace {
 
 /// An error is one line, whatever the names of files in it hold.
-void complain(std::string message) {
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = c == '\n' || c == '\t' ? ' ' : '?';
-  std::fprintf(stderr, "softkin: %s\n", message.c_str());
+void complain(const std::string& message) {
+  std::fprintf(stderr, "softkin: %s\n", on_one_line(message).c_str());
 }
 
 }  // namespace
 
 int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::string& command) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-  complain(std::string(error.what()) + " (" + command + " --help tells more)");
+  std::string message = error.what();
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  complain(message + " (" + command + " --help tells more)");
   return bad_input;
 }
 

@@ -12,7 +12,9 @@ TEST(Error, OriginNamesFileAndLineOrByte) {
 }
 
 TEST(Error, IsOneLineThatIsSafeToPrintWhateverItRepeatsOfAFile) {
-  EXPECT_STREQ(InvalidInput({"a.msh", 3}, "found '\x1b[2J\n\x7f\t\xff\xc3'").what(), "a.msh:3: found '?[2J?????'");
+  EXPECT_STREQ(InvalidInput({"a.msh", 3}, "found '\x1b[2J\n\x7f\t\xff\xc3'").what(),
+               "a.msh:3: found '?[2J????"
+               "?'");
   EXPECT_STREQ(InvalidInput(std::string("cut \xe2\x82 off, \0 too", 17)).what(), "cut ?? off, ? too");
   EXPECT_STREQ(InvalidInput("Länge in \u00b5m, \u20ac, \U0001d11e").what(), "Länge in \u00b5m, \u20ac, \U0001d11e");
 }

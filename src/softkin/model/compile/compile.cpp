@@ -106,6 +106,7 @@ Model compile(const RobotSpec& spec) {
   compile_feet(c);
   compile_loads(c);
   check_anchoring(c.model, c.origin);
+  check_hinges(c.model, c.origin);
   return std::move(c.model);
 }
 

@@ -66,6 +66,12 @@ void compile_supports(Compilation& c);
 /// throws  InvalidInput at origin that names the first five such parts and how each can move
 void check_anchoring(const Model& model, const Origin& origin);
 
+/// Physical: refuses a part that hangs on a vertex or an edge and can turn there. What shares faces, or is in a rigid
+/// region, counts as one.
+///
+/// throws  InvalidInput at origin that names the part and where it hangs
+void check_hinges(const Model& model, const Origin& origin);
+
 void compile_markers(Compilation& c);
 /// After the markers.
 void compile_feet(Compilation& c);
