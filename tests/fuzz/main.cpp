@@ -67,13 +67,6 @@ Run& the_run() {
   return run;
 }
 
-std::vector<Target> all_targets() {
-  std::vector<Target> all;
-  for (const auto& some : {mesh_targets(), scene_targets(), table_targets(), run_targets()})
-    all.insert(all.end(), some.begin(), some.end());
-  return all;
-}
-
 [[noreturn]] void list_targets() {
   for (const Target& target : all_targets()) std::printf("%s %s\n", target.name, target.dictionary);
   std::exit(0);
