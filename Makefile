@@ -19,7 +19,7 @@ sanitized := core model io statics kinematics drive runs
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
 
-.PHONY: help setup build run test test-release test-sanitize test-threads test-fuzz build-fuzz fuzz bench format format-check clean
+.PHONY: help setup build run test test-release test-sanitize test-threads test-fuzz fuzz bench format format-check clean
 
 help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
@@ -78,17 +78,17 @@ test-threads:
 	cmake --build --preset sanitize-threads --target test_threads
 	ctest --test-dir build-threads --no-tests=error --tests-regex '^threads$$'
 
-build-fuzz:
+test-fuzz:
 	cmake --preset fuzz
 	cmake --build --preset fuzz --target softkin_fuzz
-
-test-fuzz: build-fuzz
 	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz quick
 
 fuzz:
 	@$(SETUP) --tests
-	$(MAKE) --no-print-directory build-fuzz
+	cmake --preset fuzz
+	cmake --build --preset fuzz --target softkin_fuzz softkin_fuzz_journals
 	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz full $(TARGETS)
+	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz_journals full
 
 bench: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON

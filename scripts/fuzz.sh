@@ -61,7 +61,8 @@ print_table() {
       if ($3 > 0) { fresh[$1] += $2; time[$1] += $3; cover[$1] = $4 }
       if ($5 != "none") { found[$1] = substr($0, index($0, $5)); failed = 1 } }
     END { for (t in inputs)
-            printf "%-16s %10d %9d %9s  %s\n", t, inputs[t], time[t] ? 1000 * fresh[t] / time[t] : 0, cover[t], found[t] | "sort"
+            printf "%-16s %10d %9d %9s  %s\n",
+                   t, inputs[t], time[t] ? 1000 * fresh[t] / time[t] : 0, cover[t], found[t] | "sort"
           close("sort")
           exit failed }'
 }
@@ -75,13 +76,17 @@ fi
 export program=$1 mode=$2 rows runs=${RUNS:-2000000} each
 shift 2
 all=$("$program" --list)
-chosen=$(for target in "${@:-.*}"; do grep -E "^$target " <<<"$all" || { echo "no target $target; there are:" $(cut -d' ' -f1 <<<"$all") >&2; exit 2; }; done)
+chosen=$(for target in "${@:-.*}"; do
+  grep -E "^$target " <<<"$all" || { echo "no target $target; there are:" $(cut -d' ' -f1 <<<"$all") >&2; exit 2; }
+done)
 cores=$(nproc)
 each=$((${SECONDS_IN_ALL:-60} * cores / $(wc -l <<<"$chosen")))
 [ $each -gt 0 ] || each=1
 # readers take files: on a disk in memory where there is one
 rows=$(mktemp -d /dev/shm/softkin_fuzz.XXXXXX 2>/dev/null || mktemp -d)
 trap 'rm -rf "$rows"' EXIT
-echo "fuzz: $(wc -l <<<"$chosen") targets, seed $seed, $([ "$mode" = quick ] && echo "$each s each" || echo "$runs inputs each"), $cores at once"
+share="$runs inputs each"
+[ "$mode" = full ] || share="$each s each"
+echo "fuzz: $(wc -l <<<"$chosen") targets, seed $seed, $share, $cores at once"
 xargs -P "$cores" -L 1 "$0" --one "$mode" <<<"$chosen" || true
 print_table

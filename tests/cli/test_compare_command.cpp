@@ -98,6 +98,10 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   empty["steps"] = json::array();
   json unknown = report;
   unknown["steps"][1]["markers"]["end"][0] = nullptr;
+  json damaged = with_pressure(report);
+  damaged["steps"][1]["actuators"]["air"].erase("pressure_kPa");
+  json more = report;
+  more["steps"][1]["actuation"]["water"] = 1;
   json unmarked = report;
   for (json& step : unmarked["steps"]) step["markers"] = json::object();
   expect_refused({"compare", a}, {"two reports or more"});
@@ -107,6 +111,8 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   expect_refused({"compare", a, write("empty.json", empty)}, {"empty.json", "no steps"});
   expect_refused({"compare", a, write("unknown.json", unknown)}, {"unknown.json", "not a report"});
   expect_refused({"compare", a, folder_.write("text.json", "steps")}, {"text.json", "not a report"});
+  for (const std::string& each : {write("damaged.json", damaged), write("more.json", more)})
+    expect_refused({"compare", each, each, "--plot", folder_ / "c.svg"}, {each, "step 1", "other actuators"});
   expect_refused({"compare", write("unmarked.json", unmarked), a}, {"unmarked.json", "no markers"});
   expect_refused({"compare", a, a, "--marker", "emd"}, {"no marker 'emd'", "end"});
   expect_refused({"compare", a, a, "--turn", "end", "end"}, {"at one place"});

@@ -35,7 +35,9 @@ struct Target {
 [[nodiscard]] std::vector<Target> mesh_targets();
 [[nodiscard]] std::vector<Target> scene_targets();
 [[nodiscard]] std::vector<Target> table_targets();
-[[nodiscard]] std::vector<Target> run_targets();
+[[nodiscard]] std::vector<Target> result_targets();
+/// Those of the program: softkin_fuzz has all of the above, softkin_fuzz_journals those of journals.
+[[nodiscard]] std::vector<Target> all_targets();
 
 /// Ends the program where what was read cannot be.
 void require(bool holds, const char* what);

@@ -127,6 +127,12 @@ std::vector<double> turns_of(const ReportedPath& path, const std::string& from, 
   return turns;
 }
 
+bool same_names(const std::vector<std::pair<std::string, double>>& a,
+                const std::vector<std::pair<std::string, double>>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& x, const auto& y) { return x.first == y.first; });
+}
+
 /// "converged" where all did, else who did not: "2: limit".
 std::string status_of(const std::vector<ReportedPath>& paths, std::size_t step) {
   std::string text;
@@ -168,6 +174,11 @@ ReportedPath read_reported_path(const std::string& file) {
   try {
     ReportedPath path = path_of(file, parse_json(read_file(file)));
     if (path.steps.empty()) throw InvalidInput({file}, "the report has no steps");
+    for (std::size_t i = 1; i < path.steps.size(); ++i)
+      if (!same_names(path.steps[i].actuation, path.steps[0].actuation) ||
+          !same_names(path.steps[i].loads, path.steps[0].loads))
+        throw InvalidInput({file}, "step " + std::to_string(i) + " has other actuators than step 0; it is damaged: " +
+                                       "make it again with softkin fk --report");
     return path;
   } catch (const Json::exception&) {
     throw InvalidInput({file}, "this is not a report of softkin fk, or a number that it needs is not known");

@@ -1,0 +1,66 @@
+#include <softkin/drive/marlin_answer.hpp>
+#include <softkin/io/table/workspace_table.hpp>
+#include <softkin/runs/report_comparison.hpp>
+
+#include "fuzz/targets.hpp"
+
+namespace softkin::fuzz {
+
+namespace {
+
+/// A report beside a second one, or beside itself.
+void run_report(const Input& input) {
+  const std::string first = input.file("first.json").string();
+  const std::string second = input.parts() > 1 ? input.file("second.json", 1).string() : first;
+  const runs::ReportedPath path = runs::read_reported_path(first);
+  for (const runs::ReportedStep& step : path.steps) {
+    require_finite(step.elapsed, "a time is not finite");
+    for (const auto& [name, value] : step.actuation) require_finite(value, "a command is not finite");
+    for (const auto& [name, place] : step.markers) require(place.allFinite(), "a place is not finite");
+  }
+  const runs::ReportComparison comparison = runs::compare_reports({first, second}, "", {}, {});
+  (void)comparison.json();
+  (void)comparison.steps();
+  (void)comparison.times();
+  (void)comparison.plot();
+}
+
+/// A workspace is the same when it is written and read again.
+void run_workspace(const Input& input) {
+  static const WorkspaceColumns columns{
+      {"air", "tendon_N"},
+      {"tip_x_mm", "tip_y_mm", "tip_z_mm", "corner_x_mm", "corner_y_mm", "corner_z_mm"},
+      {"air_pressure_kPa", "tendon_tension_N"},
+      {0, 1}};
+  const auto text_of = [](const std::filesystem::path& file) {
+    const WorkspaceTable table = read_workspace(file, columns);
+    std::string text = workspace_header(table.head, columns);
+    for (const WorkspaceSample& sample : table.samples) text += workspace_row(sample, columns);
+    return text;
+  };
+  const std::string text = text_of(input.file("workspace.csv"));
+  const Input again(text, input.path(""));
+  require(again.parts() > 1 || text_of(again.file("again.csv")) == text, "a written workspace reads otherwise");
+}
+
+void run_marlin(const Input& input) {
+  const drive::MarlinAnswer answer = drive::parse_answer(input.part(0));
+  for (const auto& [letter, place] : answer.position) require_finite(place, "a board is nowhere");
+}
+
+}  // namespace
+
+std::vector<Target> result_targets() {
+  return {{"report", "reports.dict", run_report},
+          {"workspace", "tables.dict", run_workspace},
+          {"marlin", "marlin.dict", run_marlin}};
+}
+
+std::vector<Target> all_targets() {
+  std::vector<Target> all;
+  for (const auto& some : {mesh_targets(), scene_targets(), table_targets(), result_targets()})
+    all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
+}  // namespace softkin::fuzz
