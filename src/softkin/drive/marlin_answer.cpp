@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <softkin/drive/marlin_answer.hpp>
 
 namespace softkin::drive {
@@ -51,7 +52,8 @@ std::optional<MarlinAnswer> parse_position(std::string_view line) {
     if (line.size() < 3 || line[1] != ':') return std::nullopt;
     double value = 0;
     const auto [end, failure] = std::from_chars(line.data() + 2, line.data() + line.size(), value);
-    if (failure != std::errc() || (end != line.data() + line.size() && *end != ' ')) return std::nullopt;
+    if (failure != std::errc() || !std::isfinite(value) || (end != line.data() + line.size() && *end != ' '))
+      return std::nullopt;
     answer.position.emplace_back(line[0], value);
     line.remove_prefix(static_cast<std::size_t>(end - line.data()));
   }
