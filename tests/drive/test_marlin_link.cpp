@@ -353,7 +353,8 @@ TEST(MarlinAnswer, KnowsWhatMarlinSays) {
   ASSERT_EQ(position.position.size(), 4u);
   EXPECT_EQ(position.position[1].first, 'Y');
   EXPECT_EQ(position.position[1].second, -2);
-  for (const char* line : {"X:1.50 Y:-2.", "X:1.5x Y:2.0 Count X:1", "X: Count", "X:1.50Y:2.00 Count X:1"})
+  for (const char* line : {"X:1.50 Y:-2.", "X:1.5x Y:2.0 Count X:1", "X: Count", "X:1.50Y:2.00 Count X:1",
+                           "X:nan Count X:1", "X:1.50 Y:inf Count X:1"})
     EXPECT_EQ(kind(line), Kind::other) << line;
 }
 

@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <softkin/drive/marlin_answer.hpp>
 
 namespace softkin::drive {
@@ -31,7 +32,8 @@ std::optional<std::vector<std::pair<char, double>>> coordinates(std::string_view
     if (text.size() < 3 || text[1] != ':') return std::nullopt;
     double value = 0;
     const auto [end, failure] = std::from_chars(text.data() + 2, text.data() + text.size(), value);
-    if (failure != std::errc() || (end != text.data() + text.size() && *end != ' ')) return std::nullopt;
+    if (failure != std::errc() || !std::isfinite(value) || (end != text.data() + text.size() && *end != ' '))
+      return std::nullopt;
     position.emplace_back(text[0], value);
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   }

@@ -107,8 +107,9 @@ void Freedoms::find_sources(const linear::BlockPattern& pattern, const std::vect
   source_starts_.push_back(0);
   for (const auto& [block, flipped] : block_of) {
     if (block >= 0)
-      pattern.each_slot(
-          block, [&](std::int64_t slot, bool transposed) { sources_.push_back(2 * slot + (transposed != flipped)); });
+      pattern.each_slot(block, [&, other = flipped](std::int64_t slot, bool transposed) {
+        sources_.push_back(2 * slot + (transposed != other));
+      });
     source_starts_.push_back(static_cast<std::int64_t>(sources_.size()));
   }
 }

@@ -241,7 +241,7 @@ IterationRecord NewtonSearch::here() const {
   return record;
 }
 
-NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int patience, Points& positions) {
+NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points& positions) {
   evaluate(actuation, positions);
   natural_start_ = 0;
   keep_factor_ = false;
@@ -256,8 +256,8 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int patience, Po
     IterationRecord record = here();
     const Step step = newton_step(actuation, positions);
     if (step == Step::none) {
-      if (patience <= 0) return End::stuck;
-      patience -= rescue;
+      if (left <= 0) return End::stuck;
+      left -= rescue;
       if (const End end = local_global(actuation, rescue, positions); end != End::stuck) return end;
       continue;
     }
