@@ -118,6 +118,10 @@ int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::s
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
   std::string message = error.what();
   std::replace(message.begin(), message.end(), '\n', ' ');
+  return refuse_usage(message, command);
+}
+
+int refuse_usage(const std::string& message, const std::string& command) {
   std::fprintf(stderr, "softkin: %s (%s --help tells more)\n", message.c_str(), command.c_str());
   return bad_input;
 }
