@@ -84,8 +84,8 @@ class Example : public ::testing::TestWithParam<std::tuple<fs::path, std::string
   static void expect_warned(const json& warnings, bool physical) {
     const bool locks = physical && scene().stem() == "three_chamber_actuator";
     ASSERT_EQ(warnings.size(), locks ? 1u : 0u) << warnings;
-    if (locks)
-      EXPECT_NE(warnings[0].get<std::string>().find("are about 1.0 elements thick"), std::string::npos) << warnings;
+    if (!locks) return;
+    EXPECT_NE(warnings[0].get<std::string>().find("are about 1.0 elements thick"), std::string::npos) << warnings;
   }
 
   /// No false alarm of units, nor of shapes that pass through themselves.
