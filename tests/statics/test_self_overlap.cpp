@@ -42,8 +42,8 @@ Model bar(Split split = Split::six, bool quadratic = false) {
   return compile(spec);
 }
 
-/// Boundary vertices in tetrahedra that they are no corners of: by the signs of the four volumes that a point makes with
-/// the faces, of all elements.
+/// Boundary vertices in tetrahedra that they are no corners of: by the signs of the four volumes that a point makes
+/// with the faces, of all elements.
 std::vector<Vec3> inside_by_hand(const Model& model, const Points& positions) {
   std::set<Index> surface;
   for (const Triangle& face : boundary_of(model.tetrahedra, {}).triangles) surface.insert(face.begin(), face.end());

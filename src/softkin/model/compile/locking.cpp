@@ -9,7 +9,7 @@ namespace softkin {
 namespace {
 
 constexpr std::size_t most_samples = 300;  // of thousands of faces: the mean holds to a few percent
-constexpr double least_excess = 0.1;  // elastic constants are hardly known better than that
+constexpr double least_excess = 0.1;       // elastic constants are hardly known better than that
 
 struct Wall {
   double compliance = 0;  // in bending, of a piece of unit length

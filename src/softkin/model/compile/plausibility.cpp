@@ -29,7 +29,8 @@ constexpr Range densities{5, 22000}, usual_densities{300, 8000};
 constexpr Range moduli_MPa{0.005, 2.5e5}, usual_moduli_MPa{0.02, 4000};
 constexpr double stiffest_soft_MPa = 1e4;
 
-/// "; taken as g/cm^3 it would be 1080 kg/m^3: is it that?", of the first unit that makes the number a usual one; else ".".
+/// "; taken as g/cm^3 it would be 1080 kg/m^3: is it that?", of the first unit that makes the number a usual
+/// one; else ".".
 std::string taken_as(double value, const std::string& unit, const Range& usual, const std::vector<OtherUnit>& others) {
   for (const OtherUnit& other : others)
     if (usual.holds(value * other.factor))
