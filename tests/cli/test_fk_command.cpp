@@ -387,7 +387,7 @@ TEST(FkHelp, NamesEveryOptionInALine) {
         "--force", "--tolerance", "--max-iterations", "--anderson", "--threads", "--resume", "--json"})
     EXPECT_NE(help.output.find(std::string("\n  ") + option), std::string::npos) << option;
   for (const std::string& line : lines_of(help.output)) EXPECT_LE(line.size(), 100u) << line;
-  EXPECT_NE(help.output.find("Exit code: 0 done, 1 not converged, a limit\nor interrupted, 2 bad usage or bad input."),
+  EXPECT_NE(help.output.find("Exit code: 0 done, 1 not converged, a\nlimit or interrupted, 2 bad usage or bad input."),
             std::string::npos);
 }
 
