@@ -240,8 +240,8 @@ void add_calibrate_pressure(CLI::App& calibrate, Run& run) {
   command.footer(
       "Rows are in the order of time; where the syringe turns, loading becomes unloading. Exit code: 0 done, 1 the\n"
       "physical formulation has no equilibrium at some ratio, 2 bad usage or bad input.\nExample:\n"
-      "  softkin calibrate pressure syringe.csv --scene finger.yaml --syringe-volume 60mL --tube-volume 1.2mL -o "
-      "air.yaml");
+      "  softkin calibrate pressure syringe.csv --scene finger.yaml --syringe-volume 60mL \\\n"
+      "      --tube-volume 1.2mL -o air.yaml");
   command.callback([&run, options] {
     run = [options] {
       check(*options);
@@ -257,8 +257,8 @@ void add_calibrate_dea(CLI::App& calibrate, Run& run) {
   add_options(command, *options);
   command.footer(
       "Area ratios are over the area without voltage. Exit code: 0 done, 2 bad usage or bad input.\nExample:\n"
-      "  softkin calibrate dea --law gent --shear-modulus 0.07 --permittivity 4.4 --thickness 0.5 --prestretch 2.5 \\\n"
-      "      --stretch-limit 120 -o skin.yaml");
+      "  softkin calibrate dea --law gent --shear-modulus 0.07 --permittivity 4.4 --thickness 0.5 \\\n"
+      "      --prestretch 2.5 --stretch-limit 120 -o skin.yaml");
   command.callback([&run, options] {
     check(*options);
     run = [options] { return calibrate_dea(*options); };

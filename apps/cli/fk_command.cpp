@@ -163,11 +163,14 @@ class FkRun {
       StepRecord last;
     };
     std::map<Status, Ended> all;
+    OverlapTally overlaps;
     run_.log().each([&](std::size_t number, const StepRecord& step) {
+      if (number + 1 < run_.done()) overlaps.add(number, step);  // the findings tell of the last one
       if (step.status == Status::converged) return;
       all[step.status].numbers.push_back(number);
       all[step.status].last = step;
     });
+    if (const std::string text = overlaps.text("step"); !text.empty()) say(text);
     for (const auto& [status, ended] : all) complain(status, ended.numbers, ended.last);
     return all.empty() ? done : not_converged;
   }

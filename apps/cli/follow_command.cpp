@@ -152,6 +152,9 @@ class FollowRun {
     const std::vector<WaypointRecord> done = finish();
     if (end != runs::Advance::made) return tell_stopped(run_.done(), run_.size(), "waypoint", options_.folder, true);
     say(summary_of(done, reach_mm_));
+    OverlapTally overlaps;
+    for (std::size_t i = 0; i < done.size(); ++i) overlaps.add(i, done[i]);
+    if (const std::string text = overlaps.text("waypoint"); !text.empty()) say(text);
     say("commands: " + options_.file("commands.csv").string() + "; plot: " + options_.plot().string() +
         "; shapes: " + options_.file("path.pvd").string() + " (open it in ParaView)");
     const std::string missed = missed_text(done);

@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 #include "terminal.hpp"
+#include "usage.hpp"
 
 namespace {
 
@@ -22,6 +23,7 @@ std::string chosen_command(const CLI::App& app) {
 
 int main(int argc, char** argv) {
   CLI::App app{"softkin: kinematics of soft robots. Lengths in mm, ratios without unit.", "softkin"};
+  app.formatter(std::make_shared<cli::PageFormatter>());
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
   app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
   app.callback([&app] {
@@ -40,6 +42,9 @@ int main(int argc, char** argv) {
   cli::add_walk(app, run);
   cli::add_workspace(app, run);
   return cli::outcome_of([&] {
+    std::string command = "softkin";
+    if (const std::string wrong = cli::misspelt(app, argc, argv, command); !wrong.empty())
+      return cli::refuse_usage(wrong, command);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

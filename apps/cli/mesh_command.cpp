@@ -108,8 +108,10 @@ std::string parts_text(const MeshVerdict& verdict) {
 
 std::string text_of(const SceneVerdict& scene) {
   if (scene.error) return "scene refused: " + *scene.error + "\n";
-  return "scene compiles" + std::string(scene.notes.empty() ? "\n" : ", and notes:\n") +
-         joined(cut(scene.notes, most_notes), "    ");
+  std::string text = "scene compiles";
+  if (!scene.warnings.empty()) text += ", but warns:\n" + joined(scene.warnings, "    ");
+  if (scene.notes.empty()) return scene.warnings.empty() ? text + "\n" : text;
+  return text + (scene.warnings.empty() ? ", and" : "it") + " notes:\n" + joined(cut(scene.notes, most_notes), "    ");
 }
 
 std::string judgement(const MeshVerdict& verdict) {

@@ -55,6 +55,17 @@ std::string reached_text(const Model& model, const StepRecord& step) {
   return percent(step.reached_share.value_or(0)) + " of the loads and displacements were reached";
 }
 
+constexpr const char* no_contact =
+    "; parts that meet do not stop each other here, so what lies beyond the first touch is not what the robot does: "
+    "ask "
+    "for less";
+constexpr const char* units_text = " (mm, MPa, kPa, N, kg/m^3, m/s^2)";
+
+std::string depth_text(double deepest_mm, const Vec3& where) {
+  const auto axis = [&](Index i) { return decimal(where[i], 2); };
+  return number(deepest_mm, 2) + " mm at (" + axis(0) + ", " + axis(1) + ", " + axis(2) + ") mm";
+}
+
 std::string finding_text(const runs::Finding& finding) {
   using Kind = runs::Finding::Kind;
   const std::vector<double>& v = finding.values;
@@ -71,6 +82,19 @@ std::string finding_text(const runs::Finding& finding) {
     case Kind::slack:
       return "cable '" + finding.name + "' is slack: its path is " + number(v[0], 5) +
              " of its length at rest, the cable " + number(v[1], 5);
+    case Kind::self_overlap:
+      return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
+             " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +
+             depth_text(v[1], {v[2], v[3], v[4]}) + no_contact;
+    case Kind::motionless:
+      return "warning: nothing moved: the largest displacement is " + number(v[0], 2) +
+             " mm; are what is asked for and the moduli in the right units?" + units_text;
+    case Kind::far_strained:
+      return "warning: the body is strained by up to " + percent(v[0]) +
+             ", where most elastomers have broken; are the loads and the moduli in the right units?" + units_text;
+    case Kind::far_moved:
+      return "warning: a point moved by " + number(v[0], 4) + " mm, and the robot is " + number(v[1], 4) +
+             " mm across; are the loads and the moduli in the right units?" + units_text;
     case Kind::accuracy:
       return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
              number(v[1], 2) + " mm";
@@ -147,6 +171,7 @@ std::string summary(const Model& model, const std::string& solver) {
   for (const Actuator& a : model.actuators)
     text += "\nactuator " + a.name + ": " + kind_name(a) + ", " + number(a.rest_measure) + " " + unit_of_measure(a) +
             " at rest, " + command_range(a) + curve_text(a);
+  for (const std::string& warning : model.warnings) text += "\nwarning: " + warning;
   for (const std::string& note : model.notes) text += "\nnote: " + note;
   return text;
 }
@@ -156,6 +181,21 @@ std::string findings_text(const Model& model, const StepRecord& step) {
   for (const runs::Finding& finding : runs::findings(model, step))
     text += (text.empty() ? "" : "\n") + finding_text(finding);
   return text;
+}
+
+void OverlapTally::add(std::size_t number, const StepRecord& record) {
+  if (record.self_overlap.points == 0) return;
+  numbers_.push_back(number);
+  if (record.self_overlap.deepest_mm <= deepest_.deepest_mm) return;
+  deepest_ = record.self_overlap;
+  at_ = number;
+}
+
+std::string OverlapTally::text(const std::string& what) const {
+  if (numbers_.empty()) return "";
+  return "warning: the shape passes through itself in " + what + (numbers_.size() == 1 ? " " : "s ") +
+         list_text(numbers_) + ", the deepest " + depth_text(deepest_.deepest_mm, deepest_.where) +
+         (numbers_.size() == 1 ? "" : " in " + what + " " + std::to_string(at_)) + no_contact;
 }
 
 std::string shortfall_text(const Model& model, const StepRecord& step) {

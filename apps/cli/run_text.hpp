@@ -6,6 +6,7 @@
 #include <softkin/runs/jobs.hpp>
 #include <softkin/runs/records.hpp>
 #include <string>
+#include <vector>
 
 #include "terminal.hpp"
 
@@ -95,12 +96,26 @@ runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std:
   return runs::Advance::made;
 }
 
-/// "1,851 vertices, 5,556 tetrahedra of order 1; physical formulation (neo-hookean), solver newton", the actuators and
-/// the model's notes, a line each.
+/// "1,851 vertices, 5,556 tetrahedra of order 1; physical formulation (neo-hookean), solver newton", the actuators,
+/// the model's warnings and its notes, a line each.
 [[nodiscard]] std::string summary(const Model& model, const std::string& solver);
 
 /// Strains, slack cables and what a step may hide, a line each.
 [[nodiscard]] std::string findings_text(const Model& model, const StepRecord& step);
+
+/// The records of a run whose shapes pass through themselves.
+class OverlapTally {
+ public:
+  void add(std::size_t number, const StepRecord& record);
+
+  /// "warning: the shape passes through itself in steps 3 to 5, the deepest ..."; "" where none does. what: "step"
+  [[nodiscard]] std::string text(const std::string& what) const;
+
+ private:
+  std::vector<std::size_t> numbers_;
+  SelfOverlap deepest_;
+  std::size_t at_ = 0;
+};
 
 /// Why a step did not converge and what its shape is: "air reached 1.62 of 1.8: beyond this point no equilibrium
 /// follows; the shape is the last good one".

@@ -142,6 +142,10 @@ int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::s
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
   std::string message = error.what();
   std::replace(message.begin(), message.end(), '\n', ' ');
+  return refuse_usage(message, command);
+}
+
+int refuse_usage(const std::string& message, const std::string& command) {
   complain(message + " (" + command + " --help tells more)");
   return bad_input;
 }

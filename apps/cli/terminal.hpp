@@ -63,6 +63,9 @@ void print_piece(std::string_view text);  // without a flush
 /// Help and version are printed; anything else is bad usage, told in one line. command: whose --help tells more.
 [[nodiscard]] int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::string& command);
 
+/// Bad usage, told in one line.
+[[nodiscard]] int refuse_usage(const std::string& message, const std::string& command);
+
 /// The exit code of what was chosen; what it throws is told in one line.
 [[nodiscard]] int outcome_of(const Run& run);
 

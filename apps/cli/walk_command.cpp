@@ -100,6 +100,7 @@ class WalkRun {
     if (end == runs::Advance::interrupted) return tell_stopped(run_.done(), run_.size(), "step", options_.folder, true);
     if (end == runs::Advance::lost) return lost();
     say(stride_text(strides));
+    if (const std::string text = overlaps_.text("step"); !text.empty()) say(text);
     say("steps: " + options_.file("walk.csv").string() + "; plot: " + options_.file("walk.svg").string() +
         "; shapes: " + options_.file("walk.pvd").string() + " (open it in ParaView)");
     return done;
@@ -113,7 +114,10 @@ class WalkRun {
   /// Returns the strides.
   std::vector<double> finish() {
     std::vector<WalkRecord> steps;
-    run_.log().each([&](std::size_t, const WalkRecord& record) { steps.push_back(record); });
+    run_.log().each([&](std::size_t, const WalkRecord& record) {
+      steps.push_back(record);
+      overlaps_.add(steps.size() - 1, record);
+    });
     const std::vector<double> strides = runs::strides(steps, options_.cycles);
     if (!steps.empty()) {
       run_.log().note("stride_mm", strides);
@@ -139,6 +143,7 @@ class WalkRun {
   runs::WalkJob job_;
   runs::Run<WalkRecord> run_;
   Table table_;
+  OverlapTally overlaps_;
 };
 
 int run_walk(const WalkOptions& options) {

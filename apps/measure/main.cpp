@@ -14,6 +14,7 @@
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
+#include "cli/usage.hpp"
 #include "measurer.hpp"
 
 namespace {
@@ -271,6 +272,7 @@ void add_board(CLI::App& app, Run& run) {
 
 int main(int argc, char** argv) {
   CLI::App app{"Measure in pictures: markers, specimens, angles, tracks; in mm", "softkin measure"};
+  app.formatter(std::make_shared<PageFormatter>());
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
   app.require_subcommand(0, 1);
   Run run;

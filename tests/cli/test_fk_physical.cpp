@@ -423,4 +423,33 @@ TEST(FkFormulation, TetrahedraOfOrderTwo) {
   EXPECT_EQ(read_text(folder / "a.png").substr(1, 3), "PNG");
 }
 
+/// Sucked empty, the finger bends backwards until its folds lie in each other.
+TEST(FkSelfOverlap, IsToldOfEveryStep) {
+  const TemporaryFolder folder;
+  const std::string scene =
+      folder.write("finger.yaml", "softkin: 1\nmesh: {file: " SOFTKIN_SOURCE_DIR
+                                  "/examples/pneumatic_finger/pneumatic_finger.msh, order: 1}\n"
+                                  "materials: [{region: body, youngs_modulus: 45, poisson_ratio: 0.45}]\n"
+                                  "fixed: [{region: base}]\n"
+                                  "actuators: [{name: air, kind: pneumatic, region: chamber, control: pressure, "
+                                  "range: [-3000, 0]}]\n");
+  const std::string path = folder.write("path.csv", "air\n-1200\n-2000\n-2050\n");
+  const ProgramResult result = run_fk(scene, {"--path", path, "--report", folder / "a.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const json steps = json::parse(read_text(folder / "a.json"))["steps"];
+  ASSERT_EQ(steps.size(), 3u);
+  const auto overlap = [&](std::size_t step, const char* key) { return steps[step]["self_overlap"][key]; };
+  EXPECT_EQ(overlap(0, "points"), 0);
+  EXPECT_EQ(overlap(0, "where_mm"), nullptr);
+  EXPECT_GT(overlap(1, "points"), 5);
+  EXPECT_GT(overlap(2, "deepest_mm"), overlap(1, "deepest_mm"));
+  EXPECT_LT(overlap(2, "deepest_mm"), 2);  // no wall is thicker
+  const std::string of_last =
+      "warning: the shape passes through itself: " + std::to_string(overlap(2, "points").get<int>()) +
+      " points of its surface lie inside it";
+  EXPECT_NE(result.output.find(of_last), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("warning: the shape passes through itself in step 1, the deepest"), std::string::npos)
+      << result.output;
+}
+
 }  // namespace

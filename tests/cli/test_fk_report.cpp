@@ -82,6 +82,8 @@ void expect_step_form(const json& step, const std::vector<std::string>& more) {
                                 "tolerance_mm",
                                 "estimated_error_mm",
                                 "inverted_elements",
+                                "largest_displacement_mm",
+                                "self_overlap",
                                 "markers",
                                 "strain",
                                 "actuators",
@@ -115,7 +117,7 @@ TEST(FkReport, HasTheFormOfTheDesign) {
   const BlockFolder folder;
   const json report = solve_block(folder, "1.5").report;
   expect_keys(report, {"softkin", "scene", "robot_fingerprint", "formulation", "materials", "actuators", "solver",
-                       "units", "mesh", "notes", "steps", "seconds"});
+                       "units", "mesh", "notes", "warnings", "steps", "seconds"});
   EXPECT_EQ(report["scene"], folder.scene);
   EXPECT_EQ(report["mesh"], json({{"order", 1}, {"vertices", 96}, {"tetrahedra", 270}, {"prisms", 0}}));
   EXPECT_EQ(report["solver"], json({{"name", "newton"}, {"tolerance_mm", 0.0}, {"max_iterations", 50000}}));

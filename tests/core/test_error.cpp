@@ -23,6 +23,7 @@ TEST(Error, SuggestsTheNearestName) {
   const std::vector<std::string> known{"chamber", "body", "base"};
   EXPECT_EQ(nearest_name("chmaber", known), "chamber");
   EXPECT_EQ(nearest_name("bdy", known), "body");
+  EXPECT_EQ(nearest_name("cha", {"the", "bha2", "chamber"}), "chamber");
   EXPECT_EQ(nearest_name("quite_another", known), "");
   EXPECT_EQ(suggest_name("basee", known), "; did you mean 'base'?");
   EXPECT_EQ(suggest_name("quite_another", known), "; known: chamber, body, base");

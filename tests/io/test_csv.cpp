@@ -71,19 +71,24 @@ TEST_F(Csv, RefusesBadHeaders) {
   expect_refused("a,b\n", ":1", "no row follows the header");
   expect_refused("a\r1\r2\r", ":1", "lines end with LF or CRLF");
   expect_refused("a,\xB0\n1,2\n", ":1", "not UTF-8");
+  expect_refused(
+      "t_s;air\n0;1,5\n", ":1",
+      "the header 't_s;air' has semicolons: separate the cells by commas, and write numbers with a decimal point");
   expect_refused(std::string("a\0,b\n1,2\n", 9), ":1", "control characters");
 }
 
 TEST_F(Csv, RefusesBadRows) {
   expect_refused("a,b\n1,2\n\n1\n", ":4", "the row has 1 cells, the header 2 columns");
   expect_refused("a,b\n1,2,3\n", ":2", "the row has 3 cells");
+  expect_refused("a,b\n1,5,2,5\n", ":2", "2 columns; a number is written with a decimal point, not a comma");
   expect_refused("a,b\n1,\n", ":2", "column 'b' must hold a finite number, not ''");
   expect_refused("a,b\n1,nan\n", ":2", "column 'b' must hold a finite number, not 'nan'");
   expect_refused("a,b\n-inf,1\n", ":2", "column 'a' must hold a finite number, not '-inf'");
   expect_refused("a,b\n1e999,1\n", ":2", "not '1e999'");
   expect_refused("a,b\n1 2,1\n", ":2", "not '1 2'");
   expect_refused("a,b\n0x10,1\n", ":2", "not '0x10'");
-  expect_refused("a;b\n1;2\n", ":2", "cells are separated by commas");
+  expect_refused("a;b\n1;2\n", ":1", "the header 'a;b' has semicolons");
+  expect_refused("a\n1;2\n", ":2", "cells are separated by commas");
   expect_refused("a,b\n1,\xFF\x02\n", ":2", "not '\?\?'");
   expect_refused("a,b\n1,2\n\"3\",4\n", ":3", "quotes are not supported");
   expect_refused("\"a\",b\n1,2\n", ":1", "quotes are not supported");

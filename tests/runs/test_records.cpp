@@ -21,6 +21,10 @@ void expect_same(const StepRecord& a, const StepRecord& b) {
   }
   EXPECT_EQ(a.shape_load_share, b.shape_load_share);
   EXPECT_EQ(a.markers, b.markers);
+  EXPECT_EQ(a.largest_displacement_mm, b.largest_displacement_mm);
+  EXPECT_EQ(a.self_overlap.points, b.self_overlap.points);
+  EXPECT_EQ(a.self_overlap.deepest_mm, b.self_overlap.deepest_mm);
+  EXPECT_EQ(a.self_overlap.where, b.self_overlap.where);
   EXPECT_EQ(a.time_s, b.time_s);
   EXPECT_EQ(a.shape, b.shape);
   EXPECT_EQ(a.shape_fingerprint, b.shape_fingerprint);
@@ -63,10 +67,23 @@ void expect_damage_refused(const Codec<Record>& codec, const Record& record, con
   }
 }
 
-const std::vector<std::string> step_keys{"/actuation",       "/actuation/air",    "/status",        "/remark",
-                                         "/reached",         "/iterations",       "/seconds",       "/energy",
-                                         "/shape_actuation", "/markers/tip",      "/actuators/air", "/strain",
-                                         "/strain/least",    "/history/iteration"};
+const std::vector<std::string> step_keys{"/actuation",
+                                         "/actuation/air",
+                                         "/status",
+                                         "/remark",
+                                         "/reached",
+                                         "/iterations",
+                                         "/seconds",
+                                         "/energy",
+                                         "/shape_actuation",
+                                         "/markers/tip",
+                                         "/actuators/air",
+                                         "/strain",
+                                         "/strain/least",
+                                         "/history/iteration",
+                                         "/largest_displacement_mm",
+                                         "/self_overlap/points",
+                                         "/self_overlap/deepest_mm"};
 
 class Steps : public ::testing::Test {
  protected:
@@ -92,6 +109,8 @@ TEST_F(Steps, OfAPathAreReadBack) {
     EXPECT_EQ(job.mismatch(1, records[1]), "");
     EXPECT_NE(job.mismatch(0, records[1]), "");
     EXPECT_NE(job.mismatch(3, records[1]), "");
+    EXPECT_GT(records[2].largest_displacement_mm, 0);
+    records[2].self_overlap = {12, 0.1 + 0.2, {1.5, -2, 1e-3}};
     records[2].shape = "s_0002.vtu";
     records[2].shape_fingerprint = "0123456789abcdef";
     (void)read_back(job.codec(), records[2]);

@@ -40,7 +40,9 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
   std::string best;
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(name, candidate);
+    // a beginning of three letters or more is a name cut short
+    const bool cut = name.size() > 2 && candidate.starts_with(name);
+    const std::size_t distance = cut ? 1 : edit_distance(name, candidate);
     if (distance < least) {
       least = distance;
       best = candidate;

@@ -25,7 +25,7 @@ class InvalidInput : public std::runtime_error {
   InvalidInput(const Origin& origin, const std::string& message);
 };
 
-/// The candidate nearest in spelling to name, or "" where none is near.
+/// The candidate nearest in spelling to name, or that it is the beginning of; "" where none is near.
 [[nodiscard]] std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates);
 
 /// "; did you mean 'x'?" with the nearest candidate, else "; known: a, b, c", else "".

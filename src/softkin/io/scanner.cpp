@@ -23,6 +23,15 @@ bool parse_real(std::string_view text, double& value) {
   return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
 }
 
+std::string decimal_comma_hint(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return "";
+  std::string with_point(text);
+  with_point[comma] = '.';
+  double value = 0;
+  return parse_real(with_point, value) ? "; write a decimal point: " + with_point : "";
+}
+
 bool parse_integer(std::string_view text, std::int64_t& value) {
   text = without_plus(text);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

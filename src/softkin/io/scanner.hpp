@@ -69,6 +69,9 @@ class Scanner {
 
 /// The whole of text as a finite number, or false.
 [[nodiscard]] bool parse_real(std::string_view text, double& value);
+
+/// "; write a decimal point: 0.5" for "0,5"; "" for what is no number with a decimal comma.
+[[nodiscard]] std::string decimal_comma_hint(std::string_view text);
 [[nodiscard]] bool parse_integer(std::string_view text, std::int64_t& value);
 
 }  // namespace softkin

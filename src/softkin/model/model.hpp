@@ -108,6 +108,7 @@ struct Model {
   std::vector<bool> used;                  // per vertex: is it a vertex of an element
   double diagonal_mm = 0;                  // of the bounding box of the used vertices
   std::vector<std::string> notes;          // what compile() changed or the user should know, a sentence each
+  std::vector<std::string> warnings;       // what is probably not meant, a sentence each: units, elements that lock
 
   /// Values where the user asks for none, in the order of actuators.
   [[nodiscard]] Eigen::VectorXd rest_actuation() const;

@@ -37,7 +37,8 @@ PathJob::PathJob(const Model& model, const Statics& statics, const std::vector<A
       steps_(steps),
       file_(std::move(file)),
       options_(options),
-      state_(statics.rest()) {}
+      state_(statics.rest()),
+      overlap_(model) {}
 
 Codec<StepRecord> PathJob::codec() const {
   return codec_of<StepRecord>([this](const StepRecord& record) { return to_json(model_, record); },
@@ -65,6 +66,7 @@ std::optional<PathJob::Made> PathJob::make(std::size_t number, const ProgressCal
   if (found.report.status == Status::interrupted) return std::nullopt;
   ElementDeformation deformation = deformation_of(model_, found.state.positions);
   StepRecord record = step_record(model_, found, deformation);
+  record.self_overlap = overlap_.in(found.state.positions);
   record.time_s = steps_[number].time;
   state_ = std::move(found.state);
   return Made{std::move(record), state_.positions, std::move(deformation)};
@@ -77,7 +79,12 @@ void PathJob::go_on(std::size_t, const StepRecord& before, Points positions) {
 
 FollowJob::FollowJob(const Model& model, const Statics& statics, const MarkerPath& path, std::string file,
                      const TrajectoryOptions& options)
-    : model_(model), statics_(statics), path_(path), file_(std::move(file)), follower_(model, statics, path, options) {}
+    : model_(model),
+      statics_(statics),
+      path_(path),
+      file_(std::move(file)),
+      follower_(model, statics, path, options),
+      overlap_(model) {}
 
 Codec<WaypointRecord> FollowJob::codec() const {
   return codec_of<WaypointRecord>(
@@ -101,6 +108,7 @@ std::optional<FollowJob::Made> FollowJob::make(std::size_t number, const Progres
   const Points& positions = found.equilibrium.state.positions;
   ElementDeformation deformation = deformation_of(model_, positions);
   WaypointRecord record = waypoint_record(model_, path_.waypoints[number], found, deformation);
+  record.self_overlap = overlap_.in(positions);
   return Made{std::move(record), positions, std::move(deformation)};
 }
 
@@ -140,7 +148,7 @@ std::vector<GaitStep> repeated(const Model& model, const std::string& file, cons
 }
 
 WalkJob::WalkJob(const Model& model, Walker& walker, const std::vector<GaitStep>& steps, std::string file)
-    : model_(model), walker_(walker), steps_(steps), file_(std::move(file)) {}
+    : model_(model), walker_(walker), steps_(steps), file_(std::move(file)), overlap_(model) {}
 
 Codec<WalkRecord> WalkJob::codec() const {
   return codec_of<WalkRecord>([this](const WalkRecord& record) { return to_json(model_, record); },
@@ -162,6 +170,7 @@ std::optional<WalkJob::Made> WalkJob::make(std::size_t number, const ProgressCal
   const Points& positions = found.equilibrium.state.positions;
   ElementDeformation deformation = deformation_of(model_, positions);
   WalkRecord record = walk_record(model_, steps_[number].cycle, found, deformation);
+  record.self_overlap = overlap_.in(positions);
   record.time_s = steps_[number].asked.time;
   return Made{std::move(record), positions, std::move(deformation)};
 }

@@ -147,6 +147,7 @@ class PathJob : public Job<StepRecord> {
   std::string file_;
   StaticsOptions options_;
   State state_;
+  OverlapSearch overlap_;
 };
 
 /// Inverse kinematics along a path of markers.
@@ -168,6 +169,7 @@ class FollowJob : public Job<WaypointRecord> {
   const MarkerPath& path_;
   std::string file_;
   PathFollower follower_;
+  OverlapSearch overlap_;
 };
 
 /// A row of a gait, on its way.
@@ -198,6 +200,7 @@ class WalkJob : public Job<WalkRecord> {
   Walker& walker_;
   const std::vector<GaitStep>& steps_;
   std::string file_;
+  OverlapSearch overlap_;
 };
 
 }  // namespace softkin::runs

@@ -47,6 +47,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   record.shape_load_share = found.state.share;
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
+  record.largest_displacement_mm = (found.state.positions - model.rest).rowwise().norm().maxCoeff();
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
   for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
   record.strain = strain_histogram(model, deformation);
@@ -87,6 +88,40 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
   return state;
 }
 
+namespace {
+
+// What is found implausible of a shape. None of them is wrong for certain: they are warnings.
+constexpr double unmoved = 1e-6;    // of the diagonal: 0.1 um of a finger, below what any sensor of a robot tells
+constexpr double far_strained = 5;  // [-]: most silicones break below it, and few robots come near
+constexpr double far_moved = 3;     // of the diagonal: what is held somewhere swings by twice its size at most
+
+/// Does the record ask for anything but the rest shape?
+bool asks_for_motion(const Model& model, const StepRecord& record) {
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const double from_rest = record.actuation[static_cast<Index>(a)] - actuator.rest;
+    const bool may_hang = actuator.kind == ActuatorKind::cable && actuator.control == Control::ratio && from_rest > 0;
+    if (from_rest != 0 && !may_hang) return true;
+  }
+  return (model.dead_load.array() != 0).any() || model.held != model.rest;
+}
+
+void add_implausible(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  if (const SelfOverlap& o = record.self_overlap; o.points > 0)
+    found.push_back({Finding::Kind::self_overlap,
+                     "",
+                     {static_cast<double>(o.points), o.deepest_mm, o.where.x(), o.where.y(), o.where.z()}});
+  const double moved = record.largest_displacement_mm;
+  if (record.status == Status::converged && moved < unmoved * model.diagonal_mm && asks_for_motion(model, record))
+    found.push_back({Finding::Kind::motionless, "", {moved}});
+  if (!record.strain.shares.empty() && record.strain.greatest > far_strained)
+    found.push_back({Finding::Kind::far_strained, "", {record.strain.greatest}});
+  if (moved > far_moved * model.diagonal_mm)
+    found.push_back({Finding::Kind::far_moved, "", {moved, model.diagonal_mm}});
+}
+
+}  // namespace
+
 std::vector<Finding> findings(const Model& model, const StepRecord& record) {
   std::vector<Finding> found;
   const StrainHistogram& strain = record.strain;
@@ -99,6 +134,7 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const ActuatorRecord& actuator = record.actuators[a]; actuator.slack)
       found.push_back({Finding::Kind::slack, model.actuators[a].name, {actuator.achieved, actuator.requested}});
+  add_implausible(model, record, found);
   if (model.formulation == Formulation::physical && record.status != Status::converged)
     return found;  // the iteration was of another shape
   if (!std::isfinite(record.step_mm) || !std::isfinite(record.estimated_error_mm))

@@ -7,6 +7,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/model/paths.hpp>
 #include <softkin/statics/deformation.hpp>
+#include <softkin/statics/self_overlap.hpp>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,9 @@ struct StepRecord : SolveReport {
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
   double shape_load_share = 1;
   std::size_t inverted_elements = 0;
-  std::vector<Vec3> markers;  // [mm]
+  double largest_displacement_mm = 0;  // of a vertex from its place at rest
+  SelfOverlap self_overlap;            // of the shape, set by who makes the record
+  std::vector<Vec3> markers;           // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
   std::vector<int> history_iterations;  // from 1, per entry of history; empty: all
@@ -58,7 +61,7 @@ struct WalkRecord : StepRecord {
   WalkStep walk;
 };
 
-/// deformation: of the equilibrium's shape
+/// deformation: of the equilibrium's shape; what is not of it is left as it is: shape, time_s, self_overlap
 [[nodiscard]] StepRecord step_record(const Model& model, const Equilibrium& found,
                                      const ElementDeformation& deformation);
 [[nodiscard]] WaypointRecord waypoint_record(const Model& model, const Waypoint& asked, const InverseResult& found,
@@ -76,6 +79,10 @@ struct Finding {
     beyond_linear_range,  // name: region; values: share of its volume [-], its linear range [-]
     inverted,             // values: how many elements
     slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
+    self_overlap,         // values: points inside, depth of the deepest and its place [mm]
+    motionless,           // something is asked for and nothing moves; values: largest displacement [mm]
+    far_strained,         // values: greatest strain [-]
+    far_moved,            // values: largest displacement, diagonal of the robot [mm]
     diverged,             // the iteration
     accuracy              // values: last step, estimated distance from the equilibrium [mm]
   };

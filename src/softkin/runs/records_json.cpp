@@ -44,6 +44,10 @@ void read_number(const Json& json, Count& value) {
   value = json.get<Count>();
 }
 
+Vec3 point_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
 Json strain_json(const StrainHistogram& histogram) {
   Json json = {{"least", histogram.least},
                {"greatest", histogram.greatest},
@@ -68,6 +72,18 @@ StrainHistogram strain_of(const Json& json) {
     strain.beyond.push_back({beyond.at("region").get<std::string>(), beyond.at("linear_range").get<double>(),
                              beyond.at("volume_share").get<double>()});
   return strain;
+}
+
+Json overlap_json(const SelfOverlap& overlap) {
+  return {{"points", overlap.points},
+          {"deepest_mm", overlap.deepest_mm},
+          {"where_mm", overlap.points > 0 ? json_of(overlap.where) : Json()}};
+}
+
+SelfOverlap overlap_of(const Json& json) {
+  SelfOverlap overlap{json.at("points").get<std::size_t>(), json.at("deepest_mm").get<double>()};
+  if (overlap.points > 0) overlap.where = point_of(json.at("where_mm"));
+  return overlap;
 }
 
 /// As many digits as a curve needs.
@@ -157,6 +173,7 @@ void counts_and_measures(Record& record, const Visit& visit) {
   visit("seconds", record.seconds);
   visit("energy", record.energy);
   visit("inverted_elements", record.inverted_elements);
+  visit("largest_displacement_mm", record.largest_displacement_mm);
 }
 
 /// All of a step but its shape.
@@ -175,6 +192,7 @@ Json step_json(const Model& model, const StepRecord& record) {
   if (model.formulation == Formulation::physical) step["shape_load_share"] = record.shape_load_share;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     step["actuators"][model.actuators[a].name] = actuator_json(model, model.actuators[a], record.actuators[a]);
+  step["self_overlap"] = overlap_json(record.self_overlap);
   step["strain"] = strain_json(record.strain);
   step["history"] = history_json(record);
   if (record.time_s) step["time_s"] = *record.time_s;
@@ -250,12 +268,10 @@ void from_json(const Model& model, const Json& json, StepRecord& record) {
     record.shape_actuation = by_actuator(model, shape);
   if (model.formulation == Formulation::physical) record.shape_load_share = json.at("shape_load_share").get<double>();
   counts_and_measures(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
-  for (const Marker& marker : model.markers) {
-    const Json& p = json.at("markers").at(marker.name);
-    record.markers.emplace_back(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>());
-  }
+  for (const Marker& marker : model.markers) record.markers.push_back(point_of(json.at("markers").at(marker.name)));
   for (const Actuator& actuator : model.actuators)
     record.actuators.push_back(actuator_of(model, actuator, json.at("actuators").at(actuator.name)));
+  record.self_overlap = overlap_of(json.at("self_overlap"));
   record.strain = strain_of(json.at("strain"));
   read_history(json.at("history"), record);
   if (json.contains("time_s")) record.time_s = json.at("time_s").get<double>();

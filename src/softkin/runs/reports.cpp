@@ -88,7 +88,8 @@ Json head_json(const Model& model, const std::string& scene, const StaticsOption
             {"vertices", model.rest.rows()},
             {"tetrahedra", model.tetrahedra.size()},
             {"prisms", model.prisms.size()}}},
-          {"notes", model.notes}};
+          {"notes", model.notes},
+          {"warnings", model.warnings}};
 }
 
 Json asked_json(const Goal& goal) {
@@ -245,6 +246,7 @@ Vec3 place_of(const Model& model, const Goal& goal, const Points& positions) {
 InverseRecord inverse_record(const Model& model, const InverseResult& found, const ElementDeformation& deformation) {
   InverseRecord record;
   static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
+  record.self_overlap = OverlapSearch(model).in(found.equilibrium.state.positions);
   record.seconds = found.seconds;
   record.error_mm = found.errors_mm.maxCoeff();
   return record;

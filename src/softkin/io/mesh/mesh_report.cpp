@@ -43,9 +43,10 @@ MeshVerdict verdict_of(const Mesh& mesh, const std::string& file) {
 
 SceneVerdict try_compile(const RobotSpec& spec) {
   try {
-    return {compile(spec).notes, std::nullopt};
+    Model model = compile(spec);
+    return {std::move(model.warnings), std::move(model.notes), std::nullopt};
   } catch (const InvalidInput& error) {
-    return {{}, error.what()};
+    return {{}, {}, error.what()};
   }
 }
 
@@ -205,6 +206,7 @@ std::string to_json(const MeshVerdict& verdict) {
             {"findings", findings},
             {"parts", parts}};
   if (verdict.scene) {
+    json["scene"]["warnings"] = verdict.scene->warnings;
     json["scene"]["notes"] = verdict.scene->notes;
     json["scene"]["error"] = verdict.scene->error ? Json(*verdict.scene->error) : Json(nullptr);
   }

@@ -21,7 +21,7 @@ struct MeshInfo {
 
 /// What compile() says of a scene.
 struct SceneVerdict {
-  std::vector<std::string> notes;
+  std::vector<std::string> warnings, notes;
   std::optional<std::string> error;
 };
 

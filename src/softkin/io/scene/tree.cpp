@@ -8,6 +8,7 @@
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/scene/tree.hpp>
+#include <softkin/io/scene/yaml_slip.hpp>
 #include <sstream>
 
 namespace softkin::scene {
@@ -148,6 +149,12 @@ std::string shown(const Node& node) {
   return {};
 }
 
+/// The 5 of {nu: 0,5}, which is the key nu with 0 and the key 5 with nothing.
+bool is_comma_rest(const Node::Entry& entry) {
+  return entry.value->kind == Node::Kind::nothing && !entry.key.empty() &&
+         entry.key.find_first_not_of("0123456789") == std::string::npos;
+}
+
 [[noreturn]] void fail_type(const Node& node, const std::string& expected) {
   fail(node, node.name + " must be " + expected + ", not " + shown(node));
 }
@@ -169,6 +176,7 @@ std::shared_ptr<const Node> parse_yaml(const std::string& text, const std::strin
   } catch (const YAML::DeepRecursion& error) {
     throw InvalidInput({file, static_cast<std::size_t>(error.mark.line) + 1}, "lists and maps are nested too deeply");
   } catch (const YAML::Exception& error) {
+    if (const auto slip = find_slip(text)) throw InvalidInput({file, slip->line}, "not valid YAML: " + slip->what);
     const std::size_t line = error.mark.is_null() ? 0 : static_cast<std::size_t>(error.mark.line) + 1;
     throw InvalidInput({file, line}, "not valid YAML: " + (error.msg.empty() ? "cannot be parsed" : error.msg));
   }
@@ -189,7 +197,9 @@ Map::Map(const Node& node, const Keys& known) : node_(node) {
   for (const Node::Entry& each : node.entries)
     if (std::find(known.begin(), known.end(), each.key) == known.end())
       throw InvalidInput(each.origin,
-                         "unknown key " + excerpt(each.key) + " in " + node.name + suggest_name(each.key, known));
+                         "unknown key " + excerpt(each.key) + " in " + node.name +
+                             (is_comma_rest(each) ? "; a number is written with a decimal point, not a comma"
+                                                  : suggest_name(each.key, known)));
 }
 
 const Node::Entry* Map::entry(std::string_view key) const {
@@ -235,7 +245,7 @@ void check_version(const Node& root, const std::string& key, const std::string& 
 double number(const Node& node) {
   double value = 0;
   if (node.kind != Node::Kind::scalar || !node.plain || !parse_real(node.text, value))
-    fail_type(node, "a finite number");
+    fail(node, node.name + " must be a finite number, not " + shown(node) + decimal_comma_hint(node.text));
   return value;
 }
 

@@ -52,6 +52,9 @@ std::vector<std::string> read_header(const Scanner& scanner, std::string_view li
   if (line.find('\r') != std::string_view::npos || find_unprintable(line) != std::string_view::npos)
     scanner.fail("the header " + excerpt(line) +
                  " holds control characters or is not UTF-8; lines end with LF or CRLF");
+  if (line.find(';') != std::string_view::npos)
+    scanner.fail("the header " + excerpt(line) +
+                 " has semicolons: separate the cells by commas, and write numbers with a decimal point");
   const std::vector<std::string_view> cells = split(line);
   if (std::all_of(cells.begin(), cells.end(), is_number))
     scanner.fail("the header is missing: " + excerpt(line) + " holds numbers where columns are named");
@@ -69,7 +72,8 @@ std::vector<double> read_row(const Scanner& scanner, std::string_view line, cons
   const std::vector<std::string_view> cells = split(line);
   if (cells.size() != columns.size())
     scanner.fail("the row has " + std::to_string(cells.size()) + " cells, the header " +
-                 std::to_string(columns.size()) + " columns");
+                 std::to_string(columns.size()) + " columns" +
+                 (cells.size() > columns.size() ? "; a number is written with a decimal point, not a comma" : ""));
   std::vector<double> row(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (!parse_real(cells[i], row[i]))

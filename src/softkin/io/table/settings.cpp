@@ -110,6 +110,14 @@ std::string missing_curve(const Actuator& actuator, const std::string& text) {
   return "";
 }
 
+/// How to set several actuators, where "left=20,right=20" sets them in one; else "".
+std::string several_hint(const std::string& option, const std::string& name, const std::string& text) {
+  const std::size_t comma = text.find_first_of(",;"), equals = text.find('=');
+  if (comma == std::string::npos || equals == std::string::npos || comma > equals) return "";
+  return "; set each actuator on its own: " + option + " " + printable(name + "=" + text.substr(0, comma)) + " " +
+         option + " " + printable(text.substr(comma + 1));
+}
+
 /// Reads a value as the user gives it: a ratio without unit, a load with or without its own, or the pressure or voltage
 /// of the actuator's curve with its unit, which becomes a ratio; false where it is none of these.
 bool parse_command(const Actuator& actuator, const std::string& text, double& value) {
@@ -147,7 +155,8 @@ Settings read_settings(const Model& model, const std::string& option, const std:
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
     double value = 0;
     if (!parse_command(actuator, text, value))
-      refuse(expected_command(actuator) + ", not " + excerpt(text) + missing_curve(actuator, text));
+      refuse(expected_command(actuator) + ", not " + excerpt(text) + missing_curve(actuator, text) +
+             decimal_comma_hint(text) + several_hint(option, name, text));
     if (!(value >= actuator.low && value <= actuator.high))
       refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator));
     if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");

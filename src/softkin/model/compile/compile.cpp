@@ -107,6 +107,8 @@ Model compile(const RobotSpec& spec) {
   compile_loads(c);
   check_anchoring(c.model, c.origin);
   check_hinges(c.model, c.origin);
+  doubt_units(c);
+  doubt_linear_tetrahedra(c);
   return std::move(c.model);
 }
 

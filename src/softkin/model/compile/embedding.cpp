@@ -7,60 +7,24 @@
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
+#include <softkin/model/mesh/tetrahedra.hpp>
 
 namespace softkin {
 
 namespace {
 
-// Orders that put corner i first and keep the prism's orientation.
-constexpr int prism_turns[6][6] = {{0, 1, 2, 3, 4, 5}, {1, 2, 0, 4, 5, 3}, {2, 0, 1, 5, 3, 4},
-                                   {3, 5, 4, 0, 2, 1}, {4, 3, 5, 1, 0, 2}, {5, 4, 3, 2, 1, 0}};
-
-void split(const Prism& prism, std::vector<Tetrahedron>& tetrahedra) {
-  const auto first = std::min_element(prism.begin(), prism.end()) - prism.begin();
-  Prism p;
-  for (int i = 0; i < 6; ++i) p[i] = prism[prism_turns[first][i]];
-  if (std::min(p[1], p[5]) < std::min(p[2], p[4])) {
-    tetrahedra.push_back({p[0], p[1], p[2], p[5]});
-    tetrahedra.push_back({p[0], p[1], p[5], p[4]});
-  } else {
-    tetrahedra.push_back({p[0], p[1], p[2], p[4]});
-    tetrahedra.push_back({p[0], p[4], p[2], p[5]});
-  }
-  tetrahedra.push_back({p[0], p[4], p[5], p[3]});
-}
-
 std::vector<Tetrahedron> as_tetrahedra(const Points& vertices, std::vector<Tetrahedron> tetrahedra,
                                        const std::vector<Prism>& prisms) {
-  std::vector<Tetrahedron> pieces;
-  pieces.reserve(3 * prisms.size());
-  for (const Prism& prism : prisms) split(prism, pieces);
-  for (const Tetrahedron& piece : pieces) {
-    double longest2 = 0;
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < i; ++j)
-        longest2 = std::max(longest2, (vertices.row(piece[i]) - vertices.row(piece[j])).squaredNorm());
-    // a strongly twisted prism can have a flat piece, which its neighbours cover
-    if (signed_volume(vertices, piece) > 1e-9 * longest2 * std::sqrt(longest2)) tetrahedra.push_back(piece);
-  }
+  for (const Prism& prism : prisms)
+    for (const Tetrahedron& piece : split(prism)) {
+      double longest2 = 0;
+      for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < i; ++j)
+          longest2 = std::max(longest2, (vertices.row(piece[i]) - vertices.row(piece[j])).squaredNorm());
+      // a strongly twisted prism can have a flat piece, which its neighbours cover
+      if (signed_volume(vertices, piece) > 1e-9 * longest2 * std::sqrt(longest2)) tetrahedra.push_back(piece);
+    }
   return tetrahedra;
-}
-
-std::vector<Bounds> tetrahedron_bounds(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra) {
-  std::vector<Bounds> bounds(tetrahedra.size());
-  for (std::size_t i = 0; i < tetrahedra.size(); ++i)
-    for (const Index v : tetrahedra[i]) bounds[i].extend(vertex_at(vertices, v));
-  return bounds;
-}
-
-Barycentric barycentric(const Vec3 (&corners)[4], const Vec3& point) {
-  const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], c = corners[3] - corners[0],
-             offset = point - corners[0];
-  const Vec3 bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
-  const double six_volumes = a.dot(bc);
-  Barycentric w(0, offset.dot(bc) / six_volumes, offset.dot(ca) / six_volumes, offset.dot(ab) / six_volumes);
-  w[0] = 1 - w[1] - w[2] - w[3];
-  return w;
 }
 
 // The nearest point of a tetrahedron lies on a face that the point is on the outer side of.
@@ -160,7 +124,7 @@ Embedder::Embedder(const Points& vertices, const std::vector<Tetrahedron>& tetra
     : vertices_(vertices),
       tetrahedra_(as_tetrahedra(vertices, tetrahedra, prisms)),
       edge_nodes_(edge_nodes),
-      tree_(tetrahedron_bounds(vertices, tetrahedra_)) {
+      tree_(bounds_of(vertices, tetrahedra_)) {
   Bounds bounds;
   for (Index i = 0; i < vertices_.rows(); ++i) bounds.extend(vertex_at(vertices_, i));
   if (!bounds.isEmpty()) tolerance_ = 1e-13 * bounds.diagonal().norm();

@@ -79,6 +79,19 @@ void compile_feet(Compilation& c);
 /// Physical: the weight of the elements and the forces, lumped on the vertices [N].
 void compile_loads(Compilation& c);
 
+/// Of a law at small strain, where all are the same.
+struct StiffnessAtRest {
+  double youngs_modulus_MPa = 0;
+  double poisson_ratio = 0;
+};
+[[nodiscard]] StiffnessAtRest stiffness_at_rest(const ElasticLaw& law);
+
+/// Physical, tetrahedra of order 1: warns of walls of so few of them that they bend by a tenth too little or less.
+void doubt_linear_tetrahedra(Compilation& c);
+
+/// Warns of a size, moduli, gravity and densities that no soft robot has: of numbers in another unit than was meant.
+void doubt_units(Compilation& c);
+
 /// A point of the body; what names it in messages. Notes one that is outside, refuses one that is far outside.
 [[nodiscard]] EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what);
 

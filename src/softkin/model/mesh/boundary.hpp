@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <numeric>
 #include <softkin/model/mesh/mesh.hpp>
 
 namespace softkin {
@@ -24,12 +26,31 @@ struct ElementFaces {
 /// The faces of every element, by elements.
 [[nodiscard]] ElementFaces faces_of(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Prism>& prisms);
 
+/// By ascending vertices, then owners. Indices must not be negative.
+template <std::size_t K>
+void sort_faces(std::vector<ElementFace<K>>& faces) {
+  // into buckets of the first vertex, which hold a few faces each
+  std::vector<std::size_t> end(1);
+  for (const auto& face : faces) {
+    const auto first = static_cast<std::size_t>(face.sorted[0]);
+    if (first + 1 >= end.size()) end.resize(first + 2);
+    ++end[first + 1];
+  }
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<ElementFace<K>> sorted(faces.size());
+  for (const auto& face : faces) sorted[end[static_cast<std::size_t>(face.sorted[0])]++] = face;
+  const auto at = [&sorted](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
+  for (std::size_t bucket = 0, begin = 0; bucket + 1 < end.size(); begin = end[bucket++])
+    std::sort(at(begin), at(end[bucket]), [](const auto& a, const auto& b) {
+      return a.sorted != b.sorted ? a.sorted < b.sorted : a.owner < b.owner;
+    });
+  faces = std::move(sorted);
+}
+
 /// Sorts the faces and calls visit(begin, end) for those of the same vertices, by ascending owners.
 template <std::size_t K, class Visit>
 void visit_same_faces(std::vector<ElementFace<K>>& faces, const Visit& visit) {
-  std::sort(faces.begin(), faces.end(), [](const auto& a, const auto& b) {
-    return a.sorted != b.sorted ? a.sorted < b.sorted : a.owner < b.owner;
-  });
+  sort_faces(faces);
   for (std::size_t i = 0, j = 0; i < faces.size(); i = j) {
     for (j = i + 1; j < faces.size() && faces[j].sorted == faces[i].sorted;) ++j;
     visit(faces.data() + i, faces.data() + j);

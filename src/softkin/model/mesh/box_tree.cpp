@@ -34,6 +34,18 @@ void BoxTree::build(const std::vector<Bounds>& bounds, Index begin, Index end) {
   build(bounds, middle, end);
 }
 
+void BoxTree::refit(const std::vector<Bounds>& bounds) {
+  for (std::size_t at = nodes_.size(); at-- > 0;) {  // children stand behind their parents
+    Node& node = nodes_[at];
+    node.bounds.setEmpty();
+    if (node.right != 0) {
+      node.bounds = nodes_[at + 1].bounds.merged(nodes_[static_cast<std::size_t>(node.right)].bounds);
+    } else {
+      for (Index i = node.begin; i < node.end; ++i) node.bounds.extend(bounds[static_cast<std::size_t>(items_[i])]);
+    }
+  }
+}
+
 bool BoxTree::meets(const Bounds& bounds, const Vec3& origin, const Vec3& direction) {
   double first = 0, last = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {

@@ -22,6 +22,13 @@ class BoxTree {
   template <class Visit>
   void visit_near(const Vec3& point, const Visit& visit) const;
 
+  /// The same items with other boxes; the fewer of them have changed places among each other, the faster it stays.
+  void refit(const std::vector<Bounds>& bounds);
+
+  /// Calls visit(item) for every item whose box holds the point, until visit returns false.
+  template <class Visit>
+  void visit_at(const Vec3& point, const Visit& visit) const;
+
   /// Calls visit(item) for every item whose box the ray origin + t direction, t >= 0, meets, until visit returns false.
   template <class Visit>
   void visit_ray(const Vec3& origin, const Vec3& direction, const Visit& visit) const;
@@ -37,6 +44,8 @@ class BoxTree {
   static constexpr Index leaf_size = 4;
   static constexpr std::size_t depth = 80;  // of the stacks: halving an Index range of items takes 31 levels
 
+  template <class Where, class Visit>
+  void visit_where(const Where& where, const Visit& visit) const;
   void build(const std::vector<Bounds>& bounds, Index begin, Index end);
   static bool meets(const Bounds& bounds, const Vec3& origin, const Vec3& direction);
 
@@ -68,7 +77,17 @@ void BoxTree::visit_near(const Vec3& point, const Visit& visit) const {
 }
 
 template <class Visit>
+void BoxTree::visit_at(const Vec3& point, const Visit& visit) const {
+  visit_where([&](const Bounds& bounds) { return bounds.contains(point); }, visit);
+}
+
+template <class Visit>
 void BoxTree::visit_ray(const Vec3& origin, const Vec3& direction, const Visit& visit) const {
+  visit_where([&](const Bounds& bounds) { return meets(bounds, origin, direction); }, visit);
+}
+
+template <class Where, class Visit>
+void BoxTree::visit_where(const Where& where, const Visit& visit) const {
   if (nodes_.empty()) return;
   std::array<Index, depth> stack;
   std::size_t size = 0;
@@ -76,7 +95,7 @@ void BoxTree::visit_ray(const Vec3& origin, const Vec3& direction, const Visit& 
   while (size > 0) {
     const Index at = stack[--size];
     const Node& node = nodes_[at];
-    if (!meets(node.bounds, origin, direction)) continue;
+    if (!where(node.bounds)) continue;
     if (node.right != 0) {
       stack[size++] = node.right;
       stack[size++] = at + 1;

@@ -59,13 +59,17 @@ std::optional<LineHit> meet_plane(const Vec3& origin, const Vec3& direction, con
 SurfaceTree::SurfaceTree(const Points& vertices, std::vector<Triangle> triangles)
     : vertices_(vertices), triangles_(std::move(triangles)), tree_(triangle_bounds(vertices_, triangles_)) {}
 
-std::optional<double> SurfaceTree::first_hit(const Vec3& origin, const Vec3& direction, double after) const {
+std::optional<double> SurfaceTree::first_hit(const Vec3& origin, const Vec3& direction, double after,
+                                             Index* triangle) const {
   std::optional<double> first;
   tree_.visit_ray(origin, direction, [&](Index item) {
     const Triangle& t = triangles_[item];
     const auto hit = meet_plane(origin, direction, vertex_at(vertices_, t[0]), vertex_at(vertices_, t[1]),
                                 vertex_at(vertices_, t[2]));
-    if (hit && hit->weights.minCoeff() >= -margin && hit->t > after && (!first || hit->t < *first)) first = hit->t;
+    if (hit && hit->weights.minCoeff() >= -margin && hit->t > after && (!first || hit->t < *first)) {
+      first = hit->t;
+      if (triangle != nullptr) *triangle = item;
+    }
     return true;
   });
   return first;

@@ -25,7 +25,9 @@ class SurfaceTree {
   SurfaceTree(const Points& vertices, std::vector<Triangle> triangles);
 
   /// The least t > after at which origin + t direction meets the surface; direction need not have length 1.
-  [[nodiscard]] std::optional<double> first_hit(const Vec3& origin, const Vec3& direction, double after) const;
+  /// triangle: if given, the one that is met there
+  [[nodiscard]] std::optional<double> first_hit(const Vec3& origin, const Vec3& direction, double after,
+                                                Index* triangle = nullptr) const;
 
   /// Whether the point lies inside; the surface must be closed.
   [[nodiscard]] bool contains(const Vec3& point) const;
