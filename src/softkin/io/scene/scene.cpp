@@ -31,7 +31,7 @@ std::int64_t read_order(const Node& node) {
 }
 
 void read_mesh_of(const Context& context, const Node& node, RobotSpec& spec) {
-  const Map map(node, {"file", "order"});
+  const Map map(node, {"file", "order", "accept_errors"});
   const Node& file = map.at("file");
   const Node* order = map.find("order");
   const bool quadratic = order && read_order(*order) == 2;
@@ -41,6 +41,8 @@ void read_mesh_of(const Context& context, const Node& node, RobotSpec& spec) {
   if (order && !quadratic && !spec.mesh.edge_nodes.empty())
     fail(*order, "'order' is 1, but the tetrahedra of the mesh are of order 2");
   spec.quadratic = quadratic;
+  spec.mesh_origin = file.origin;
+  if (const Node* accept = map.find("accept_errors")) spec.accept_mesh_errors = choice(*accept, {"false", "true"}) == 1;
 }
 
 Formulation read_formulation(const Map& map, const std::vector<MaterialSpec>& materials) {
