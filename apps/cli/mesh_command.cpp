@@ -33,6 +33,15 @@ Row region_row(const RegionMeasures& region) {
   return row;
 }
 
+/// "" where there is none.
+std::string text_of(const std::vector<EmptySpace>& spaces) {
+  if (spaces.empty()) return "";
+  std::vector<std::string> lines;
+  for (const EmptySpace& space : spaces) lines.push_back(text_of(space));
+  return counted(spaces.size(), "empty space") + " that the elements enclose\n" +
+         joined(cut(lines, most_parts), "    ");
+}
+
 std::string text_of(const MeshInfo& info) {
   const MeshMeasures& m = info.measures;
   const Vec3 size = m.high - m.low;
@@ -42,7 +51,7 @@ std::string text_of(const MeshInfo& info) {
                      {"elements", tetrahedra_text(m.tetrahedra, m.order) + ", " + counted(m.prisms, "prism") + " in " +
                                       counted(m.parts, "part")},
                      {"surface cells", counted(m.triangles, "triangle") + ", " + counted(m.quads, "quad")},
-                     {"bounding box", point_text(m.low) + " to " + point_text(m.high)},
+                     {"bounding box", point_text(m.low) + " mm to " + point_text(m.high) + " mm"},
                      {"size", number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " mm"},
                      {"volume", number(m.volume) + " mm^3"},
                      {"boundary area", number(m.boundary) + " mm^2"},
@@ -53,35 +62,13 @@ std::string text_of(const MeshInfo& info) {
                      {"regions", std::to_string(m.regions.size())}}};
   Table regions{{left, left, right, right, right}};
   for (const RegionMeasures& region : m.regions) regions.rows.push_back(region_row(region));
-  return joined(table.body(), "") + joined(cut(regions.body(), most_regions), "  ");
-}
-
-std::string words(const MeshFinding& finding) {
-  std::string text = finding.kind;
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
-void name(const std::vector<Index>& indices, const char* one, const char* many, std::string& text) {
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    text += text.empty() ? "" : i == 0 ? " and " : ", ";
-    if (i == 0) text += std::string(indices.size() == 1 ? one : many) + " ";
-    text += std::to_string(indices[i]);
-  }
-}
-
-std::string text_of(const MeshPlace& place) {
-  std::string text;
-  name(place.tetrahedra, "tetrahedron", "tetrahedra", text);
-  name(place.prisms, "prism", "prisms", text);
-  name(place.vertices, "vertex", "vertices", text);
-  return text + " at " + point_text(place.position);
+  return joined(table.body(), "") + joined(cut(regions.body(), most_regions), "  ") + text_of(info.empty_spaces);
 }
 
 std::string text_of(const std::vector<MeshFinding>& findings) {
   Table table{{left, left, right, left}};
   for (const MeshFinding& finding : findings)
-    table.rows.push_back({finding.count == 0 ? "ok" : name_of(finding.severity), words(finding),
+    table.rows.push_back({finding.count == 0 ? "ok" : name_of(finding.severity), words_of(finding),
                           static_cast<std::int64_t>(finding.count), finding.count == 0 ? "" : finding.meaning});
   const std::vector<std::string> lines = table.body();
   std::string text;
@@ -98,7 +85,7 @@ std::string parts_text(const MeshVerdict& verdict) {
   Table table{{right, right, left}};
   for (const PartMeasures& part : verdict.parts)
     table.rows.push_back({counted(part.vertices, "vertex", "vertices"), number(part.volume) + " mm^3",
-                          "centroid " + point_text(part.centroid)});
+                          "centroid " + point_text(part.centroid) + " mm"});
   const char* hint = verdict.scene               ? ""
                      : verdict.parts.size() == 1 ? ": a scene must hold it"
                                                  : ": a scene must hold each";
@@ -119,8 +106,10 @@ std::string judgement(const MeshVerdict& verdict) {
   for (const MeshFinding& finding : verdict.findings) {
     if (finding.count == 0 || finding.severity == MeshSeverity::remark) continue;
     std::string& text = finding.severity == MeshSeverity::error ? errors : warnings;
-    text += (text.empty() ? "" : ", ") + words(finding) + " (" + std::to_string(finding.count) + ")";
+    text += (text.empty() ? "" : ", ") + words_of(finding) + " (" + std::to_string(finding.count) + ")";
   }
+  if (!errors.empty() && verdict.errors_accepted())
+    return "usable, since the scene accepts errors: " + errors + (warnings.empty() ? "" : ", " + warnings) + "\n";
   if (!errors.empty()) return "not usable: " + errors + "\n";
   return "usable" + (warnings.empty() ? "" : ", but look at: " + warnings) + "\n";
 }
@@ -128,7 +117,7 @@ std::string judgement(const MeshVerdict& verdict) {
 std::string text_of(const MeshVerdict& verdict) {
   return verdict.file + ": " + counted(verdict.vertices, "vertex", "vertices") + ", " +
          tetrahedra_text(verdict.tetrahedra, verdict.order) + ", " + counted(verdict.prisms, "prism") +
-         ", each numbered from 0\n" + text_of(verdict.findings) + parts_text(verdict) +
+         ", each numbered from 0\n" + text_of(verdict.findings) + parts_text(verdict) + text_of(verdict.empty_spaces) +
          (verdict.scene ? text_of(*verdict.scene) : "") + judgement(verdict);
 }
 

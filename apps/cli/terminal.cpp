@@ -82,13 +82,6 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::string point_text(const Vec3& point) {
-  const double rounding = 1e-12 * point.cwiseAbs().maxCoeff();
-  std::string text;
-  for (const double x : point) text += (text.empty() ? "(" : ", ") + number(std::abs(x) < rounding ? 0 : x);
-  return text + ") mm";
-}
-
 std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most) {
   if (lines.size() <= most) return lines;
   const std::size_t more = lines.size() - most;

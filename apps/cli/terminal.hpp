@@ -39,9 +39,6 @@ class ProgressLine {
 /// Of a clock that never jumps.
 [[nodiscard]] double seconds_now();
 
-/// "(x, y, z) mm"; what is 1e-12 of the largest coordinate or less counts as 0.
-[[nodiscard]] std::string point_text(const Vec3& point);
-
 /// The first lines, at most so many, and what was left out: "... and N more".
 [[nodiscard]] std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most);
 

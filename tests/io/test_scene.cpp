@@ -116,6 +116,23 @@ TEST(Scene, WholeSceneChambersAndSkins) {
   EXPECT_EQ(bag.origin.text(), "robots/finger.yaml:36");
 }
 
+TEST(Scene, CavitiesAndErrorsOfTheMesh) {
+  const std::string rest = ", range: [1, 2]}]\n", head = "actuators: [{name: a, kind: pneumatic";
+  const auto chamber = [&](const std::string& keys) { return parse_body(head + keys + rest).actuators[0]; };
+  const ActuatorSpec inches = chamber(", surface: {file: c.stl, unit: in}");
+  expect_near(inches.surface->vertices.row(1).transpose(), 25.4, 0, 0);
+  const ActuatorSpec wall = chamber(", surface: {region: cavity_wall}");
+  EXPECT_EQ(wall.wall, "cavity_wall");
+  EXPECT_FALSE(wall.surface || wall.region);
+  const ActuatorSpec none = chamber("");
+  EXPECT_FALSE(none.surface || none.region || none.wall);
+  const RobotSpec strict = parse("softkin: 1\nmesh:\n  file: a.msh\n"),
+                  lenient = parse("softkin: 1\nmesh: {file: a.msh, accept_errors: true}\n");
+  EXPECT_FALSE(strict.accept_mesh_errors);
+  EXPECT_EQ(strict.mesh_origin.line, 3u);
+  EXPECT_TRUE(lenient.accept_mesh_errors);
+}
+
 TEST(Scene, WholeSceneCableAndMarkers) {
   const RobotSpec spec = parse(whole_scene);
   const ActuatorSpec& tendon = spec.actuators.at(1);

@@ -54,16 +54,53 @@ TEST(Physical, ReversedElementsOfAChamberAreTurned) {
   EXPECT_TRUE(has_note(model, "3 elements were reordered"));
 }
 
-TEST(Physical, ACavityHasItsFacesOnTheOutsideToo) {
-  RobotSpec spec = physical_robot(block_mesh({3, 1, 1}, {30, 10, 10}));
-  add_volume_region(spec.mesh, "end", [](const Vec3& p) { return p[0] > 20; });
-  spec.actuators.push_back(chamber("end"));
-  const Model model = compile(spec);
-  EXPECT_EQ(model.actuators[0].cavity.size(), 12u);
-  EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
-  EXPECT_TRUE(has_note(model, "4 vertices on the boundary of the chamber of actuator 'air' belong to no element"));
+/// 60 x 60 x 60 mm, fixed at x = 0, where a chamber of 20 x 40 x 40 mm opens.
+RobotSpec against_a_plate() {
+  RobotSpec spec = physical_robot(block_mesh({3, 6, 6}, {60, 60, 60}));
+  add_volume_region(spec.mesh, "mouth",
+                    [](const Vec3& p) { return p[0] < 20 && p[1] > 10 && p[1] < 50 && p[2] > 10 && p[2] < 50; });
+  spec.actuators.push_back(chamber("mouth"));
+  return spec;
+}
+
+TEST(Physical, AHeldPlateClosesAChamber) {
+  const Model model = compile(against_a_plate());
+  EXPECT_EQ(model.actuators[0].cavity.size(), 2 * (2 * 16u + 4 * 4));
+  EXPECT_NEAR(model.actuators[0].rest_measure, 32000, 1e-8);
+  EXPECT_TRUE(has_note(model, "9 vertices on the boundary of the chamber of actuator 'air' belong to no element"));
   EXPECT_EQ(model.notes.size(), 1u);
-  for (Index v = 0; v < model.rest.rows(); ++v) EXPECT_EQ(model.used[v], model.rest(v, 0) < 25);
+  RobotSpec half = against_a_plate();  // x = 0 a plane of symmetry
+  half.fixed = {{named("x_low"), {true, false, false}}, {named("x_high"), {true, true, true}}};
+  EXPECT_EQ(compile(half).actuators[0].cavity.size(), model.actuators[0].cavity.size());
+}
+
+TEST(Physical, AnOpenChamberIsRefused) {
+  const std::string opening = "robot.yaml:9: actuator 'air' has a chamber that is open: 32 faces around (0, 30, 30) mm";
+  expect_refused(against_a_plate(),
+                 {{"free",
+                   [](RobotSpec& s) {
+                     s.fixed = {{named("x_high"), {true, true, true}}};
+                   },
+                   opening},
+                  {"free along its normal",
+                   [](RobotSpec& s) {
+                     s.fixed = {{named("x_low"), {false, true, true}}, {named("x_high"), {true, true, true}}};
+                   },
+                   opening},
+                  {"displaced",
+                   [](RobotSpec& s) {
+                     s.fixed[0].displacement = {1, 0, 0};
+                   },
+                   opening},
+                  {"at a void",
+                   [](RobotSpec& s) {
+                     s.voids = {shaped(Box{{20, 20, 20}, {60, 40, 40}})};
+                   },
+                   "is open: 8 faces around (20, 30, 30) mm is not the body's"}});
+  RobotSpec end = physical_robot(block_mesh({3, 1, 1}, {30, 10, 10}));
+  add_volume_region(end.mesh, "end", [](const Vec3& p) { return p[0] > 20; });
+  end.actuators.push_back(chamber("end"));
+  EXPECT_NE(refusal(end).find("has a chamber that is open: 10 faces around"), std::string::npos) << refusal(end);
 }
 
 TEST(Physical, VerticesInsideAChamberAreNoLooseVertices) {
@@ -75,22 +112,6 @@ TEST(Physical, VerticesInsideAChamberAreNoLooseVertices) {
   EXPECT_TRUE(model.notes.empty());
   EXPECT_NEAR(model.actuators[0].rest_measure, 8000, 1e-9);
   EXPECT_EQ(model.actuators[0].cavity.size(), 6u * 8);
-}
-
-TEST(Physical, ASurfaceIsEmbeddedInTheBody) {
-  RobotSpec spec = physical_robot(hollow_mesh());
-  ActuatorSpec bag = chamber("");
-  bag.region.reset();
-  bag.surface = box_surface({6, 7, 8}, {11, 12, 13});
-  for (Triangle& t : bag.surface->triangles) std::swap(t[0], t[1]);
-  spec.actuators.push_back(bag);
-  const Model model = compile(spec);
-  EXPECT_EQ(model.tetrahedra.size(), 27u * 6);
-  EXPECT_TRUE(model.actuators[0].tetrahedra.empty());
-  EXPECT_TRUE(model.actuators[0].cavity.empty());
-  EXPECT_EQ(model.actuators[0].points.size(), 8u);
-  EXPECT_EQ(model.actuators[0].surface.size(), 12u);
-  EXPECT_NEAR(model.actuators[0].rest_measure, 11 * 12 * 13, 1e-9);
 }
 
 TEST(Physical, ACableHasNoGaps) {

@@ -176,8 +176,7 @@ TEST(SurfaceTree, DoubtfulRaysAreNotCounted) {
     }
     std::vector<Triangle> octahedron{{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2},
                                      {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}};
-    const TriangleSurface closed = closed_outwards({corners, octahedron});
-    const SurfaceTree tree(closed.vertices, closed.triangles);
+    const SurfaceTree tree(corners, octahedron);
     EXPECT_TRUE(tree.contains(center));
     EXPECT_TRUE(tree.contains(center + rays[0]));
     EXPECT_FALSE(tree.contains(center + 1.01 * (rays[0] + rays[1])));
@@ -193,34 +192,6 @@ TEST(SurfaceTree, FirstHitAlongARay) {
   EXPECT_DOUBLE_EQ(*surface.first_hit({0, 1.3, 3.1}, {1, 0, 0}, 1e-9), 4.0);
   EXPECT_FALSE(surface.first_hit({5, 2, 2}, {1, 0, 0}, 0));
   EXPECT_FALSE(surface.first_hit({5, 5, 2}, {0, 0, 1}, 0));
-}
-
-TEST(SurfaceTree, OnlyClosedSurfacesTurnedOutwards) {
-  const Mesh mesh = block_mesh({1, 1, 1}, {2, 2, 2});
-  const std::vector<Triangle> skin = triangulated(boundary_of(mesh.tetrahedra, {}));
-  const auto complaint = [&](std::vector<Triangle> triangles) -> std::string {
-    try {
-      const TriangleSurface closed = closed_outwards({mesh.vertices, std::move(triangles)});
-      EXPECT_DOUBLE_EQ(enclosed_volume(closed.vertices, closed.triangles), 8);
-    } catch (const InvalidInput& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(complaint(skin), "");
-  std::vector<Triangle> inwards = skin;
-  for (Triangle& t : inwards) std::swap(t[0], t[1]);
-  EXPECT_EQ(complaint(inwards), "");
-  EXPECT_EQ(complaint({}), "the surface is not closed");
-  EXPECT_EQ(complaint({skin.begin() + 1, skin.end()}), "the surface is not closed");
-  std::vector<Triangle> mixed = skin;
-  std::swap(mixed[3][0], mixed[3][1]);
-  EXPECT_NE(complaint(mixed).find("mixed orientation"), std::string::npos);
-  std::vector<Triangle> wild = skin;
-  wild[0][0] = 8;
-  EXPECT_NE(complaint(wild).find("names a vertex that is not there"), std::string::npos);
-  std::vector<Triangle> flat{skin[0], {skin[0][0], skin[0][2], skin[0][1]}};
-  EXPECT_EQ(complaint(flat), "the surface encloses no volume");
 }
 
 }  // namespace

@@ -53,6 +53,21 @@ inline RobotSpec bending_finger() {
   return spec;
 }
 
+/// 48 x 18 x 24 mm around an empty space of 24 x 6 x 6 mm, with bags whose surface lies 2 mm farther along x than the
+/// space, so that it cuts through elements.
+inline RobotSpec robot_with_bags(const std::vector<std::string>& names) {
+  RobotSpec spec = physical_robot(block_mesh({8, 3, 4}, {48, 18, 24}));
+  spec.voids.push_back({Box{{12, 6, 12}, {36, 12, 18}}, {}});
+  for (const std::string& name : names) {
+    ActuatorSpec bag = air(name);
+    bag.region.reset();
+    bag.surface = box_surface({14, 6, 12}, {24, 6, 6});
+    spec.actuators.push_back(bag);
+  }
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  return spec;
+}
+
 /// A beam of 60 x 10 x 10 mm with cables along its top and its bottom.
 inline RobotSpec cable_beam() {
   RobotSpec spec = physical_robot(block_mesh({12, 2, 2}, {60, 10, 10}));

@@ -93,17 +93,6 @@ inline void expect_differences_at(const RobotSpec& spec, const Actuation& actuat
   expect_differences(model, statics, settled(statics, actuation), tolerance, steps);
 }
 
-/// The finger with its chamber as an embedded surface.
-inline RobotSpec finger_with_bag() {
-  RobotSpec spec = physical_robot(block_mesh({8, 3, 3}, {48, 18, 18}));
-  ActuatorSpec bag = air("bag");
-  bag.region.reset();
-  bag.surface = box_surface({8, 5, 9.5}, {30, 8, 6});
-  spec.actuators = {bag};
-  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
-  return spec;
-}
-
 /// A slender finger of quadratic elements with a stiff sole; inflated it curls down.
 inline RobotSpec curling_finger() {
   Mesh mesh = block_mesh({16, 3, 3}, {120, 9, 9});

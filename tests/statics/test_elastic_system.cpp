@@ -36,6 +36,7 @@ RobotSpec mixed_laws() {
   const RobotSpec mixed = mixed_robot(true);
   RobotSpec spec = physical_robot(mixed.mesh);
   spec.actuators = mixed.actuators;
+  for (const char* side : {"y_low", "y_high"}) spec.fixed.push_back({{std::string(side), {}}, {false, true, false}});
   spec.regions.push_back({"left", Box{{0, 0, 0}, {20, 20, 30}}, {}});
   spec.regions.push_back({"right", Box{{40, 0, 8}, {60, 20, 30}}, {}});
   spec.regions.push_back({"top", Box{{0, 0, 16}, {60, 20, 30}}, {}});

@@ -18,7 +18,7 @@ RobotSpec balloon(double modulus, bool quadratic) {
   add_volume_region(mesh, "hollow", [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 10; });
   for (Index v = 0; v < mesh.vertices.rows(); ++v) {
     const Vec3 p = mesh.vertices.row(v).transpose() - Vec3(15, 15, 15);
-    if (p.norm() > 0) mesh.vertices.row(v) = (p * p.cwiseAbs().maxCoeff() / p.norm()).transpose();
+    mesh.vertices.row(v) = (p.norm() > 0 ? Vec3(p * p.cwiseAbs().maxCoeff() / p.norm()) : p).transpose();
   }
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.materials[0].elastic = elastic(Law::mooney_rivlin, modulus, 0.45);
@@ -157,14 +157,7 @@ TEST(PhysicalLimits, AConstraintThatCannotBeMet) {
     EXPECT_FALSE(found.report.remark.empty());
     EXPECT_LT(distance(found.state.positions, stiff_model.rest), 1e-12);
   }
-  RobotSpec twins = physical_robot(block_mesh({8, 3, 3}, {48, 18, 18}));
-  for (const char* name : {"bag", "twin"}) {
-    ActuatorSpec bag = air(name);
-    bag.region.reset();
-    bag.surface = box_surface({8, 5, 9.5}, {30, 8, 6});
-    twins.actuators.push_back(bag);
-  }
-  const Model model = compile(twins);
+  const Model model = compile(robot_with_bags({"bag", "twin"}));
   const Statics statics(model);
   EXPECT_EQ(statics.solve(values({1.3, 1.1}), statics.rest()).report.status, Status::limit);
   const Equilibrium same = settled(statics, values({1.3, 1.3}));

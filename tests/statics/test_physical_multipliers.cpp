@@ -71,12 +71,7 @@ TEST(PhysicalMultipliers, OfManyTogether) {
 }
 
 TEST(PhysicalMultipliers, OfAnEmbeddedSurface) {
-  RobotSpec spec = physical_robot(block_mesh({8, 3, 3}, {48, 18, 18}));
-  ActuatorSpec bag = air("bag");
-  bag.region.reset();
-  bag.surface = box_surface({8, 5, 9.5}, {30, 8, 6});
-  spec.actuators = {bag};
-  expect_slopes(spec, values({1.3}));
+  expect_slopes(robot_with_bags({"bag"}), values({1.3}));
 }
 
 /// Commanded by the multiplier that was found, the robot takes the same shape.

@@ -129,6 +129,7 @@ TEST(System, CountsUnstableDirections) {
 TEST(System, UpsetIsTheSlopeInTheDemand) {
   RobotSpec spec = physical_robot(mixed_robot(true).mesh);
   spec.actuators = mixed_robot(true).actuators;
+  for (const char* side : {"y_low", "y_high"}) spec.fixed.push_back({{std::string(side), {}}, {false, true, false}});
   spec.actuators[1] = by_load(spec.actuators[1]);
   spec.materials[0].density = 1000;
   spec.gravity = {0, 0, -2};

@@ -48,7 +48,7 @@ TEST(Sensitivity, ChamberByPressure) {
 }
 
 TEST(Sensitivity, ChamberWithinASurface) {
-  RobotSpec spec = finger_with_bag();
+  RobotSpec spec = robot_with_bags({"bag"});
   for (const double ratio : {1.0, 1.3, 1.8}) expect_differences_at(spec, values({ratio}));
   spec.actuators = {by_load(spec.actuators[0])};
   for (const double pressure : {0.0, 100.0}) expect_differences_at(spec, values({pressure}));

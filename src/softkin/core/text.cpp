@@ -25,6 +25,13 @@ std::string decimal(double value, int decimals) {
   return text;
 }
 
+std::string point_text(const Vec3& point) {
+  const double rounding = 1e-12 * point.cwiseAbs().maxCoeff();
+  std::string text;
+  for (const double x : point) text += (text.empty() ? "(" : ", ") + number(std::abs(x) < rounding ? 0 : x);
+  return text + ")";
+}
+
 std::string duration(double seconds) {
   const auto whole = static_cast<long long>(std::ceil(std::clamp(seconds, 0.0, 1e15)));
   if (whole < 60) return std::to_string(whole) + " s";

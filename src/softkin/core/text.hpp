@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <softkin/core/types.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,9 @@ namespace softkin {
 
 /// A number with so many digits behind the point; never "-0.000".
 [[nodiscard]] std::string decimal(double value, int decimals);
+
+/// "(x, y, z)"; what is 1e-12 of the largest coordinate or less counts as 0.
+[[nodiscard]] std::string point_text(const Vec3& point);
 
 /// "45 s", "3 min 20 s", "2 h 5 min".
 [[nodiscard]] std::string duration(double seconds);

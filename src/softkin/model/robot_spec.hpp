@@ -90,6 +90,7 @@ struct ActuatorSpec {
   ActuatorKind kind = ActuatorKind::pneumatic;
   std::optional<std::string> region;       // dea, pneumatic: the volume region of its elements
   std::optional<TriangleSurface> surface;  // pneumatic: cavity surface instead of a region [mm]
+  std::optional<std::string> wall;         // pneumatic: region of faces around the cavity, instead of either
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
   Control control = Control::ratio;        // load: physical formulation, cable and pneumatic
@@ -131,10 +132,12 @@ struct ForceSpec {
 struct RobotSpec {
   std::string name;  // the scene's file name, for messages
   Formulation formulation = Formulation::target_shape;
-  Mesh mesh;                      // in mm
-  bool quadratic = false;         // physical: elevate a mesh of order 1 to order 2
-  Vec3 gravity{0, 0, 0};          // [m/s^2]; physical
-  std::vector<ForceSpec> forces;  // physical
+  Mesh mesh;                        // in mm
+  Origin mesh_origin;               // of the entry that names it
+  bool accept_mesh_errors = false;  // take doubled or overlapping elements, with a note
+  bool quadratic = false;           // physical: elevate a mesh of order 1 to order 2
+  Vec3 gravity{0, 0, 0};            // [m/s^2]; physical
+  std::vector<ForceSpec> forces;    // physical
   std::vector<RegionSpec> regions;
   std::vector<MaterialSpec> materials;
   std::vector<RegionRef> voids;

@@ -38,15 +38,19 @@ MeshVerdict verdict_of(const Mesh& mesh, const std::string& file) {
           mesh.prisms.size(),
           findings_of(mesh, check),
           measure_parts(mesh, check),
+          {},
           std::nullopt};
 }
 
-SceneVerdict try_compile(const RobotSpec& spec) {
+/// Adds what compile() says of the scene, and the empty spaces of its body, or of the mesh where it is refused.
+void judge_scene(const RobotSpec& spec, MeshVerdict& verdict) {
   try {
     Model model = compile(spec);
-    return {std::move(model.warnings), std::move(model.notes), std::nullopt};
+    verdict.empty_spaces = empty_spaces_in(model.rest, model.tetrahedra, model.prisms);
+    verdict.scene = {std::move(model.warnings), std::move(model.notes), std::nullopt, spec.accept_mesh_errors};
   } catch (const InvalidInput& error) {
-    return {{}, {}, error.what()};
+    verdict.scene = {{}, {}, error.what(), spec.accept_mesh_errors};
+    verdict.empty_spaces = empty_spaces_in(spec.mesh.vertices, spec.mesh.tetrahedra, spec.mesh.prisms);
   }
 }
 
@@ -118,6 +122,14 @@ Json finding_json(const MeshFinding& finding) {
           {"first", first}};
 }
 
+Json spaces_json(const std::vector<EmptySpace>& spaces) {
+  Json json = Json::array();
+  for (const EmptySpace& space : spaces)
+    json.push_back(
+        {{"volume_mm3", space.volume}, {"faces", space.triangles.size()}, {"center_mm", json_of(space.center)}});
+  return json;
+}
+
 }  // namespace
 
 bool is_scene(const std::string& path) {
@@ -127,22 +139,32 @@ bool is_scene(const std::string& path) {
 
 MeshInfo mesh_info(const std::string& file, const std::string& unit) {
   const Mesh mesh = read_mesh_in_mm(file, unit);
-  return {file, unit, measure_mesh(mesh, check_mesh(mesh))};
+  return {file, unit, measure_mesh(mesh, check_mesh(mesh)),
+          empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms)};
 }
 
 bool MeshVerdict::usable() const {
   const bool blocked = std::any_of(findings.begin(), findings.end(), [](const MeshFinding& finding) {
     return finding.severity == MeshSeverity::error && finding.count > 0;
   });
-  return !blocked && !(scene && scene->error);
+  return (!blocked || errors_accepted()) && !(scene && scene->error);
+}
+
+bool MeshVerdict::errors_accepted() const {
+  return scene && !scene->error && scene->accepts_errors;
 }
 
 MeshVerdict mesh_verdict(const std::string& file, const std::string& unit) {
-  if (!is_scene(file)) return verdict_of(read_mesh_in_mm(file, unit), file);
+  if (!is_scene(file)) {
+    const Mesh mesh = read_mesh_in_mm(file, unit);
+    MeshVerdict verdict = verdict_of(mesh, file);
+    verdict.empty_spaces = empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms);
+    return verdict;
+  }
   const RobotSpec spec = read_scene(file);
   refuse_huge(spec.mesh, file);
   MeshVerdict verdict = verdict_of(spec.mesh, file);
-  verdict.scene = try_compile(spec);
+  judge_scene(spec, verdict);
   return verdict;
 }
 
@@ -189,6 +211,7 @@ std::string to_json(const MeshInfo& info) {
        {"boundary_area_mm2", m.boundary},
        {"quality", {{"min", m.quality[0]}, {"percentile_1", m.quality[1]}, {"median", m.quality[2]}}},
        {"edge_lengths_mm", {{"min", m.edge_length[0]}, {"median", m.edge_length[1]}, {"max", m.edge_length[2]}}},
+       {"empty_spaces", spaces_json(info.empty_spaces)},
        {"regions", regions}});
 }
 
@@ -198,13 +221,10 @@ std::string to_json(const MeshVerdict& verdict) {
   for (const PartMeasures& part : verdict.parts)
     parts.push_back(
         {{"vertices", part.vertices}, {"volume_mm3", part.volume}, {"centroid_mm", json_of(part.centroid)}});
-  Json json{{"file", verdict.file},
-            {"vertices", verdict.vertices},
-            {"order", verdict.order},
-            {"tetrahedra", verdict.tetrahedra},
-            {"prisms", verdict.prisms},
-            {"findings", findings},
-            {"parts", parts}};
+  Json json{{"file", verdict.file},     {"vertices", verdict.vertices},
+            {"order", verdict.order},   {"tetrahedra", verdict.tetrahedra},
+            {"prisms", verdict.prisms}, {"findings", findings},
+            {"parts", parts},           {"empty_spaces", spaces_json(verdict.empty_spaces)}};
   if (verdict.scene) {
     json["scene"]["warnings"] = verdict.scene->warnings;
     json["scene"]["notes"] = verdict.scene->notes;

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <softkin/model/mesh/mesh_review.hpp>
+#include <softkin/model/mesh/shells.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace softkin {
 struct MeshInfo {
   std::string file, unit;  // of the file's lengths: "mm"
   MeshMeasures measures;
+  std::vector<EmptySpace> empty_spaces;  // that the elements enclose
 };
 
 /// throws  InvalidInput; also where coordinates are so large that volumes would overflow
@@ -23,6 +25,7 @@ struct MeshInfo {
 struct SceneVerdict {
   std::vector<std::string> warnings, notes;
   std::optional<std::string> error;
+  bool accepts_errors = false;  // of the mesh
 };
 
 /// Whether a mesh can be used, and what to look at.
@@ -32,9 +35,12 @@ struct MeshVerdict {
   std::size_t vertices = 0, tetrahedra = 0, prisms = 0;
   std::vector<MeshFinding> findings;
   std::vector<PartMeasures> parts;
+  std::vector<EmptySpace> empty_spaces;  // that the elements enclose; of a scene that compiles those of the body
   std::optional<SceneVerdict> scene;
 
   [[nodiscard]] bool usable() const;
+  /// Does the scene compile in spite of the mesh's errors?
+  [[nodiscard]] bool errors_accepted() const;
 };
 
 /// file: a mesh with lengths in unit, or a scene, which names its own.

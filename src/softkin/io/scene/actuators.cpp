@@ -68,19 +68,38 @@ void read_range(const Node& node, ActuatorSpec& actuator) {
     fail(node, node.name + " must be [low, high], but " + items[0]->text + " is above " + items[1]->text);
 }
 
-TriangleSurface read_surface(const Context& context, const Node& node) {
+TriangleSurface read_surface_file(const Context& context, const Node& node, double to_mm) {
   TriangleSurface surface = load_file(context, node, context.files.surface);
-  surface.vertices *= context.to_mm;
+  surface.vertices *= to_mm;
   if (!surface.vertices.allFinite()) fail(node, "the surface's coordinates are too large");
   return surface;
 }
 
+/// A file, a map of file and unit, or a map with the region of the wall's faces.
+void read_surface(const Context& context, const Node& node, ActuatorSpec& actuator) {
+  if (node.kind != Node::Kind::map) {
+    actuator.surface = read_surface_file(context, node, context.to_mm);
+    return;
+  }
+  const Map map(node, {"file", "unit", "region"});
+  const Node::Entry& entry = map.one_of({"file", "region"});
+  const Node* unit = map.find("unit");
+  if (entry.key == "region") {
+    if (unit) fail(*unit, "'unit' is that of a file; a region has the mesh's");
+    actuator.wall = text(*entry.value);
+  } else {
+    const double to_mm = unit ? mm_per(length_units()[choice(*unit, length_units())]) : context.to_mm;
+    actuator.surface = read_surface_file(context, *entry.value, to_mm);
+  }
+}
+
+/// None of them: the only empty space in the body.
 void read_chamber(const Context& context, const Map& map, ActuatorSpec& actuator) {
-  const Node::Entry& entry = map.one_of({"region", "surface"});
-  if (entry.key == "region")
-    actuator.region = text(*entry.value);
-  else
-    actuator.surface = read_surface(context, *entry.value);
+  const Node* region = map.find("region");
+  const Node* surface = map.find("surface");
+  if (region && surface) (void)map.one_of({"region", "surface"});  // fails, naming both
+  if (region) actuator.region = text(*region);
+  if (surface) read_surface(context, *surface, actuator);
 }
 
 void read_cable(const Context& context, const Map& map, ActuatorSpec& actuator) {

@@ -84,6 +84,13 @@ void append(Mesh& all, const Mesh& part) {
   all.vertices.bottomRows(part.vertices.rows()) = part.vertices;
 }
 
+/// Where the first file is named; whether errors are accepted, of any.
+void note_origin(const Map& map, RobotSpec& spec) {
+  if (spec.mesh_origin.file.empty()) spec.mesh_origin = map.at("file").origin;
+  if (const Node* accept = map.find("accept_errors"))
+    spec.accept_mesh_errors = choice(*accept, {"false", "true"}) == 1 || spec.accept_mesh_errors;
+}
+
 void check_joinable(const Node& node, const MeshFile& first, const MeshFile& next) {
   if (first.quadratic != next.quadratic) fail(node, "'order' must be the same in every entry of 'meshes'");
   if (first.mesh.edge_nodes.empty() == next.mesh.edge_nodes.empty()) return;
@@ -98,17 +105,20 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
   const Node* several = scene.find("meshes");
   if (several == nullptr || scene.find("mesh") != nullptr) {
     if (several != nullptr) (void)scene.one_of({"mesh", "meshes"});
-    MeshFile read = read_file_of(context, Map(scene.at("mesh"), {"file", "order"}));
+    const Map map(scene.at("mesh"), {"file", "order", "accept_errors"});
+    MeshFile read = read_file_of(context, map);
     spec.mesh = std::move(read.mesh);
     spec.quadratic = read.quadratic;
+    note_origin(map, spec);
     return;
   }
   if (list(*several).empty()) fail(*several, "'meshes' is empty");
   Names names;
   std::optional<MeshFile> all;
   for (const auto& item : list(*several)) {
-    const Map map(*item, {"file", "order", "name", "scale", "rotate", "move"});
+    const Map map(*item, {"file", "order", "accept_errors", "name", "scale", "rotate", "move"});
     MeshFile read = read_file_of(context, map);
+    note_origin(map, spec);
     if (const Node* name = map.find("name")) {
       const std::string before = names.add_label(*name) + ".";
       for (Region& region : read.mesh.regions) region.name.insert(0, before);

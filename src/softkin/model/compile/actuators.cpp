@@ -2,16 +2,11 @@
 #include <cmath>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
-#include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 
 namespace {
-
-[[noreturn]] void refuse(const ActuatorSpec& spec, const std::string& what) {
-  throw InvalidInput(spec.origin, "actuator '" + spec.name + "' " + what);
-}
 
 std::string range_text(double low, double high) {
   return "[" + number(low) + ", " + number(high) + "]";
@@ -63,13 +58,18 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
   if (spec.curve) check_curve(spec);
 }
 
-void check_members(const ActuatorSpec& spec) {
+void check_members(const ActuatorSpec& spec, Formulation formulation) {
   const bool cable = spec.kind == ActuatorKind::cable;
   if (!cable && !(spec.points.empty() && spec.apexes.empty())) refuse(spec, "takes no points: only a cable does");
-  if (cable && (spec.region || spec.surface)) refuse(spec, "is a cable: it takes points, no region and no surface");
-  if (spec.kind == ActuatorKind::dea && (!spec.region || spec.surface)) refuse(spec, "needs a region of prisms");
-  if (spec.kind == ActuatorKind::pneumatic && spec.region.has_value() == spec.surface.has_value())
-    refuse(spec, "needs a region or a surface, one of the two");
+  if (cable && (spec.region || spec.surface || spec.wall))
+    refuse(spec, "is a cable: it takes points, no region and no surface");
+  if (spec.kind == ActuatorKind::dea && (!spec.region || spec.surface || spec.wall))
+    refuse(spec, "needs a region of prisms");
+  if (spec.kind != ActuatorKind::pneumatic) return;
+  const int given = spec.region.has_value() + spec.surface.has_value() + spec.wall.has_value();
+  if (given > 1) refuse(spec, "needs a region or a surface, one of the two");
+  if (given == 0 && formulation != Formulation::physical)
+    refuse(spec, "needs a region or a surface: the target-shape formulation needs the chamber meshed");
 }
 
 // The model's elements among a region's; role says whose they are.
@@ -109,21 +109,15 @@ std::vector<Index> tetrahedra_inside(const Model& model, const TriangleSurface& 
   return inside;
 }
 
-TriangleSurface checked_surface(const ActuatorSpec& spec) {
-  try {
-    if (!spec.surface->vertices.allFinite()) throw InvalidInput("the surface has a vertex that is not finite");
-    return closed_outwards(*spec.surface);
-  } catch (const InvalidInput& error) {
-    refuse(spec, std::string("needs a closed surface: ") + error.what());
-  }
-}
-
 const std::vector<Index>& chamber_region(const Compilation& c, const ActuatorSpec& spec) {
   const Region& region = c.regions.find(*spec.region, spec.origin);
   if (!region.prisms.empty())
     refuse(spec, "is pneumatic and needs tetrahedra, but region '" + *spec.region + "' has " +
                      counted(region.prisms.size(), "prism"));
-  if (region.tetrahedra.empty()) refuse(spec, "has no element: region '" + *spec.region + "' holds no tetrahedron");
+  if (region.tetrahedra.empty())
+    refuse(spec,
+           "has no element: region '" + *spec.region + "' holds no tetrahedron" +
+               (region.dimension == 2 ? "; the wall of a cavity is `surface: {region: " + *spec.region + "}`" : ""));
   return region.tetrahedra;
 }
 
@@ -131,67 +125,28 @@ const std::vector<Index>& chamber_region(const Compilation& c, const ActuatorSpe
 void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   Model& model = c.model;
   std::vector<Index> found;
-  if (spec.surface) {
-    TriangleSurface surface = checked_surface(spec);
+  if (spec.region) {
+    found = in_model(spec, chamber_region(c, spec), c.tetrahedron_at, "tetrahedron");
+  } else {
+    TriangleSurface surface = spec.surface ? checked_surface(spec) : checked_wall(c, spec);
     found = tetrahedra_inside(model, surface);
     if (found.empty())
       refuse(spec,
              "has no element: the target-shape formulation needs the chamber meshed, and no element lies inside "
              "the surface");
-    actuator.surface = std::move(surface.triangles);
-  } else {
-    found = in_model(spec, chamber_region(c, spec), c.tetrahedron_at, "tetrahedron");
+    if (spec.surface) actuator.surface = std::move(surface.triangles);
   }
   take(c, spec, found, model.tetrahedron_roles, c.tetrahedron_of, "tetrahedron", actuator.tetrahedra);
   for (const Index i : actuator.tetrahedra) actuator.rest_measure += model.tetrahedron_volumes[i];
 }
 
-// What of a cavity's boundary is not the body's cannot move.
-void check_contact(Compilation& c, const ActuatorSpec& spec, const std::vector<CavityFace>& cavity) {
-  std::set<Index> vertices;
-  for (const CavityFace& face : cavity) {
-    vertices.insert(face.corners.begin(), face.corners.end());
-    if (face.edges[0] >= 0) vertices.insert(face.edges.begin(), face.edges.end());
-  }
-  const auto loose = static_cast<std::size_t>(
-      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
-  if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
-  if (loose > 0)
-    c.model.notes.push_back(counted(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
-                            spec.name + "' " + (loose == 1 ? "belongs" : "belong") +
-                            " to no element of the body and stay" + (loose == 1 ? "s" : "") + " in place.");
-}
-
-CavityFace cavity_face(const Compilation& c, const Triangle& corners, Index element) {
-  CavityFace face{corners};
-  if (c.chamber_edge_nodes.empty()) return face;
-  for (int i = 0; i < 3; ++i)
-    face.edges[i] =
-        edge_node(c.chamber_tetrahedra[element], c.chamber_edge_nodes[element], corners[i], corners[(i + 1) % 3]);
-  return face;
-}
-
-void fill_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
-  std::vector<Index> elements;
-  take(c, spec, in_model(spec, chamber_region(c, spec), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
-       "tetrahedron", elements);
-  std::vector<Tetrahedron> tetrahedra;
-  tetrahedra.reserve(elements.size());
-  for (const Index i : elements) tetrahedra.push_back(c.chamber_tetrahedra[i]);
-  const Boundary boundary = boundary_of(tetrahedra, {});
-  for (std::size_t i = 0; i < boundary.triangles.size(); ++i)
-    actuator.cavity.push_back(cavity_face(c, boundary.triangles[i], elements[boundary.triangle_owners[i]]));
-  check_contact(c, spec, actuator.cavity);
-  actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
-}
-
 void fill_pneumatic(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
-  if (c.spec.formulation != Formulation::physical)
-    fill_chamber(c, spec, actuator);
-  else if (spec.surface)
-    actuator.surface = checked_surface(spec).triangles;
-  else
-    fill_cavity(c, spec, actuator);
+  if (c.spec.formulation != Formulation::physical) return fill_chamber(c, spec, actuator);
+  std::vector<Index> elements;
+  if (spec.region)
+    take(c, spec, in_model(spec, chamber_region(c, spec), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
+         "tetrahedron", elements);
+  compile_cavity(c, spec, elements, actuator);
 }
 
 double area(const Points& vertices, Index i, Index j, Index k) {
@@ -231,7 +186,7 @@ void compile_actuator_elements(Compilation& c) {
     if (spec.name.empty()) throw InvalidInput(spec.origin, "an actuator needs a name");
     if (!names.insert(spec.name).second) throw InvalidInput(spec.origin, "there are two actuators '" + spec.name + "'");
     check_numbers(spec, c.spec.formulation);
-    check_members(spec);
+    check_members(spec, c.spec.formulation);
     Actuator actuator;
     actuator.name = spec.name;
     actuator.kind = spec.kind;
@@ -250,43 +205,12 @@ void compile_actuator_elements(Compilation& c) {
   }
 }
 
-namespace {
-
-void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
-  const Points& vertices = spec.surface->vertices;
-  actuator.points.reserve(static_cast<std::size_t>(vertices.rows()));
-  std::size_t outside = 0;
-  double farthest = 0;
-  for (Index i = 0; i < vertices.rows(); ++i) {
-    try {
-      actuator.points.push_back(c.embedder->embed(vertex_at(vertices, i)));
-    } catch (const InvalidInput& error) {
-      refuse(spec, "has a surface whose vertex " + std::to_string(i) + " (from 0) cannot be embedded: " + error.what());
-    }
-    const double distance = actuator.points.back().distance_mm;
-    farthest = std::max(farthest, distance);
-    if (distance > 1e-6 * c.model.diagonal_mm) ++outside;
-  }
-  if (farthest > 0.1 * c.model.diagonal_mm)
-    refuse(spec, "has a surface of which a vertex is " + number(farthest) + " mm from the body");
-  if (outside > 0)
-    c.model.notes.push_back(counted(outside, "vertex", "vertices") + " of the surface of actuator '" + spec.name +
-                            "' " + (outside == 1 ? "is" : "are") + " up to " + number(farthest) +
-                            " mm outside the body and follow" + (outside == 1 ? "s" : "") + " its nearest elements.");
-  if (c.spec.formulation != Formulation::physical) return;
-  Points embedded(vertices.rows(), 3);
-  for (Index i = 0; i < vertices.rows(); ++i) embedded.row(i) = actuator.points[i].at(c.model.rest).transpose();
-  actuator.rest_measure = enclosed_volume(embedded, actuator.surface);
-}
-
-}  // namespace
-
 void compile_actuator_points(Compilation& c) {
   for (std::size_t i = 0; i < c.spec.actuators.size(); ++i) {
     const ActuatorSpec& spec = c.spec.actuators[i];
     Actuator& actuator = c.model.actuators[i];
     if (spec.kind == ActuatorKind::cable) compile_cable(c, spec, actuator);
-    if (!spec.surface) continue;
+    if (!spec.surface || !actuator.cavity.empty()) continue;
     if (c.embedder->empty()) refuse(spec, "has a surface but the robot has no body that could hold it");
     embed_surface(c, spec, actuator);
   }

@@ -10,10 +10,6 @@ namespace {
 constexpr double least_segment_mm = 1e-6;
 constexpr double least_height = 1e-3;  // of a gap's triangle, over the length of its segment
 
-[[noreturn]] void refuse(const ActuatorSpec& spec, const std::string& what) {
-  throw InvalidInput(spec.origin, "actuator '" + spec.name + "' " + what);
-}
-
 std::string segment_text(std::size_t segment) {
   return "between points[" + std::to_string(segment) + "] and points[" + std::to_string(segment + 1) + "]";
 }

@@ -30,14 +30,23 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& orig
     throw InvalidInput(origin, what + ": " + error.what());
   }
   const std::string distance = number(embedded.distance_mm);
-  if (embedded.distance_mm > 0.1 * c.model.diagonal_mm)
-    throw InvalidInput(origin, what + " is " + distance + " mm from the mesh");
+  if (const double most = most_outside(c, point); embedded.distance_mm > most)
+    throw InvalidInput(origin, what + " is " + distance + " mm from the mesh, " + too_far_text(most) +
+                                   ": move it to the body, mesh what holds it, or check the unit");
   if (embedded.distance_mm > 1e-6 * c.model.diagonal_mm)
     c.model.notes.push_back(what + " is " + distance + " mm outside the body and follows its nearest element.");
   return embedded;
 }
 
 }  // namespace
+
+double most_outside(const Compilation& c, const Vec3& point) {
+  return std::min(0.5 * c.embedder->edge_near(point), 0.1 * c.model.diagonal_mm);
+}
+
+std::string too_far_text(double most_mm) {
+  return "farther than the " + number(most_mm) + " mm to which its nearest element can carry it";
+}
 
 EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what) {
   if (const auto* point = std::get_if<Vec3>(&reference.point)) return embed_inside(c, *point, reference.origin, what);
@@ -98,10 +107,12 @@ Model compile(const RobotSpec& spec) {
   c.model.name = spec.name;
   c.model.formulation = spec.formulation;
   compile_elements(c);
+  refuse_mesh_errors(c);
   compile_actuator_elements(c);
   compile_materials(c);
   compile_actuator_points(c);
   compile_supports(c);
+  check_openings(c);
   compile_markers(c);
   compile_feet(c);
   compile_loads(c);

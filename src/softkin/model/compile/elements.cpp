@@ -19,15 +19,6 @@ void reverse(Prism& p) {
   for (int i = 0; i < 3; ++i) std::swap(p[i], p[i + 3]);
 }
 
-template <class Element>
-double longest_edge(const Points& vertices, const Element& element) {
-  double longest2 = 0;
-  for (std::size_t i = 0; i < element.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      longest2 = std::max(longest2, (vertices.row(element[i]) - vertices.row(element[j])).squaredNorm());
-  return std::sqrt(longest2);
-}
-
 bool folds_over(const Points&, const Tetrahedron&) {
   return false;
 }

@@ -17,12 +17,9 @@ std::vector<Tetrahedron> as_tetrahedra(const Points& vertices, std::vector<Tetra
                                        const std::vector<Prism>& prisms) {
   for (const Prism& prism : prisms)
     for (const Tetrahedron& piece : split(prism)) {
-      double longest2 = 0;
-      for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < i; ++j)
-          longest2 = std::max(longest2, (vertices.row(piece[i]) - vertices.row(piece[j])).squaredNorm());
+      const double longest = longest_edge(vertices, piece);
       // a strongly twisted prism can have a flat piece, which its neighbours cover
-      if (signed_volume(vertices, piece) > 1e-9 * longest2 * std::sqrt(longest2)) tetrahedra.push_back(piece);
+      if (signed_volume(vertices, piece) > 1e-9 * longest * longest * longest) tetrahedra.push_back(piece);
     }
   return tetrahedra;
 }
@@ -130,35 +127,40 @@ Embedder::Embedder(const Points& vertices, const std::vector<Tetrahedron>& tetra
   if (!bounds.isEmpty()) tolerance_ = 1e-13 * bounds.diagonal().norm();
 }
 
-EmbeddedPoint Embedder::embed(const Vec3& point) const {
-  if (empty()) throw InvalidInput("there is no element to embed a point in");
-  if (!point.allFinite()) throw InvalidInput("a point to embed is not finite");
-  Index nearest = -1;
-  double distance = std::numeric_limits<double>::infinity();
-  Barycentric weights = Barycentric::Constant(-distance);
+Embedder::Nearest Embedder::nearest(const Vec3& point) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Nearest found{-1, infinity, Barycentric::Constant(-infinity)};
   tree_.visit_near(point, [&](Index item) {
     Vec3 corners[4];
     for (int i = 0; i < 4; ++i) corners[i] = vertex_at(vertices_, tetrahedra_[item][i]);
     const Barycentric w = barycentric(corners, point);
     const double d = std::sqrt(squared_distance(corners, w, point));
-    const bool nearer = d < distance - tolerance_;
-    if (nearer || (d <= distance + tolerance_ && w.minCoeff() > weights.minCoeff())) {
-      nearest = item;
-      distance = d;
-      weights = w;
-    }
-    return (distance + tolerance_) * (distance + tolerance_);
+    const bool nearer = d < found.distance - tolerance_;
+    if (nearer || (d <= found.distance + tolerance_ && w.minCoeff() > found.coordinates.minCoeff()))
+      found = {item, d, w};
+    return (found.distance + tolerance_) * (found.distance + tolerance_);
   });
+  return found;
+}
+
+EmbeddedPoint Embedder::embed(const Vec3& point) const {
+  if (empty()) throw InvalidInput("there is no element to embed a point in");
+  if (!point.allFinite()) throw InvalidInput("a point to embed is not finite");
+  auto [element, distance, weights] = nearest(point);
   EmbeddedPoint embedded;
   if (edge_nodes_.empty()) {
-    add_weights(tetrahedra_[nearest], weights, embedded);
+    add_weights(tetrahedra_[element], weights, embedded);
   } else {
-    const TetrahedronWeights quadratic = quadratic_weights(nearest, point, weights, distance);
-    add_weights(tetrahedra_[nearest], quadratic.head<4>(), embedded);
-    add_weights(edge_nodes_[nearest], quadratic.tail<6>(), embedded);
+    const TetrahedronWeights quadratic = quadratic_weights(element, point, weights, distance);
+    add_weights(tetrahedra_[element], quadratic.head<4>(), embedded);
+    add_weights(edge_nodes_[element], quadratic.tail<6>(), embedded);
   }
   embedded.distance_mm = distance;
   return normalised(std::move(embedded));
+}
+
+double Embedder::edge_near(const Vec3& point) const {
+  return longest_edge(vertices_, tetrahedra_[nearest(point).element]);
 }
 
 TetrahedronWeights Embedder::quadratic_weights(Index element, const Vec3& point, Barycentric coordinates,

@@ -26,7 +26,16 @@ class Embedder {
   ///         curved that no coordinates in it give the point
   [[nodiscard]] EmbeddedPoint embed(const Vec3& point) const;
 
+  /// The longest edge of the element that carries the point, of its corners [mm]. There must be an element.
+  [[nodiscard]] double edge_near(const Vec3& point) const;
+
  private:
+  struct Nearest {
+    Index element = -1;
+    double distance = 0;
+    Barycentric coordinates;  // by the corners
+  };
+  [[nodiscard]] Nearest nearest(const Vec3& point) const;
   /// Of order 2: weights in an element whose corners give the point the coordinates; distance is updated.
   [[nodiscard]] TetrahedronWeights quadratic_weights(Index element, const Vec3& point, Barycentric coordinates,
                                                      double& distance) const;

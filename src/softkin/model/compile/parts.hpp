@@ -3,6 +3,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
+#include <softkin/model/mesh/shells.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
@@ -27,6 +28,9 @@ struct Compilation {
   std::vector<double> chamber_volumes;
   std::vector<ElementRole> chamber_roles;
   std::vector<Index> chamber_at, chamber_of;  // as tetrahedron_at and tetrahedron_of
+  // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
+  std::optional<std::vector<EmptySpace>> empty_spaces;
+  std::vector<Index> space_actuators;  // -1: no actuator's
   // the body: elements with a material and those of dielectric elastomers, where points are embedded
   std::vector<Tetrahedron> solid_tetrahedra;
   std::vector<Prism> solid_prisms;
@@ -37,8 +41,41 @@ struct Compilation {
 /// chambers apart.
 void compile_elements(Compilation& c);
 
+/// Refuses elements that are doubled or overlap, as mesh check does, or notes them where the scene accepts them.
+void refuse_mesh_errors(Compilation& c);
+
+[[noreturn]] inline void refuse(const ActuatorSpec& spec, const std::string& what) {
+  throw InvalidInput(spec.origin, "actuator '" + spec.name + "' " + what);
+}
+
 /// Checks names and numbers of the actuators and gives them their elements or the boundary of their chamber.
 void compile_actuator_elements(Compilation& c);
+
+/// An actuator's surface as it can be used, normals outwards.
+///
+/// throws  InvalidInput where it is not closed, or a shell of it lies inside another
+[[nodiscard]] TriangleSurface checked_surface(const ActuatorSpec& spec);
+/// The triangles of an actuator's wall, normals out of the chamber; throws as checked_surface.
+[[nodiscard]] TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec);
+
+/// Physical: the boundary of an actuator's chamber.
+///
+/// elements  of the chamber, in Compilation::chamber_tetrahedra, where the actuator has a region
+void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<Index>& elements, Actuator& actuator);
+/// The same by its surface: the empty space that the surface bounds, else the surface itself, which then is embedded.
+void select_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator);
+/// Embeds the surface of an actuator that has no cavity; physical: cut so finely that it follows the elements.
+void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator);
+
+/// What the elements of the body and of chambers enclose.
+[[nodiscard]] const std::vector<EmptySpace>& empty_spaces(Compilation& c);
+/// Adds an empty space's boundary to the actuator's cavity. Throws where it is another actuator's.
+void take_empty_space(Compilation& c, const ActuatorSpec& spec, std::size_t space, Actuator& actuator);
+/// Refuses a chamber that the body's elements fill; notes it where they fill a little of it.
+void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& surface);
+
+/// Physical, after the supports: refuses chambers that are open.
+void check_openings(const Compilation& c);
 
 /// Gives the elements their materials (target-shape: those of no actuator), and prepares embedding in them.
 void compile_materials(Compilation& c);
@@ -91,6 +128,12 @@ void doubt_linear_tetrahedra(Compilation& c);
 
 /// Warns of a size, moduli, gravity and densities that no soft robot has: of numbers in another unit than was meant.
 void doubt_units(Compilation& c);
+
+/// How far outside the body a point may be to be carried along by its nearest element [mm]: half that element's longest
+/// edge, and a tenth of the body's diagonal.
+[[nodiscard]] double most_outside(const Compilation& c, const Vec3& point);
+/// "farther than 5.2 mm, to which its nearest element can carry it", of a point that is farther.
+[[nodiscard]] std::string too_far_text(double most_mm);
 
 /// A point of the body; what names it in messages. Notes one that is outside, refuses one that is far outside.
 [[nodiscard]] EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what);

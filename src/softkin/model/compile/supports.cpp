@@ -141,10 +141,6 @@ Directions span_of(const Eigen::MatrixXd& columns) {
   return svd.matrixU().leftCols((svd.singularValues().array() > direction_tolerance).count());
 }
 
-std::string point_text(const Vec3& point) {
-  return "(" + number(point[0]) + ", " + number(point[1]) + ", " + number(point[2]) + ")";
-}
-
 // "x, y and z" for the space that the columns span; directions that are not along an axis as vectors.
 std::string axes_text(Directions space) {
   std::vector<std::string> names;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <softkin/core/types.hpp>
 #include <string>
 #include <vector>
@@ -54,6 +55,16 @@ struct TriangleSurface {
   Points vertices;
   std::vector<Triangle> triangles;
 };
+
+/// The longest distance between two corners of an element [mm].
+template <std::size_t N>
+[[nodiscard]] double longest_edge(const Points& vertices, const std::array<Index, N>& element) {
+  double longest2 = 0;
+  for (std::size_t i = 0; i < N; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      longest2 = std::max(longest2, (vertices.row(element[i]) - vertices.row(element[j])).squaredNorm());
+  return std::sqrt(longest2);
+}
 
 /// Signed volume, positive where the vertex order is the standard one; of an element of order 2 that of its corners.
 [[nodiscard]] double signed_volume(const Points& vertices, const Tetrahedron& element);

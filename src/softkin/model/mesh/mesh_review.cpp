@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/text.hpp>
 #include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/mesh/mesh_review.hpp>
@@ -282,6 +283,32 @@ std::vector<MeshFinding> findings_of(const Mesh& mesh, const MeshCheck& check) {
                      edges.uneven);
   collect.vertices(remark, "unreferenced_vertices", "of no element: they stay where they are", check.unreferenced);
   return collect.take();
+}
+
+namespace {
+
+void name(const std::vector<Index>& indices, const char* one, const char* many, std::string& text) {
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    text += text.empty() ? "" : i == 0 ? " and " : ", ";
+    if (i == 0) text += std::string(indices.size() == 1 ? one : many) + " ";
+    text += std::to_string(indices[i]);
+  }
+}
+
+}  // namespace
+
+std::string words_of(const MeshFinding& finding) {
+  std::string text = finding.kind;
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string text_of(const MeshPlace& place) {
+  std::string text;
+  name(place.tetrahedra, "tetrahedron", "tetrahedra", text);
+  name(place.prisms, "prism", "prisms", text);
+  name(place.vertices, "vertex", "vertices", text);
+  return text + " at " + point_text(place.position) + " mm";
 }
 
 }  // namespace softkin

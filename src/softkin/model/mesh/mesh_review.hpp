@@ -58,6 +58,11 @@ struct MeshFinding {
   std::vector<MeshPlace> first;  // at most five
 };
 
+/// "overlapping elements"
+[[nodiscard]] std::string words_of(const MeshFinding& finding);
+/// "tetrahedra 0, 1 at (1, 1, 1.5) mm"
+[[nodiscard]] std::string text_of(const MeshPlace& place);
+
 /// Every kind that a mesh of its order can be checked for, worst first.
 [[nodiscard]] std::vector<MeshFinding> findings_of(const Mesh& mesh, const MeshCheck& check);
 

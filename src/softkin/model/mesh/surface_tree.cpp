@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <softkin/core/error.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
@@ -75,6 +75,17 @@ std::optional<double> SurfaceTree::first_hit(const Vec3& origin, const Vec3& dir
   return first;
 }
 
+double SurfaceTree::distance(const Vec3& point) const {
+  double nearest2 = std::numeric_limits<double>::infinity();
+  tree_.visit_near(point, [&](Index item) {
+    const Triangle& t = triangles_[item];
+    nearest2 = std::min(nearest2, squared_distance_to_triangle(point, vertex_at(vertices_, t[0]),
+                                                               vertex_at(vertices_, t[1]), vertex_at(vertices_, t[2])));
+    return nearest2;
+  });
+  return std::sqrt(nearest2);
+}
+
 std::optional<bool> SurfaceTree::crosses_oddly(const Vec3& point, const Vec3& direction) const {
   bool odd = false, clear = true;
   tree_.visit_ray(point, direction, [&](Index item) {
@@ -107,31 +118,6 @@ bool SurfaceTree::contains(const Vec3& point) const {
   for (const Vec3& direction : directions)
     if (const auto odd = crosses_oddly(point, direction)) return *odd;
   return std::abs(winding_number(point)) > 0.5;
-}
-
-TriangleSurface closed_outwards(TriangleSurface surface) {
-  std::vector<std::pair<Index, Index>> edges;
-  edges.reserve(3 * surface.triangles.size());
-  for (const Triangle& t : surface.triangles)
-    for (int i = 0; i < 3; ++i) {
-      if (t[i] < 0 || t[i] >= surface.vertices.rows())
-        throw InvalidInput("the surface names a vertex that is not there");
-      edges.emplace_back(t[i], t[(i + 1) % 3]);
-    }
-  std::sort(edges.begin(), edges.end());
-  const bool twice = std::adjacent_find(edges.begin(), edges.end()) != edges.end();
-  const auto open = std::find_if(edges.begin(), edges.end(), [&](const auto& edge) {
-    return !std::binary_search(edges.begin(), edges.end(), std::pair(edge.second, edge.first));
-  });
-  if (twice)
-    throw InvalidInput("the surface has an edge of more than two triangles, or triangles of mixed orientation");
-  if (edges.empty() || open != edges.end()) throw InvalidInput("the surface is not closed");
-
-  const double volume = enclosed_volume(surface.vertices, surface.triangles);
-  if (!(std::abs(volume) > 0)) throw InvalidInput("the surface encloses no volume");
-  if (volume < 0)
-    for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
-  return surface;
 }
 
 }  // namespace softkin

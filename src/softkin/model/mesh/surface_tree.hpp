@@ -29,6 +29,9 @@ class SurfaceTree {
   [[nodiscard]] std::optional<double> first_hit(const Vec3& origin, const Vec3& direction, double after,
                                                 Index* triangle = nullptr) const;
 
+  /// From the point to the surface [mm].
+  [[nodiscard]] double distance(const Vec3& point) const;
+
   /// Whether the point lies inside; the surface must be closed.
   [[nodiscard]] bool contains(const Vec3& point) const;
 
@@ -40,9 +43,5 @@ class SurfaceTree {
   std::vector<Triangle> triangles_;
   BoxTree tree_;
 };
-
-/// returns  the surface with its normals outwards
-/// throws   InvalidInput unless every edge belongs to exactly two triangles that run through it in opposite directions
-[[nodiscard]] TriangleSurface closed_outwards(TriangleSurface surface);
 
 }  // namespace softkin

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
 
@@ -127,14 +128,14 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
     for (const EmbeddedPoint& point : actuator.points) points_.push_back(&point);
     if (actuator.kind == ActuatorKind::cable)
       for (Index i = 0; i + 1 < static_cast<Index>(actuator.points.size()); ++i)
-        terms_[a].push_back({2, {first + i, first + i + 1}});
-    for (const Triangle& t : actuator.surface) terms_[a].push_back({3, {first + t[0], first + t[1], first + t[2]}});
+        terms_[a].push_back({2, {first + i, first + i + 1}, {}});
+    for (const Triangle& t : actuator.surface) terms_[a].push_back({3, {first + t[0], first + t[1], first + t[2]}, {}});
     for (const CavityFace& face : actuator.cavity) {
       const Triangle& c = face.corners;
       if (face.edges[0] < 0)
-        terms_[a].push_back({3, {c[0], c[1], c[2]}});
+        terms_[a].push_back({3, {c[0], c[1], c[2]}, {}});
       else
-        terms_[a].push_back({6, {c[0], c[1], c[2], face.edges[0], face.edges[1], face.edges[2]}});
+        terms_[a].push_back({6, {c[0], c[1], c[2], face.edges[0], face.edges[1], face.edges[2]}, {}});
     }
   }
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a)
@@ -170,66 +171,72 @@ double ActuatorMeasures::value(Index actuator, const Points& positions, Points* 
   return sum;
 }
 
-ActuatorMeasures::Clique ActuatorMeasures::clique_of(const Term& term) const {
-  Clique clique{0, {}, {}};
-  const auto place = [&](Index vertex) {
-    const auto found = std::find(clique.vertices.begin(), clique.vertices.end(), vertex);
-    if (found != clique.vertices.end()) return static_cast<Index>(found - clique.vertices.begin());
-    clique.vertices.push_back(vertex);
-    return static_cast<Index>(clique.vertices.size()) - 1;
-  };
+std::vector<std::vector<ActuatorMeasures::Part>> ActuatorMeasures::parts_of(const Term& term) const {
+  std::vector<std::vector<Part>> parts;
   for (int i = 0; i < term.count; ++i) {
-    auto& parts = clique.parts.emplace_back();
+    auto& shares = parts.emplace_back();
     if (term.nodes[i] < vertices_) {
-      parts.emplace_back(place(term.nodes[i]), 1.0);
+      shares.emplace_back(term.nodes[i], 1.0);
       continue;
     }
     const EmbeddedPoint& point = *points_[term.nodes[i] - vertices_];
-    for (std::size_t k = 0; k < point.vertices.size(); ++k)
-      parts.emplace_back(place(point.vertices[k]), point.weights[k]);
+    for (std::size_t k = 0; k < point.vertices.size(); ++k) shares.emplace_back(point.vertices[k], point.weights[k]);
   }
-  return clique;
+  return parts;
 }
 
 void ActuatorMeasures::add_cliques(linear::Cliques& cliques) {
-  for (auto& terms : terms_)
-    for (Term& term : terms) {
-      Clique clique = clique_of(term);
-      clique.slot = cliques.slots.back();
-      cliques.add(clique.vertices);
-      term.clique = static_cast<std::int64_t>(cliques_.size());
-      cliques_.push_back(std::move(clique));
+  for (std::size_t a = 0; a < terms_.size(); ++a) {
+    std::map<std::vector<Index>, std::size_t> cliques_of_vertices;
+    for (std::size_t t = 0; t < terms_[a].size(); ++t) {
+      Term& term = terms_[a][t];
+      term.parts = parts_of(term);
+      std::vector<Index> vertices;
+      for (const auto& shares : term.parts)
+        for (const Part& part : shares) vertices.push_back(part.first);
+      sort_unique(vertices);
+      const auto [found, is_new] = cliques_of_vertices.try_emplace(vertices, cliques_.size());
+      if (is_new) {
+        cliques_.push_back({static_cast<Index>(a), cliques.slots.back(), vertices, {}});
+        cliques.add(vertices);
+      }
+      cliques_[found->second].terms.push_back(static_cast<Index>(t));
+      for (auto& shares : term.parts)
+        for (Part& part : shares)
+          part.first =
+              static_cast<Index>(std::lower_bound(vertices.begin(), vertices.end(), part.first) - vertices.begin());
     }
+  }
 }
 
-void ActuatorMeasures::second_derivative(const Term& term, const Points& positions, double scale,
+void ActuatorMeasures::second_derivative(const Clique& clique, const Points& positions, double scale,
                                          LargeVector<double>& slots) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  const Clique& clique = cliques_[term.clique];
   const auto count = static_cast<std::int64_t>(clique.vertices.size());
   double* out = slots.data() + 9 * clique.slot;
   std::fill(out, out + 9 * (count * (count + 1) / 2), 0.0);
   if (scale == 0) return;
-  Mat3 blocks[6][6];
-  Vec3 nodes[6];
-  for (int i = 0; i < term.count; ++i) nodes[i] = at(term.nodes[i], positions);
-  term_second_derivative(term.count, nodes, blocks);
-  for (int i = 0; i < term.count; ++i)
-    for (int j = 0; j < term.count; ++j)
-      for (const auto& [row, row_weight] : clique.parts[i])
-        for (const auto& [column, column_weight] : clique.parts[j])
-          if (row >= column)
-            Block(out + 9 * (static_cast<std::int64_t>(row) * (row + 1) / 2 + column)) +=
-                scale * row_weight * column_weight * blocks[i][j];
+  for (const Index t : clique.terms) {
+    const Term& term = terms_[clique.actuator][t];
+    Mat3 blocks[6][6];
+    Vec3 nodes[6];
+    for (int i = 0; i < term.count; ++i) nodes[i] = at(term.nodes[i], positions);
+    term_second_derivative(term.count, nodes, blocks);
+    for (int i = 0; i < term.count; ++i)
+      for (int j = 0; j < term.count; ++j)
+        for (const auto& [row, row_weight] : term.parts[i])
+          for (const auto& [column, column_weight] : term.parts[j])
+            if (row >= column)
+              Block(out + 9 * (static_cast<std::int64_t>(row) * (row + 1) / 2 + column)) +=
+                  scale * row_weight * column_weight * blocks[i][j];
+  }
 }
 
 void ActuatorMeasures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
                                           LargeVector<double>& slots, Team& team) const {
-  for (std::size_t a = 0; a < terms_.size(); ++a)
-    team.pieces(static_cast<Index>(terms_[a].size()), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-        second_derivative(terms_[a][t], positions, scale[static_cast<Index>(a)], slots);
-    });
+  team.pieces(static_cast<Index>(cliques_.size()), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) second_derivative(cliques_[i], positions, scale[cliques_[i].actuator], slots);
+  });
 }
 
 }  // namespace softkin::supports

@@ -28,23 +28,26 @@ class ActuatorMeasures {
                           Team& team) const;
 
  private:
+  /// A vertex by its place in a clique, and the share of a node that it has.
+  using Part = std::pair<Index, double>;
   /// A segment (2 nodes), a flat face (3) or a curved one (6: corners, then edges 01, 12, 20). Nodes beyond the
   /// vertices are embedded points.
   struct Term {
     int count = 0;
     std::array<Index, 6> nodes{};
-    std::int64_t clique = -1;
+    std::vector<std::vector<Part>> parts;  // of each node
   };
+  /// The terms of an actuator with the same vertices, as the facets of a surface within one element are.
   struct Clique {
+    Index actuator;
     std::int64_t slot;
-    std::vector<Index> vertices;
-    std::vector<std::vector<std::pair<Index, double>>> parts;  // of each node: place among the vertices, weight
+    std::vector<Index> vertices, terms;
   };
 
   [[nodiscard]] Vec3 at(Index node, const Points& positions) const;
   void spread(Index node, const Vec3& vector, Points& gradient) const;
-  [[nodiscard]] Clique clique_of(const Term& term) const;
-  void second_derivative(const Term& term, const Points& positions, double scale, LargeVector<double>& slots) const;
+  [[nodiscard]] std::vector<std::vector<Part>> parts_of(const Term& term) const;
+  void second_derivative(const Clique& clique, const Points& positions, double scale, LargeVector<double>& slots) const;
 
   Index vertices_;
   std::vector<const EmbeddedPoint*> points_;

@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/boundary.hpp>
+
+namespace softkin {
+
+namespace {
+
+std::vector<Index> vertices_of(const CavityFace& face) {
+  std::vector<Index> vertices(face.corners.begin(), face.corners.end());
+  if (face.edges[0] >= 0) vertices.insert(vertices.end(), face.edges.begin(), face.edges.end());
+  return vertices;
+}
+
+void add_faces(const Compilation& c, const ActuatorSpec& spec, const std::vector<Triangle>& triangles,
+               Actuator& actuator) {
+  const EdgeTable& edges = c.regions.edges();
+  for (const Triangle& corners : triangles) {
+    CavityFace face{corners};
+    if (!edges.empty()) face.edges = edges.of(corners);
+    if (!edges.empty() && *std::min_element(face.edges.begin(), face.edges.end()) < 0)
+      refuse(spec, "has a wall with a face that is none of an element of order 2: vertices " +
+                       std::to_string(corners[0]) + ", " + std::to_string(corners[1]) + " and " +
+                       std::to_string(corners[2]) + " (from 0)");
+    actuator.cavity.push_back(face);
+  }
+}
+
+// What of a cavity's boundary is not the body's cannot move.
+void check_contact(Compilation& c, const ActuatorSpec& spec, const Actuator& actuator) {
+  std::set<Index> vertices;
+  for (const CavityFace& face : actuator.cavity)
+    for (const Index v : vertices_of(face)) vertices.insert(v);
+  const auto loose = static_cast<std::size_t>(
+      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
+  if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
+  if (loose > 0)
+    c.model.notes.push_back(counted(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
+                            spec.name + "' " + (loose == 1 ? "belongs" : "belong") +
+                            " to no element of the body and stay" + (loose == 1 ? "s" : "") + " in place.");
+}
+
+std::vector<Triangle> boundary_of_chamber(const Compilation& c, const std::vector<Index>& elements) {
+  std::vector<Tetrahedron> tetrahedra;
+  tetrahedra.reserve(elements.size());
+  for (const Index i : elements) tetrahedra.push_back(c.chamber_tetrahedra[i]);
+  return boundary_of(tetrahedra, {}).triangles;
+}
+
+void take_only_space(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  constexpr std::size_t most_named = 5;
+  const std::vector<EmptySpace>& spaces = empty_spaces(c);
+  const std::string cure = ": name its elements (`region`), its wall (`surface: {region: WALL}`) or an STL (`surface`)";
+  if (spaces.empty()) refuse(spec, "needs a region or a surface, since the body encloses no empty space" + cure);
+  if (spaces.size() > 1) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(spaces.size(), most_named); ++i)
+      text += (i == 0 ? "" : ", ") + text_of(spaces[i]);
+    if (spaces.size() > most_named) text += " and " + std::to_string(spaces.size() - most_named) + " more";
+    refuse(spec, "needs a region or a surface, since the body encloses " + std::to_string(spaces.size()) +
+                     " empty spaces, " + text + cure);
+  }
+  take_empty_space(c, spec, 0, actuator);
+  c.model.notes.push_back("Actuator '" + spec.name + "' is the only empty space in the body, " + text_of(spaces[0]) +
+                          ".");
+}
+
+std::array<Index, 3> sorted(Triangle corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+/// The faces of a cavity that are none of the body's elements.
+std::vector<CavityFace> open_faces(const Model& model, const std::vector<CavityFace>& cavity) {
+  std::vector<bool> marked(model.used.size());
+  for (const CavityFace& face : cavity)
+    for (const Index v : face.corners) marked[v] = true;
+  std::vector<Triangle> shared;
+  const auto add = [&](Index a, Index b, Index c) {
+    if (marked[a] && marked[b] && marked[c]) shared.push_back(sorted({a, b, c}));
+  };
+  for (const Tetrahedron& t : model.tetrahedra) {
+    if (marked[t[0]] + marked[t[1]] + marked[t[2]] + marked[t[3]] < 3) continue;
+    for (const auto& [a, b, c] : tetrahedron_faces) add(t[a], t[b], t[c]);
+  }
+  for (const Prism& p : model.prisms) {
+    for (const auto& [a, b, c] : prism_triangles) add(p[a], p[b], p[c]);
+    for (const auto& q : prism_quads)  // either diagonal may have split it
+      for (int i = 0; i < 4; ++i) add(p[q[i]], p[q[(i + 1) % 4]], p[q[(i + 2) % 4]]);
+  }
+  sort_unique(shared);
+  std::vector<CavityFace> open;
+  for (const CavityFace& face : cavity)
+    if (!std::binary_search(shared.begin(), shared.end(), sorted(face.corners))) open.push_back(face);
+  return open;
+}
+
+/// Can the face change neither its place nor, in its plane, what it closes? So a plate or a plane of symmetry may close
+/// the chamber there: all of its vertices are held, or all along the axis to which it is normal. Vertices of no element
+/// stay at rest, so that where there are such the others must be held at rest too.
+bool is_plate(const Model& model, const CavityFace& face, bool loose) {
+  const std::vector<Index> vertices = vertices_of(face);
+  const auto held = [&](Index v, int axis) {
+    return model.fixed[v][axis] && (!loose || model.held(v, axis) == model.rest(v, axis));
+  };
+  const auto all_held = [&](int axis) {
+    return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return held(v, axis); });
+  };
+  const auto normal_to = [&](int axis) {
+    return std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
+      return std::abs(model.rest(v, axis) - model.rest(vertices[0], axis)) < 1e-9 * model.diagonal_mm;
+    });
+  };
+  if (all_held(0) && all_held(1) && all_held(2)) return true;
+  for (int axis = 0; axis < 3; ++axis)
+    if (normal_to(axis) && all_held(axis)) return true;
+  return false;
+}
+
+void check_openings(const Model& model, const ActuatorSpec& spec, const Actuator& actuator) {
+  const std::vector<CavityFace> open = open_faces(model, actuator.cavity);
+  const bool loose = std::any_of(open.begin(), open.end(), [&](const CavityFace& face) {
+    return std::any_of(face.corners.begin(), face.corners.end(), [&](Index v) { return !model.used[v]; });
+  });
+  std::vector<Triangle> triangles;
+  for (const CavityFace& face : open) triangles.push_back(face.corners);
+  std::vector<Shell> openings = shells_of(model.rest, triangles);
+  std::erase_if(openings, [&](const Shell& opening) {
+    return std::all_of(opening.triangles.begin(), opening.triangles.end(),
+                       [&](Index t) { return is_plate(model, open[t], loose); });
+  });
+  if (openings.empty()) return;
+  std::string text;
+  for (const Shell& opening : openings)
+    text += (text.empty() ? "" : " and ") + counted(opening.triangles.size(), "face") + " around " +
+            point_text(opening.center) + " mm";
+  refuse(spec, "has a chamber that is open: " + text + (openings.size() == 1 ? " is" : " are") +
+                   " not the body's. Close it with elements of the body, or hold the body's vertices there without "
+                   "displacement (`fixed`): along x, y and z as a plate would, or, in a plane of symmetry, along its "
+                   "normal");
+}
+
+}  // namespace
+
+const std::vector<EmptySpace>& empty_spaces(Compilation& c) {
+  if (!c.empty_spaces) {
+    std::vector<Tetrahedron> tetrahedra = c.model.tetrahedra;
+    tetrahedra.insert(tetrahedra.end(), c.chamber_tetrahedra.begin(), c.chamber_tetrahedra.end());
+    c.empty_spaces = empty_spaces_in(c.model.rest, tetrahedra, c.model.prisms);
+    c.space_actuators.assign(c.empty_spaces->size(), -1);
+  }
+  return *c.empty_spaces;
+}
+
+void take_empty_space(Compilation& c, const ActuatorSpec& spec, std::size_t space, Actuator& actuator) {
+  const EmptySpace& taken = empty_spaces(c)[space];
+  Index& owner = c.space_actuators[space];
+  const auto taker = static_cast<Index>(c.model.actuators.size());
+  if (owner == taker) refuse(spec, "has two shells around the same empty space, " + text_of(taken) + ": leave one out");
+  if (owner >= 0)
+    refuse(spec, "and actuator '" + c.model.actuators[owner].name + "' both take the empty space of " + text_of(taken));
+  owner = taker;
+  add_faces(c, spec, taken.triangles, actuator);
+  actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
+}
+
+void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<Index>& elements, Actuator& actuator) {
+  if (spec.surface) return select_cavity(c, spec, actuator);
+  if (!spec.region && !spec.wall) return take_only_space(c, spec, actuator);
+  if (spec.region) {
+    add_faces(c, spec, boundary_of_chamber(c, elements), actuator);
+  } else {
+    const TriangleSurface wall = checked_wall(c, spec);
+    check_filling(c, spec, wall);
+    add_faces(c, spec, wall.triangles, actuator);
+  }
+  check_contact(c, spec, actuator);
+  actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
+}
+
+void check_openings(const Compilation& c) {
+  for (std::size_t i = 0; i < c.spec.actuators.size(); ++i) {
+    const ActuatorSpec& spec = c.spec.actuators[i];
+    if (!c.model.actuators[i].cavity.empty() && (spec.region || spec.wall))
+      check_openings(c.model, spec, c.model.actuators[i]);
+  }
+}
+
+}  // namespace softkin

@@ -1,0 +1,263 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/refine_surface.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double least_size = 0.01, most_size = 3;  // of a surface's diagonal, over the body's
+constexpr double least_alike = 0.8;                 // of the smaller volume over the larger one
+constexpr double most_apart = 0.25;                 // of the distance, over the mean edge
+constexpr double most_aside = 0.15;  // of the distance, over 6 volumes / area: the edge of a cube, a ball's diameter
+constexpr double most_filled = 0.1, noted_filled = 0.001;  // of the volume
+constexpr double finest = 0.1;                             // edges of an embedded surface, over those of elements
+constexpr std::size_t most_triangles = 500000;
+
+std::string text_of(const Shell& shell) {
+  return number(std::abs(shell.volume)) + " mm^3 around " + point_text(shell.center) + " mm";
+}
+
+std::vector<Triangle> triangles_of(const TriangleSurface& surface, const Shell& shell) {
+  std::vector<Triangle> triangles;
+  for (const Index t : shell.triangles) triangles.push_back(surface.triangles[t]);
+  return triangles;
+}
+
+void refuse_nested(const ActuatorSpec& spec, const TriangleSurface& surface, const std::vector<Shell>& shells) {
+  if (shells.size() < 2) return;
+  for (const Shell& outer : shells) {
+    const SurfaceTree tree(surface.vertices, triangles_of(surface, outer));
+    for (const Shell& inner : shells) {
+      if (&inner == &outer || !outer.bounds.contains(inner.bounds)) continue;
+      const Triangle& t = surface.triangles[inner.triangles[0]];
+      const Vec3 point =
+          (vertex_at(surface.vertices, t[0]) + vertex_at(surface.vertices, t[1]) + vertex_at(surface.vertices, t[2])) /
+          3;
+      const bool apart = tree.distance(point) > 1e-9 * outer.bounds.diagonal().norm();
+      if (apart && tree.contains(point))
+        refuse(spec, "has a surface of " + std::to_string(shells.size()) + " shells, of which one of " +
+                         text_of(inner) + " lies inside one of " + text_of(outer) +
+                         ": leave out all but the wall of the cavity, such as the robot's skin");
+    }
+  }
+}
+
+double area_of(const Points& vertices, const std::vector<Triangle>& triangles) {
+  double area = 0;
+  for (const auto& [a, b, c] : triangles)
+    area +=
+        0.5 *
+        (vertex_at(vertices, b) - vertex_at(vertices, a)).cross(vertex_at(vertices, c) - vertex_at(vertices, a)).norm();
+  return area;
+}
+
+double mean_edge(const Points& vertices, const std::vector<Triangle>& triangles) {
+  double sum = 0;
+  for (const Triangle& t : triangles)
+    for (int i = 0; i < 3; ++i) sum += (vertices.row(t[i]) - vertices.row(t[(i + 1) % 3])).norm();
+  return sum / (3.0 * static_cast<double>(triangles.size()));
+}
+
+/// The farthest that a corner or a middle of the triangles lies from another surface [mm].
+double distance(const Points& vertices, const std::vector<Triangle>& triangles, const SurfaceTree& other) {
+  double farthest = 0;
+  for (const Triangle& t : triangles) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : t) {
+      const Vec3 corner = vertex_at(vertices, v);
+      farthest = std::max(farthest, other.distance(corner));
+      middle += corner / 3;
+    }
+    farthest = std::max(farthest, other.distance(middle));
+  }
+  return farthest;
+}
+
+struct Match {
+  std::size_t space = 0;
+  double distance = 0;  // [mm]
+};
+
+/// The empty space that a shell of the surface bounds, if any.
+std::optional<Match> matching_space(Compilation& c, const TriangleSurface& surface, const Shell& shell) {
+  const std::vector<EmptySpace>& spaces = empty_spaces(c);
+  const std::vector<Triangle> triangles = triangles_of(surface, shell);
+  std::optional<Match> best;
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    const EmptySpace& space = spaces[i];
+    const auto [low, high] = std::minmax(space.volume, shell.volume);
+    if (low < least_alike * high || !space.bounds.intersects(shell.bounds)) continue;
+    const double edge = std::max(mean_edge(surface.vertices, triangles), mean_edge(c.model.rest, space.triangles));
+    const double size = 6 * space.volume / area_of(c.model.rest, space.triangles);
+    const double apart = std::max(distance(surface.vertices, triangles, SurfaceTree(c.model.rest, space.triangles)),
+                                  distance(c.model.rest, space.triangles, SurfaceTree(surface.vertices, triangles)));
+    if (apart > std::min(most_apart * edge, most_aside * size)) continue;
+    if (!best || apart < best->distance) best = {i, apart};
+  }
+  return best;
+}
+
+/// The spaces that the surface's shells bound; nothing where one of them bounds none.
+std::vector<Match> matching_spaces(Compilation& c, const TriangleSurface& surface, const std::vector<Shell>& shells) {
+  std::vector<Match> matches;
+  for (const Shell& shell : shells) {
+    const auto match = matching_space(c, surface, shell);
+    if (!match) return {};
+    matches.push_back(*match);
+  }
+  return matches;
+}
+
+void check_size(const Compilation& c, const ActuatorSpec& spec) {
+  Bounds bounds;
+  for (Index v = 0; v < spec.surface->vertices.rows(); ++v) bounds.extend(vertex_at(spec.surface->vertices, v));
+  const double diagonal = bounds.diagonal().norm(), ratio = diagonal / c.model.diagonal_mm;
+  if (ratio < least_size || ratio > most_size)
+    refuse(spec, "has a surface of " + number(diagonal) + " mm from corner to corner, " + number(ratio, 3) +
+                     " times the body's " + number(c.model.diagonal_mm) +
+                     " mm: it is of another unit; name that of its file, `surface: {file: F, unit: mm}`");
+}
+
+/// A surface well inside an empty space would push at walls that are elsewhere.
+void refuse_inside_space(Compilation& c, const ActuatorSpec& spec, const Shell& shell) {
+  for (const EmptySpace& space : empty_spaces(c)) {
+    if (shell.volume >= least_alike * space.volume || !space.bounds.contains(shell.center)) continue;
+    if (!SurfaceTree(c.model.rest, space.triangles).contains(shell.center)) continue;
+    refuse(spec, "has a surface of " + text_of(shell) + " inside an empty space of the body of " +
+                     softkin::text_of(space) +
+                     ": let it bound that space, or leave `surface` out where the body has no other");
+  }
+}
+
+double filled_volume(const Compilation& c, const SurfaceTree& tree) {
+  double filled = 0;
+  const auto add = [&](const auto& elements, const std::vector<double>& volumes) {
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      Vec3 middle = Vec3::Zero();
+      for (const Index v : elements[e]) middle += vertex_at(c.model.rest, v) / double(elements[e].size());
+      if (tree.contains(middle)) filled += volumes[e];
+    }
+  };
+  add(c.model.tetrahedra, c.model.tetrahedron_volumes);
+  add(c.chamber_tetrahedra, c.chamber_volumes);
+  add(c.model.prisms, c.model.prism_volumes);
+  return filled;
+}
+
+std::string percent(double share) {
+  return number(100 * share, 3) + " %";
+}
+
+}  // namespace
+
+TriangleSurface checked_surface(const ActuatorSpec& spec) {
+  TriangleSurface surface = *spec.surface;
+  try {
+    if (!surface.vertices.allFinite()) throw InvalidInput("the surface has a vertex that is not finite");
+    surface.triangles = turned_outwards(surface.vertices, std::move(surface.triangles));
+  } catch (const InvalidInput& error) {
+    refuse(spec, std::string("needs a closed surface: ") + error.what());
+  }
+  refuse_nested(spec, surface, shells_of(surface.vertices, surface.triangles));
+  return surface;
+}
+
+TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec) {
+  const Region& region = c.regions.find(*spec.wall, spec.origin);
+  if (region.dimension != 2)
+    refuse(spec, "has a wall, region '" + *spec.wall + "', that is no group of faces" +
+                     (region.dimension == 3 ? "; a volume is named with `region: " + *spec.wall + "`" : ""));
+  TriangleSurface wall{c.model.rest, {}};
+  for (const Index i : region.triangles) wall.triangles.push_back(c.mesh.triangles[i]);
+  for (const Index i : region.quads) {
+    const Quad& q = c.mesh.quads[i];
+    wall.triangles.insert(wall.triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
+  }
+  try {
+    wall.triangles = turned_outwards(wall.vertices, std::move(wall.triangles));
+  } catch (const InvalidInput& error) {
+    refuse(spec, "has a wall, region '" + *spec.wall + "', that bounds no chamber: " + error.what() +
+                     "; the region must hold every face around the chamber and no other");
+  }
+  refuse_nested(spec, wall, shells_of(wall.vertices, wall.triangles));
+  return wall;
+}
+
+void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& surface) {
+  const double filled = filled_volume(c, SurfaceTree(surface.vertices, surface.triangles)),
+               volume = enclosed_volume(surface.vertices, surface.triangles);
+  if (filled > most_filled * volume)
+    refuse(spec, "has a surface around " + number(volume) + " mm^3, of which " +
+                     percent(std::min(1.0, filled / volume)) +
+                     " are elements of the body or of another chamber, which resist inside: make them a region and "
+                     "list it under `void`, or name it as the chamber (`region`)");
+  if (filled > noted_filled * volume)
+    c.model.notes.push_back(percent(filled / volume) + " of the volume in the surface of actuator '" + spec.name +
+                            "' are elements of the body, which resist inside.");
+}
+
+void select_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  TriangleSurface surface = checked_surface(spec);
+  check_size(c, spec);
+  const std::vector<Shell> shells = shells_of(surface.vertices, surface.triangles);
+  const std::vector<Match> matches = matching_spaces(c, surface, shells);
+  for (const Match& match : matches) {
+    take_empty_space(c, spec, match.space, actuator);
+    c.model.notes.push_back("The surface of actuator '" + spec.name + "' bounds the empty space of " +
+                            softkin::text_of(empty_spaces(c)[match.space]) +
+                            ", whose own faces take the pressure; it lies up to " + number(match.distance, 3) +
+                            " mm from them.");
+  }
+  if (!matches.empty()) return;
+  for (const Shell& shell : shells) refuse_inside_space(c, spec, shell);
+  check_filling(c, spec, surface);
+  actuator.surface = std::move(surface.triangles);
+}
+
+void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  const bool physical = c.spec.formulation == Formulation::physical;
+  TriangleSurface surface{spec.surface->vertices, actuator.surface};
+  if (physical) {
+    try {
+      surface = refined(
+          std::move(surface), [&](const Vec3& middle) { return finest * c.embedder->edge_near(middle); },
+          most_triangles);
+    } catch (const InvalidInput& error) {
+      refuse(spec, std::string("has a surface that cuts through too many elements: ") + error.what() +
+                       "; mesh the chamber and name it as `region` or `void`");
+    }
+  }
+  actuator.surface = surface.triangles;
+  actuator.points.reserve(static_cast<std::size_t>(surface.vertices.rows()));
+  std::size_t outside = 0;
+  double farthest = 0;
+  for (Index i = 0; i < surface.vertices.rows(); ++i) {
+    const Vec3 vertex = vertex_at(surface.vertices, i);
+    try {
+      actuator.points.push_back(c.embedder->embed(vertex));
+    } catch (const InvalidInput& error) {
+      refuse(spec, "has a surface whose point " + point_text(vertex) + " mm cannot be embedded: " + error.what());
+    }
+    const double distance = actuator.points.back().distance_mm;
+    if (!(distance > 1e-6 * c.model.diagonal_mm)) continue;
+    farthest = std::max(farthest, distance);
+    ++outside;
+    if (const double most = most_outside(c, vertex); distance > most)
+      refuse(spec, "has a surface whose point " + point_text(vertex) + " mm is " + number(distance) +
+                       " mm from the body, " + too_far_text(most) +
+                       ": let the surface run along the body, or check its unit");
+  }
+  if (outside > 0)
+    c.model.notes.push_back(counted(outside, "vertex", "vertices") + " of the surface of actuator '" + spec.name +
+                            "' " + (outside == 1 ? "is" : "are") + " up to " + number(farthest) +
+                            " mm outside the body and follow" + (outside == 1 ? "s" : "") + " its nearest elements.");
+  if (!physical) return;
+  Points embedded(surface.vertices.rows(), 3);
+  for (Index i = 0; i < embedded.rows(); ++i) embedded.row(i) = actuator.points[i].at(c.model.rest).transpose();
+  actuator.rest_measure = enclosed_volume(embedded, actuator.surface);
+}
+
+}  // namespace softkin

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <softkin/model/mesh/box_tree.hpp>
+#include <softkin/model/mesh/mesh.hpp>
+
+namespace softkin {
+
+/// A piece of a triangle surface: triangles that hang together by edges of two triangles.
+struct Shell {
+  std::vector<Index> triangles;  // of the surface, ascending
+  bool closed = true;            // every edge is passed as often one way as the other
+  double volume = 0;             // enclosed, positive where the normals point outwards [mm^3]
+  Vec3 center{0, 0, 0};          // of the enclosed volume; of the vertices where there is none [mm]
+  Bounds bounds;
+};
+
+/// The pieces of a surface, by their first triangles.
+[[nodiscard]] std::vector<Shell> shells_of(const Points& vertices, const std::vector<Triangle>& triangles);
+
+/// The triangles, turned so that neighbours agree and the normals of each piece point outwards.
+///
+/// throws  InvalidInput where the surface has no triangle or names a vertex that is not there; naming the place [mm],
+///         where it has a rim or an edge of more than two triangles, one side only, or encloses no volume
+[[nodiscard]] std::vector<Triangle> turned_outwards(const Points& vertices, std::vector<Triangle> triangles);
+
+/// An empty space that elements enclose, bounded by a piece of their boundary.
+struct EmptySpace {
+  std::vector<Triangle> triangles;  // corners of its faces (quads split), normals out of the space
+  double volume = 0;                // by the corners [mm^3]
+  Vec3 center{0, 0, 0};             // of the volume [mm]
+  Bounds bounds;
+};
+
+/// Largest first. Elements may be oriented either way.
+[[nodiscard]] std::vector<EmptySpace> empty_spaces_in(const Points& vertices,
+                                                      const std::vector<Tetrahedron>& tetrahedra,
+                                                      const std::vector<Prism>& prisms);
+
+/// "1000 mm^3 (12 faces) around (15, 15, 15) mm"
+[[nodiscard]] std::string text_of(const EmptySpace& space);
+
+}  // namespace softkin
