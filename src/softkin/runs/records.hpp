@@ -35,7 +35,9 @@ struct StepRecord : SolveReport {
   std::vector<Vec3> markers;  // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
-  std::vector<int> history_iterations;  // from 1, per entry of history; empty: all
+  std::optional<StressExtremes> stress{};  // physical; of a walk none
+  std::vector<Reaction> reactions{};       // the same, per support
+  std::vector<int> history_iterations;     // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
@@ -77,7 +79,14 @@ struct Finding {
     inverted,             // values: how many elements
     slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
     diverged,             // the iteration
-    accuracy              // values: last step, estimated distance from the equilibrium [mm]
+    accuracy,  // values: last step, estimated distance from the equilibrium [mm]; physical: largest force out
+               // of balance, largest pull of the elements at a vertex [N]
+    stress,    // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
+               // least principal stress [MPa]
+    reaction,  // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
+    unstable,  // values: in how many ways
+    buckled,   // values: how often, the largest move [mm]
+    snapped    // values: the longest move [mm], share of the way at which its step began [-]
   };
   Kind kind;
   std::string name{};
