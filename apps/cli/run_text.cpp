@@ -105,6 +105,10 @@ std::string finding_text(const runs::Finding& finding) {
     case Kind::snapped:
       return "warning: at " + percent(v[1]) + " of the way the shape jumps by " + number(v[0], 3) +
              " mm: the robot snaps through, and what it does there depends on how fast it is moved";
+    case Kind::unstable_way:
+      return "warning: from " + percent(v[0]) +
+             " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
+             "another one; --stable looks for it";
     case Kind::diverged:
       break;
   }

@@ -46,7 +46,8 @@ struct SolveReport {
   int buckled = 0;         // physical: how often an unstable equilibrium was left for a stable one
   double buckled_mm = 0;   // the largest move of a vertex thereby [mm]
   double snapped_mm = 0;   // physical: the longest move that a step made beside what its tangent predicts [mm]; 0: none
-  double snapped_from = 0;        // share of the way at which that step began [-]
+  double snapped_from = 0;   // share of the way at which that step began [-]
+  double unstable_from = 0;  // physical: the first share of the way at which an equilibrium passed was unstable [-]
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   double seconds = 0;

@@ -107,7 +107,10 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
   if (record.buckled > 0)
     found.push_back({Kind::buckled, "", {static_cast<double>(record.buckled), record.buckled_mm}});
   if (record.snapped_mm > 0) found.push_back({Kind::snapped, "", {record.snapped_mm, record.snapped_from}});
-  if (record.unstable_modes > 0) found.push_back({Kind::unstable, "", {static_cast<double>(record.unstable_modes)}});
+  if (record.unstable_modes > 0)
+    found.push_back({Kind::unstable, "", {static_cast<double>(record.unstable_modes)}});
+  else if (record.unstable_from > 0)
+    found.push_back({Kind::unstable_way, "", {record.unstable_from}});
 }
 
 }  // namespace

@@ -79,14 +79,15 @@ struct Finding {
     inverted,             // values: how many elements
     slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
     diverged,             // the iteration
-    accuracy,  // values: last step, estimated distance from the equilibrium [mm]; physical: largest force out
-               // of balance, largest pull of the elements at a vertex [N]
-    stress,    // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
-               // least principal stress [MPa]
-    reaction,  // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
-    unstable,  // values: in how many ways
-    buckled,   // values: how often, the largest move [mm]
-    snapped    // values: the longest move [mm], share of the way at which its step began [-]
+    accuracy,     // values: last step, estimated distance from the equilibrium [mm]; physical: largest force out
+                  // of balance, largest pull of the elements at a vertex [N]
+    stress,       // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
+                  // least principal stress [MPa]
+    reaction,     // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
+    unstable,     // values: in how many ways
+    buckled,      // values: how often, the largest move [mm]
+    snapped,      // values: the longest move [mm], share of the way at which its step began [-]
+    unstable_way  // of an equilibrium that is stable; values: share of the way from which it was not [-]
   };
   Kind kind;
   std::string name{};

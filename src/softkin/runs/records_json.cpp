@@ -116,6 +116,7 @@ void forces(Record& record, const Visit& visit) {
   visit("buckled_mm", record.buckled_mm);
   visit("snapped_mm", record.snapped_mm);
   visit("snapped_from", record.snapped_from);
+  visit("unstable_from", record.unstable_from);
 }
 
 Json physical_json(const Model& model, const StepRecord& record) {

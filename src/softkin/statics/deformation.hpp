@@ -56,7 +56,8 @@ struct StressExtremes {
                                                             const ElementDeformation& deformation);
 
 /// The paper's Fig. 6: how much of the body's volume is strained how far. In shares, percentile_95 and beyond each body
-/// element counts with its principal strain of largest magnitude; shares are of the body's rest volume. The prisms of a dea are not body.
+/// element counts with its principal strain of largest magnitude; shares are of the body's rest volume. The prisms of a
+/// dea are not body.
 struct StrainHistogram {
   std::vector<double> edges;       // of the bins, one more than shares [-]
   std::vector<double> shares;      // sum to 1

@@ -21,6 +21,9 @@ bool same_shape(const Points& a, const Points& b) {
 constexpr double least_advance = 1e-4;
 /// A step that moves no vertex farther than so many tolerances and yet fails leads nowhere.
 constexpr double least_move = 1000;
+/// A way on which so many iterations bring less than this share of it leads nowhere either.
+constexpr int patience = 500;
+constexpr double least_progress = 0.01;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
 /// An equilibrium this many times as far from the predicted shape as that is from the last one lies beyond a snap, if
@@ -73,7 +76,8 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
 Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   active_.resize(static_cast<std::size_t>(system_.actuators()));
   for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
-  double done = 0, advance = 1;
+  double done = 0, advance = 1, marked = 0;
+  int marked_iterations = report_.iterations;
   Demand here = from;
   const bool loads_change = change_loads(from, to);
   (void)release(to, at, false);
@@ -115,12 +119,21 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
       if (unstable && stable_ && done < 1) {
         if (!buckle(there, at)) return Status::interrupted;
         factorised = false;
+      } else if (unstable && done < 1 && report_.unstable_from == 0 && prepare(there, at) > 0) {
+        report_.unstable_from = done;  // in the shape itself: the last factorisation was of one close to it
       }
       ++report_.continuation_steps;
       report_.reached = done;
       const int used = report_.iterations - before;
       advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
       if (unstable) advance = std::min(advance, follow_below);
+    }
+    if (done - marked >= least_progress) {
+      marked = done;
+      marked_iterations = report_.iterations;
+    } else if (done < 1 && report_.iterations - marked_iterations >= patience) {
+      return limit(done, "the way there goes on in ever smaller steps: " + std::to_string(patience) +
+                             " iterations brought less than 1 % of it");
     }
     if (done < 1 && report_.iterations >= max_iterations_) {
       report_.remark = "the limit of iterations was reached";
@@ -204,8 +217,8 @@ void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
                      (report_.unstable_modes == 1 ? " way" : " ways") + ": the robot would buckle or snap away from it";
 }
 
-/// From an unstable equilibrium along its lowest mode to one of less energy, until it is stable or none is found. False:
-/// interrupted.
+/// From an unstable equilibrium along its lowest mode to one of less energy, until it is stable or none is found.
+/// False: interrupted.
 bool Continuation::buckle(const Demand& demand, Iterate& at) {
   for (int i = 0; i < most_buckles; ++i) {
     const LowestMode mode = lowest_mode(system_, at, demand, active_, work_, team_, report_);

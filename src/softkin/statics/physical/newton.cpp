@@ -184,8 +184,8 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
   if (advance != Advance::arrived) {
-    if (!std::isfinite(imbalance_.residual)) return Outcome::stuck;
-    (void)reject(at);  // steps were small enough before
+    if (!std::isfinite(imbalance_.residual) || report_.step_mm >= settings_.tolerance_mm) return Outcome::stuck;
+    (void)reject(at);  // the last step was small enough, and none follows it
     imbalance_ = system_.imbalance(balance_, work_, team_);
   }
   report_.gradient_norm = balance_.force.norm();
