@@ -82,7 +82,7 @@ RobotSpec snapping_arch() {
   return spec;
 }
 
-/// A bar whose ends are pressed together by half.
+/// A bar whose ends are pressed together.
 RobotSpec pressed_bar(double by) {
   RobotSpec spec = physical_robot(block_mesh({3, 1, 1}, {30, 10, 10}));
   spec.quadratic = true;
@@ -182,7 +182,7 @@ TEST(Stability, AStrutCarriesEulersLoad) {
     EXPECT_EQ(found.report.unstable_modes > 0, !options.stable);
     return -reactions(model, found.state.positions, statics.measured(found.state))[1].force.x();
   };
-  EXPECT_NEAR(force({}), 8 * 4 * by / 100, 0.05 * 8 * 4 * by / 100);
+  EXPECT_GT(force({}), 2 * euler) << "straight, or bent with a node between";
   EXPECT_NEAR(force(stable()), euler, 0.05 * euler);
 }
 

@@ -26,14 +26,15 @@ constexpr int patience = 500;
 constexpr double least_progress = 0.01;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
-/// An equilibrium this many times as far from the predicted shape as that is from the last one lies beyond a snap, if
-/// that is more than this share of the robot's diagonal.
+/// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one lies
+/// beyond a snap, if that is more than this share of the robot's diagonal.
 constexpr double most_correction = 0.5, least_snap = 0.01;
-/// Where ratios and supports change alone a step of this share of the way that is still one is taken, and told.
-constexpr double finest = 0.02;
+/// Where ratios and supports change alone a step jumps if this share of that distance is no bend of the way; one of
+/// this share of the way that jumps is taken, and told.
+constexpr double least_jump = 0.9, finest = 0.02;
 /// How often a robot is taken from one unstable equilibrium to the next below it, and how far it is pushed, over its
 /// diagonal.
-constexpr int most_buckles = 20;
+constexpr int most_buckles = 20, most_downhill = 60;
 constexpr double tie = 1e-9;
 constexpr std::array<double, 3> pushes{0.003, 0.02, 0.1};
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
@@ -62,15 +63,29 @@ Continuation::Continuation(const System& system, System::Workspace& work, Team& 
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
   move_mm_ = predict(system_, here, there, active_, work_, team_, trial);
-  const Points predicted = trial.positions;
+  predicted_ = trial.positions;
   auto outcome = settle(there, Newton::Policy::descend, trial);
   if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
     (void)predict(system_, here, there, active_, work_, team_, trial);
     outcome = settle(there, Newton::Policy::follow, trial);
   }
-  correction_mm_ = largest_move(predicted, trial.positions);
   return outcome;
+}
+
+/// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
+/// which the one at its begin misses its end, and by about as much; where it jumps, on the other side.
+bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial) {
+  const double correction = largest_move(predicted_, trial.positions);
+  const auto jumps = [&] {
+    Iterate back = trial;
+    (void)predict(system_, there, here, active_, work_, team_, back);
+    jump_mm_ = 0.5 * largest_move(predicted_ - trial.positions, back.positions - at.positions);
+    return !(jump_mm_ <= least_jump * correction);
+  };
+  if (correction <= least_snap * system_.model().diagonal_mm) return false;
+  // the factor at hand is of a shape nearby, and mostly good enough
+  return jumps() && (prepare(there, trial) < 0 || jumps());
 }
 
 Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
@@ -96,22 +111,26 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
     if (!factorised && prepare(here, at) < 0) return limit(done, "the stiffness at the start is not stable");
     factorised = true;
     const int before = report_.iterations;
+    const std::vector<bool> active = active_;
     auto outcome = step(here, there, next - done, at, trial);
     if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
-    const bool snap = snapped(move_mm_, correction_mm_), unstable = outcome == Newton::Outcome::unstable;
-    if (loads_change && snap) outcome = Newton::Outcome::stuck;
+    if (loads_change && snapped(move_mm_, largest_move(predicted_, trial.positions))) outcome = Newton::Outcome::stuck;
+    const bool snap = outcome != Newton::Outcome::stuck && !loads_change && jumped(here, there, at, trial);
+    const bool unstable = outcome == Newton::Outcome::unstable;
     if (outcome != Newton::Outcome::stuck && newton_.inverted() && !last_.inverted && next - done > most_inverting)
       outcome = Newton::Outcome::stuck;
     if (outcome == Newton::Outcome::stuck) {
       factorised = false;
+      active_ = active;
       advance = 0.4 * (next - done);
       if (advance < least_advance || move_mm_ < least_move * tolerance_mm_)
         return limit(done, "beyond this point no equilibrium follows");
     } else if (const double longest = longest_step(snap, unstable); next - done > 1.001 * longest) {
       factorised = false;
+      active_ = active;
       advance = std::max(longest, 0.4 * (next - done));
     } else {
-      if (snap) tell_snap(correction_mm_, done);
+      if (snap) tell_snap(jump_mm_, done);
       at = std::move(trial);
       here = there;
       done = next;
@@ -136,6 +155,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
                              " iterations brought less than 1 % of it");
     }
     if (done < 1 && report_.iterations >= max_iterations_) {
+      tell_balance();
       report_.remark = "the limit of iterations was reached";
       return Status::not_converged;
     }
@@ -170,7 +190,13 @@ bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   return false;
 }
 
+void Continuation::tell_balance() {
+  report_.residual_N = last_.forces.residual;
+  report_.pull_N = last_.forces.pull;
+}
+
 Status Continuation::limit(double done, const std::string& why) {
+  tell_balance();
   report_.reached = done;
   report_.remark = why;
   return Status::limit;
@@ -200,8 +226,7 @@ void Continuation::tell_snap(double move_mm, double from) {
 Status Continuation::arrive(const Demand& demand, Iterate& at) {
   if (stable_ && !buckle(demand, at)) return Status::interrupted;
   if (last_.modes > 0) tell_stability(demand, at);
-  report_.residual_N = last_.forces.residual;
-  report_.pull_N = last_.forces.pull;
+  tell_balance();
   if (last_.balanced) return Status::converged;
   report_.remark = "the steps have become small, but " + number(last_.forces.residual, 2) +
                    " N are out of balance, where elements pull with at most " + number(last_.forces.pull, 2) +
@@ -223,8 +248,8 @@ bool Continuation::buckle(const Demand& demand, Iterate& at) {
   for (int i = 0; i < most_buckles; ++i) {
     const LowestMode mode = lowest_mode(system_, at, demand, active_, work_, team_, report_);
     last_.modes = mode.unstable;
-    if (mode.unstable == 0 || !mode.direction.allFinite()) return true;
-    std::optional<Pushed> best = lower(demand, at, mode.direction);
+    if (mode.unstable == 0 || mode.direction.size() == 0 || !mode.direction.allFinite()) return true;
+    std::optional<Pushed> best = lower(demand, at, mode);
     if (interrupted_) return false;
     if (!best) return true;
     ++report_.buckled;
@@ -240,7 +265,7 @@ bool Continuation::buckle(const Demand& demand, Iterate& at) {
 /// The equilibrium of less energy to which a push leads, of those of both ways the lower, of two that are alike the
 /// first.
 std::optional<Continuation::Pushed> Continuation::lower(const Demand& demand, const Iterate& from,
-                                                        const Eigen::VectorXd& direction) {
+                                                        const LowestMode& mode) {
   double energy = potential(system_, from, demand, active_, work_, team_);
   energy -= tie * std::abs(energy);
   const std::vector<bool> active = active_;
@@ -248,7 +273,7 @@ std::optional<Continuation::Pushed> Continuation::lower(const Demand& demand, co
   for (std::size_t push = 0; push < pushes.size() && !best; ++push)
     for (const double way : {1.0, -1.0}) {
       active_ = active;
-      std::optional<Pushed> found = pushed(demand, from, direction, way * pushes[push]);
+      std::optional<Pushed> found = pushed(demand, from, mode, way * pushes[push]);
       if (interrupted_) return std::nullopt;
       if (!found || found->energy >= energy) continue;
       energy = found->energy - tie * std::abs(found->energy);
@@ -260,15 +285,24 @@ std::optional<Continuation::Pushed> Continuation::lower(const Demand& demand, co
 
 /// The equilibrium to which the robot goes when it is pushed away so far, over its diagonal; none where it comes back.
 std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, const Iterate& from,
-                                                         const Eigen::VectorXd& direction, double share) {
+                                                         const LowestMode& mode, double share) {
   Pushed found{from};
   const double reach = share * system_.model().diagonal_mm;
-  system_.advance(direction, reach / system_.size_of(direction, from.positions).largest, work_, found.at.positions,
-                  team_);
-  const auto outcome = settle(demand, Newton::Policy::descend, found.at);
-  interrupted_ = outcome == Newton::Outcome::interrupted;
-  if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return std::nullopt;
-  if (largest_move(found.at.positions, from.positions) < 0.1 * std::abs(reach)) return std::nullopt;
+  system_.advance(mode.direction, reach / system_.size_of(mode.direction, from.positions).largest, work_,
+                  found.at.positions, team_);
+  double shift = mode.steep_shift();
+  bool settled = false;
+  for (int i = 0; i < most_downhill && !settled; ++i) {
+    if (!step_down(system_, demand, active_, shift, found.at, work_, team_, report_)) return std::nullopt;
+    if (prepare(demand, found.at) != 0) continue;
+    Iterate there = found.at;
+    const auto outcome = settle(demand, Newton::Policy::descend, there);
+    interrupted_ = outcome == Newton::Outcome::interrupted;
+    if (interrupted_) return std::nullopt;
+    settled = outcome == Newton::Outcome::converged;
+    if (settled) found.at = std::move(there);
+  }
+  if (!settled || largest_move(found.at.positions, from.positions) < 0.1 * std::abs(reach)) return std::nullopt;
   found.energy = potential(system_, found.at, demand, active_, work_, team_);
   found.active = active_;
   found.last = judged();

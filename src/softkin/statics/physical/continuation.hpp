@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <softkin/statics/physical/equilibria.hpp>
+#include <softkin/statics/physical/stability.hpp>
 
 namespace softkin::physical {
 
@@ -36,16 +37,17 @@ class Continuation {
   [[nodiscard]] bool snapped(double predicted_mm, double correction_mm) const;
   [[nodiscard]] double longest_step(bool snap, bool unstable) const;
   [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
+  void tell_balance();
   Status limit(double done, const std::string& why);
   bool release(const Demand& there, Iterate& at, bool contradicting);
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
+  bool jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial);
   void tell_snap(double move_mm, double from);
   Status arrive(const Demand& demand, Iterate& at);
   void tell_stability(const Demand& demand, const Iterate& at);
   bool buckle(const Demand& demand, Iterate& at);
-  std::optional<Pushed> lower(const Demand& demand, const Iterate& from, const Eigen::VectorXd& direction);
-  std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const Eigen::VectorXd& direction,
-                               double share);
+  std::optional<Pushed> lower(const Demand& demand, const Iterate& from, const LowestMode& mode);
+  std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
   int prepare(const Demand& here, const Iterate& at);
   Newton::Outcome settle_here(const Demand& demand, Iterate& at);
   Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at);
@@ -60,8 +62,9 @@ class Continuation {
   bool stable_;
   SolveReport& report_;
   std::vector<bool> active_;
-  double move_mm_ = 0, correction_mm_ = 0;  // of the last step: predicted, and from there to the equilibrium
-  Judgement last_;                          // of the last good shape
+  Points predicted_;                  // by the last step
+  double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
+  Judgement last_;                    // of the last good shape
   bool interrupted_ = false;
 };
 

@@ -34,6 +34,7 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   };
   LowestMode mode;
   mode.unstable = negative(0);
+  mode.mean = mean;
   if (mode.unstable == 0) return mode;
   double low = 0, high = least_shift;
   for (; negative(high) > 0; high *= 10) {
@@ -61,6 +62,45 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   vector.cwiseAbs().maxCoeff(&largest);
   mode.direction = vector[largest] < 0 ? Eigen::VectorXd(-vector) : vector;
   return mode;
+}
+
+namespace {
+
+/// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given.
+double lagrangian(const System& system, const System::Balance& balance, const Points& positions,
+                  const Eigen::VectorXd& multipliers) {
+  double energy = balance.energy;
+  for (Index a = 0; a < system.actuators(); ++a)
+    if (system.measures().measures(a) && multipliers[a] != 0)
+      energy += system.sign(a) * multipliers[a] * system.measures().value(a, positions);
+  return energy;
+}
+
+}  // namespace
+
+bool step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift, Iterate& at,
+               System::Workspace& work, Team& team, SolveReport& report) {
+  System::Balance balance, there;
+  Eigen::VectorXd step, change;
+  for (; shift < most_shift; shift *= 4) {
+    system.evaluate(at, demand, active, work, balance, team);
+    ++report.factorisations;
+    if (system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team) > 0) continue;
+    system.step(balance, work, step, change, team);
+    if (!step.allFinite() || !change.allFinite()) continue;
+    Iterate trial = at;
+    system.advance(step, 1, work, trial.positions, team);
+    trial.multipliers += change;
+    system.evaluate(trial, demand, active, work, there, team);
+    if (there.forbidden || !there.force.allFinite()) continue;
+    if (!(lagrangian(system, there, trial.positions, at.multipliers) <
+          lagrangian(system, balance, at.positions, at.multipliers)))
+      continue;
+    at = std::move(trial);
+    shift = std::max(least_shift, shift / 4);
+    return true;
+  }
+  return false;
 }
 
 double potential(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
