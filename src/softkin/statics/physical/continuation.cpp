@@ -94,6 +94,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   double done = 0, advance = 1, marked = 0;
   int marked_iterations = report_.iterations;
   Demand here = from;
+  std::optional<Beyond> beyond;
   const bool loads_change = change_loads(from, to);
   (void)release(to, at, false);
   bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
@@ -123,9 +124,21 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
       factorised = false;
       active_ = active;
       advance = 0.4 * (next - done);
-      if (advance < least_advance || move_mm_ < least_move * tolerance_mm_)
+      if (beyond && advance < finest) {
+        tell_snap(beyond->jump_mm, done);
+        at = std::move(beyond->at);
+        here = beyond->demand;
+        done = report_.reached = beyond->done;
+        active_ = std::move(beyond->active);
+        last_ = beyond->last;
+        beyond.reset();
+        ++report_.continuation_steps;
+        advance = follow_below;
+      } else if (advance < least_advance || move_mm_ < least_move * tolerance_mm_) {
         return limit(done, "beyond this point no equilibrium follows");
+      }
     } else if (const double longest = longest_step(snap, unstable); next - done > 1.001 * longest) {
+      if (snap) beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
       factorised = false;
       active_ = active;
       advance = std::max(longest, 0.4 * (next - done));
@@ -141,6 +154,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
       } else if (unstable && done < 1 && report_.unstable_from == 0 && prepare(there, at) > 0) {
         report_.unstable_from = done;  // in the shape itself: the last factorisation was of one close to it
       }
+      if (beyond && done >= beyond->done) beyond.reset();
       ++report_.continuation_steps;
       report_.reached = done;
       const int used = report_.iterations - before;

@@ -31,6 +31,15 @@ class Continuation {
     std::vector<bool> active{};
     Judgement last{};
   };
+  /// Where a step came out that jumped: what is left where shorter ones find nothing.
+  struct Beyond {
+    Iterate at;
+    Demand demand;
+    double done = 0;
+    std::vector<bool> active;
+    Judgement last;
+    double jump_mm = 0;
+  };
 
   [[nodiscard]] Judgement judged() const;
   [[nodiscard]] bool factor_holds_active() const;
