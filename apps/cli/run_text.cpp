@@ -86,7 +86,7 @@ std::string finding_text(const runs::Finding& finding) {
     case Kind::accuracy:
       return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
              number(v[1], 2) + " mm" +
-             (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 2) + " N"
+             (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 3) + " N"
                            : "");
     case Kind::stress:
       return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + point_text(&v[1], " mm") +
