@@ -78,6 +78,7 @@ class FkRun {
  public:
   FkRun(const Model& model, const Statics& statics, const FkOptions& options, const std::vector<ActuationStep>& steps)
       : model_(model),
+        statics_(statics),
         options_(options),
         job_(model, statics, steps, options.path, options.statics()),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
@@ -95,6 +96,7 @@ class FkRun {
     finish();
     if (end != runs::Advance::made) return stopped();
     if (run_.done() > first) say_findings();
+    tell_unstable();
     return judge();
   }
 
@@ -110,7 +112,8 @@ class FkRun {
       const bool converged = run_.last().status == Status::converged;
       const Points& positions = run_.last_positions();
       if (!options_.output.empty() && !options_.series())
-        runs::write_shape(options_.output, model_, positions, deformation_of(model_, positions), converged);
+        runs::write_shape(options_.output, model_, positions,
+                          statics_.measured(runs::state_of(model_, run_.last(), positions)), converged);
       if (!options_.show.image.empty())
         runs::write_image(options_.show.image, model_, positions, options_.show.view, image_title());
       if (!options_.show.plot.empty()) write_plot();
@@ -175,6 +178,15 @@ class FkRun {
     return all.empty() ? done : not_converged;
   }
 
+  /// Of steps before the last one, whose findings were told.
+  void tell_unstable() {
+    std::vector<std::size_t> numbers;
+    run_.log().each([&](std::size_t number, const StepRecord& step) {
+      if (step.unstable_modes > 0 && number + 1 < run_.done()) numbers.push_back(number);
+    });
+    if (!numbers.empty()) say(unstable_text("step", numbers));
+  }
+
   /// Tells which steps ended so, and of the last of them how.
   void complain(Status status, const std::vector<std::size_t>& numbers, const StepRecord& last) const {
     std::string text = name_of(status);
@@ -184,6 +196,7 @@ class FkRun {
   }
 
   const Model& model_;
+  const Statics& statics_;
   const FkOptions& options_;
   runs::PathJob job_;
   runs::Run<StepRecord> run_;

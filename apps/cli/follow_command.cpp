@@ -157,6 +157,10 @@ class FollowRun {
     if (const std::string text = overlaps.text("waypoint"); !text.empty()) say(text);
     say("commands: " + options_.file("commands.csv").string() + "; plot: " + options_.plot().string() +
         "; shapes: " + options_.file("path.pvd").string() + " (open it in ParaView)");
+    std::vector<std::size_t> unstable;
+    for (std::size_t i = 0; i < done.size(); ++i)
+      if (done[i].unstable_modes > 0) unstable.push_back(i);
+    if (!unstable.empty()) say(unstable_text("waypoint", unstable));
     const std::string missed = missed_text(done);
     if (missed.empty()) return cli::done;
     std::fprintf(stderr, "softkin: %s\n", missed.c_str());

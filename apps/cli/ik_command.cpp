@@ -92,7 +92,7 @@ class IkRun {
 
   void write() const {
     const Points& positions = found_.equilibrium.state.positions;
-    const ElementDeformation deformation = deformation_of(model_, positions);
+    const ElementDeformation deformation = statics_.measured(found_.equilibrium.state);
     const runs::InverseRecord record = runs::inverse_record(model_, found_, deformation);
     const std::string title = fs::path(options_.scene).filename().string() + ": " + name_of(found_.status) + ", " +
                               number(record.error_mm, 2) + " mm off";

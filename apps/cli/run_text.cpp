@@ -66,6 +66,16 @@ std::string depth_text(double deepest_mm, const Vec3& where) {
   return number(deepest_mm, 2) + " mm at (" + axis(0) + ", " + axis(1) + ", " + axis(2) + ") mm";
 }
 
+/// "(1.25, 0, -3) mm"; what is rounding beside the largest is 0.
+std::string point_text(const double* xyz, const std::string& unit) {
+  constexpr double rounding = 1e-6;
+  const double largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis)
+    text += (axis > 0 ? ", " : "(") + number(std::abs(xyz[axis]) < rounding * largest ? 0 : xyz[axis], 4);
+  return text + ")" + unit;
+}
+
 std::string finding_text(const runs::Finding& finding) {
   using Kind = runs::Finding::Kind;
   const std::vector<double>& v = finding.values;
@@ -97,7 +107,30 @@ std::string finding_text(const runs::Finding& finding) {
              " mm across; are the loads and the moduli in the right units?" + units_text;
     case Kind::accuracy:
       return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
-             number(v[1], 2) + " mm";
+             number(v[1], 2) + " mm" +
+             (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 3) + " N"
+                           : "");
+    case Kind::stress:
+      return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + point_text(&v[1], " mm") +
+             (finding.name.empty() ? "" : " in region '" + finding.name + "'") + "; principal " + number(v[5], 4) +
+             " to " + number(v[4], 4) + " MPa";
+    case Kind::reaction:
+      return "support '" + finding.name + "' exerts " + point_text(&v[0], " N") + " and " + point_text(&v[3], " N mm") +
+             " about " + point_text(&v[6], " mm");
+    case Kind::unstable:
+      return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
+             ": the robot would buckle or snap away from it; --stable looks for the shape that it goes to";
+    case Kind::buckled:
+      return "the robot left " +
+             counted(static_cast<std::size_t>(v[0]), "unstable equilibrium", "unstable equilibria") +
+             " for a stable one, moving by up to " + number(v[1], 3) + " mm";
+    case Kind::snapped:
+      return "warning: at " + percent(v[1]) + " of the way the shape jumps by " + number(v[0], 3) +
+             " mm: the robot snaps through, and what it does there depends on how fast it is moved";
+    case Kind::unstable_way:
+      return "warning: from " + percent(v[0]) +
+             " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
+             "another one; --stable looks for it";
     case Kind::diverged:
       break;
   }
@@ -198,7 +231,14 @@ std::string OverlapTally::text(const std::string& what) const {
          (numbers_.size() == 1 ? "" : " in " + what + " " + std::to_string(at_)) + no_contact;
 }
 
+std::string unstable_text(const std::string& what, const std::vector<std::size_t>& numbers) {
+  return "warning: the equilibrium of " + what + (numbers.size() == 1 ? " " : "s ") + list_text(numbers) +
+         " is unstable: the robot would buckle or snap away from it; --stable looks for the shape that it goes to";
+}
+
 std::string shortfall_text(const Model& model, const StepRecord& step) {
+  if (model.formulation == Formulation::physical && step.reached_share == 1)
+    return step.remark + "; the shape is the last one";
   if (model.formulation == Formulation::physical)
     return reached_text(model, step) + ": " + step.remark + "; the shape is the last good one";
   return (step.remark.empty() ? "" : step.remark + ", and ") + "the shape is that after " +

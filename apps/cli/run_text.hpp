@@ -117,6 +117,9 @@ class OverlapTally {
   std::size_t at_ = 0;
 };
 
+/// "warning: the equilibrium of steps 3 to 5 is unstable", with the cure. what: "step"
+[[nodiscard]] std::string unstable_text(const std::string& what, const std::vector<std::size_t>& numbers);
+
 /// Why a step did not converge and what its shape is: "air reached 1.62 of 1.8: beyond this point no equilibrium
 /// follows; the shape is the last good one".
 [[nodiscard]] std::string shortfall_text(const Model& model, const StepRecord& step);

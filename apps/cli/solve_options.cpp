@@ -57,6 +57,7 @@ StaticsOptions SolveOptions::statics() const {
   result.max_iterations = max_iterations;
   result.anderson = anderson.value_or(result.anderson);
   result.threads = threads;
+  result.stable = stable;
   return result;
 }
 
@@ -93,6 +94,10 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
             "printed (default: " +
                 std::to_string(defaults.anderson) + ")",
             integer_from(0, 20));
+  command.add_flag(
+      "--stable", options.stable,
+      "Physical: where an equilibrium is unstable, go along its lowest mode\nto a stable one, as the robot "
+      "would when it buckles");
   add_value(command, "--threads", options.threads, "N", threads, integer_from(0, most_threads));
 }
 
@@ -146,6 +151,10 @@ RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::p
     throw InvalidInput(
         "--solver local-global is for the target-shape formulation, and this robot is physical: leave it out, or add "
         "--formulation target-shape");
+  if (spec.formulation == Formulation::target_shape && options.stable)
+    throw InvalidInput(
+        "--stable is for the physical formulation, and this robot is of target shapes: leave it out, or add "
+        "--formulation physical");
   return spec;
 }
 

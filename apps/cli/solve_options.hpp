@@ -24,6 +24,7 @@ struct SolveOptions : AskedScene {
   int max_iterations = StaticsOptions().max_iterations;
   std::optional<int> anderson;  // local-global
   int threads = StaticsOptions().threads;
+  bool stable = false;
 
   [[nodiscard]] Solver solver() const;
   [[nodiscard]] StaticsOptions statics() const;

@@ -74,6 +74,70 @@ TEST(FkPhysical, ReportSaysWhatItIsAboutAndInWhichUnits) {
   EXPECT_EQ(tendon["slack"], false);
 }
 
+/// Supports, stress and balance: on the terminal, in the report and in the shape.
+TEST(FkPhysical, SaysWhatHoldsTheRobotAndHowItIsStressed) {
+  const BlockFolder folder(physical_scene());
+  const std::vector<std::string> options{"--set",    "air=1.3",
+                                         "--force",  "payload=0.01,0,-0.02",
+                                         "-o",       folder / "shape.vtu",
+                                         "--report", folder / "report.json"};
+  const ProgramResult result = run_fk(folder.scene, options);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  for (const char* text :
+       {"support 'base' exerts (-0.01, ", " N and (", " N mm about (0, ", "stress in the body: von Mises at most ",
+        " MPa, at (", " N out of balance, elements pull with ", "principal strain of the body: "})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  const json step = json::parse(read_text(folder / "report.json"))["steps"][0];
+  ASSERT_EQ(step["reactions"].size(), 1u);
+  const json& base = step["reactions"][0];
+  EXPECT_EQ(base["support"], "base");
+  const double expected[] = {-0.01, 0, 0.02};
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(base["force_N"][axis], expected[axis], 1e-7);
+  EXPECT_NEAR(base["moment_N_mm"][1],
+              -0.02 * step["markers"]["tip"][0].get<double>() -
+                  0.01 * (step["markers"]["tip"][2].get<double>() - base["center_mm"][2].get<double>()),
+              0.02)
+      << "a lever of about 20 mm";
+  EXPECT_NEAR(base["center_mm"][1], 6, 1e-9);
+  EXPECT_GT(step["stress"]["von_mises_MPa"]["value"], 0.01);
+  EXPECT_EQ(step["stress"]["von_mises_MPa"]["region"], "body");
+  EXPECT_GT(step["stress"]["principal_max_MPa"]["value"], step["stress"]["principal_min_MPa"]["value"]);
+  EXPECT_EQ(step["unstable_modes"], 0);
+  EXPECT_LE(step["residual_N"], 1e-6 * step["pull_N"].get<double>());
+  const std::string shape = read_text(folder / "shape.vtu");
+  for (const char* name : {"von_mises_MPa", "principal_stress_MPa", "reaction_N", "support", "support_base",
+                           "pressure_kPa_air", "tension_N_tendon"})
+    EXPECT_NE(shape.find("Name=\"" + std::string(name) + "\""), std::string::npos) << name;
+  const std::string pressure = "Name=\"pressure_kPa_air\" NumberOfTuples=\"1\" format=\"ascii\">";
+  const std::size_t at = shape.find(pressure);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(std::stod(shape.substr(at + pressure.size())), step["actuators"]["air"]["pressure_kPa"]);
+  EXPECT_EQ(softkin::read_mesh(folder / "shape.vtu").tetrahedra.size(), 252u) << "it is read as before";
+}
+
+TEST(FkPhysical, TellsWhereItIsUnstableAndLeavesThatIfAsked) {
+  const BlockFolder folder;
+  const std::string strut = std::string(SOFTKIN_SOURCE_DIR) + "/docs/scenes/strut.yaml";
+  const ProgramResult told = run_fk(strut, {"--report", folder / "told.json"});
+  EXPECT_EQ(told.exit_code, 0) << told.errors;
+  EXPECT_NE(told.output.find("  converged, unstable\n"), std::string::npos) << told.output;
+  EXPECT_NE(told.output.find("warning: this equilibrium is unstable in "), std::string::npos) << told.output;
+  const ProgramResult left = run_fk(strut, {"--stable", "--report", folder / "left.json"});
+  EXPECT_EQ(left.exit_code, 0) << left.errors;
+  EXPECT_EQ(left.output.find("unstable in"), std::string::npos) << left.output;
+  EXPECT_NE(left.output.find("the robot left "), std::string::npos) << left.output;
+  const json before = json::parse(read_text(folder / "told.json")),
+             after = json::parse(read_text(folder / "left.json"));
+  EXPECT_GT(before["steps"][0]["unstable_modes"], 0);
+  EXPECT_EQ(after["steps"][0]["unstable_modes"], 0);
+  EXPECT_LT(after["steps"][0]["energy"], before["steps"][0]["energy"]);
+  EXPECT_EQ(after["solver"]["stable"], true);
+  const BlockFolder targets;
+  const ProgramResult refused = run_fk(targets.scene, {"--stable"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.errors.find("--stable is for the physical formulation"), std::string::npos) << refused.errors;
+}
+
 TEST(FkPhysical, ReportNamesTheUnitsOfLoads) {
   const BlockFolder folder(loaded_scene());
   const json report = report_of(folder, {});

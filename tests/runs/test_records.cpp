@@ -28,6 +28,23 @@ void expect_same(const StepRecord& a, const StepRecord& b) {
   EXPECT_EQ(a.time_s, b.time_s);
   EXPECT_EQ(a.shape, b.shape);
   EXPECT_EQ(a.shape_fingerprint, b.shape_fingerprint);
+  EXPECT_EQ(a.unstable_modes, b.unstable_modes);
+  EXPECT_EQ(a.buckled_mm, b.buckled_mm);
+  EXPECT_EQ(a.snapped_from, b.snapped_from);
+  EXPECT_EQ(a.residual_N, b.residual_N);
+  EXPECT_EQ(a.pull_N, b.pull_N);
+  ASSERT_EQ(a.stress.has_value(), b.stress.has_value());
+  if (a.stress) {
+    EXPECT_EQ(a.stress->von_mises.value, b.stress->von_mises.value);
+    EXPECT_EQ(a.stress->least.at, b.stress->least.at);
+    EXPECT_EQ(a.stress->greatest.region, b.stress->greatest.region);
+  }
+  ASSERT_EQ(a.reactions.size(), b.reactions.size());
+  for (std::size_t i = 0; i < a.reactions.size(); ++i) {
+    EXPECT_EQ(a.reactions[i].force, b.reactions[i].force);
+    EXPECT_EQ(a.reactions[i].moment, b.reactions[i].moment);
+    EXPECT_EQ(a.reactions[i].center, b.reactions[i].center);
+  }
   ASSERT_EQ(a.actuators.size(), b.actuators.size());
   for (std::size_t i = 0; i < a.actuators.size(); ++i) {
     EXPECT_EQ(a.actuators[i].achieved, b.actuators[i].achieved);
@@ -111,6 +128,16 @@ TEST_F(Steps, OfAPathAreReadBack) {
     EXPECT_NE(job.mismatch(3, records[1]), "");
     EXPECT_GT(records[2].largest_displacement_mm, 0);
     records[2].self_overlap = {12, 0.1 + 0.2, {1.5, -2, 1e-3}};
+    if (model.formulation == Formulation::physical) {
+      EXPECT_TRUE(records[2].stress.has_value());
+      EXPECT_EQ(records[2].reactions.size(), 1u);
+      records[2].unstable_modes = 2;
+      records[2].buckled_mm = 1.5;
+      records[2].snapped_from = 0.25;
+      expect_damage_refused(job.codec(), records[2],
+                            {"/unstable_modes", "/stress", "/stress/von_mises_MPa/at_mm", "/reactions",
+                             "/reactions/0/force_N", "/residual_N"});
+    }
     records[2].shape = "s_0002.vtu";
     records[2].shape_fingerprint = "0123456789abcdef";
     (void)read_back(job.codec(), records[2]);

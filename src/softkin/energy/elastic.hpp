@@ -44,6 +44,14 @@ struct ElasticStiffness {
 template <int K, int Q>
 void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out);
 
+/// Cauchy stress, force per deformed area, at every quadrature point and in every lane [MPa]; meaningless as the energy
+/// is where a law forbids inversion.
+///
+/// source   sigma = P F^T / J, P = dW/dF; of a dielectric elastomer F and J are those of the elastic part
+/// throws   InvalidInput on a law that does not exist
+template <int K, int Q>
+void elastic_stress(const ElasticBlock<K, Q>& block, const Shape<K>& current, Pack33 (&stress)[Q]);
+
 /// Second derivative of the energy. projected: with d^2W/dF^2 of every quadrature point replaced by the nearest
 /// positive semidefinite matrix. Finite everywhere; where the corotational law's rotation is not unique (mirrored
 /// elements with two stretches of one size) the exact one is large and meaningless, the projected one is usable.

@@ -77,6 +77,21 @@ void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, Ela
   dispatch(block.law.law, [&]<Law law>() { force<law, K, Q>(block, current, out); });
 }
 
+template <int K, int Q>
+void elastic_stress(const ElasticBlock<K, Q>& block, const Shape<K>& current, Pack33 (&stress)[Q]) {
+  dispatch(block.law.law, [&]<Law law>() {
+    for (int q = 0; q < Q; ++q) {
+      const Pack33 f = deformation_gradient<K>(block.slope[q], current);
+      const Stress point = stress_of<law>(block.law, f);
+      stress[q] = times(point.first, transposed(f));
+      for (Pack3& row : stress[q].row) row = (1 / point.jacobian) * row;
+    }
+  });
+}
+
+template void elastic_stress(const ElasticBlock<4, 1>&, const Shape<4>&, Pack33 (&)[1]);
+template void elastic_stress(const ElasticBlock<10, 4>&, const Shape<10>&, Pack33 (&)[4]);
+template void elastic_stress(const ElasticBlock<6, 6>&, const Shape<6>&, Pack33 (&)[6]);
 template void elastic_force(const ElasticBlock<4, 1>&, const Shape<4>&, ElasticForce<4>&);
 template void elastic_force(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticForce<10>&);
 template void elastic_force(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticForce<6>&);

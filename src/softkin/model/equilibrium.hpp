@@ -35,11 +35,19 @@ struct SolveReport {
   int shifts = 0;              // iterations in which a multiple of the diagonal was added
   int continuation_steps = 0;  // equilibria on the way, the last one included; newton
   double reached = 1;          // share of the way from the start's actuation to the one asked for [-]
-  std::string remark;          // why it stopped, where status is not converged
+  std::string remark;          // why it stopped, where status is not converged; or how it is unstable
   double energy = 0;           // at the last shape evaluated
   double step_mm = 0;          // last step [mm]
   double tolerance_mm = 0;     // step at which the iteration stops [mm]
   double gradient_norm = 0;
+  double residual_N = 0;   // physical: the largest force out of balance at a vertex or on a rigid region [N]
+  double pull_N = 0;       // physical: the largest sum of what elements pull at a vertex [N], which it is compared with
+  int unstable_modes = 0;  // physical: ways in which the equilibrium is unstable
+  int buckled = 0;         // physical: how often an unstable equilibrium was left for a stable one
+  double buckled_mm = 0;   // the largest move of a vertex thereby [mm]
+  double snapped_mm = 0;   // physical: the longest move that a step made beside what its tangent predicts [mm]; 0: none
+  double snapped_from = 0;   // share of the way at which that step began [-]
+  double unstable_from = 0;  // physical: the first share of the way at which an equilibrium passed was unstable [-]
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   double seconds = 0;

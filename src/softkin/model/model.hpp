@@ -78,6 +78,12 @@ struct RigidRegion {
   std::vector<Index> vertices;
 };
 
+/// Holds vertices where they are told to be: an entry of the description's `fixed`.
+struct Support {
+  std::string name;  // of its region, or fixed_N
+  std::vector<Index> vertices;
+};
+
 /// What an element is made of: a material, or the actuator that it belongs to; physical: a material always, and a
 /// prism of a dea has its actuator too.
 struct ElementRole {
@@ -104,11 +110,15 @@ struct Model {
   std::vector<RigidRegion> rigid;          // disjoint
   std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
   Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
-  Points dead_load;                        // #V by 3 [N]: weight and forces; physical, else empty
-  std::vector<bool> used;                  // per vertex: is it a vertex of an element
-  double diagonal_mm = 0;                  // of the bounding box of the used vertices
-  std::vector<std::string> notes;          // what compile() changed or the user should know, a sentence each
-  std::vector<std::string> warnings;       // what is probably not meant, a sentence each: units, elements that lock
+  std::vector<Support> supports;           // in the order of the description's `fixed`
+  std::vector<std::array<Index, 3>>
+      support_of;                     // per vertex and axis: the support that bears it, the first of several,
+                                      // or -1; a rigid region that is held is borne as a whole
+  Points dead_load;                   // #V by 3 [N]: weight and forces; physical, else empty
+  std::vector<bool> used;             // per vertex: is it a vertex of an element
+  double diagonal_mm = 0;             // of the bounding box of the used vertices
+  std::vector<std::string> notes;     // what compile() changed or the user should know, a sentence each
+  std::vector<std::string> warnings;  // what is probably not meant, a sentence each: units, elements that lock
 
   /// Values where the user asks for none, in the order of actuators.
   [[nodiscard]] Eigen::VectorXd rest_actuation() const;

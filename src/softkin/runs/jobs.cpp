@@ -64,7 +64,7 @@ std::string PathJob::mismatch(std::size_t number, const StepRecord& record) cons
 std::optional<PathJob::Made> PathJob::make(std::size_t number, const ProgressCallback& progress) {
   Equilibrium found = statics_.solve(steps_[number].actuation, state_, options_, progress);
   if (found.report.status == Status::interrupted) return std::nullopt;
-  ElementDeformation deformation = deformation_of(model_, found.state.positions);
+  ElementDeformation deformation = statics_.measured(found.state);
   StepRecord record = step_record(model_, found, deformation);
   record.self_overlap = overlap_.in(found.state.positions);
   record.time_s = steps_[number].time;
@@ -106,7 +106,7 @@ std::optional<FollowJob::Made> FollowJob::make(std::size_t number, const Progres
   const InverseResult found = follower_.advance(progress);
   if (found.status == InverseStatus::interrupted) return std::nullopt;
   const Points& positions = found.equilibrium.state.positions;
-  ElementDeformation deformation = deformation_of(model_, positions);
+  ElementDeformation deformation = statics_.measured(found.equilibrium.state);
   WaypointRecord record = waypoint_record(model_, path_.waypoints[number], found, deformation);
   record.self_overlap = overlap_.in(positions);
   return Made{std::move(record), positions, std::move(deformation)};

@@ -51,6 +51,8 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
   for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
   record.strain = strain_histogram(model, deformation);
+  record.stress = stress_extremes(model, found.state.positions, deformation);
+  record.reactions = reactions(model, found.state.positions, deformation);
   return record;
 }
 
@@ -120,6 +122,28 @@ void add_implausible(const Model& model, const StepRecord& record, std::vector<F
     found.push_back({Finding::Kind::far_moved, "", {moved, model.diagonal_mm}});
 }
 
+using Kind = Finding::Kind;
+
+void add_forces(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  if (record.stress) {
+    const auto& [most, greatest, least] = *record.stress;
+    found.push_back(
+        {Kind::stress, most.region, {most.value, most.at.x(), most.at.y(), most.at.z(), greatest.value, least.value}});
+  }
+  for (std::size_t s = 0; s < record.reactions.size(); ++s) {
+    Finding& reaction = found.emplace_back(Finding{Kind::reaction, model.supports[s].name});
+    for (const Vec3& vector : {record.reactions[s].force, record.reactions[s].moment, record.reactions[s].center})
+      reaction.values.insert(reaction.values.end(), vector.begin(), vector.end());
+  }
+  if (record.buckled > 0)
+    found.push_back({Kind::buckled, "", {static_cast<double>(record.buckled), record.buckled_mm}});
+  if (record.snapped_mm > 0) found.push_back({Kind::snapped, "", {record.snapped_mm, record.snapped_from}});
+  if (record.unstable_modes > 0)
+    found.push_back({Kind::unstable, "", {static_cast<double>(record.unstable_modes)}});
+  else if (record.unstable_from > 0)
+    found.push_back({Kind::unstable_way, "", {record.unstable_from}});
+}
+
 }  // namespace
 
 std::vector<Finding> findings(const Model& model, const StepRecord& record) {
@@ -134,6 +158,7 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const ActuatorRecord& actuator = record.actuators[a]; actuator.slack)
       found.push_back({Finding::Kind::slack, model.actuators[a].name, {actuator.achieved, actuator.requested}});
+  add_forces(model, record, found);
   add_implausible(model, record, found);
   if (model.formulation == Formulation::physical && record.status != Status::converged)
     return found;  // the iteration was of another shape
@@ -141,6 +166,8 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
     found.push_back({Finding::Kind::diverged});
   else
     found.push_back({Finding::Kind::accuracy, "", {record.step_mm, record.estimated_error_mm}});
+  if (model.formulation == Formulation::physical)
+    for (const double force : {record.residual_N, record.pull_N}) found.back().values.push_back(force);
   return found;
 }
 

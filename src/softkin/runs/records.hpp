@@ -38,7 +38,9 @@ struct StepRecord : SolveReport {
   std::vector<Vec3> markers;           // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
-  std::vector<int> history_iterations;  // from 1, per entry of history; empty: all
+  std::optional<StressExtremes> stress{};  // physical; of a walk none
+  std::vector<Reaction> reactions{};       // the same, per support
+  std::vector<int> history_iterations;     // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
@@ -84,7 +86,15 @@ struct Finding {
     far_strained,         // values: greatest strain [-]
     far_moved,            // values: largest displacement, diagonal of the robot [mm]
     diverged,             // the iteration
-    accuracy              // values: last step, estimated distance from the equilibrium [mm]
+    accuracy,     // values: last step, estimated distance from the equilibrium [mm]; physical: largest force out
+                  // of balance, largest pull of the elements at a vertex [N]
+    stress,       // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
+                  // least principal stress [MPa]
+    reaction,     // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
+    unstable,     // values: in how many ways
+    buckled,      // values: how often, the largest move [mm]
+    snapped,      // values: the longest move [mm], share of the way at which its step began [-]
+    unstable_way  // of an equilibrium that is stable; values: share of the way from which it was not [-]
   };
   Kind kind;
   std::string name{};

@@ -86,6 +86,70 @@ SelfOverlap overlap_of(const Json& json) {
   return overlap;
 }
 
+/// visit(key, extreme) of each.
+template <class Extremes, class Visit>
+void each_extreme(Extremes& stress, const Visit& visit) {
+  visit("von_mises_MPa", stress.von_mises);
+  visit("principal_max_MPa", stress.greatest);
+  visit("principal_min_MPa", stress.least);
+}
+
+Json stress_json(const StressExtremes& stress) {
+  Json json;
+  each_extreme(stress, [&json](const char* key, const StressExtremes::Extreme& extreme) {
+    json[key] = {{"value", known(extreme.value)}, {"at_mm", json_of(extreme.at)}, {"region", extreme.region}};
+  });
+  return json;
+}
+
+StressExtremes stress_of(const Json& json) {
+  StressExtremes stress;
+  each_extreme(stress, [&json](const char* key, StressExtremes::Extreme& extreme) {
+    const Json& of = json.at(key);
+    extreme = {number_or_nan(of.at("value")), point_of(of.at("at_mm")), of.at("region").get<std::string>()};
+  });
+  return stress;
+}
+
+Json reaction_json(const Support& support, const Reaction& reaction) {
+  return {{"support", support.name},
+          {"force_N", json_of(reaction.force)},
+          {"moment_N_mm", json_of(reaction.moment)},
+          {"center_mm", json_of(reaction.center)}};
+}
+
+/// What the physical formulation knows of forces and of stability.
+template <class Record, class Visit>
+void forces(Record& record, const Visit& visit) {
+  visit("residual_N", record.residual_N);
+  visit("pull_N", record.pull_N);
+  visit("unstable_modes", record.unstable_modes);
+  visit("buckled", record.buckled);
+  visit("buckled_mm", record.buckled_mm);
+  visit("snapped_mm", record.snapped_mm);
+  visit("snapped_from", record.snapped_from);
+  visit("unstable_from", record.unstable_from);
+}
+
+Json physical_json(const Model& model, const StepRecord& record) {
+  Json json = {{"shape_load_share", record.shape_load_share}};
+  forces(record, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
+  json["stress"] = record.stress ? stress_json(*record.stress) : Json();
+  json["reactions"] = Json::array();
+  for (std::size_t s = 0; s < record.reactions.size(); ++s)
+    json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
+  return json;
+}
+
+void read_physical(const Json& json, StepRecord& record) {
+  record.shape_load_share = json.at("shape_load_share").get<double>();
+  forces(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
+  if (const Json& stress = json.at("stress"); !stress.is_null()) record.stress = stress_of(stress);
+  for (const Json& each : json.at("reactions"))
+    record.reactions.push_back(
+        {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});
+}
+
 /// As many digits as a curve needs.
 Json rounded(double value) {
   char text[32];
@@ -189,7 +253,7 @@ Json step_json(const Model& model, const StepRecord& record) {
   if (record.shape_actuation) step["shape_actuation"] = by_actuator(model, *record.shape_actuation);
   for (std::size_t m = 0; m < model.markers.size(); ++m)
     step["markers"][model.markers[m].name] = json_of(record.markers[m]);
-  if (model.formulation == Formulation::physical) step["shape_load_share"] = record.shape_load_share;
+  if (model.formulation == Formulation::physical) step.update(physical_json(model, record));
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     step["actuators"][model.actuators[a].name] = actuator_json(model, model.actuators[a], record.actuators[a]);
   step["self_overlap"] = overlap_json(record.self_overlap);
@@ -266,7 +330,7 @@ void from_json(const Model& model, const Json& json, StepRecord& record) {
   record.remark = json.at("remark").get<std::string>();
   if (const Json& shape = json.at("shape_actuation"); !shape.is_null())
     record.shape_actuation = by_actuator(model, shape);
-  if (model.formulation == Formulation::physical) record.shape_load_share = json.at("shape_load_share").get<double>();
+  if (model.formulation == Formulation::physical) read_physical(json, record);
   counts_and_measures(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   for (const Marker& marker : model.markers) record.markers.push_back(point_of(json.at("markers").at(marker.name)));
   for (const Actuator& actuator : model.actuators)

@@ -71,6 +71,7 @@ Json solver_json(const StaticsOptions& options) {
                {"tolerance_mm", options.step_tolerance_mm},
                {"max_iterations", options.max_iterations}};
   if (options.solver == Solver::local_global) json["anderson"] = options.anderson;
+  if (options.stable) json["stable"] = true;
   return json;
 }
 

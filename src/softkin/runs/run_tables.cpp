@@ -211,6 +211,7 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record) {
   for (const Vec3& marker : record.markers)
     row.emplace_back(point_text(marker, length_decimals(model), length_width(model)));
   row.insert(row.end(), {std::int64_t{record.iterations}, record.seconds, name_of(record.status)});
+  if (record.unstable_modes > 0) row.back() = std::string(name_of(record.status)) + ", unstable";
   return row;
 }
 
@@ -227,6 +228,7 @@ Row row_of(std::size_t waypoint, const WaypointRecord& record) {
   Row row{static_cast<std::int64_t>(waypoint)};
   add_values(record.actuation, row);
   row.insert(row.end(), {record.error_mm, std::int64_t{record.equilibria}, record.seconds, name_of(record.end)});
+  if (record.unstable_modes > 0) row.back() = std::string(name_of(record.end)) + ", unstable";
   return row;
 }
 
@@ -246,7 +248,7 @@ Row row_of(const Model& model, const WalkRecord& record) {
   add_values(record.actuation, row);
   row.insert(row.end(), {record.walk.rear_mm, record.walk.front_mm, record.walk.travel_mm});
   if (model.formulation == Formulation::physical) row.emplace_back(record.walk.friction_N);
-  row.emplace_back(sliding_text(model, record.walk.sliding));
+  row.emplace_back(sliding_text(model, record.walk.sliding) + (record.unstable_modes > 0 ? ", unstable" : ""));
   return row;
 }
 

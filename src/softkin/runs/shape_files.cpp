@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <softkin/runs/shape_files.hpp>
+#include <utility>
 
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/picture/picture.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/names.hpp>
 
 namespace softkin::runs {
 
@@ -65,6 +68,27 @@ std::vector<PictureMark> marks_of(const Model& model, const Points& positions, c
   return marks;
 }
 
+/// Stresses of the cells; of the points, what holds them and who.
+void add_forces(const Model& model, const ElementDeformation& deformation, VtuContent& content) {
+  const ElementStress& stress = deformation.stress;
+  if (stress.von_mises.empty()) return;
+  Field principal{"principal_stress_MPa", 3, {}}, support{"support", 1, {}};
+  for (const auto& values : stress.principal)
+    principal.values.insert(principal.values.end(), values.begin(), values.end());
+  for (const auto& axes : model.support_of) support.values.push_back(*std::max_element(axes.begin(), axes.end()));
+  const Points& forces = deformation.reactions;
+  content.cell_fields.push_back({"von_mises_MPa", 1, stress.von_mises});
+  content.cell_fields.push_back(std::move(principal));
+  content.point_fields.push_back({"reaction_N", 3, {forces.data(), forces.data() + forces.size()}});
+  content.point_fields.push_back(std::move(support));
+  for (std::size_t s = 0; s < model.supports.size(); ++s)
+    content.constants.emplace_back("support_" + model.supports[s].name, static_cast<double>(s));
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (const std::string key = multiplier_key(model.actuators[a]); !key.empty())
+      content.constants.emplace_back(key + "_" + model.actuators[a].name,
+                                     deformation.multipliers[static_cast<Index>(a)]);
+}
+
 }  // namespace
 
 void write_shape(const fs::path& path, const Model& model, const Points& positions,
@@ -89,6 +113,7 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
   const Field mark{"converged", 1, std::vector<double>(deformation.strain.size(), converged ? 1 : 0)};
   content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator, mark};
   content.region_names = model.region_names;
+  add_forces(model, deformation, content);
   write_vtu(path, content);
 }
 

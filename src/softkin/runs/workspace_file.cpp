@@ -51,6 +51,7 @@ std::string solver_text(const StaticsOptions& solver) {
     text += ", tolerance " + exact(solver.step_tolerance_mm) + " mm";
   if (solver.max_iterations != defaults.max_iterations)
     text += ", at most " + counted(static_cast<std::size_t>(solver.max_iterations), "iteration");
+  if (solver.stable) text += ", stable";
   if (solver.anderson != defaults.anderson) text += ", anderson " + std::to_string(solver.anderson);
   return text;
 }

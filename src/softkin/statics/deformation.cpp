@@ -46,7 +46,9 @@ void append(const Model& model, const std::vector<Element>& elements, const std:
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const Mat3 gradient = frame(positions, elements[e]) * frame(model.rest, elements[e]).inverse();
     out.volume_ratio.push_back(signed_volume(positions, elements[e]) / volumes[e]);
-    out.strain.push_back(principal_strains(gradient));
+    const Strain strain = principal_strains(gradient);
+    out.strain.push_back(strain);
+    out.range.push_back({strain[2], strain[0]});
   }
 }
 
@@ -70,6 +72,7 @@ void append_quadratic(const Model& model, const Points& positions, ElementDeform
     const TetrahedronNodes rest = nodes_of(model.rest, model.tetrahedra[e], model.edge_nodes[e]);
     double least = std::numeric_limits<double>::infinity();
     Strain most{};
+    std::array<double, 2> range{};
     for (int i = 0; i < 4; ++i) {
       const Barycentric corner = Barycentric::Unit(i);
       const Mat3 gradient = frame(now, points[i]) * frame(rest, points[i]).inverse();
@@ -77,9 +80,12 @@ void append_quadratic(const Model& model, const Points& positions, ElementDeform
           {least, gradient.determinant(), frame(now, corner).determinant() / frame(rest, corner).determinant()});
       const Strain strain = principal_strains(gradient);
       if (i == 0 || std::abs(extreme(strain)) > std::abs(extreme(most))) most = strain;
+      range = i == 0 ? std::array{strain[2], strain[0]}
+                     : std::array{std::min(range[0], strain[2]), std::max(range[1], strain[0])};
     }
     out.volume_ratio.push_back(least);
     out.strain.push_back(most);
+    out.range.push_back(range);
   }
 }
 
@@ -121,16 +127,43 @@ double bin_width(double range) {
 }
 
 struct Sample {
-  double strain, volume;
+  double strain;
+  std::array<double, 2> range;
+  double volume;
   Index material;
 };
+
+template <class Element>
+Vec3 centroid(const Points& positions, const Element& element) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index v : element) sum += vertex_at(positions, v);
+  return sum / static_cast<double>(element.size());
+}
+
+/// Elements of a material that no actuator deforms.
+bool is_body(const ElementRole& role) {
+  return role.material >= 0 && role.actuator < 0;
+}
+
+/// Of an element, tetrahedra first, then prisms.
+const ElementRole& role_of(const Model& model, std::size_t element) {
+  const std::size_t tetrahedra = model.tetrahedra.size();
+  return element < tetrahedra ? model.tetrahedron_roles[element] : model.prism_roles[element - tetrahedra];
+}
+
+Vec3 centroid_of(const Model& model, const Points& positions, std::size_t element) {
+  const std::size_t tetrahedra = model.tetrahedra.size();
+  return element < tetrahedra ? centroid(positions, model.tetrahedra[element])
+                              : centroid(positions, model.prisms[element - tetrahedra]);
+}
 
 std::vector<Sample> body_samples(const Model& model, const ElementDeformation& deformation) {
   std::vector<Sample> samples;
   const auto add = [&](const std::vector<ElementRole>& roles, const std::vector<double>& volumes, std::size_t first) {
     for (std::size_t e = 0; e < roles.size(); ++e) {
-      if (roles[e].material < 0 || roles[e].actuator >= 0) continue;
-      samples.push_back({extreme(deformation.strain[first + e]), volumes[e], roles[e].material});
+      if (!is_body(roles[e])) continue;
+      samples.push_back(
+          {extreme(deformation.strain[first + e]), deformation.range[first + e], volumes[e], roles[e].material});
     }
   };
   add(model.tetrahedron_roles, model.tetrahedron_volumes, 0);
@@ -156,20 +189,65 @@ ElementDeformation deformation_of(const Model& model, const Points& positions) {
   return deformation;
 }
 
+std::vector<Reaction> reactions(const Model& model, const Points& positions, const ElementDeformation& deformation) {
+  std::vector<Reaction> all;
+  if (deformation.reactions.rows() == 0) return all;
+  for (const Support& support : model.supports) {
+    Reaction& reaction = all.emplace_back();
+    for (const Index v : support.vertices)
+      reaction.center += vertex_at(positions, v) / static_cast<double>(support.vertices.size());
+  }
+  for (Index v = 0; v < positions.rows(); ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index s = model.support_of[v][axis];
+      if (s < 0) continue;
+      const Vec3 force = deformation.reactions(v, axis) * Vec3::Unit(axis);
+      all[s].force += force;
+      all[s].moment += (vertex_at(positions, v) - all[s].center).cross(force);
+    }
+  return all;
+}
+
+std::optional<StressExtremes> stress_extremes(const Model& model, const Points& positions,
+                                              const ElementDeformation& deformation) {
+  const ElementStress& stress = deformation.stress;
+  std::size_t most = 0, greatest = 0, least = 0;
+  bool any = false;
+  for (std::size_t e = 0; e < stress.von_mises.size(); ++e) {
+    if (!is_body(role_of(model, e))) continue;
+    if (!any || stress.von_mises[e] > stress.von_mises[most]) most = e;
+    if (!any || stress.principal[e][0] > stress.principal[greatest][0]) greatest = e;
+    if (!any || stress.principal[e][2] < stress.principal[least][2]) least = e;
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  const auto extreme = [&](double value, std::size_t e) {
+    const Index region = role_of(model, e).region;
+    return StressExtremes::Extreme{value, centroid_of(model, positions, e),
+                                   region < 0 ? "" : model.region_names[region]};
+  };
+  return StressExtremes{extreme(stress.von_mises[most], most), extreme(stress.principal[greatest][0], greatest),
+                        extreme(stress.principal[least][2], least)};
+}
+
 StrainHistogram strain_histogram(const Model& model, const ElementDeformation& deformation) {
   StrainHistogram histogram;
   std::vector<Sample> samples = body_samples(model, deformation);
   if (samples.empty()) return histogram;
   double total = 0;
-  histogram.least = histogram.greatest = samples.front().strain;
+  double lowest = samples.front().strain, highest = lowest;  // of what the bins hold
+  histogram.least = samples.front().range[0];
+  histogram.greatest = samples.front().range[1];
   for (const Sample& s : samples) {
     total += s.volume;
-    histogram.least = std::min(histogram.least, s.strain);
-    histogram.greatest = std::max(histogram.greatest, s.strain);
+    histogram.least = std::min(histogram.least, s.range[0]);
+    histogram.greatest = std::max(histogram.greatest, s.range[1]);
+    lowest = std::min(lowest, s.strain);
+    highest = std::max(highest, s.strain);
   }
-  const double width = bin_width(histogram.greatest - histogram.least);
-  const double first = std::floor(histogram.least / width);
-  const auto bins = static_cast<std::size_t>(std::floor(histogram.greatest / width) - first) + 1;
+  const double width = bin_width(highest - lowest);
+  const double first = std::floor(lowest / width);
+  const auto bins = static_cast<std::size_t>(std::floor(highest / width) - first) + 1;
   histogram.shares.assign(bins, 0);
   for (std::size_t i = 0; i <= bins; ++i) histogram.edges.push_back((first + static_cast<double>(i)) * width);
   for (const Sample& s : samples)

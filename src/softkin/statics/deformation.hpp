@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <softkin/model/model.hpp>
 
 namespace softkin {
@@ -9,6 +10,12 @@ namespace softkin {
 /// boundary (physical) or by its surface.
 [[nodiscard]] double achieved_ratio(const Model& model, const Actuator& actuator, const Points& positions);
 
+/// Cauchy stress of every element, in their order [MPa]: at that of its integration points where von Mises' is largest.
+struct ElementStress {
+  std::vector<double> von_mises;
+  std::vector<std::array<double, 3>> principal;  // descending; tension is positive
+};
+
 /// Deformation of every element, tetrahedra first, then prisms (their strain at the centre). Of order 2: the least
 /// volume ratio, det F, at the corners and at the four points with which the energy is integrated, and the strain at
 /// that of the four where its magnitude is largest.
@@ -16,16 +23,46 @@ struct ElementDeformation {
   std::vector<double> volume_ratio;           // [-]; <= 0: inverted, of order 2 somewhere
   std::vector<std::array<double, 3>> strain;  // principal stretches minus 1, descending [-]; the least is negated
                                               // with the sign of det F in an inverted element
+  std::vector<std::array<double, 2>> range;   // least and greatest principal strain in the element [-]; of order 2: of
+                                              // the four points
+  // Physical, and of Statics::measured() alone; else empty.
+  ElementStress stress;
+  Eigen::VectorXd multipliers;  // m: tension [N] or gauge pressure [kPa], 0 for a dea
+  Points reactions;  // #V by 3: what supports push and pull at the vertices that they hold [N]; 0 along free axes
 };
 [[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
 
-/// The paper's Fig. 6: how much of the body's volume is strained how far. Of each body element counts the principal
-/// strain of largest magnitude; shares are of the body's rest volume. The prisms of a dea are not body.
+/// What an entry of the scene's `fixed` does to the robot.
+struct Reaction {
+  Vec3 force = Vec3::Zero();   // that the support exerts on the robot [N]
+  Vec3 moment = Vec3::Zero();  // the same, about the centre [N mm]
+  Vec3 center = Vec3::Zero();  // mean of the vertices that it holds, where they are [mm]
+};
+/// Of every support, in their order; deformation: of positions, with its reactions.
+[[nodiscard]] std::vector<Reaction> reactions(const Model& model, const Points& positions,
+                                              const ElementDeformation& deformation);
+
+/// The largest stresses of the body (not of the membrane of a dea) and where they are.
+struct StressExtremes {
+  struct Extreme {
+    double value = 0;        // [MPa]
+    Vec3 at = Vec3::Zero();  // the element's centroid [mm]
+    std::string region;      // its first; empty: none
+  };
+  Extreme von_mises, greatest, least;  // the two: of the principal stresses
+};
+/// None without stresses.
+[[nodiscard]] std::optional<StressExtremes> stress_extremes(const Model& model, const Points& positions,
+                                                            const ElementDeformation& deformation);
+
+/// The paper's Fig. 6: how much of the body's volume is strained how far. In shares, percentile_95 and beyond each body
+/// element counts with its principal strain of largest magnitude; shares are of the body's rest volume. The prisms of a
+/// dea are not body.
 struct StrainHistogram {
-  std::vector<double> edges;   // of the bins, one more than shares [-]
-  std::vector<double> shares;  // sum to 1
-  double least = 0, greatest = 0;
-  double percentile_95 = 0;  // of the magnitude
+  std::vector<double> edges;       // of the bins, one more than shares [-]
+  std::vector<double> shares;      // sum to 1
+  double least = 0, greatest = 0;  // of the principal strains, whatever their magnitude
+  double percentile_95 = 0;        // of the magnitude
   struct Beyond {
     std::string region;
     double linear_range = 0;

@@ -96,6 +96,16 @@ struct Statics::Parts {
     }
   }
 
+  /// of: for messages
+  void check_known(const State& at, const StaticsOptions& options, const std::string& of) const {
+    check_start(model, at, options);
+    if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
+      throw InvalidInput(of + " needs the actuation of which it is the equilibrium");
+    if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
+    if (physical && at.multipliers.size() != at.actuation.size())
+      throw InvalidInput(of + " needs the tensions and pressures of its equilibrium");
+  }
+
   const Model& model;
   std::atomic<int> worthwhile = 1;  // threads
   TeamPool teams;
@@ -129,9 +139,12 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     if (options.solver == Solver::local_global)
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
     result = parts_->physical->solve(actuation, start,
-                                     {tolerance, options.max_iterations, options.keep_history, options.reuse_factor},
+                                     {tolerance, options.max_iterations, options.keep_history, options.reuse_factor,
+                                      options.stable, 1e-6 * std::max(1.0, tolerance / paper_tolerance)},
                                      progress, *team);
   } else {
+    if (options.stable)
+      throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
     result.actuation = actuation;
     result.state.positions = start.positions;
     result.report.tolerance_mm = tolerance;
@@ -149,16 +162,19 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
 }
 
 Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options) const {
-  const Model& model = parts_->model;
-  check_start(model, at, options);
-  if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
-    throw InvalidInput("the sensitivity of a shape needs the actuation of which it is the equilibrium");
-  if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
-  if (parts_->physical && at.multipliers.size() != at.actuation.size())
-    throw InvalidInput("the sensitivity of a shape needs the tensions and pressures of its equilibrium");
+  parts_->check_known(at, options, "the sensitivity of a shape");
   const TeamPool::Lent team = parts_->team(options);
   if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, *team);
   return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, *team);
+}
+
+ElementDeformation Statics::measured(const State& at) const {
+  ElementDeformation deformation = deformation_of(parts_->model, at.positions);
+  if (!parts_->physical) return deformation;
+  const StaticsOptions options;
+  parts_->check_known(at, options, "the stress in a shape");
+  parts_->physical->measure(at, deformation, *parts_->team(options));
+  return deformation;
 }
 
 void Statics::forget() const {

@@ -4,6 +4,7 @@
 #include <softkin/core/progress.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <softkin/statics/sensitivity.hpp>
 
 namespace softkin {
@@ -25,6 +26,7 @@ struct StaticsOptions {
   int anderson = 6;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
   int threads = 0;             // 0: as many as the machine has and the robot is worth; the result is the same
   bool keep_history = true;    // SolveReport::history
+  bool stable = false;         // physical: leave an unstable equilibrium along its lowest mode for a stable one
   bool reuse_factor = true;    // of an earlier solve that ended at the start; false: the result is that of a new object
 };
 
@@ -62,6 +64,12 @@ class Statics {
   ///          without tension counts as taut, as when it is pulled. Not regular at a limit of existence
   /// throws   InvalidInput on a size mismatch, an unknown actuation, or a number that is not finite
   [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {}) const;
+
+  /// What a shape measures: deformation_of and, physical, the stress of the elements and what holds the robot.
+  ///
+  /// at       an equilibrium that solve() returned; physical: its actuation and multipliers must be known
+  /// throws   InvalidInput as sensitivity() does
+  [[nodiscard]] ElementDeformation measured(const State& at) const;
 
   /// Drops the factors that earlier solves left behind: the next result is that of a new object. Not while another
   /// thread solves.

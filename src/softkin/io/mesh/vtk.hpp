@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <softkin/model/mesh/mesh.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace softkin {
@@ -43,6 +44,7 @@ struct VtuContent {
   std::vector<Field> point_fields, cell_fields;
   std::vector<Index> cell_regions;  // per cell, index into region_names or -1; empty: none
   std::vector<std::string> region_names;
+  std::vector<std::pair<std::string, double>> constants{};  // numbers of the whole, by name
 };
 
 /// Writes a .vtu that ParaView and read_vtu read: appended raw data, zlib-compressed, fields as Float64. Regions are
@@ -50,7 +52,7 @@ struct VtuContent {
 ///
 /// throws  InvalidInput naming the field, cell or region: no points, a value that is not finite, a length other than
 ///         count * components, a vertex or region outside its range, tetrahedra of two orders or of order 2 beside
-///         prisms, names that are empty, repeated or not printable
+///         prisms, names that are empty, repeated or not printable; constants are field arrays of one value
 void write_vtu(const std::filesystem::path& path, const VtuContent& content);
 
 /// Collection of .vtu files over a parameter; `file` is relative to the .pvd's folder.

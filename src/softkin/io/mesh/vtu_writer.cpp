@@ -60,7 +60,7 @@ class VtuWriter {
     xml_ =
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
         "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
-    write_region_names();
+    write_field_data();
     xml_ +=
         "<Piece NumberOfPoints=\"" + std::to_string(points_) + "\" NumberOfCells=\"" + std::to_string(cells_) + "\">\n";
     write_fields("PointData", content_.point_fields, {});
@@ -90,6 +90,7 @@ class VtuWriter {
     check_fields(content_.point_fields, points_, "point field", false);
     check_fields(content_.cell_fields, cells_, "cell field", !content_.cell_regions.empty());
     check_regions();
+    check_constants();
   }
 
   void check_fields(const std::vector<Field>& fields, std::size_t count, const char* kind, bool has_regions) const {
@@ -125,6 +126,17 @@ class VtuWriter {
              std::to_string(content_.region_names.size()));
   }
 
+  void check_constants() const {
+    std::set<std::string> names;
+    if (!content_.cell_regions.empty())
+      for (const std::string& name : content_.region_names) names.insert("region_" + name);
+    for (const auto& [name, value] : content_.constants) {
+      if (!is_printable(name)) fail("constant '" + name + "' has an empty or unprintable name");
+      if (!names.insert(name).second) fail("constant '" + name + "' stands twice");
+      if (!std::isfinite(value)) fail("constant '" + name + "' is not finite");
+    }
+  }
+
   template <class Cells>
   void check_vertices(const Cells& cells, const char* kind) const {
     for (std::size_t i = 0; i < cells.size(); ++i)
@@ -135,10 +147,14 @@ class VtuWriter {
   }
 
   /// Numbers only: other readers refuse arrays of strings.
-  void write_region_names() {
-    if (content_.cell_regions.empty()) return;
+  void write_field_data() {
+    const std::size_t regions = content_.cell_regions.empty() ? 0 : content_.region_names.size();
+    if (content_.cell_regions.empty() && content_.constants.empty()) return;
     xml_ += "<FieldData>\n";
-    for (std::size_t i = 0; i < content_.region_names.size(); ++i)
+    for (const auto& [name, value] : content_.constants)
+      xml_ += "<DataArray type=\"Float64\" Name=\"" + xml_escaped(name) + "\" NumberOfTuples=\"1\" format=\"ascii\">" +
+              exact(value) + "</DataArray>\n";
+    for (std::size_t i = 0; i < regions; ++i)
       xml_ += "<DataArray type=\"Int32\" Name=\"region_" + xml_escaped(content_.region_names[i]) +
               "\" NumberOfTuples=\"1\" format=\"ascii\">" + std::to_string(i) + "</DataArray>\n";
     xml_ += "</FieldData>\n";

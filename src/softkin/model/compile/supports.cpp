@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
@@ -18,15 +19,30 @@ void hold(Compilation& c, const FixedSpec& spec, Index v, int axis) {
                                               " (from 0) along " + "xyz"[axis] + " elsewhere than an earlier entry");
   c.model.fixed[v][axis] = true;
   c.model.held(v, axis) = place;
+  Index& bearer = c.model.support_of[v][axis];
+  if (c.model.used[v] && bearer < 0) bearer = static_cast<Index>(c.model.supports.size()) - 1;
+}
+
+/// Of a region that no other entry holds, its name.
+std::string support_name(const Compilation& c, const FixedSpec& spec) {
+  const auto* name = std::get_if<std::string>(&spec.where.region);
+  const auto holds = [&](const FixedSpec& other) {
+    const auto* region = std::get_if<std::string>(&other.where.region);
+    return name && region && *region == *name;
+  };
+  if (std::count_if(c.spec.fixed.begin(), c.spec.fixed.end(), holds) == 1) return *name;
+  return "fixed_" + std::to_string(&spec - c.spec.fixed.data() + 1);
 }
 
 void fix(Compilation& c, const FixedSpec& spec) {
   if (std::none_of(spec.axes.begin(), spec.axes.end(), [](bool axis) { return axis; }))
     throw InvalidInput(spec.where.origin, label(spec.where) + " is fixed along no axis");
   const Region region = c.regions.resolve(spec.where);
-  const bool any = std::any_of(region.vertices.begin(), region.vertices.end(),
-                               [&](Index v) { return static_cast<bool>(c.model.used[v]); });
-  if (!any)
+  Support& support = c.model.supports.emplace_back();
+  support.name = support_name(c, spec);
+  std::copy_if(region.vertices.begin(), region.vertices.end(), std::back_inserter(support.vertices),
+               [&](Index v) { return static_cast<bool>(c.model.used[v]); });
+  if (support.vertices.empty())
     throw InvalidInput(spec.where.origin, label(spec.where) + " cannot be fixed: it holds no vertex of the body");
   for (int axis = 0; axis < 3; ++axis) {
     if (!spec.axes[axis] && spec.displacement[axis] != 0)
@@ -69,6 +85,16 @@ void check_held(const Compilation& c, const RigidSpec& spec, const RigidRegion& 
                          rigid_label(spec) + " is held along " + "xyz"[axis] +
                              " at fewer than three non-collinear vertices: hold a face of it or none");
   }
+}
+
+/// What holds a rigid region bears all of it.
+void bear(Model& model, const RigidRegion& rigid) {
+  Index bearer = -1;
+  for (const Index v : rigid.vertices)
+    for (const Index each : model.support_of[v])
+      if (each >= 0 && (bearer < 0 || each < bearer)) bearer = each;
+  if (bearer < 0) return;
+  for (const Index v : rigid.vertices) model.support_of[v] = {bearer, bearer, bearer};
 }
 
 class Parts {
@@ -186,6 +212,7 @@ std::string freedom_of(const Model& model, const std::vector<Index>& vertices) {
 }  // namespace
 
 void compile_supports(Compilation& c) {
+  c.model.support_of.assign(c.model.used.size(), {-1, -1, -1});
   for (const FixedSpec& spec : c.spec.fixed) fix(c, spec);
   std::vector<Index> owner(c.model.used.size(), -1);
   std::set<std::string> names;
@@ -201,6 +228,7 @@ void compile_supports(Compilation& c) {
       owner[v] = static_cast<Index>(c.model.rigid.size());
     }
     check_held(c, spec, rigid);
+    bear(c.model, rigid);
     c.model.rigid.push_back(std::move(rigid));
   }
 }

@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -64,11 +65,22 @@ Vec3 lane_of(const Pack3& vector, int lane) {
   return {vector.x[lane], vector.y[lane], vector.z[lane]};
 }
 
+Mat3 lane_of(const Pack33& matrix, int lane) {
+  Mat3 one;
+  for (int r = 0; r < 3; ++r) one.row(r) = lane_of(matrix.row[r], lane).transpose();
+  return one;
+}
+
+double von_mises(const Mat3& stress) {
+  const Mat3 deviator = stress - stress.trace() / 3 * Mat3::Identity();
+  return std::sqrt(1.5) * deviator.norm();
+}
+
 }  // namespace
 
 template <int K, int Q, class Element>
 void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants, Index actuator,
-               const Element& nodes) {
+               Index element, const Element& nodes) {
   auto set = std::find_if(sets.begin(), sets.end(),
                           [&](const Set<K, Q>& s) { return s.law == law && s.actuator == actuator; });
   if (set == sets.end()) {
@@ -95,6 +107,7 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const 
     for (int i = 0; i < K; ++i) set->nodes.back()[i][l] = nodes[i];
   }
   if constexpr (K == 6) set->frames.back()[lane] = layer_frame(rest);
+  set->elements.push_back(element);
   ++set->count;
 }
 
@@ -103,18 +116,18 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
     const ElasticLaw& law = model.materials[model.tetrahedron_roles[e].material].elastic;
     const Tetrahedron& t = model.tetrahedra[e];
     if (model.edge_nodes.empty()) {
-      add(linear_, model, law.law, law, -1, t);
+      add(linear_, model, law.law, law, -1, e, t);
     } else {
       std::array<Index, 10> nodes;
       std::copy(t.begin(), t.end(), nodes.begin());
       std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-      add(quadratic_, model, law.law, law, -1, nodes);
+      add(quadratic_, model, law.law, law, -1, e, nodes);
     }
   }
   for (const Index e : spatial_order(model.rest, model.prisms)) {
     const ElementRole& role = model.prism_roles[e];
     const ElasticLaw& law = model.materials[role.material].elastic;
-    add(prisms_, model, law.law, law, role.actuator, model.prisms[e]);
+    add(prisms_, model, law.law, law, role.actuator, static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
   }
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
@@ -224,6 +237,47 @@ Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positio
   result.energy = sum(energy);
   gather(scratch, gradient, team);
   return result;
+}
+
+double Body::largest_pull(const Scratch& scratch, Team& team) const {
+  std::vector<double> sums(static_cast<std::size_t>(vertices_));
+  team.pieces(vertices_, [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+      for (Index i = pull_starts_[v]; i < pull_starts_[v + 1]; ++i)
+        sums[v] +=
+            Eigen::Map<const Vec3>(scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(pull_order_[i])).norm();
+  });
+  return *std::max_element(sums.begin(), sums.end());
+}
+
+void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, ElementStress& out,
+                  Team& team) const {
+  stretch_layers(actuation, scratch);
+  std::size_t count = 0;
+  each(scratch, [&](const auto& set, const auto&) { count += set.elements.size(); });
+  out.von_mises.resize(count);
+  out.principal.resize(count);
+  each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
+    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+      Shape<K> shape;
+      Pack33 points[Q];
+      for (Index b = begin; b < end; ++b) {
+        load<K>(positions, set.nodes[b], shape);
+        elastic_stress<K, Q>(blocks[b], shape, points);
+        for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
+          Mat3 most = lane_of(points[0], l);
+          for (int q = 1; q < Q; ++q)
+            if (const Mat3 here = lane_of(points[q], l); von_mises(here) > von_mises(most)) most = here;
+          const Index e = set.elements[lanes * b + l];
+          out.von_mises[e] = von_mises(most);
+          const Vec3 values =
+              Eigen::SelfAdjointEigenSolver<Mat3>(0.5 * (most + most.transpose()), Eigen::EigenvaluesOnly)
+                  .eigenvalues();
+          out.principal[e] = {values[2], values[1], values[0]};
+        }
+      }
+    });
+  });
 }
 
 void Body::add_cliques(linear::Cliques& cliques) {

@@ -5,6 +5,7 @@
 #include <softkin/energy/elastic.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/deformation.hpp>
 
 namespace softkin::physical {
 
@@ -33,6 +34,13 @@ class Body {
   Result force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, Points& gradient,
                Team& team) const;
 
+  /// Sum of the magnitudes of what the elements at a vertex pull there, the largest of all vertices [N]. After force().
+  [[nodiscard]] double largest_pull(const Scratch& scratch, Team& team) const;
+
+  /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest.
+  void stress(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, ElementStress& out,
+              Team& team) const;
+
   /// Adds every element as a clique.
   void add_cliques(linear::Cliques& cliques);
 
@@ -59,12 +67,13 @@ class Body {
     std::int64_t first_slot = 0;  // of its matrices
     std::vector<energy::ElasticBlock<K, Q>> blocks;
     std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
+    std::vector<Index> elements;                          // place of each in the model, tetrahedra first, then prisms
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
   };
 
   template <int K, int Q, class Element>
   static void add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants,
-                  Index actuator, const Element& nodes);
+                  Index actuator, Index element, const Element& nodes);
   void gather(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;

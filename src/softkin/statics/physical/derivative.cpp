@@ -142,9 +142,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
 
 Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, Team& team) const {
   Lease lease(*this, at.positions, reuse_factor);
-  Iterate shape{at.positions, at.multipliers};
-  for (Index a = 0; a < system_.actuators(); ++a) shape.multipliers[a] *= system_.unit(a);
-  return Derivative(system_, lease.work(), team).of(shape, {at.actuation, at.share});
+  return Derivative(system_, lease.work(), team).of(system_.iterate(at), {at.actuation, at.share});
 }
 
 }  // namespace softkin::physical

@@ -20,6 +20,8 @@ class Equilibria {
     int max_iterations = 0;  // of all Newton steps together
     bool keep_history = true;
     bool reuse_factor = true;
+    bool stable = false;        // leave unstable equilibria
+    double force_share = 1e-6;  // of the elements' largest pull that may be out of balance
   };
 
   /// Arguments are checked already. report.seconds is left to the caller.
@@ -28,6 +30,9 @@ class Equilibria {
 
   /// Of an equilibrium; see Statics::sensitivity.
   [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
+
+  /// Adds stress and reactions of an equilibrium; see Statics::measured.
+  void measure(const State& at, ElementDeformation& out, Team& team) const;
 
   /// Drops what earlier solves left.
   void forget() const;

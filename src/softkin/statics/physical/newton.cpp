@@ -1,5 +1,7 @@
 #include <cmath>
+#include <limits>
 #include <softkin/statics/physical/newton.hpp>
+#include <utility>
 
 namespace softkin::physical {
 
@@ -10,6 +12,8 @@ constexpr double least_damping = 1e-3;
 /// factorisation.
 constexpr double worthwhile_contraction = 0.6;
 constexpr int most_updates = 8;
+/// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
+constexpr double worthwhile_balance = 0.7;
 
 }  // namespace
 
@@ -145,6 +149,16 @@ bool Newton::meets_constraints() const {
   return true;
 }
 
+bool Newton::balanced() const {
+  return imbalance_.residual <= settings_.force_share * imbalance_.pull + imbalance_.rounding;
+}
+
+/// Steps are small enough. Are the forces out of balance, and do more iterations help?
+bool Newton::improve_balance() {
+  const double before = std::exchange(imbalance_, system_.imbalance(balance_, work_, team_)).residual;
+  return !balanced() && imbalance_.residual < worthwhile_balance * before;
+}
+
 Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at) {
   demand_ = &demand;
   active_ = &active;
@@ -152,6 +166,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   Advance advance = Advance::made;
   double damping = 1;
+  imbalance_.residual = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (!factorise(at, policy)) return Outcome::stuck;
     advance = damped_step(at, damping);
@@ -162,9 +177,17 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
       made_.assign(1, step_);
       advance = quasi_newton_steps(at);
     }
+    if (advance == Advance::arrived && improve_balance()) {
+      advance = Advance::made;
+      policy = Policy::follow;  // a stiffness that was made positive makes steps small where forces are not
+    }
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
-  if (advance != Advance::arrived) return Outcome::stuck;
+  if (advance != Advance::arrived) {
+    if (!std::isfinite(imbalance_.residual) || report_.step_mm >= settings_.tolerance_mm) return Outcome::stuck;
+    (void)reject(at);  // the last step was small enough, and none follows it
+    imbalance_ = system_.imbalance(balance_, work_, team_);
+  }
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;
   if (!meets_constraints()) return Outcome::unmet;

@@ -13,7 +13,8 @@ namespace softkin::physical {
 class Newton {
  public:
   struct Settings {
-    double tolerance_mm = 0;  // largest move of a vertex by a step
+    double tolerance_mm = 0;    // largest move of a vertex by a step
+    double force_share = 1e-6;  // of the elements' largest pull that may be out of balance
     int max_iterations = 30;
     bool keep_history = true;
   };
@@ -34,6 +35,10 @@ class Newton {
   /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
   [[nodiscard]] int unstable_modes() const { return negative_; }
 
+  /// Are the forces in balance at the last equilibrium, too?
+  [[nodiscard]] bool balanced() const;
+  [[nodiscard]] const System::Imbalance& imbalance() const { return imbalance_; }
+
   /// Is an element of the last shape inverted?
   [[nodiscard]] bool inverted() const { return balance_.inverted; }
 
@@ -52,6 +57,7 @@ class Newton {
   bool update_next();
   Advance quasi_newton_steps(Iterate& at);
   [[nodiscard]] bool meets_constraints() const;
+  bool improve_balance();
   Advance reject(const Iterate& at);
   void record(double step_mm);
 
@@ -68,6 +74,7 @@ class Newton {
   std::vector<Step> made_;  // with the last factor
   Iterate trial_;
   int negative_ = 0;  // of the last factorisation
+  System::Imbalance imbalance_;
 };
 
 /// First-order change of shape and multipliers from one demand to another, with the factor at hand.

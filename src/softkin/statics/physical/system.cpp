@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <softkin/statics/physical/system.hpp>
 
 namespace softkin::physical {
@@ -63,6 +64,12 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
   freedoms_->reduce(work.gradient, at.positions, balance.force);
 }
 
+System::Imbalance System::imbalance(const Balance& balance, const Workspace& work, Team& team) const {
+  constexpr double roundings = 16;  // of a vertex's elements
+  return {freedoms_->largest(balance.force), elastic_.largest_pull(work.elastic, team),
+          roundings * std::numeric_limits<double>::epsilon() * work.stiffest * model_.diagonal_mm};
+}
+
 void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const {
   elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
   Eigen::VectorXd scale(actuators());
@@ -77,13 +84,17 @@ int System::factorise(const Iterate& at, const Demand& demand, const std::vector
 
   const linear::BlockColumns& columns = freedoms_->columns();
   double trace = 0;
+  work.stiffest = 0;
   const auto each_diagonal = [&](const auto& visit) {
     for (Index node = 0; node < columns.nodes(); ++node)
       for (Index i = 0; i < columns.width(node); ++i)
         visit(work.values[columns.offsets[columns.starts[node]] + i * (columns.width(node) + 1)]);
   };
-  each_diagonal([&](double value) { trace += std::abs(value); });
-  const double mean = trace / std::max<Index>(1, columns.size());
+  each_diagonal([&](double value) {
+    trace += std::abs(value);
+    work.stiffest = std::max(work.stiffest, std::abs(value));
+  });
+  const double mean = work.mean = trace / std::max<Index>(1, columns.size());
   if (shift > 0) each_diagonal([&](double& value) { value += shift * mean; });
   const int negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
   return negative - couple(at, active, work, team, balance);
@@ -181,6 +192,17 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   }
   balance.force.resize(freedoms_->size());
   freedoms_->reduce(force, at.positions, balance.force);
+}
+
+void System::measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out,
+                     Team& team) const {
+  Balance balance;
+  evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(actuators()), false), work, balance, team);
+  out.reactions = work.gradient;
+  for (Index v = 0; v < out.reactions.rows(); ++v)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
+  elastic_.stress(demand.actuation, at.positions, work.elastic, out.stress, team);
 }
 
 void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <softkin/linear/sparse_ldlt.hpp>
+#include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
@@ -45,7 +46,9 @@ class System {
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> schur;  // S G^T K^-1 G S; singular where constraints depend
                                                                     // on each other
     std::vector<Index> active;                                      // constraints of the factorisation
-    Points home;  // equilibrium at which the last solve ended, and near which it factorised
+    double stiffest = 0;  // the largest of the diagonal [N/mm] of the last factorisation
+    double mean = 0;      // and their mean
+    Points home;          // equilibrium at which the last solve ended, and near which it factorised
   };
 
   struct Balance {
@@ -59,6 +62,14 @@ class System {
   /// active: per actuator, is its measure held at the demand (else its multiplier is given).
   void evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
                 Balance& balance, Team& team) const;
+
+  /// How well forces balance at an iterate that was just evaluated [N].
+  struct Imbalance {
+    double residual = 0;  // on a vertex or a rigid region, the largest
+    double pull = 0;      // of the elements on a vertex, sum of magnitudes, the largest
+    double rounding = 0;  // what rounding of the positions may leave on a vertex
+  };
+  [[nodiscard]] Imbalance imbalance(const Balance& balance, const Workspace& work, Team& team) const;
 
   enum class Stiffness { exact, projected };
   /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added.
@@ -97,6 +108,9 @@ class System {
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
 
+  /// Stress and reactions at an equilibrium.
+  void measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out, Team& team) const;
+
   /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first
   /// order, and far better where a step bends the robot.
   void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
@@ -119,6 +133,12 @@ class System {
   /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
   [[nodiscard]] double unit(Index actuator) const {
     return model_.actuators[actuator].kind == ActuatorKind::pneumatic ? 1e-3 : 1;
+  }
+  /// Of a shape whose multipliers are known.
+  [[nodiscard]] Iterate iterate(const State& at) const {
+    Iterate shape{at.positions, at.multipliers};
+    for (Index a = 0; a < actuators(); ++a) shape.multipliers[a] *= unit(a);
+    return shape;
   }
   /// Demanded measure [mm, mm^3].
   [[nodiscard]] double target(Index actuator, const Demand& demand) const {

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cmath>
 #include <softkin/linear/ordering.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
 
@@ -167,6 +168,23 @@ void Freedoms::reduce(const Points& vectors, const Points& positions, Eigen::Ref
     for (const int axis : region.slide_axes) out[u++] = force[axis];
     for (const int axis : region.turn_axes) out[u++] = torque[axis];
   }
+}
+
+double Freedoms::largest(const Eigen::VectorXd& reduced) const {
+  double square = 0;
+  const auto count = [&square](double value) {
+    if (!(value <= square)) square = value;  // also where it is not a number
+  };
+  for (Index node = 0; node < columns_.nodes(); ++node)
+    if (vertex_of_[node] >= 0) count(reduced.segment(columns_.unknowns[node], columns_.width(node)).squaredNorm());
+  for (const Region& region : regions_) {
+    const Index slides = static_cast<Index>(region.slide_axes.size()), first = columns_.unknowns[region.node];
+    const Index turns = columns_.width(region.node) - slides;
+    count(reduced.segment(first, slides).squaredNorm());
+    if (turns > 0)
+      count(reduced.segment(first + slides, turns).squaredNorm() / region.offsets.rowwise().squaredNorm().maxCoeff());
+  }
+  return std::sqrt(square);
 }
 
 void Freedoms::expand(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const Points& positions, Points& out) const {

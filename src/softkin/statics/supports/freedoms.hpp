@@ -23,6 +23,9 @@ class Freedoms {
   /// T^T vectors. positions: where the rigid regions are
   void reduce(const Points& vectors, const Points& positions, Eigen::Ref<Eigen::VectorXd> out) const;
 
+  /// The largest force of T^T vectors on a vertex, or on a rigid region, whose torque counts over its radius.
+  [[nodiscard]] double largest(const Eigen::VectorXd& reduced) const;
+
   /// T u
   void expand(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const Points& positions, Points& out) const;
 

@@ -1,0 +1,388 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <softkin/core/text.hpp>
+#include <softkin/statics/physical/continuation.hpp>
+#include <softkin/statics/physical/stability.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+double largest_move(const Points& a, const Points& b) {
+  return (b - a).rowwise().norm().maxCoeff();
+}
+
+bool same_shape(const Points& a, const Points& b) {
+  return a.rows() == b.rows() && a == b;
+}
+
+/// Shortest step of the continuation, over the way asked for.
+constexpr double least_advance = 1e-4;
+/// A step that moves no vertex farther than so many tolerances and yet fails leads nowhere.
+constexpr double least_move = 1000;
+/// A way on which so many iterations bring less than this share of it leads nowhere either.
+constexpr int patience = 500;
+constexpr double least_progress = 0.01;
+/// In steps shorter than this an equilibrium is followed where it is unstable.
+constexpr double follow_below = 0.05;
+/// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one lies
+/// beyond a snap, if that is more than this share of the robot's diagonal.
+constexpr double most_correction = 0.5, least_snap = 0.01;
+/// Where ratios and supports change alone a step jumps if this share of that distance is no bend of the way; one of
+/// this share of the way that jumps is taken, and told.
+constexpr double least_jump = 0.9, finest = 0.02;
+/// How often a robot is taken from one unstable equilibrium to the next below it, and how far it is pushed, over its
+/// diagonal.
+constexpr int most_buckles = 20, most_downhill = 60;
+constexpr double tie = 1e-9;
+constexpr std::array<double, 3> pushes{0.003, 0.02, 0.1};
+/// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
+constexpr double most_inverting = 0.01;
+
+Demand between(const Demand& from, const Demand& to, double share) {
+  if (share == 1) return to;
+  return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share)};
+}
+
+}  // namespace
+
+Continuation::Continuation(const System& system, System::Workspace& work, Team& team,
+                           const Equilibria::Options& options, const ProgressCallback& progress, SolveReport& report)
+    : system_(system),
+      work_(work),
+      team_(team),
+      newton_(system, work, team, {options.tolerance_mm, options.force_share, 30, options.keep_history}, progress,
+              report),
+      tolerance_mm_(options.tolerance_mm),
+      max_iterations_(options.max_iterations),
+      stable_(options.stable),
+      report_(report) {}
+
+/// One step; trial begins at `at` and ends at the equilibrium.
+Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
+                                   Iterate& trial) {
+  move_mm_ = predict(system_, here, there, active_, work_, team_, trial);
+  predicted_ = trial.positions;
+  auto outcome = settle(there, Newton::Policy::descend, trial);
+  if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
+    trial = at;
+    (void)predict(system_, here, there, active_, work_, team_, trial);
+    outcome = settle(there, Newton::Policy::follow, trial);
+  }
+  return outcome;
+}
+
+/// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
+/// which the one at its begin misses its end, and by about as much; where it jumps, on the other side.
+bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial) {
+  const double correction = largest_move(predicted_, trial.positions);
+  const auto jumps = [&] {
+    Iterate back = trial;
+    (void)predict(system_, there, here, active_, work_, team_, back);
+    jump_mm_ = 0.5 * largest_move(predicted_ - trial.positions, back.positions - at.positions);
+    return !(jump_mm_ <= least_jump * correction);
+  };
+  if (correction <= least_snap * system_.model().diagonal_mm) return false;
+  // the factor at hand is of a shape nearby, and mostly good enough
+  return jumps() && (prepare(there, trial) < 0 || jumps());
+}
+
+Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
+  active_.resize(static_cast<std::size_t>(system_.actuators()));
+  for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
+  double done = 0, advance = 1, marked = 0;
+  int marked_iterations = report_.iterations;
+  Demand here = from;
+  std::optional<Beyond> beyond;
+  const bool loads_change = change_loads(from, to);
+  (void)release(to, at, false);
+  bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
+  work_.home.resize(0, 3);
+  if (!factorised && from.actuation == to.actuation && from.share == to.share) {
+    const auto outcome = settle_here(to, at);
+    if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
+    if (outcome == Newton::Outcome::converged) return arrive(to, at);
+  }
+  while (done < 1) {
+    const double next = std::min(1.0, done + advance);
+    const Demand there = between(from, to, next);
+    Iterate trial = at;
+    if (release(there, at, false)) factorised = false;
+    if (!factorised && prepare(here, at) < 0) return limit(done, "the stiffness at the start is not stable");
+    factorised = true;
+    const int before = report_.iterations;
+    const std::vector<bool> active = active_;
+    auto outcome = step(here, there, next - done, at, trial);
+    if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
+    if (loads_change && snapped(move_mm_, largest_move(predicted_, trial.positions))) outcome = Newton::Outcome::stuck;
+    const bool snap = outcome != Newton::Outcome::stuck && !loads_change && jumped(here, there, at, trial);
+    const bool unstable = outcome == Newton::Outcome::unstable;
+    if (outcome != Newton::Outcome::stuck && newton_.inverted() && !last_.inverted && next - done > most_inverting)
+      outcome = Newton::Outcome::stuck;
+    if (outcome == Newton::Outcome::stuck) {
+      factorised = false;
+      active_ = active;
+      advance = 0.4 * (next - done);
+      if (beyond && advance < finest) {
+        tell_snap(beyond->jump_mm, done);
+        at = std::move(beyond->at);
+        here = beyond->demand;
+        done = report_.reached = beyond->done;
+        active_ = std::move(beyond->active);
+        last_ = beyond->last;
+        beyond.reset();
+        ++report_.continuation_steps;
+        advance = follow_below;
+      } else if (advance < least_advance || move_mm_ < least_move * tolerance_mm_) {
+        return limit(done, "beyond this point no equilibrium follows");
+      }
+    } else if (const double longest = longest_step(snap, unstable); next - done > 1.001 * longest) {
+      if (snap) beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
+      factorised = false;
+      active_ = active;
+      advance = std::max(longest, 0.4 * (next - done));
+    } else {
+      if (snap) tell_snap(jump_mm_, done);
+      at = std::move(trial);
+      here = there;
+      done = next;
+      last_ = judged();
+      if (unstable && stable_ && done < 1) {
+        if (!buckle(there, at)) return Status::interrupted;
+        factorised = false;
+      } else if (unstable && done < 1 && report_.unstable_from == 0 && prepare(there, at) > 0) {
+        report_.unstable_from = done;  // in the shape itself: the last factorisation was of one close to it
+      }
+      if (beyond && done >= beyond->done) beyond.reset();
+      ++report_.continuation_steps;
+      report_.reached = done;
+      const int used = report_.iterations - before;
+      advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
+      if (unstable) advance = std::min(advance, follow_below);
+    }
+    if (done - marked >= least_progress) {
+      marked = done;
+      marked_iterations = report_.iterations;
+    } else if (done < 1 && report_.iterations - marked_iterations >= patience) {
+      return limit(done, "the way there goes on in ever smaller steps: " + std::to_string(patience) +
+                             " iterations brought less than 1 % of it");
+    }
+    if (done < 1 && report_.iterations >= max_iterations_) {
+      tell_balance();
+      report_.remark = "the limit of iterations was reached";
+      return Status::not_converged;
+    }
+  }
+  return arrive(to, at);
+}
+
+Continuation::Judgement Continuation::judged() const {
+  return {newton_.imbalance(), newton_.balanced(), newton_.inverted(), newton_.unstable_modes()};
+}
+
+/// Does the workspace's factor hold the constraints that are active?
+bool Continuation::factor_holds_active() const {
+  std::vector<bool> held(active_.size());
+  for (const Index a : work_.active) held[a] = true;
+  return held == active_;
+}
+
+bool Continuation::snapped(double predicted_mm, double correction_mm) const {
+  return correction_mm > most_correction * predicted_mm && correction_mm > least_snap * system_.model().diagonal_mm;
+}
+
+/// Of a step that came to an equilibrium: a shorter one may not leave the way, or leave it where it becomes unstable.
+double Continuation::longest_step(bool snap, bool unstable) const {
+  return snap ? finest : unstable && stable_ ? follow_below : 1;
+}
+
+bool Continuation::change_loads(const Demand& from, const Demand& to) const {
+  if (system_.any_dead_load() && from.share != to.share) return true;
+  for (Index a = 0; a < system_.actuators(); ++a)
+    if (system_.measures().measures(a) && !system_.constrains(a) && from.actuation[a] != to.actuation[a]) return true;
+  return false;
+}
+
+void Continuation::tell_balance() {
+  report_.residual_N = last_.forces.residual;
+  report_.pull_N = last_.forces.pull;
+}
+
+Status Continuation::limit(double done, const std::string& why) {
+  tell_balance();
+  report_.reached = done;
+  report_.remark = why;
+  return Status::limit;
+}
+
+/// Slackens cables that may be longer than they are and carry nothing: held to their length they would push the body
+/// there before they are found to be slack. contradicting: those too that carry something, against another one.
+bool Continuation::release(const Demand& there, Iterate& at, bool contradicting) {
+  bool changed = false;
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!active_[a] || system_.sign(a) < 0 || (at.multipliers[a] > 0 && !contradicting)) continue;
+    if (system_.measures().value(a, at.positions) >= system_.target(a, there)) continue;
+    active_[a] = false;
+    at.multipliers[a] = 0;
+    changed = true;
+  }
+  return changed;
+}
+
+void Continuation::tell_snap(double move_mm, double from) {
+  if (move_mm <= report_.snapped_mm) return;
+  report_.snapped_mm = move_mm;
+  report_.snapped_from = from;
+}
+
+/// What the last shape is.
+Status Continuation::arrive(const Demand& demand, Iterate& at) {
+  if (stable_ && !buckle(demand, at)) return Status::interrupted;
+  if (last_.modes > 0) tell_stability(demand, at);
+  tell_balance();
+  if (last_.balanced) return Status::converged;
+  report_.remark = "the steps have become small, but " + number(last_.forces.residual, 2) +
+                   " N are out of balance, where elements pull with at most " + number(last_.forces.pull, 2) +
+                   " N at a vertex";
+  return Status::not_converged;
+}
+
+/// Counts the ways in which the last shape itself is unstable.
+void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
+  report_.unstable_modes = std::max(0, prepare(demand, at));
+  if (report_.unstable_modes > 0)
+    report_.remark = "this equilibrium is unstable in " + std::to_string(report_.unstable_modes) +
+                     (report_.unstable_modes == 1 ? " way" : " ways") + ": the robot would buckle or snap away from it";
+}
+
+/// From an unstable equilibrium along its lowest mode to one of less energy, until it is stable or none is found.
+/// False: interrupted.
+bool Continuation::buckle(const Demand& demand, Iterate& at) {
+  for (int i = 0; i < most_buckles; ++i) {
+    const LowestMode mode = lowest_mode(system_, at, demand, active_, work_, team_, report_);
+    last_.modes = mode.unstable;
+    if (mode.unstable == 0 || mode.direction.size() == 0 || !mode.direction.allFinite()) return true;
+    std::optional<Pushed> best = lower(demand, at, mode);
+    if (interrupted_) return false;
+    if (!best) return true;
+    ++report_.buckled;
+    report_.buckled_mm = std::max(report_.buckled_mm, largest_move(at.positions, best->at.positions));
+    at = std::move(best->at);
+    active_ = best->active;
+    last_ = best->last;
+  }
+  last_.modes = 1;  // at least; it was not looked at
+  return true;
+}
+
+/// The equilibrium of less energy to which a push leads, of those of both ways the lower, of two that are alike the
+/// first.
+std::optional<Continuation::Pushed> Continuation::lower(const Demand& demand, const Iterate& from,
+                                                        const LowestMode& mode) {
+  double energy = potential(system_, from, demand, active_, work_, team_);
+  energy -= tie * std::abs(energy);
+  const std::vector<bool> active = active_;
+  std::optional<Pushed> best;
+  for (std::size_t push = 0; push < pushes.size() && !best; ++push)
+    for (const double way : {1.0, -1.0}) {
+      active_ = active;
+      std::optional<Pushed> found = pushed(demand, from, mode, way * pushes[push]);
+      if (interrupted_) return std::nullopt;
+      if (!found || found->energy >= energy) continue;
+      energy = found->energy - tie * std::abs(found->energy);
+      best = std::move(found);
+    }
+  active_ = active;
+  return best;
+}
+
+/// The equilibrium to which the robot goes when it is pushed away so far, over its diagonal; none where it comes back.
+std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, const Iterate& from,
+                                                         const LowestMode& mode, double share) {
+  Pushed found{from};
+  const double reach = share * system_.model().diagonal_mm;
+  system_.advance(mode.direction, reach / system_.size_of(mode.direction, from.positions).largest, work_,
+                  found.at.positions, team_);
+  double shift = mode.steep_shift();
+  bool settled = false;
+  for (int i = 0; i < most_downhill && !settled; ++i) {
+    if (!step_down(system_, demand, active_, shift, found.at, work_, team_, report_)) return std::nullopt;
+    if (prepare(demand, found.at) != 0) continue;
+    Iterate there = found.at;
+    const auto outcome = settle(demand, Newton::Policy::descend, there);
+    interrupted_ = outcome == Newton::Outcome::interrupted;
+    if (interrupted_) return std::nullopt;
+    settled = outcome == Newton::Outcome::converged;
+    if (settled) found.at = std::move(there);
+  }
+  if (!settled || largest_move(found.at.positions, from.positions) < 0.1 * std::abs(reach)) return std::nullopt;
+  found.energy = potential(system_, found.at, demand, active_, work_, team_);
+  found.active = active_;
+  found.last = judged();
+  return found;
+}
+
+/// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.
+int Continuation::prepare(const Demand& here, const Iterate& at) {
+  System::Balance balance;
+  system_.evaluate(at, here, active_, work_, balance, team_);
+  ++report_.factorisations;
+  const int modes = system_.factorise(at, here, active_, System::Stiffness::exact, 0, work_, team_);
+  return balance.force.allFinite() ? modes : -1;
+}
+
+/// Newton at once, where the start is as near to the equilibrium asked for as any prediction from it.
+Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
+  const std::vector<bool> before = active_;
+  Iterate trial = at;
+  auto outcome = settle(demand, Newton::Policy::descend, trial);
+  if (newton_.inverted()) outcome = Newton::Outcome::stuck;
+  if (outcome == Newton::Outcome::converged) {
+    at = std::move(trial);
+    last_ = judged();
+    ++report_.continuation_steps;
+    report_.reached = 1;
+  } else {
+    active_ = before;
+  }
+  return outcome;
+}
+
+/// Newton, with cables released where they would push and taken up where they are too long.
+Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at) {
+  const std::vector<bool> before = active_;
+  for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
+    const auto outcome = newton_.solve(demand, active_, policy, at);
+    if (outcome == Newton::Outcome::unmet) {
+      if (release(demand, at, true)) continue;
+      break;
+    }
+    if (outcome == Newton::Outcome::stuck || outcome == Newton::Outcome::interrupted) {
+      active_ = before;
+      return outcome;
+    }
+    if (!change_active(demand, at)) return outcome;
+  }
+  active_ = before;
+  return Newton::Outcome::stuck;
+}
+
+bool Continuation::change_active(const Demand& demand, Iterate& at) {
+  bool changed = false;
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!system_.constrains(a) || system_.sign(a) < 0) continue;  // a chamber pushes and pulls
+    const double target = system_.target(a, demand);
+    if (active_[a] && at.multipliers[a] < 0) {
+      active_[a] = false;
+      at.multipliers[a] = 0;
+      changed = true;
+    } else if (!active_[a] && system_.measures().value(a, at.positions) > target * (1 + 1e-12)) {
+      active_[a] = true;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <softkin/statics/physical/equilibria.hpp>
+#include <softkin/statics/physical/stability.hpp>
+
+namespace softkin::physical {
+
+/// The path of equilibria from one demand to another: predictor, length of steps, slack cables, limits, and where it
+/// becomes unstable.
+class Continuation {
+ public:
+  /// All must outlive the object.
+  Continuation(const System& system, System::Workspace& work, Team& team, const Equilibria::Options& options,
+               const ProgressCallback& progress, SolveReport& report);
+
+  /// Follows the equilibrium from `from` to `to`; at is the last good one.
+  Status follow(const Demand& from, const Demand& to, Iterate& at);
+
+ private:
+  /// What Newton's method says of the shape that it came to.
+  struct Judgement {
+    System::Imbalance forces;
+    bool balanced = true, inverted = false;
+    int modes = 0;  // ways in which it is unstable
+  };
+  /// A shape that a push leads to.
+  struct Pushed {
+    Iterate at;
+    double energy = 0;
+    std::vector<bool> active{};
+    Judgement last{};
+  };
+  /// Where a step came out that jumped: what is left where shorter ones find nothing.
+  struct Beyond {
+    Iterate at;
+    Demand demand;
+    double done = 0;
+    std::vector<bool> active;
+    Judgement last;
+    double jump_mm = 0;
+  };
+
+  [[nodiscard]] Judgement judged() const;
+  [[nodiscard]] bool factor_holds_active() const;
+  [[nodiscard]] bool snapped(double predicted_mm, double correction_mm) const;
+  [[nodiscard]] double longest_step(bool snap, bool unstable) const;
+  [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
+  void tell_balance();
+  Status limit(double done, const std::string& why);
+  bool release(const Demand& there, Iterate& at, bool contradicting);
+  Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
+  bool jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial);
+  void tell_snap(double move_mm, double from);
+  Status arrive(const Demand& demand, Iterate& at);
+  void tell_stability(const Demand& demand, const Iterate& at);
+  bool buckle(const Demand& demand, Iterate& at);
+  std::optional<Pushed> lower(const Demand& demand, const Iterate& from, const LowestMode& mode);
+  std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
+  int prepare(const Demand& here, const Iterate& at);
+  Newton::Outcome settle_here(const Demand& demand, Iterate& at);
+  Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at);
+  bool change_active(const Demand& demand, Iterate& at);
+
+  const System& system_;
+  System::Workspace& work_;
+  Team& team_;
+  Newton newton_;
+  double tolerance_mm_;
+  int max_iterations_;
+  bool stable_;
+  SolveReport& report_;
+  std::vector<bool> active_;
+  Points predicted_;                  // by the last step
+  double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
+  Judgement last_;                    // of the last good shape
+  bool interrupted_ = false;
+};
+
+}  // namespace softkin::physical

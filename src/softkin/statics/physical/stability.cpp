@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical/stability.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+// Shifts are shares of the stiffness' mean diagonal.
+constexpr double least_shift = 1e-9, most_shift = 1e3;
+constexpr double close_shift = 1.1;  // over the one that is not enough
+constexpr int most_inverse_iterations = 60;
+constexpr double settled = 1e-6;  // relative change of the curvature
+
+/// A start that no symmetry of a robot shares, the same each time.
+Eigen::VectorXd lopsided(Index size) {
+  Eigen::VectorXd vector(size);
+  for (Index i = 0; i < size; ++i) vector[i] = std::sin(1.0 + 1.618 * static_cast<double>(i));
+  return vector.normalized();
+}
+
+}  // namespace
+
+LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
+                       System::Workspace& work, Team& team, SolveReport& report) {
+  System::Balance balance;
+  system.evaluate(at, demand, active, work, balance, team);
+  double mean = 0;
+  const auto negative = [&](double shift) {
+    ++report.factorisations;
+    const int count = system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team);
+    if (shift == 0) mean = work.mean;
+    return count;
+  };
+  LowestMode mode;
+  mode.unstable = negative(0);
+  mode.mean = mean;
+  if (mode.unstable == 0) return mode;
+  double low = 0, high = least_shift;
+  for (; negative(high) > 0; high *= 10) {
+    low = high;
+    if (high > most_shift) return mode;
+  }
+  while (low > 0 && high > close_shift * low) {
+    const double middle = std::sqrt(low * high);
+    (negative(middle) > 0 ? low : high) = middle;
+  }
+  (void)negative(high);
+  // the constraints are met by every step, so that the iteration stays among the directions that keep them
+  System::Balance right;
+  right.constraint = Eigen::VectorXd::Zero(system.actuators());
+  Eigen::VectorXd vector = lopsided(system.freedoms().size()), next, multipliers;
+  for (int i = 0; i < most_inverse_iterations; ++i) {
+    right.force = -vector;
+    system.step(right, work, next, multipliers, team);
+    const double curvature = 1 / vector.dot(next) - high * mean;
+    vector = next.normalized();
+    if (i > 2 && std::abs(curvature - mode.curvature) < settled * std::abs(curvature)) break;
+    mode.curvature = curvature;
+  }
+  Index largest = 0;
+  vector.cwiseAbs().maxCoeff(&largest);
+  mode.direction = vector[largest] < 0 ? Eigen::VectorXd(-vector) : vector;
+  return mode;
+}
+
+namespace {
+
+/// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given.
+double lagrangian(const System& system, const System::Balance& balance, const Points& positions,
+                  const Eigen::VectorXd& multipliers) {
+  double energy = balance.energy;
+  for (Index a = 0; a < system.actuators(); ++a)
+    if (system.measures().measures(a) && multipliers[a] != 0)
+      energy += system.sign(a) * multipliers[a] * system.measures().value(a, positions);
+  return energy;
+}
+
+}  // namespace
+
+bool step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift, Iterate& at,
+               System::Workspace& work, Team& team, SolveReport& report) {
+  System::Balance balance, there;
+  Eigen::VectorXd step, change;
+  for (; shift < most_shift; shift *= 4) {
+    system.evaluate(at, demand, active, work, balance, team);
+    ++report.factorisations;
+    if (system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team) > 0) continue;
+    system.step(balance, work, step, change, team);
+    if (!step.allFinite() || !change.allFinite()) continue;
+    Iterate trial = at;
+    system.advance(step, 1, work, trial.positions, team);
+    trial.multipliers += change;
+    system.evaluate(trial, demand, active, work, there, team);
+    if (there.forbidden || !there.force.allFinite()) continue;
+    if (!(lagrangian(system, there, trial.positions, at.multipliers) <
+          lagrangian(system, balance, at.positions, at.multipliers)))
+      continue;
+    at = std::move(trial);
+    shift = std::max(least_shift, shift / 4);
+    return true;
+  }
+  return false;
+}
+
+double potential(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
+                 System::Workspace& work, Team& team) {
+  System::Balance balance;
+  system.evaluate(at, demand, active, work, balance, team);
+  double energy = balance.energy;
+  for (Index a = 0; a < system.actuators(); ++a)
+    if (system.measures().measures(a) && !system.constrains(a))
+      energy += system.sign(a) * at.multipliers[a] * system.measures().value(a, at.positions);
+  return energy;
+}
+
+}  // namespace softkin::physical
