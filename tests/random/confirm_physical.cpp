@@ -11,6 +11,8 @@ namespace {
 constexpr Real ulp = std::numeric_limits<double>::epsilon();
 /// Of the largest force at a vertex; the solver's own criterion is a step.
 constexpr Real balanced = 1e-5L;
+/// Of what the solver's tolerance stands for: a robot that is only carried elsewhere has no force to compare with.
+constexpr Real share_of_tolerance = 1e-3L;
 /// Of the volume or length asked for.
 constexpr Real met = 1e-8L;
 /// Units in the last place that rounding may add up to.
@@ -180,7 +182,7 @@ void check_measure(const Actuator& actuator, const Measure& now, const Measure& 
                    Confirmation& out) {
   const std::string name = "actuator '" + actuator.name + "'";
   if (actuator.control == Control::load) {
-    if (multiplier != command)
+    if (!(std::abs(multiplier - command) <= 4 * ulp * std::abs(command)))
       out.faults.push_back(name + ": load " + digits(multiplier) + " instead of " + digits(command));
     return;
   }
@@ -258,10 +260,12 @@ struct Balance {
 
   void enter(Real residual, Real own_size, Real stiffness, Real rounding, const std::string& what) {
     const Real blur = sums * rounding;
-    const Real by_step = balanced * own_size + 2 * tolerance_mm * stiffness + blur, of_all = balanced * largest + blur;
+    const Real of_tolerance = tolerance_mm * stiffness;
+    const Real by_step = balanced * own_size + 2 * of_tolerance + blur;
+    const Real of_all = balanced * largest + share_of_tolerance * of_tolerance + blur;
     const Real over = residual / std::max<Real>(std::min(by_step, of_all), 1e-300L);
-    if (residual > 0 && blur < 1e-6L * largest) worst_ratio = std::max(worst_ratio, residual / largest);
-    blurred = blurred || blur > 1e-3L * largest;
+    if (blur < 1e-6L * largest && of_tolerance < largest) worst_ratio = std::max(worst_ratio, residual / largest);
+    blurred = blurred || blur > 1e-3L * (largest + of_tolerance);
     if (!(over <= worst_over)) {
       worst_over = over;
       where = what + ": " + digits(static_cast<double>(residual)) + " N, of " + digits(static_cast<double>(own_size)) +
