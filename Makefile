@@ -11,6 +11,7 @@ export CTEST_OUTPUT_ON_FAILURE = 1
 
 cores := $(shell nproc)
 sources = $(shell find src apps bench tests examples -name '*.cpp' -o -name '*.hpp')
+RUNS ?= 20000
 example := examples/pneumatic_finger
 # without `large`, which takes long and up to 24 GiB
 BENCH ?= iteration factor tracking newton
@@ -19,13 +20,14 @@ sanitized := core model io statics kinematics drive runs
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
 
-.PHONY: help setup build run test test-release test-sanitize test-threads bench format format-check clean
+.PHONY: help setup build run test test-release test-sanitize test-threads random bench format format-check clean
 
 help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
 	@echo 'make test          install what is missing, build everything, run all tests and checks'
 	@echo 'make build         build build/softkin'
 	@echo 'make bench         build and run the benchmarks (docs/benchmarks.md); BENCH="newton large" runs these alone'
+	@echo 'make random        solve 20,000 random robots and check every answer; RUNS=1000 fewer of them'
 	@echo 'make format        format the sources; make format-check only looks'
 	@echo 'make clean         remove the build folders'
 
@@ -75,6 +77,12 @@ test-threads:
 	cmake --preset sanitize-threads
 	cmake --build --preset sanitize-threads --target test_threads
 	ctest --test-dir build-threads --no-tests=error --tests-regex '^threads$$'
+
+random:
+	@$(SETUP) --tests
+	cmake --preset release -DSOFTKIN_TESTS=ON
+	cmake --build --preset release --target softkin_random
+	build/tests/softkin_random --count $(RUNS) --threads $(cores) --out out/random --known tests/random/known_failures.txt
 
 bench: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON

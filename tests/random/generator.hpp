@@ -14,6 +14,7 @@ struct RandomCase {
   RobotSpec spec;                     // lengths in mm
   std::vector<Actuation> commands;    // one after another, each from the shape before
   StaticsOptions options;
+  bool forgets = false;     // what the shape before was an equilibrium of
   int interrupt_after = 0;  // calls of the progress callback; 0: never
 };
 

@@ -210,6 +210,7 @@ void make_options(Making& m) {
   if (m.draw.chance(0.1)) options.step_tolerance_mm = m.longest() * m.draw.log_between(1e-10, 1e-6);
   if (m.is(Oddity::impatient)) options.max_iterations = m.draw.whole(1, 20);
   if (m.is(Oddity::interrupted)) m.made.interrupt_after = m.draw.whole(1, 30);
+  m.made.forgets = m.draw.chance(0.2);
 }
 
 }  // namespace softkin::random_robots

@@ -118,7 +118,7 @@ void solve_all(const RandomCase& robot, bool verbose, RunResult& run, std::vecto
     if (robot.seed % repeat_every == 0 && &command == &robot.commands.front())
       repeat(model, robot, command, start, found, faults);
     if (!faults.empty()) return;
-    start = found.state;
+    start = robot.forgets ? State{found.state.positions} : found.state;
   }
 }
 
