@@ -6,8 +6,8 @@
 
 #include "random/confirm.hpp"
 
-/// One step of Algorithm 1 of the paper, with the deviations of docs/paper.md, from the answer: dense matrices, singular
-/// value decompositions, no code of the solver.
+/// One step of Algorithm 1 of the paper, with the deviations of docs/paper.md, from the answer: dense matrices,
+/// singular value decompositions, no code of the solver.
 namespace softkin::random_robots {
 
 namespace {

@@ -26,8 +26,8 @@ struct RunResult {
 /// Solves the robot of a seed and confirms what comes. verbose: tells on the standard output what it does.
 [[nodiscard]] RunResult run_seed(std::uint64_t seed, bool verbose);
 
-/// Falsifies confirmed answers of sensible robots and returns how many of them would be confirmed still; > 0 where there
-/// was nothing to falsify.
+/// Falsifies confirmed answers of sensible robots and returns how many of them would be confirmed still; > 0 where
+/// there was nothing to falsify.
 [[nodiscard]] int count_unnoticed_lies(std::uint64_t first, std::uint64_t count);
 
 /// Counts over many runs.
