@@ -1,5 +1,7 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
+#include <map>
 
 #include "random/confirm.hpp"
 #include "random/reference_elements.hpp"
@@ -198,6 +200,18 @@ void check_measure(const Actuator& actuator, const Measure& now, const Measure& 
                          digits(static_cast<double>(miss / std::abs(asked))));
 }
 
+/// Edges that the faces of a cavity do not pass once in each direction: 0 where it is a closed surface with one side.
+int open_edges(const Actuator& chamber) {
+  std::map<std::pair<Index, Index>, int> passes;
+  for (const CavityFace& face : chamber.cavity)
+    for (int i = 0; i < 3; ++i) {
+      const Index a = face.corners[i], b = face.corners[(i + 1) % 3];
+      passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  return static_cast<int>(
+      std::count_if(passes.begin(), passes.end(), [](const auto& edge) { return edge.second != 0; }));
+}
+
 void add_actuators(const Model& model, const Equilibrium& found, Forces& forces, Confirmation& out) {
   const State& state = found.state;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
@@ -208,6 +222,10 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
       if (multiplier != 0) out.faults.push_back("a dea has the multiplier " + digits(multiplier));
       continue;
     }
+    if (const int open = open_edges(actuator); open > 0)
+      out.faults.push_back(
+          "actuator '" + actuator.name + "': " + std::to_string(open) +
+          " edges of its chamber's boundary are open or turned over: its volume depends on the origin");
     const Measure now = measure_of(actuator, state.positions), rest = measure_of(actuator, model.rest);
     check_measure(actuator, now, rest, state.actuation[index], multiplier, out);
     // kPa: 1e-3 N/mm^2, outwards
