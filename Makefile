@@ -11,6 +11,7 @@ export CTEST_OUTPUT_ON_FAILURE = 1
 
 cores := $(shell nproc)
 sources = $(shell find src apps bench tests examples -name '*.cpp' -o -name '*.hpp')
+RUNS ?= 20000
 example := examples/pneumatic_finger
 # without `large`, which takes long and up to 24 GiB
 BENCH ?= iteration factor tracking newton
@@ -19,7 +20,7 @@ sanitized := core model io statics kinematics drive runs
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
 
-.PHONY: help setup build run test test-release test-sanitize test-threads test-fuzz fuzz bench format format-check clean
+.PHONY: help setup build run test test-release test-sanitize test-threads test-fuzz fuzz random bench format format-check clean
 
 help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
@@ -27,6 +28,7 @@ help:
 	@echo 'make build         build build/softkin'
 	@echo 'make fuzz          2 million damaged inputs to every reader (hours; goes on where it was); RUNS=1000 less'
 	@echo 'make bench         build and run the benchmarks (docs/benchmarks.md); BENCH="newton large" runs these alone'
+	@echo 'make random        solve 20,000 random robots and check every answer; RUNS=1000 fewer of them'
 	@echo 'make format        format the sources; make format-check only looks'
 	@echo 'make clean         remove the build folders'
 
@@ -89,6 +91,12 @@ fuzz:
 	cmake --build --preset fuzz --target softkin_fuzz softkin_fuzz_journals
 	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz full $(TARGETS)
 	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz_journals full
+
+random:
+	@$(SETUP) --tests
+	cmake --preset release -DSOFTKIN_TESTS=ON
+	cmake --build --preset release --target softkin_random
+	build/tests/softkin_random --count $(RUNS) --threads $(cores) --out out/random --known tests/random/known_failures.txt
 
 bench: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON

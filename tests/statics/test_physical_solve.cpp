@@ -69,6 +69,24 @@ TEST(PhysicalSolve, InvariantUnderRigidMotion) {
   EXPECT_GT(a.state.multipliers.cwiseAbs().minCoeff(), 1e-3);
 }
 
+/// A robot is solved alike at every size: unknowns of turns count as much as those of moves.
+TEST(PhysicalSolve, RigidRegionsOfAnySize) {
+  const auto bent = [](double scale) {
+    RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {60, 10, 10}));
+    spec.mesh.vertices *= scale;
+    spec.rigid.push_back({{std::string("x_high"), {}}, "end"});
+    spec.forces.push_back({"weight", {std::string("x_high"), {}}, scale * scale * Vec3(0, 0.01, -0.03)});
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const Equilibrium found = statics.solve(Actuation(0), statics.rest());
+    EXPECT_EQ(found.report.status, Status::converged);
+    return Points((found.state.positions - model.rest) / scale);
+  };
+  const Points moves = bent(1);
+  EXPECT_GT(moves.rowwise().norm().maxCoeff(), 0.9);
+  for (const double scale : {1e-4, 1e3, 1e7}) EXPECT_LT(distance(bent(scale), moves), 1e-5) << scale;
+}
+
 TEST(PhysicalSolve, ThreadsChangeNothing) {
   const Model model = compile(chambers_beam(3));
   const Statics statics(model);

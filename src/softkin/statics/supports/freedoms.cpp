@@ -15,7 +15,8 @@ Freedoms::Freedoms(const Model& model, const linear::BlockPattern& pattern)
 
 void Freedoms::find_regions(const Model& model) {
   for (RigidBody& body : movable_bodies(model, fixed_, held_)) {
-    Region region{std::move(body), {}, {}, -1};
+    Region region{std::move(body), {}, {}};
+    region.reach = region.offsets.rowwise().norm().maxCoeff();
     for (int axis = 0; axis < 3; ++axis) {
       if (region.slides[axis]) region.slide_axes.push_back(axis);
       if (region.turns[axis]) region.turn_axes.push_back(axis);
@@ -136,7 +137,7 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> Freedoms::tangent(Index vertex, const s
     Eigen::Matrix<double, 3, Eigen::Dynamic> t(3, columns_.width(region.node));
     Index column = 0;
     for (const int axis : region.slide_axes) t.col(column++) = Vec3::Unit(axis);
-    const Vec3 arm = positions.row(vertex).transpose() - centers[r];
+    const Vec3 arm = (positions.row(vertex).transpose() - centers[r]) / region.reach;
     for (const int axis : region.turn_axes) t.col(column++) = Vec3::Unit(axis).cross(arm);
     return t;
   }
@@ -166,7 +167,7 @@ void Freedoms::reduce(const Points& vectors, const Points& positions, Eigen::Ref
     }
     Index u = columns_.unknowns[region.node];
     for (const int axis : region.slide_axes) out[u++] = force[axis];
-    for (const int axis : region.turn_axes) out[u++] = torque[axis];
+    for (const int axis : region.turn_axes) out[u++] = torque[axis] / region.reach;
   }
 }
 
@@ -198,7 +199,7 @@ void Freedoms::expand(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const P
     Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
     Index u = columns_.unknowns[region.node];
     for (const int axis : region.slide_axes) slide[axis] = unknowns[u++];
-    for (const int axis : region.turn_axes) turn[axis] = unknowns[u++];
+    for (const int axis : region.turn_axes) turn[axis] = unknowns[u++] / region.reach;
     for (const Index v : region.vertices)
       out.row(v) = (slide + turn.cross(positions.row(v).transpose() - middle)).transpose();
   }
@@ -216,7 +217,7 @@ void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double sc
     Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
     Index u = columns_.unknowns[region.node];
     for (const int axis : region.slide_axes) slide[axis] = scale * unknowns[u++];
-    for (const int axis : region.turn_axes) turn[axis] = scale * unknowns[u++];
+    for (const int axis : region.turn_axes) turn[axis] = scale * unknowns[u++] / region.reach;
     const Mat3 rotation = rotation_about(turn);
     for (const Index v : region.vertices)
       positions.row(v) = (middle + slide + rotation * (positions.row(v).transpose() - middle)).transpose();
@@ -231,7 +232,7 @@ Mat3 Freedoms::bend_of(const Region& region, const Points& gradient, const Point
     const Vec3 arm = positions.row(v).transpose() - middle, force = gradient.row(v).transpose();
     bend += 0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
   }
-  return bend;
+  return bend / (region.reach * region.reach);
 }
 
 void Freedoms::add_turning(const Points& gradient, const Points& positions,

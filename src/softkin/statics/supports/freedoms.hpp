@@ -7,8 +7,9 @@
 
 namespace softkin::supports {
 
-/// The unknowns of a robot: the free axes of its vertices, and up to three slides [mm] and three turns [rad] of every
-/// rigid region that is not held whole. x moves by T u to first order.
+/// The unknowns of a robot [mm]: the free axes of its vertices, and up to three slides and three turns of every rigid
+/// region that is not held whole, turns by how far they move its farthest vertex (in rad their stiffness would differ
+/// from that of moves by a length squared). x moves by T u to first order.
 class Freedoms {
  public:
   Freedoms(const Model& model, const linear::BlockPattern& pattern);
@@ -48,6 +49,7 @@ class Freedoms {
   struct Region : RigidBody {
     std::vector<int> slide_axes, turn_axes;
     Index node = -1;
+    double reach = 1;  // of its vertices from its center [mm]
   };
   struct RegionBlock {  // a block of the matrix over vertices of which one or both are of a rigid region
     std::int64_t block, entry;

@@ -1,0 +1,357 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "random/confirm.hpp"
+#include "random/reference_elements.hpp"
+
+namespace softkin::random_robots {
+
+namespace {
+
+constexpr Real ulp = std::numeric_limits<double>::epsilon();
+/// Of the largest force at a vertex; the solver's own criterion is a step.
+constexpr Real balanced = 1e-5L;
+/// Of what the solver's tolerance stands for: a robot that is only carried elsewhere has no force to compare with.
+constexpr Real share_of_tolerance = 1e-3L;
+/// Of the volume or length asked for.
+constexpr Real met = 1e-8L;
+/// Units in the last place that rounding may add up to.
+constexpr Real sums = 16;
+
+RealPoints nodes_at(const Points& positions, const Index* nodes, int count) {
+  RealPoints at(count, 3);
+  for (int i = 0; i < count; ++i) at.row(i) = positions.row(nodes[i]).cast<Real>();
+  return at;
+}
+
+/// Forces at every vertex, summed over whatever acts there.
+struct Forces {
+  explicit Forces(Index vertices)
+      : sum(RealPoints::Zero(vertices, 3)), size(vertices, 0), stiffness(vertices, 0), rounding(vertices, 0) {}
+
+  RealPoints sum;                               // [N]; 0: balance
+  std::vector<Real> size, stiffness, rounding;  // [N], [N/mm], [N]: see ElementPulls
+
+  void add(Index v, const RealVec3& force, Real blur) {
+    sum.row(v) += force.transpose();
+    size[v] += force.norm();
+    rounding[v] += blur + ulp * force.norm();
+  }
+};
+
+void add_elements(const Model& model, const Equilibrium& found, Forces& forces) {
+  const Points& positions = found.state.positions;
+  const auto add = [&](const Index* nodes, int count, Index material, Real layer_ratio) {
+    const ElementPulls pulls = pulls_of(model.materials[material].elastic, nodes_at(model.rest, nodes, count),
+                                        nodes_at(positions, nodes, count), layer_ratio);
+    for (int i = 0; i < count; ++i) {
+      forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
+      forces.stiffness[nodes[i]] += pulls.stiffness[i];
+    }
+  };
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    std::array<Index, 10> nodes;
+    std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
+    if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, 1);
+  }
+  for (std::size_t e = 0; e < model.prisms.size(); ++e) {
+    const ElementRole& role = model.prism_roles[e];
+    add(model.prisms[e].data(), 6, role.material, role.actuator < 0 ? 1 : found.state.actuation[role.actuator]);
+  }
+}
+
+/// A length or a volume and its derivative in a set of nodes.
+struct Measure {
+  Real value = 0, rounding = 0;
+  std::vector<EmbeddedPoint> nodes;
+  std::vector<RealVec3> slopes;
+  std::vector<Real> blurs;  // of the slopes
+
+  std::size_t add_node(const EmbeddedPoint& node) {
+    nodes.push_back(node);
+    slopes.emplace_back(RealVec3::Zero());
+    blurs.push_back(0);
+    return nodes.size() - 1;
+  }
+};
+
+RealVec3 place(const EmbeddedPoint& point, const Points& positions) {
+  RealVec3 sum = RealVec3::Zero();
+  for (std::size_t k = 0; k < point.vertices.size(); ++k)
+    sum += static_cast<Real>(point.weights[k]) * positions.row(point.vertices[k]).transpose().cast<Real>();
+  return sum;
+}
+
+EmbeddedPoint vertex(Index v) {
+  return {{v}, {1.0}, 0};
+}
+
+Measure length_of(const Actuator& cable, const Points& positions) {
+  Measure measure;
+  for (const EmbeddedPoint& point : cable.points) (void)measure.add_node(point);
+  for (std::size_t i = 0; i + 1 < cable.points.size(); ++i) {
+    const RealVec3 from = place(cable.points[i], positions), to = place(cable.points[i + 1], positions);
+    const Real length = (to - from).norm(), blur = ulp * (from.norm() + to.norm());
+    measure.value += length;
+    measure.rounding += blur;
+    if (!(length > 0)) continue;
+    measure.slopes[i] -= (to - from) / length;
+    measure.slopes[i + 1] += (to - from) / length;
+    measure.blurs[i] += blur / length;
+    measure.blurs[i + 1] += blur / length;
+  }
+  return measure;
+}
+
+/// Shape functions of a triangle of order 1 or 2 (corners, edges 01, 12, 20) and their derivatives by u and v.
+struct FaceShape {
+  std::vector<Real> shape, by_u, by_v;
+};
+
+FaceShape face_shape(std::size_t nodes, Real u, Real v) {
+  const Real t = 1 - u - v;
+  if (nodes == 3) return {{t, u, v}, {-1, 1, 0}, {-1, 0, 1}};
+  return {{t * (2 * t - 1), u * (2 * u - 1), v * (2 * v - 1), 4 * t * u, 4 * u * v, 4 * v * t},
+          {1 - 4 * t, 4 * u - 1, 0, 4 * (t - u), 4 * v, -4 * v},
+          {1 - 4 * t, 0, 4 * v - 1, -4 * u, 4 * u, 4 * (t - v)}};
+}
+
+/// Three points of Gauss's rule squared, collapsed onto the triangle: exact for degree 4.
+template <class Visit>
+void each_face_point(const Visit& visit) {
+  const Real gauss[3] = {-std::sqrt(0.6L), 0, std::sqrt(0.6L)}, weights[3] = {5.0L / 18, 8.0L / 18, 5.0L / 18};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Real u = (1 + gauss[i]) / 2, v = (1 + gauss[j]) / 2 * (1 - u);
+      visit(u, v, weights[i] * weights[j] * (1 - u));
+    }
+}
+
+/// Adds a third of the integral of x . (dx/du x dx/dv) over a face, positions taken from an origin.
+void add_face(const std::vector<std::size_t>& nodes, const std::vector<RealVec3>& at, Real far, Measure& measure) {
+  each_face_point([&](Real u, Real v, Real weight) {
+    const FaceShape f = face_shape(nodes.size(), u, v);
+    RealVec3 x = RealVec3::Zero(), along = RealVec3::Zero(), across = RealVec3::Zero();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      x += f.shape[i] * at[i];
+      along += f.by_u[i] * at[i];
+      across += f.by_v[i] * at[i];
+    }
+    const Real third = weight / 3;
+    measure.value += third * x.dot(along.cross(across));
+    const Real edges = along.norm() + across.norm();
+    measure.rounding += ulp * third * (far + x.norm()) * edges * edges;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      measure.slopes[nodes[i]] +=
+          third * (f.shape[i] * along.cross(across) + f.by_u[i] * across.cross(x) + f.by_v[i] * x.cross(along));
+      measure.blurs[nodes[i]] += ulp * 4 * third * (far + x.norm() + edges) * edges;
+    }
+  });
+}
+
+Measure volume_of(const Actuator& chamber, const Points& positions) {
+  Measure measure;
+  std::vector<std::vector<std::size_t>> faces;
+  if (!chamber.surface.empty()) {
+    for (const EmbeddedPoint& point : chamber.points) (void)measure.add_node(point);
+    for (const Triangle& t : chamber.surface)
+      faces.push_back({static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2])});
+  } else {
+    for (const CavityFace& face : chamber.cavity) {
+      faces.emplace_back();
+      for (const Index v : face.corners) faces.back().push_back(measure.add_node(vertex(v)));
+      if (face.edges[0] >= 0)
+        for (const Index v : face.edges) faces.back().push_back(measure.add_node(vertex(v)));
+    }
+  }
+  const RealVec3 origin = place(measure.nodes.front(), positions);
+  for (const auto& face : faces) {
+    std::vector<RealVec3> at;
+    for (const std::size_t node : face) at.push_back(place(measure.nodes[node], positions) - origin);
+    add_face(face, at, origin.norm(), measure);
+  }
+  return measure;
+}
+
+Measure measure_of(const Actuator& actuator, const Points& positions) {
+  return actuator.kind == ActuatorKind::cable ? length_of(actuator, positions) : volume_of(actuator, positions);
+}
+
+void check_measure(const Actuator& actuator, const Measure& now, const Measure& rest, double command, double multiplier,
+                   Confirmation& out) {
+  const std::string name = "actuator '" + actuator.name + "'";
+  if (actuator.control == Control::load) {
+    if (!(std::abs(multiplier - command) <= 4 * ulp * std::abs(command)))
+      out.faults.push_back(name + ": load " + digits(multiplier) + " instead of " + digits(command));
+    return;
+  }
+  const Real asked = command * rest.value, allowed = met * std::abs(asked) + sums * (now.rounding + rest.rounding);
+  const bool cable = actuator.kind == ActuatorKind::cable;
+  if (cable && multiplier < 0) out.faults.push_back(name + ": a tension of " + digits(multiplier) + " N");
+  const bool slack = cable && multiplier == 0;
+  const Real miss = slack ? std::max<Real>(0, now.value - asked) : std::abs(now.value - asked);
+  if (!slack) out.constraint_error = std::max(out.constraint_error, static_cast<double>(miss / std::abs(asked)));
+  if (!(miss <= allowed))
+    out.faults.push_back(name + (slack ? ", slack," : "") + ": " + digits(static_cast<double>(now.value / rest.value)) +
+                         " of its measure at rest instead of " + digits(command) + ", off by " +
+                         digits(static_cast<double>(miss / std::abs(asked))));
+}
+
+/// Edges that the faces of a cavity do not pass once in each direction: 0 where it is a closed surface with one side.
+int open_edges(const Actuator& chamber) {
+  std::map<std::pair<Index, Index>, int> passes;
+  for (const CavityFace& face : chamber.cavity)
+    for (int i = 0; i < 3; ++i) {
+      const Index a = face.corners[i], b = face.corners[(i + 1) % 3];
+      passes[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  return static_cast<int>(
+      std::count_if(passes.begin(), passes.end(), [](const auto& edge) { return edge.second != 0; }));
+}
+
+void add_actuators(const Model& model, const Equilibrium& found, Forces& forces, Confirmation& out) {
+  const State& state = found.state;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const auto index = static_cast<Index>(a);
+    const double multiplier = state.multipliers[index];
+    if (actuator.kind == ActuatorKind::dea) {
+      if (multiplier != 0) out.faults.push_back("a dea has the multiplier " + digits(multiplier));
+      continue;
+    }
+    if (const int open = open_edges(actuator); open > 0)
+      out.faults.push_back(
+          "actuator '" + actuator.name + "': " + std::to_string(open) +
+          " edges of its chamber's boundary are open or turned over: its volume depends on the origin");
+    const Measure now = measure_of(actuator, state.positions), rest = measure_of(actuator, model.rest);
+    check_measure(actuator, now, rest, state.actuation[index], multiplier, out);
+    // kPa: 1e-3 N/mm^2, outwards
+    const Real load = actuator.kind == ActuatorKind::cable ? static_cast<Real>(multiplier) : -1e-3L * multiplier;
+    for (std::size_t i = 0; i < now.nodes.size(); ++i)
+      for (std::size_t k = 0; k < now.nodes[i].vertices.size(); ++k) {
+        const Real weight = now.nodes[i].weights[k];
+        forces.add(now.nodes[i].vertices[k], load * weight * now.slopes[i], std::abs(load * weight) * now.blurs[i]);
+      }
+  }
+}
+
+void check_places(const Model& model, const State& state, Confirmation& out) {
+  const double far = std::max(model.rest.cwiseAbs().maxCoeff(), state.positions.cwiseAbs().maxCoeff());
+  std::vector<bool> of_rigid(model.used.size());
+  for (const RigidRegion& region : model.rigid)
+    for (const Index v : region.vertices) of_rigid[v] = true;
+  double worst = 0;
+  for (Index v = 0; v < model.rest.rows(); ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!model.fixed[v][axis]) continue;
+      const double place = model.rest(v, axis) + state.share * (model.held(v, axis) - model.rest(v, axis));
+      const double allowed = of_rigid[v] ? 1e-9 * model.diagonal_mm + 64 * ulp * far : 4 * ulp * far;
+      worst = std::max(worst, std::abs(state.positions(v, axis) - place) / allowed);
+    }
+  if (!(worst <= 1))
+    out.faults.push_back("a held vertex is " + digits(worst) + " times as far from its place as rounding");
+}
+
+void check_shape(const Model& model, const RigidRegion& region, const Points& positions, Confirmation& out) {
+  const double far = std::max(model.rest.cwiseAbs().maxCoeff(), positions.cwiseAbs().maxCoeff());
+  double worst = 0;
+  for (std::size_t i = 0; i < std::min<std::size_t>(4, region.vertices.size()); ++i)
+    for (const Index v : region.vertices) {
+      const Index u = region.vertices[i];
+      const double before = (model.rest.row(v) - model.rest.row(u)).norm();
+      worst = std::max(worst, std::abs((positions.row(v) - positions.row(u)).norm() - before));
+    }
+  if (!(worst <= 1e-9 * model.diagonal_mm + 64 * ulp * far))
+    out.faults.push_back("a rigid region has changed its shape by " + digits(worst) + " mm");
+}
+
+/// Residuals of what may move, each with what it is allowed.
+struct Balance {
+  Real largest = 0;  // force at a vertex [N]
+  Real tolerance_mm = 0;
+  Real worst_over = 0, worst_ratio = 0;
+  bool blurred = false;
+  std::string where;
+
+  void enter(Real residual, Real own_size, Real stiffness, Real rounding, const std::string& what) {
+    const Real blur = sums * rounding;
+    const Real of_tolerance = tolerance_mm * stiffness;
+    const Real by_step = balanced * own_size + 2 * of_tolerance + blur;
+    const Real of_all = balanced * largest + share_of_tolerance * of_tolerance + blur;
+    const Real over = residual / std::max<Real>(std::min(by_step, of_all), 1e-300L);
+    if (blur < 1e-6L * largest && of_tolerance < largest) worst_ratio = std::max(worst_ratio, residual / largest);
+    blurred = blurred || blur > 1e-3L * (largest + of_tolerance);
+    if (!(over <= worst_over)) {
+      worst_over = over;
+      where = what + ": " + digits(static_cast<double>(residual)) + " N, of " + digits(static_cast<double>(own_size)) +
+              " N there, " + digits(static_cast<double>(largest)) + " N at most, " +
+              digits(static_cast<double>(stiffness * tolerance_mm)) + " N by the tolerance, " +
+              digits(static_cast<double>(blur)) + " N by rounding";
+    }
+  }
+};
+
+void enter_rigid(const Model& model, const RigidRegion& region, const Points& positions, const Forces& forces,
+                 Balance& balance) {
+  const RigidMoves moves = moves_of(model, region);
+  RealVec3 middle = RealVec3::Zero(), force = RealVec3::Zero(), moment = RealVec3::Zero();
+  for (const Index v : region.vertices) middle += positions.row(v).transpose().cast<Real>();
+  middle /= static_cast<Real>(region.vertices.size());
+  Real reach = 0, size = 0, stiffness = 0, rounding = 0;
+  for (const Index v : region.vertices) {
+    const RealVec3 arm = positions.row(v).transpose().cast<Real>() - middle, pull = forces.sum.row(v).transpose();
+    force += pull;
+    moment += arm.cross(pull);
+    reach = std::max(reach, arm.norm());
+    size += forces.size[v];
+    stiffness += forces.stiffness[v];
+    rounding += forces.rounding[v];
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name = "rigid region '" + region.name + "'";
+    if (moves.slides[axis]) balance.enter(std::abs(force[axis]), size, stiffness, rounding, name + " pulled");
+    if (moves.turns[axis] && reach > 0)
+      balance.enter(std::abs(moment[axis]) / reach, size, stiffness, rounding, name + " turned");
+  }
+}
+
+}  // namespace
+
+void confirm_physical(const Model& model, const Equilibrium& found, Confirmation& out) {
+  const State& state = found.state;
+  check_places(model, state, out);
+  Forces forces(static_cast<Index>(model.rest.rows()));
+  add_elements(model, found, forces);
+  add_actuators(model, found, forces, out);
+  for (Index v = 0; v < model.dead_load.rows(); ++v)
+    forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);
+  if (!forces.sum.allFinite()) {
+    out.faults.emplace_back("the law has no energy for this shape");
+    return;
+  }
+  Balance balance;
+  balance.tolerance_mm = found.report.tolerance_mm;
+  balance.largest = *std::max_element(forces.size.begin(), forces.size.end());
+  std::vector<bool> of_rigid(model.used.size());
+  for (const RigidRegion& region : model.rigid) {
+    for (const Index v : region.vertices) of_rigid[v] = true;
+    check_shape(model, region, state.positions, out);
+    enter_rigid(model, region, state.positions, forces, balance);
+  }
+  for (Index v = 0; v < model.rest.rows(); ++v) {
+    Real square = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!model.fixed[v][axis] && !of_rigid[v]) square += forces.sum(v, axis) * forces.sum(v, axis);
+    if (square > 0)
+      balance.enter(std::sqrt(square), forces.size[v], forces.stiffness[v], forces.rounding[v],
+                    "vertex " + std::to_string(v));
+  }
+  out.residual_ratio = static_cast<double>(balance.worst_ratio);
+  out.blurred = balance.blurred;
+  if (!(balance.worst_over <= 1)) out.faults.push_back("not in balance: " + balance.where);
+}
+
+}  // namespace softkin::random_robots

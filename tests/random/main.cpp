@@ -1,0 +1,147 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "random/runs.hpp"
+
+/// Solves robots that nobody thought of and checks every answer by an evaluation of its own.
+namespace softkin::random_robots {
+
+namespace {
+
+thread_local std::uint64_t current_seed = 0;
+
+/// Names the seed that brought the program down.
+void report_signal(int signal) {
+  char text[64] = "softkin_random: signal ";
+  std::size_t length = 23;
+  const auto append = [&](std::uint64_t value) {
+    char reversed[24];
+    std::size_t count = 0;
+    do reversed[count++] = static_cast<char>('0' + value % 10);
+    while ((value /= 10) > 0);
+    while (count > 0) text[length++] = reversed[--count];
+  };
+  append(static_cast<std::uint64_t>(signal));
+  for (const char c : {' ', 'a', 't', ' ', 's', 'e', 'e', 'd', ' '}) text[length++] = c;
+  append(current_seed);
+  text[length++] = '\n';
+  if (write(STDERR_FILENO, text, length) < 0) _exit(4);
+  _exit(3);
+}
+
+struct Options {
+  std::uint64_t first = 0;
+  std::uint64_t count = 300;
+  int threads = 1;
+  std::filesystem::path folder, known;
+};
+
+/// Seeds whose failures are known, a line "SEED CAUSE" each; lines that begin with # say something else.
+std::map<std::uint64_t, std::string> known_failures(const std::filesystem::path& file) {
+  std::map<std::uint64_t, std::string> known;
+  if (file.empty()) return known;
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error("cannot read " + file.string());
+  for (std::string text; std::getline(stream, text);) {
+    if (text.empty() || text.front() == '#') continue;
+    std::size_t used = 0;
+    const std::uint64_t seed = std::stoull(text, &used);
+    known[seed] = text.substr(std::min(text.size(), used + 1));
+  }
+  return known;
+}
+
+Summary run_all(const Options& options) {
+  Summary summary;
+  std::mutex mutex;
+  std::atomic<std::uint64_t> next{0};
+  auto told = std::chrono::steady_clock::now();
+  const auto work = [&] {
+    for (std::uint64_t i; (i = next++) < options.count;) {
+      current_seed = options.first + i;
+      const RunResult run = run_seed(current_seed, false);
+      const std::lock_guard lock(mutex);
+      summary.add(run);
+      if (run.outcome == Outcome::failed)
+        std::fprintf(stderr, "seed %llu failed: %s\n", static_cast<unsigned long long>(run.seed), run.message.c_str());
+      if (std::chrono::steady_clock::now() - told < std::chrono::seconds(20)) continue;
+      told = std::chrono::steady_clock::now();
+      std::fprintf(stderr, "%zu of %llu runs, %zu failed\n", summary.runs(),
+                   static_cast<unsigned long long>(options.count), summary.failures().size());
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int t = 1; t < options.threads; ++t) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  return summary;
+}
+
+/// How many failures are new; those that are known are told, and which of them are no more.
+std::size_t new_failures(const Summary& summary, const Options& options) {
+  std::map<std::uint64_t, std::string> known = known_failures(options.known);
+  std::size_t fresh = 0;
+  for (const RunResult& failure : summary.failures()) {
+    const auto found = known.find(failure.seed);
+    if (found == known.end()) {
+      ++fresh;
+      continue;
+    }
+    std::printf("known:  seed %llu: %s\n", static_cast<unsigned long long>(failure.seed), found->second.c_str());
+    known.erase(found);
+  }
+  for (const auto& [seed, cause] : known)
+    if (seed >= options.first && seed - options.first < options.count)
+      std::printf("mended: seed %llu is no longer a failure: take it off the list\n",
+                  static_cast<unsigned long long>(seed));
+  return fresh;
+}
+
+int run(const Options& options) {
+  const Summary summary = run_all(options);
+  std::fputs(summary.text().c_str(), stdout);
+  if (!options.folder.empty()) {
+    std::filesystem::create_directories(options.folder);
+    std::ofstream(options.folder / "summary.txt") << summary.text();
+    std::ofstream(options.folder / "failures.csv") << summary.failure_table();
+  }
+  return new_failures(summary, options) == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+}  // namespace softkin::random_robots
+
+int main(int argc, char** argv) {
+  using namespace softkin::random_robots;
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) std::signal(signal, report_signal);
+  CLI::App app("Random robots: every run ends in an answer that is confirmed, an honest status or a named error");
+  Options options;
+  std::uint64_t seed = 0;
+  app.add_option("--first", options.first, "first seed");
+  app.add_option("--count", options.count, "how many seeds");
+  app.add_option("--threads", options.threads, "runs at once")->check(CLI::PositiveNumber);
+  app.add_option("--out", options.folder, "folder for summary.txt and failures.csv");
+  app.add_option("--known", options.known, "file of failures that are known: a seed and its cause a line");
+  const CLI::Option* one = app.add_option("--seed", seed, "one seed, told at length");
+  bool falsify = false;
+  app.add_flag("--falsify", falsify, "falsify answers: every false one must be noticed");
+  CLI11_PARSE(app, argc, argv);
+  if (falsify) return count_unnoticed_lies(options.first, options.count) == 0 ? 0 : 1;
+  if (one->count() == 0) return run(options);
+  const RunResult result = run_seed(seed, true);
+  std::printf("seed %llu: %s in %.3f s %s\n", static_cast<unsigned long long>(seed), name_of(result.outcome),
+              result.seconds, result.outcome == Outcome::failed ? result.message.c_str() : "");
+  return result.outcome == Outcome::failed ? 1 : 0;
+}

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "model/block_mesh.hpp"
+#include "random/draw.hpp"
+#include "random/generator.hpp"
+
+namespace softkin::random_robots {
+
+/// What may be odd about a robot.
+enum class Oddity {
+  inverted,     // vertices moved far enough to turn elements over
+  sliver,       // an element of next to no volume
+  repeated,     // an element twice
+  cracked,      // vertices doubled, so that elements part
+  overlapping,  // a second block in the same place
+  loose,        // a part that hangs on one vertex, or on none
+  isolated,     // vertices of no element
+  bad_cells,    // vertices that are not there, or twice in one element
+  far_away,     // far from the origin, or of absurd size
+  not_finite,
+  materials,  // Poisson's ratios and moduli at their ends
+  supports,   // too few, none, single axes, far displacements
+  loads,      // absurd forces and gravity
+  actuators,  // ranges, points, surfaces and regions that are not sensible
+  commands,   // at the ends of ranges and outside
+  rigid,
+  voids,
+  interrupted,
+  impatient,  // few iterations allowed
+  curved,     // order 2: edge nodes moved
+  count
+};
+
+/// A case in the making. The mesh is of cells of about 1 until it is scaled.
+struct Making {
+  explicit Making(std::uint64_t seed) : draw(seed) { made.seed = seed; }
+
+  Draw draw;
+  RandomCase made;
+  std::vector<Oddity> odd;
+  std::array<int, 3> cells{1, 1, 1};
+  Vec3 size{1, 1, 1};  // of the block
+  bool physical = true, has_chamber = false, has_layer = false;
+  double modulus = 1;  // of the first material [MPa]
+
+  [[nodiscard]] bool is(Oddity oddity) const { return std::find(odd.begin(), odd.end(), oddity) != odd.end(); }
+  [[nodiscard]] Mesh& mesh() { return made.spec.mesh; }
+  [[nodiscard]] double longest() const { return size.maxCoeff(); }
+};
+
+void make_mesh(Making& m);   // with its regions, before it is scaled
+void spoil_mesh(Making& m);  // what is odd about it
+void make_materials(Making& m);
+void make_supports(Making& m);  // with rigid and void regions
+void make_actuators(Making& m);
+/// Brings the robot to its size and place.
+void scale_robot(Making& m);
+void make_loads(Making& m);  // of a robot that has its size
+void make_commands(Making& m);
+void make_options(Making& m);
+
+}  // namespace softkin::random_robots

@@ -1,0 +1,92 @@
+#include "random/parts.hpp"
+
+namespace softkin::random_robots {
+
+using namespace testing;
+
+namespace {
+
+ActuatorSpec named(Making& m, ActuatorKind kind, double low, double high) {
+  ActuatorSpec spec;
+  spec.name = "actuator" + std::to_string(m.made.spec.actuators.size());
+  spec.kind = kind;
+  spec.low = low;
+  spec.high = high;
+  spec.least_norm = m.draw.chance(0.6);
+  return spec;
+}
+
+/// A line through the body along x, at a random height.
+ActuatorSpec random_cable(Making& m) {
+  ActuatorSpec spec = named(m, ActuatorKind::cable, 0.8, 1.05);
+  const double y = m.size[1] * m.draw.between(0.1, 0.9), z = m.size[2] * m.draw.between(0.1, 0.9);
+  const int count = m.draw.whole(2, 5);
+  for (int i = 0; i < count; ++i) spec.points.push_back({Vec3(m.size[0] * i / (count - 1), y, z), {}});
+  if (!m.is(Oddity::actuators)) return spec;
+  spec.low = m.draw.pick({0.8, 0.3, 0.01});
+  const double reach = m.draw.pick({0.0, 0.3, 3.0});  // outside the body
+  for (PointRef& point : spec.points)
+    if (m.draw.chance(0.4))
+      point.point = Vec3(m.size.cwiseProduct(0.5 * (Vec3::Ones() + (1 + reach) * m.draw.offset())));
+  if (m.draw.chance(0.15)) spec.points.back() = spec.points.front();
+  if (m.draw.chance(0.15)) spec.points[1] = spec.points[0];
+  return spec;
+}
+
+ActuatorSpec random_chamber(Making& m) {
+  ActuatorSpec spec = named(m, ActuatorKind::pneumatic, 0.8, 1.4);
+  spec.region = "chamber";
+  if (m.physical && m.draw.chance(0.15)) {  // a bag inside the body
+    const Vec3 low = m.size.cwiseProduct(Vec3::Constant(0.2)),
+               bag = m.size.cwiseProduct(Vec3::Constant(m.draw.between(0.2, 0.7)));
+    spec.region.reset();
+    spec.surface = box_surface(low, bag);
+  }
+  if (!m.is(Oddity::actuators)) return spec;
+  spec.high = m.draw.pick({1.4, 3.0, 20.0});
+  spec.low = m.draw.pick({0.8, 0.1, 1e-3});
+  if (m.draw.chance(0.1)) spec.region = "body";
+  if (m.draw.chance(0.1)) spec.region = "part0";
+  if (m.draw.chance(0.05)) spec.region = "x_low";
+  if (spec.surface && m.draw.chance(0.3)) spec.surface->triangles.pop_back();
+  return spec;
+}
+
+ActuatorSpec random_layer(Making& m) {
+  ActuatorSpec spec = named(m, ActuatorKind::dea, 0.9, 1.2);
+  spec.region = "layer";
+  spec.rest = m.draw.chance(0.2) ? 1.1 : 1;
+  if (!m.is(Oddity::actuators)) return spec;
+  spec.low = m.draw.pick({0.9, 0.2, 0.01});
+  spec.high = m.draw.pick({1.2, 3.0, 20.0});
+  spec.rest = m.draw.pick({1.0, 1.1, 2.0});
+  return spec;
+}
+
+/// The same, commanded by tension or pressure. Ranges are in units of the modulus, until make_loads().
+void command_load(Making& m, ActuatorSpec& spec) {
+  spec.control = Control::load;
+  spec.rest = 0;
+  spec.low = spec.kind == ActuatorKind::cable ? 0 : m.draw.pick({0.0, -0.02});
+  spec.high = m.is(Oddity::actuators) ? m.draw.pick({0.1, 1.0, 1e6}) : 0.02;
+}
+
+}  // namespace
+
+void make_actuators(Making& m) {
+  std::vector<ActuatorSpec>& actuators = m.made.spec.actuators;
+  if (m.has_chamber && m.draw.chance(0.9)) actuators.push_back(random_chamber(m));
+  if (m.has_layer && m.draw.chance(0.9)) actuators.push_back(random_layer(m));
+  for (int i = m.draw.chance(0.5) ? m.draw.whole(1, 2) : 0; i > 0; --i) actuators.push_back(random_cable(m));
+  for (ActuatorSpec& spec : actuators) {
+    if (m.draw.chance(0.3)) spec.weight = m.draw.log_between(0.5, 20);
+    if (spec.kind != ActuatorKind::dea && m.draw.chance(m.physical ? 0.3 : 0.01)) command_load(m, spec);
+    if (!m.is(Oddity::actuators)) continue;
+    if (m.draw.chance(0.05)) std::swap(spec.low, spec.high);
+    if (m.draw.chance(0.05)) spec.name = "actuator0";
+    if (m.draw.chance(0.05)) spec.weight = m.draw.pick({0.0, -1.0, 1e6, 1e-6});
+    if (m.draw.chance(0.05)) spec.kind = m.draw.pick({ActuatorKind::cable, ActuatorKind::pneumatic, ActuatorKind::dea});
+  }
+}
+
+}  // namespace softkin::random_robots

@@ -1,0 +1,215 @@
+#include "random/reference_elements.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <array>
+#include <limits>
+
+namespace softkin::random_robots {
+
+namespace {
+
+template <class T>
+using Square = std::array<std::array<T, 3>, 3>;
+
+template <class T>
+T determinant(const Square<T>& f) {
+  return f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
+         f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+}
+
+/// C = F^T F
+template <class T>
+Square<T> cauchy_green(const Square<T>& f) {
+  Square<T> c;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) c[i][j] = f[0][i] * f[0][j] + f[1][i] * f[1][j] + f[2][i] * f[2][j];
+  return c;
+}
+
+template <class T>
+T square_sum(const Square<T>& a) {
+  T sum(0);
+  for (const auto& row : a)
+    for (const T& x : row) sum += x * x;
+  return sum;
+}
+
+/// W [MPa] of the laws that need no rotation.
+template <class T>
+T strain_energy(const ElasticLaw& law, const Square<T>& f) {
+  const Square<T> c = cauchy_green(f);
+  const T first = c[0][0] + c[1][1] + c[2][2];
+  const auto constant = [](double x) { return T(static_cast<Real>(x)); };
+  if (law.law == Law::st_venant_kirchhoff) {
+    Square<T> strain = c;
+    for (int i = 0; i < 3; ++i) strain[i][i] = strain[i][i] - T(1);
+    for (auto& row : strain)
+      for (T& x : row) x = T(0.5L) * x;
+    const T trace = strain[0][0] + strain[1][1] + strain[2][2];
+    return constant(law.mu) * square_sum(strain) + T(0.5L) * constant(law.lambda) * trace * trace;
+  }
+  const T j = determinant(f), swelling = j - T(1);
+  if (law.law == Law::neo_hookean)
+    return T(0.5L) * constant(law.mu) * (first - T(3)) - constant(law.mu) * swelling +
+           T(0.5L) * (constant(law.lambda) + constant(law.mu)) * swelling * swelling;
+  const T volumetric = T(0.5L) * constant(law.bulk) * swelling * swelling;
+  const T barred = power(j, -2.0L / 3) * first - T(3);
+  if (law.law == Law::yeoh)
+    return barred * (constant(law.c10) + barred * (constant(law.c20) + barred * constant(law.c30))) + volumetric;
+  const T second = T(0.5L) * (first * first - square_sum(c));
+  return constant(law.c10) * barred + constant(law.c01) * (power(j, -4.0L / 3) * second - T(3)) + volumetric;
+}
+
+/// 2 mu (F - R) + lambda tr(R^T F - I) R, R the rotation nearest to F.
+RealMat3 corotational_stress(const ElasticLaw& law, const RealMat3& f) {
+  const Eigen::JacobiSVD<RealMat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  RealVec3 signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  const RealMat3 r = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  const Real swelling = (r.transpose() * f).trace() - 3;
+  return 2 * static_cast<Real>(law.mu) * (f - r) + static_cast<Real>(law.lambda) * swelling * r;
+}
+
+}  // namespace
+
+RealMat3 stress(const ElasticLaw& law, const RealMat3& gradient) {
+  if (law.law == Law::corotational) return corotational_stress(law, gradient);
+  if (forbids_inversion(law.law) && !(gradient.determinant() > 0))
+    return RealMat3::Constant(std::numeric_limits<Real>::quiet_NaN());
+  RealMat3 p;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      Square<Dual> f;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) f[r][c] = Dual(gradient(r, c), r == i && c == j ? 1 : 0);
+      p(i, j) = strain_energy(law, f).slope;
+    }
+  return p;
+}
+
+Real stiffness_bound(const ElasticLaw& law, const RealMat3& f) {
+  const Real size = std::max<Real>(1, f.norm()), square = size * size;
+  const Real swelling = std::abs(f.determinant() - 1);
+  const Real mu = std::abs(law.mu), lambda = std::abs(law.lambda);
+  const Real by_volume = square * square + 2 * swelling * size;  // of (J - 1)^2 / 2
+  switch (law.law) {
+    case Law::st_venant_kirchhoff:
+      return (2 * mu + 3 * lambda) * 3 * square;
+    case Law::corotational:
+      return 4 * mu + lambda * (3 + 2 * size);
+    case Law::neo_hookean:
+      return mu * (1 + 2 * size) + (lambda + mu) * by_volume;
+    default: {
+      const Real j = std::max<Real>(1e-12L, f.determinant());
+      const Real sheared = square * std::pow(j, -2.0L / 3) * std::pow(1 + square / j, 2);  // bar I1 and its slopes
+      const Real c = std::abs(law.c10) + 4 * std::abs(law.c01) * sheared + 2 * std::abs(law.c20) * sheared +
+                     3 * std::abs(law.c30) * sheared * sheared;
+      return 4 * c * sheared + law.bulk * by_volume;
+    }
+  }
+}
+
+namespace {
+
+/// Derivatives of the shape functions in the parent's coordinates at a quadrature point, and its weight.
+struct ParentPoint {
+  RealPoints slope;
+  Real weight;
+};
+
+RealMat3 barycentric_slopes() {
+  return RealMat3::Identity();  // of L_1, L_2, L_3; that of L_0 is minus their sum
+}
+
+RealVec3 barycentric_slope(int corner) {
+  return corner == 0 ? RealVec3(-1, -1, -1) : RealVec3(barycentric_slopes().col(corner - 1));
+}
+
+std::vector<ParentPoint> linear_points() {
+  ParentPoint point{RealPoints(4, 3), 1.0L / 6};
+  for (int i = 0; i < 4; ++i) point.slope.row(i) = barycentric_slope(i).transpose();
+  return {point};
+}
+
+std::vector<ParentPoint> quadratic_points() {
+  std::vector<ParentPoint> points;
+  const Real far = (5 - std::sqrt(5.0L)) / 20, near = 1 - 3 * far;
+  for (int q = 0; q < 4; ++q) {
+    const auto at = [&](int corner) { return corner == q ? near : far; };
+    ParentPoint point{RealPoints(10, 3), 1.0L / 24};
+    for (int i = 0; i < 4; ++i) point.slope.row(i) = (4 * at(i) - 1) * barycentric_slope(i).transpose();
+    for (int e = 0; e < 6; ++e) {
+      const auto& [i, j] = tetrahedron_edges[e];
+      point.slope.row(4 + e) = 4 * (at(i) * barycentric_slope(j) + at(j) * barycentric_slope(i)).transpose();
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
+std::vector<ParentPoint> prism_points() {
+  std::vector<ParentPoint> points;
+  for (const int side : {-1, 1})
+    for (int q = 0; q < 3; ++q) {
+      const Real z = side / std::sqrt(3.0L);
+      ParentPoint point{RealPoints(6, 3), 1.0L / 6};
+      for (int i = 0; i < 3; ++i) {
+        const Real l = i == q ? 2.0L / 3 : 1.0L / 6, x = i == 0 ? -1 : i == 1 ? 1 : 0, y = i == 0 ? -1 : i == 2 ? 1 : 0;
+        point.slope.row(i) << x * (1 - z) / 2, y * (1 - z) / 2, -l / 2;
+        point.slope.row(i + 3) << x * (1 + z) / 2, y * (1 + z) / 2, l / 2;
+      }
+      points.push_back(point);
+    }
+  return points;
+}
+
+const std::vector<ParentPoint>& points_of(Eigen::Index nodes) {
+  static const std::vector<ParentPoint> linear = linear_points(), quadratic = quadratic_points(),
+                                        prism = prism_points();
+  return nodes == 4 ? linear : nodes == 10 ? quadratic : prism;
+}
+
+/// Inverse of the active stretch: areas grow by the ratio in the plane of the triangles, the thickness shrinks by it.
+RealMat3 inverse_stretch(const RealPoints& rest, Real ratio) {
+  RealVec3 normal = RealVec3::Zero();
+  for (int t = 0; t < 6; t += 3) {
+    const RealVec3 u = rest.row(t + 1) - rest.row(t), v = rest.row(t + 2) - rest.row(t);
+    normal += u.cross(v);
+  }
+  normal.normalize();
+  const RealMat3 across = normal * normal.transpose();
+  return (RealMat3::Identity() - across) / std::sqrt(ratio) + across * ratio;
+}
+
+}  // namespace
+
+ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current, Real layer_ratio) {
+  constexpr Real ulp = std::numeric_limits<double>::epsilon();
+  const Eigen::Index count = rest.rows();
+  const auto nodes = static_cast<std::size_t>(count);
+  ElementPulls out{std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0),
+                   std::vector<Real>(nodes, 0)};
+  const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
+  for (const ParentPoint& point : points_of(count)) {
+    const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
+    const Real volume = point.weight * jacobian.determinant();
+    RealPoints slope = point.slope * jacobian.inverse();
+    if (layer_ratio != 1) slope = slope * inverse_stretch(rest, layer_ratio);
+    const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
+    const RealMat3 p = stress(law, gradient);
+    const Real stiffness = stiffness_bound(law, gradient), all = slope.rowwise().norm().sum();
+    const Real blurred = stiffness * all * (current_size + gradient.norm() * rest_size) * ulp +
+                         p.norm() * (1 + all * rest_size) * ulp + stiffness * ulp;
+    for (Eigen::Index a = 0; a < count; ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      const Real own = volume * slope.row(a).norm();
+      out.force[i] += volume * (p * slope.row(a).transpose());
+      out.stiffness[i] += own * stiffness * all;
+      out.rounding[i] += own * blurred;
+    }
+  }
+  return out;
+}
+
+}  // namespace softkin::random_robots

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <softkin/model/model.hpp>
+#include <vector>
+
+#include "random/dual.hpp"
+
+/// Elements of the physical formulation once more, in long double and with no code of the solver: energies by their
+/// formulas (core/elastic_law.hpp), stresses by derivatives of dual numbers, shape functions and quadrature.
+namespace softkin::random_robots {
+
+using RealVec3 = Eigen::Matrix<Real, 3, 1>;
+using RealMat3 = Eigen::Matrix<Real, 3, 3>;
+/// A point a row.
+using RealPoints = Eigen::Matrix<Real, Eigen::Dynamic, 3>;
+
+/// dW/dF [MPa]; not finite where the law has no energy.
+[[nodiscard]] RealMat3 stress(const ElasticLaw& law, const RealMat3& gradient);
+
+/// About the norm of d^2W/dF^2 [MPa], from above.
+[[nodiscard]] Real stiffness_bound(const ElasticLaw& law, const RealMat3& gradient);
+
+/// What an element does to its nodes.
+struct ElementPulls {
+  std::vector<RealVec3> force;  // derivative of its energy in each node's position [N]
+  std::vector<Real> stiffness;  // largest force at each node when all nodes move by at most 1 mm [N/mm], from above
+  std::vector<Real> rounding;   // force that one unit in the last place of all coordinates may stand for [N]
+};
+
+/// rest, current: nodes of a tetrahedron of order 1 (4) or 2 (10: corners, then edges 01, 12, 02, 03, 13, 23) or of a
+/// prism (6). layer_ratio: active stretch of a dielectric elastomer, area over that at rest; 1: none.
+[[nodiscard]] ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
+                                    Real layer_ratio);
+
+}  // namespace softkin::random_robots

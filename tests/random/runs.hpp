@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace softkin::random_robots {
+
+/// How a run ended. failed: with an answer that is not confirmed, or with anything but an answer or a refusal.
+enum class Outcome { converged, limit, not_converged, interrupted, refused, failed };
+inline constexpr int outcomes = 6;
+[[nodiscard]] const char* name_of(Outcome outcome);
+
+struct RunResult {
+  std::uint64_t seed = 0;
+  Outcome outcome = Outcome::failed;
+  bool sensible = false, physical = false;
+  std::string features;  // what is odd about the robot
+  std::string message;   // of a refusal; of a failure its faults
+  double residual_ratio = 0, constraint_error = 0, step_ratio = 0;
+  bool blurred = false, undecided = false, unstable = false, inverted = false, confirmed = false;
+  double seconds = 0;
+};
+
+/// Solves the robot of a seed and confirms what comes. verbose: tells on the standard output what it does.
+[[nodiscard]] RunResult run_seed(std::uint64_t seed, bool verbose);
+
+/// Falsifies confirmed answers of sensible robots and returns how many of them would be confirmed still; > 0 where
+/// there was nothing to falsify.
+[[nodiscard]] int count_unnoticed_lies(std::uint64_t first, std::uint64_t count);
+
+/// Counts over many runs.
+class Summary {
+ public:
+  void add(const RunResult& run);
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] const std::vector<RunResult>& failures() const { return failures_; }
+  [[nodiscard]] std::size_t runs() const { return runs_; }
+  /// seed, formulation, features and faults of every failure, as CSV
+  [[nodiscard]] std::string failure_table() const;
+
+ private:
+  struct Counts {
+    std::size_t of[outcomes] = {};
+  };
+  struct Extreme {
+    double value = 0;
+    std::uint64_t seed = 0;
+    void enter(double other, std::uint64_t from) {
+      if (other > value) value = other, seed = from;
+    }
+  };
+  std::size_t runs_ = 0, sensible_ = 0, confirmed_ = 0, blurred_ = 0, undecided_ = 0, unstable_ = 0, inverted_ = 0;
+  Counts by_formulation_[2], of_sensible_;
+  std::map<std::string, std::pair<std::size_t, std::uint64_t>> refusals_;  // kind: how many, one of the seeds
+  Extreme residual_, constraint_, step_, seconds_;
+  double total_seconds_ = 0;
+  std::vector<RunResult> failures_;
+};
+
+}  // namespace softkin::random_robots

@@ -1,0 +1,107 @@
+#include <cctype>
+#include <cstdio>
+
+#include "random/runs.hpp"
+
+namespace softkin::random_robots {
+
+namespace {
+
+/// A message without names and numbers.
+std::string kind_of(const std::string& message) {
+  std::string kind;
+  bool quoted = false;
+  for (const char c : message) {
+    if (c == '\'') quoted = !quoted;
+    if (quoted) continue;
+    if (std::isdigit(static_cast<unsigned char>(c)) == 0)
+      kind += c;
+    else if (kind.empty() || kind.back() != '#')
+      kind += '#';
+  }
+  if (const auto begin = kind.find(": "); begin != std::string::npos && kind.compare(0, 6, "random") == 0)
+    kind.erase(0, begin + 2);
+  // numbers with a point, an exponent or a sign are one number
+  for (const char* mark : {"#.#", "#e-#", "#e+#", "-#"})
+    for (auto at = kind.find(mark); at != std::string::npos; at = kind.find(mark))
+      kind.replace(at, std::char_traits<char>::length(mark), "#");
+  return kind.substr(0, 90);
+}
+
+template <class... Values>
+std::string line(const char* format, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string csv_field(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == '"') text.insert(i++, 1, '"');
+  return '"' + text + '"';
+}
+
+}  // namespace
+
+void Summary::add(const RunResult& run) {
+  ++runs_;
+  ++by_formulation_[run.physical ? 0 : 1].of[static_cast<int>(run.outcome)];
+  if (run.sensible) {
+    ++sensible_;
+    ++of_sensible_.of[static_cast<int>(run.outcome)];
+  }
+  confirmed_ += run.confirmed;
+  blurred_ += run.blurred;
+  undecided_ += run.undecided;
+  unstable_ += run.unstable;
+  inverted_ += run.inverted;
+  total_seconds_ += run.seconds;
+  seconds_.enter(run.seconds, run.seed);
+  if (run.outcome == Outcome::refused) {
+    auto& [count, seed] = refusals_.try_emplace(kind_of(run.message), 0, run.seed).first->second;
+    ++count;
+  }
+  if (run.outcome == Outcome::failed) {
+    failures_.push_back(run);
+    return;
+  }
+  residual_.enter(run.residual_ratio, run.seed);
+  constraint_.enter(run.constraint_error, run.seed);
+  step_.enter(run.step_ratio, run.seed);
+}
+
+std::string Summary::text() const {
+  std::string text = line("%-16s %10s %14s %10s\n", "outcome", "physical", "target-shape", "sensible");
+  for (int i = 0; i < outcomes; ++i)
+    text += line("%-16s %10zu %14zu %10zu\n", name_of(static_cast<Outcome>(i)), by_formulation_[0].of[i],
+                 by_formulation_[1].of[i], of_sensible_.of[i]);
+  text += line(
+      "%zu runs, %zu of sensible robots; %zu with an equilibrium that was checked, %zu of them where rounding of "
+      "coordinates could hide much, %zu where a best rotation is not unique; %zu unstable, %zu with inverted "
+      "elements\n",
+      runs_, sensible_, confirmed_, blurred_, undecided_, unstable_, inverted_);
+  const auto extreme = [&](const char* what, const Extreme& most) {
+    text += line("%-60s %9.2g  seed %llu\n", what, most.value, static_cast<unsigned long long>(most.seed));
+  };
+  extreme("largest residual over the largest force at a vertex [-]", residual_);
+  extreme("largest miss of a volume or length over what was asked [-]", constraint_);
+  extreme("largest step of Algorithm 1 over the tolerance [-]", step_);
+  extreme("slowest run [s]", seconds_);
+  text += line("%.1f s in all runs together\n", total_seconds_);
+  if (!refusals_.empty()) text += "refused:\n";
+  for (const auto& [kind, found] : refusals_)
+    text += line("%6zu  %s  (seed %llu)\n", found.first, kind.c_str(), static_cast<unsigned long long>(found.second));
+  for (const RunResult& failure : failures_)
+    text += "FAILED  seed " + std::to_string(failure.seed) + ": " + failure.message + "\n";
+  return text;
+}
+
+std::string Summary::failure_table() const {
+  std::string text = "seed,formulation,features,fault\n";
+  for (const RunResult& failure : failures_)
+    text += std::to_string(failure.seed) + (failure.physical ? ",physical," : ",target-shape,") +
+            csv_field(failure.sensible ? "sensible" : failure.features) + "," + csv_field(failure.message) + "\n";
+  return text;
+}
+
+}  // namespace softkin::random_robots
