@@ -236,11 +236,28 @@ std::string unstable_text(const std::string& what, const std::vector<std::size_t
          " is unstable: the robot would buckle or snap away from it; --stable looks for the shape that it goes to";
 }
 
+namespace {
+
+/// Where a shape at a limit is deformed most, what is there, and what to do.
+std::string worst_text(const WorstPlace& worst) {
+  const bool crushed = worst.volume_ratio < 0.2;
+  return ". Deformed most is " + std::string(worst.prism ? "prism " : "tetrahedron ") + std::to_string(worst.element) +
+         " (from 0)" + (worst.region.empty() ? "" : " of region '" + worst.region + "'") + " at " +
+         point_text(worst.at.data(), " mm") + (worst.beside.empty() ? "" : ", next to " + worst.beside) + ": strain " +
+         percent(worst.strain) + ", " + percent(worst.volume_ratio) + " of its volume; " +
+         (crushed && worst.beside.find("cable") != std::string::npos
+              ? "spread the cable's force over a rigid region there, or ask for less"
+              : "ask for less, or make the mesh finer there");
+}
+
+}  // namespace
+
 std::string shortfall_text(const Model& model, const StepRecord& step) {
   if (model.formulation == Formulation::physical && step.reached_share == 1)
     return step.remark + "; the shape is the last one";
   if (model.formulation == Formulation::physical)
-    return reached_text(model, step) + ": " + step.remark + "; the shape is the last good one";
+    return reached_text(model, step) + ": " + step.remark + "; the shape is the last good one" +
+           (step.worst ? worst_text(*step.worst) : "");
   return (step.remark.empty() ? "" : step.remark + ", and ") + "the shape is that after " +
          counted(static_cast<std::size_t>(step.iterations), "iteration") + ", not an equilibrium";
 }

@@ -122,8 +122,8 @@ TEST(PhysicalCavities, HalfARobotTakesThePressureOfTheWhole) {
   }
 }
 
-/// A surface that ends 1 mm beyond an empty space, and so bounds none, is embedded: finer facets than those that softkin
-/// makes change nothing.
+/// A surface that ends 1 mm beyond an empty space, and so bounds none, is embedded: finer facets than those that
+/// softkin makes change nothing.
 TEST(PhysicalCavities, AnEmbeddedSurfaceIsFineEnough) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = physical_robot(block_mesh({6, 3, 4}, {30, 12, 16}));

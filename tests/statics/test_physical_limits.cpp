@@ -83,7 +83,20 @@ TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
   for (const double factor : {1.05, 1.5}) {
     const Equilibrium beyond = statics.solve(values({factor * most}), statics.rest());
     EXPECT_EQ(beyond.report.status, Status::limit);
-    EXPECT_FALSE(beyond.report.remark.empty());
+    EXPECT_LT(beyond.report.iterations, 150);
+    // how much it can take, to many digits, and what to do
+    const std::string& remark = beyond.report.remark;
+    const std::size_t at = remark.find("the pressure of chamber 'hollow' has its maximum there, ");
+    ASSERT_EQ(at, 0u) << remark;
+    EXPECT_NE(remark.find("command its volume (control: volume) to go on beyond it"), std::string::npos) << remark;
+    const double told = std::stod(remark.substr(remark.find("there, ") + 7));
+    EXPECT_GE(told, most * (1 - 1e-5));
+    EXPECT_LT(told, 1.002 * most);
+    const double volume = std::stod(remark.substr(remark.find(" kPa at ") + 8));
+    const Equilibrium there = volume_statics.solve(values({volume}), volume_statics.rest());
+    EXPECT_NEAR(there.state.multipliers[0], told, 1e-4 * told);
+    for (const double beside : {0.97, 1.03})
+      EXPECT_LT(volume_statics.solve(values({beside * volume}), there.state).state.multipliers[0], told);
     EXPECT_TRUE(beyond.state.positions.allFinite());
     const double reached = beyond.state.actuation[0];
     EXPECT_NEAR(reached, factor * most * beyond.report.reached, 1e-9 * most);

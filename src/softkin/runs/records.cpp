@@ -23,6 +23,7 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   ActuatorRecord record{found.actuation[i], achieved_ratio(model, actuator, found.state.positions)};
   if (actuator.curve) record.by_curve = input_by_curve(actuator, found.actuation[i], actuator.branch);
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return record;
+  if (found.state.multipliers.size() == 0) return record;  // not known
   record.multiplier = found.state.multipliers[i];
   if (actuator.kind == ActuatorKind::cable)
     record.slack = is_slack(actuator, record.achieved, found.state.actuation[i], record.multiplier);
@@ -51,6 +52,8 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
   for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
   record.strain = strain_histogram(model, deformation);
+  if (model.formulation == Formulation::physical && record.status == Status::limit)
+    record.worst = worst_place(model, found.state.positions, deformation);
   record.stress = stress_extremes(model, found.state.positions, deformation);
   record.reactions = reactions(model, found.state.positions, deformation);
   return record;

@@ -8,6 +8,7 @@
 #include <softkin/model/paths.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <softkin/statics/self_overlap.hpp>
+#include <softkin/statics/worst_place.hpp>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct StepRecord : SolveReport {
   StrainHistogram strain;
   std::optional<StressExtremes> stress{};  // physical; of a walk none
   std::vector<Reaction> reactions{};       // the same, per support
+  std::optional<WorstPlace> worst{};       // physical, where status is limit
   std::vector<int> history_iterations;     // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};

@@ -118,6 +118,28 @@ Json reaction_json(const Support& support, const Reaction& reaction) {
           {"center_mm", json_of(reaction.center)}};
 }
 
+Json worst_json(const WorstPlace& worst) {
+  return {{"kind", worst.prism ? "prism" : "tetrahedron"},
+          {"element", worst.element},
+          {"region", worst.region},
+          {"at_mm", json_of(worst.at)},
+          {"strain", known(worst.strain)},
+          {"volume_ratio", known(worst.volume_ratio)},
+          {"beside", worst.beside}};
+}
+
+WorstPlace worst_of(const Json& json) {
+  WorstPlace worst;
+  worst.prism = json.at("kind").get<std::string>() == "prism";
+  worst.element = json.at("element").get<Index>();
+  worst.region = json.at("region").get<std::string>();
+  worst.at = point_of(json.at("at_mm"));
+  worst.strain = number_or_nan(json.at("strain"));
+  worst.volume_ratio = number_or_nan(json.at("volume_ratio"));
+  worst.beside = json.at("beside").get<std::string>();
+  return worst;
+}
+
 /// What the physical formulation knows of forces and of stability.
 template <class Record, class Visit>
 void forces(Record& record, const Visit& visit) {
@@ -135,6 +157,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
   Json json = {{"shape_load_share", record.shape_load_share}};
   forces(record, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
   json["stress"] = record.stress ? stress_json(*record.stress) : Json();
+  json["limit"] = record.worst ? worst_json(*record.worst) : Json();
   json["reactions"] = Json::array();
   for (std::size_t s = 0; s < record.reactions.size(); ++s)
     json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
@@ -145,6 +168,7 @@ void read_physical(const Json& json, StepRecord& record) {
   record.shape_load_share = json.at("shape_load_share").get<double>();
   forces(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   if (const Json& stress = json.at("stress"); !stress.is_null()) record.stress = stress_of(stress);
+  if (const Json& worst = json.at("limit"); !worst.is_null()) record.worst = worst_of(worst);
   for (const Json& each : json.at("reactions"))
     record.reactions.push_back(
         {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});

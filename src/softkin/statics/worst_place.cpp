@@ -54,8 +54,7 @@ class Surroundings {
 
   bool tell_cables(WorstPlace& place) const {
     double nearest = near_edges * edge_;
-    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      const Actuator& cable = model_.actuators[a];
+    for (const Actuator& cable : model_.actuators) {
       if (cable.kind != ActuatorKind::cable) continue;
       for (std::size_t i = 0; i < cable.points.size(); ++i) {
         const double distance = (cable.points[i].at(positions_) - place.at).norm();
@@ -64,10 +63,9 @@ class Surroundings {
         const bool end = i == 0 || i + 1 == cable.points.size();
         place.beside =
             (end ? "the end of cable '" : "point " + std::to_string(i + 1) + " of cable '") + cable.name + "'";
-        place.actuator = static_cast<Index>(a);
       }
     }
-    return place.actuator.has_value();
+    return !place.beside.empty();
   }
 
   bool tell_rigid(WorstPlace& place) const {
@@ -80,8 +78,7 @@ class Surroundings {
   }
 
   bool tell_chambers(WorstPlace& place) const {
-    for (std::size_t a = 0; a < model_.actuators.size() && !place.actuator; ++a) {
-      const Actuator& chamber = model_.actuators[a];
+    for (const Actuator& chamber : model_.actuators) {
       const auto on_wall = [&](Index v) {
         return std::any_of(chamber.cavity.begin(), chamber.cavity.end(), [&](const CavityFace& face) {
           return std::find(face.corners.begin(), face.corners.end(), v) != face.corners.end();
@@ -89,9 +86,8 @@ class Surroundings {
       };
       if (!has(on_wall)) continue;
       place.beside = "the wall of chamber '" + chamber.name + "'";
-      place.actuator = static_cast<Index>(a);
     }
-    return place.actuator.has_value();
+    return !place.beside.empty();
   }
 
   const Model& model_;

@@ -16,7 +16,6 @@ struct WorstPlace {
   double volume_ratio = 1;  // [-]
   std::string beside;       // "the end of cable 'tendon'", "the wall of chamber 'air'", "what is held", "rigid region
                             // 'tip'"; empty: nothing is as near as two edges of the element
-  std::optional<Index> actuator;  // of which `beside` tells
 };
 
 /// What is nearest to the element: at least one of its vertices, or a point less than two of its edges away; points of

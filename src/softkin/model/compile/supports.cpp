@@ -37,6 +37,8 @@ std::string support_name(const Compilation& c, const FixedSpec& spec) {
 void fix(Compilation& c, const FixedSpec& spec) {
   if (std::none_of(spec.axes.begin(), spec.axes.end(), [](bool axis) { return axis; }))
     throw InvalidInput(spec.where.origin, label(spec.where) + " is fixed along no axis");
+  if (!spec.displacement.allFinite())
+    throw InvalidInput(spec.where.origin, label(spec.where) + " is displaced by a number that is not finite");
   const Region region = c.regions.resolve(spec.where);
   Support& support = c.model.supports.emplace_back();
   support.name = support_name(c, spec);

@@ -24,8 +24,8 @@ struct WallSample {
 /// returns    (1 + K / (20 G)) (1.75 (across / thickness)^2 + 0.8 (along / thickness)^2) with
 ///            K / G = 2 (1 + nu) / (3 (1 - 2 nu))
 /// source     fitted to loaded bars of regular and free meshes, order 1 against order 2: within a factor of 2.5 up to a
-///            Poisson's ratio of 0.45. Beyond, it depends on how elements meet, from a third to four times of it; elements
-///            much longer than the wall is thick are less stiff than it says
+///            Poisson's ratio of 0.45. Beyond, it depends on how elements meet, from a third to four times of it;
+///            elements much longer than the wall is thick are less stiff than it says
 [[nodiscard]] double bending_excess(const WallSample& wall, double poisson_ratio);
 
 }  // namespace softkin

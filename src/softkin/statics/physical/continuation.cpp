@@ -4,6 +4,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 #include <softkin/statics/physical/stability.hpp>
+#include <utility>
 
 namespace softkin::physical {
 
@@ -26,8 +27,8 @@ constexpr int patience = 500;
 constexpr double least_progress = 0.01;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
-/// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one lies
-/// beyond a snap, if that is more than this share of the robot's diagonal.
+/// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one
+/// lies beyond a snap, if that is more than this share of the robot's diagonal.
 constexpr double most_correction = 0.5, least_snap = 0.01;
 /// Where ratios and supports change alone a step jumps if this share of that distance is no bend of the way; one of
 /// this share of the way that jumps is taken, and told.
@@ -37,6 +38,8 @@ constexpr double least_jump = 0.9, finest = 0.02;
 constexpr int most_buckles = 20, most_downhill = 60;
 constexpr double tie = 1e-9;
 constexpr std::array<double, 3> pushes{0.003, 0.02, 0.1};
+/// Where a step so short fails under one load that changes it is gone on with along what the load does.
+constexpr double climb_below = 0.2;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
 
@@ -96,6 +99,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   Demand here = from;
   std::optional<Beyond> beyond;
   const bool loads_change = change_loads(from, to);
+  Index load = only_load(from, to);
   (void)release(to, at, false);
   bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
   work_.home.resize(0, 3);
@@ -124,6 +128,13 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
       factorised = false;
       active_ = active;
       advance = 0.4 * (next - done);
+      if (load >= 0 && next - done < climb_below) {
+        const Climb end = climb(std::exchange(load, -1), from, here, to, at);
+        if (end == Climb::interrupted) return Status::interrupted;
+        if (end == Climb::arrived) return arrive(to, at);
+        if (end == Climb::summit) return limit(report_.reached, report_.remark);
+        active_ = active;
+      }
       if (beyond && advance < finest) {
         tell_snap(beyond->jump_mm, done);
         at = std::move(beyond->at);

@@ -41,6 +41,22 @@ class Continuation {
     double jump_mm = 0;
   };
 
+  /// An equilibrium at a given volume or length instead of a given load.
+  struct Measured {
+    double measure = 0;  // over that at rest [-]
+    double load = 0;     // that it takes [N, kPa]
+    Iterate at;
+    Judgement last{};
+  };
+  enum class Climb { lost, arrived, summit, interrupted };
+
+  [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
+  std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from);
+  Climb climb(Index a, const Demand& from, const Demand& here, const Demand& to, Iterate& at);
+  bool refine(Index a, double up, const Demand& load, Measured& low, Measured& middle, Measured& high);
+  Climb arrive_at(const Demand& to, const Measured& near, Iterate& at);
+  Climb stop_at(Index a, double way, double begin, const Demand& from, const Demand& to, const Measured& summit,
+                Iterate& at);
   [[nodiscard]] Judgement judged() const;
   [[nodiscard]] bool factor_holds_active() const;
   [[nodiscard]] bool snapped(double predicted_mm, double correction_mm) const;

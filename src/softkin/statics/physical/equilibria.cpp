@@ -79,6 +79,11 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
     result.state.actuation = from.actuation + report.reached * (actuation - from.actuation);
     result.state.share = from.share + report.reached * (to.share - from.share);
   }
+  const bool unknown = start.actuation.size() == 0 && start.positions != model.rest;
+  if (report.status != Status::converged && report.reached == 0 && unknown) {  // the start, which is of nothing known
+    result.state.actuation.resize(0);
+    return result;
+  }
   result.state.multipliers = at.multipliers;
   for (Index a = 0; a < system_.actuators(); ++a) result.state.multipliers[a] /= system_.unit(a);
   return result;

@@ -159,6 +159,15 @@ bool Newton::improve_balance() {
   return !balanced() && imbalance_.residual < worthwhile_balance * before;
 }
 
+/// The same of lengths and volumes that are commanded.
+bool Newton::improve_constraints() {
+  constexpr double promised = 1e-8;  // of the measure at rest
+  double missed = 0;
+  for (Index a = 0; a < system_.actuators(); ++a)
+    if ((*active_)[a]) missed = std::max(missed, std::abs(balance_.constraint[a]) / system_.measures().rest(a));
+  return missed > promised && missed < worthwhile_balance * std::exchange(missed_, missed);
+}
+
 Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at) {
   demand_ = &demand;
   active_ = &active;
@@ -166,7 +175,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   Advance advance = Advance::made;
   double damping = 1;
-  imbalance_.residual = std::numeric_limits<double>::infinity();
+  imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (!factorise(at, policy)) return Outcome::stuck;
     advance = damped_step(at, damping);
@@ -177,7 +186,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
       made_.assign(1, step_);
       advance = quasi_newton_steps(at);
     }
-    if (advance == Advance::arrived && improve_balance()) {
+    if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
       advance = Advance::made;
       policy = Policy::follow;  // a stiffness that was made positive makes steps small where forces are not
     }
@@ -207,7 +216,8 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   }
   system.freedoms().hold(there.share, at.positions);
   for (Index a = 0; a < system.actuators(); ++a)
-    if (!system.constrains(a) && system.measures().measures(a)) at.multipliers[a] = system.unit(a) * there.actuation[a];
+    if (!active[a] && !system.constrains(a) && system.measures().measures(a))
+      at.multipliers[a] = system.unit(a) * there.actuation[a];
   return (at.positions - before).rowwise().norm().maxCoeff();
 }
 

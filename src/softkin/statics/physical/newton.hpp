@@ -58,6 +58,7 @@ class Newton {
   Advance quasi_newton_steps(Iterate& at);
   [[nodiscard]] bool meets_constraints() const;
   bool improve_balance();
+  bool improve_constraints();
   Advance reject(const Iterate& at);
   void record(double step_mm);
 
@@ -75,6 +76,7 @@ class Newton {
   Iterate trial_;
   int negative_ = 0;  // of the last factorisation
   System::Imbalance imbalance_;
+  double missed_ = 0;  // the worst constraint, over its measure at rest [-]
 };
 
 /// First-order change of shape and multipliers from one demand to another, with the factor at hand.

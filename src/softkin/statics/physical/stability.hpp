@@ -24,7 +24,8 @@ struct LowestMode {
                                      SolveReport& report);
 
 /// A step with K + shift mean(diag K) 1 to a shape of less energy, measured with the multipliers at its begin. shift, a
-/// share, grows until the stiffness is positive and the energy falls, and shrinks for the next step. False: there is none.
+/// share, grows until the stiffness is positive and the energy falls, and shrinks for the next step. False: there is
+/// none.
 /// The workspace is left with another factorisation.
 ///
 /// source  Levenberg and Marquardt; active measures are closed to first order, as by Newton's method

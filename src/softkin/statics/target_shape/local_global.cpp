@@ -138,6 +138,9 @@ void solve_local_global(const System& system, const supports::GlobalStep& global
     }
     if (report.iterations < options.max_iterations) iteration.extrapolate();
   }
+  if (report.status == Status::not_converged && report.remark.empty())
+    report.remark = report.iterations < options.max_iterations ? "the coordinates became too large to compute with"
+                                                               : "the limit of iterations was reached";
   report.estimated_error_mm = estimate.mm(report.step_mm);
 }
 
