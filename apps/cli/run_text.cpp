@@ -238,16 +238,16 @@ std::string unstable_text(const std::string& what, const std::vector<std::size_t
 
 namespace {
 
-/// Where a shape at a limit is deformed most, what is there, and what to do.
+/// Where a shape at a limit is deformed most, and what is there.
 std::string worst_text(const WorstPlace& worst) {
-  const bool crushed = worst.volume_ratio < 0.2;
+  const bool crushed = worst.volume_ratio < 0.2, by_cable = worst.beside.find("cable") != std::string::npos;
   return ". Deformed most is " + std::string(worst.prism ? "prism " : "tetrahedron ") + std::to_string(worst.element) +
          " (from 0)" + (worst.region.empty() ? "" : " of region '" + worst.region + "'") + " at " +
          point_text(worst.at.data(), " mm") + (worst.beside.empty() ? "" : ", next to " + worst.beside) + ": strain " +
-         percent(worst.strain) + ", " + percent(worst.volume_ratio) + " of its volume; " +
-         (crushed && worst.beside.find("cable") != std::string::npos
-              ? "spread the cable's force over a rigid region there, or ask for less"
-              : "ask for less, or make the mesh finer there");
+         percent(worst.strain) + ", " + percent(worst.volume_ratio) + " of its volume" +
+         (!crushed   ? ""
+          : by_cable ? "; spread the cable's force over a rigid region there"
+                     : "; make the mesh finer there");
 }
 
 }  // namespace

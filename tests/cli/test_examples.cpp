@@ -69,7 +69,7 @@ class Example : public ::testing::TestWithParam<std::tuple<fs::path, std::string
     SCOPED_TRACE(step["actuation"].dump());
     EXPECT_EQ(step["status"], "converged");
     EXPECT_EQ(step["inverted_elements"], 0);
-    expect_plausible(step);
+    expect_plausible(step, physical);
     EXPECT_FALSE(step["markers"].empty());
     for (const auto& [name, actuator] : step["actuators"].items()) expect_exact(name, actuator, physical);
     for (const auto& [name, point] : step["markers"].items()) {
@@ -88,12 +88,14 @@ class Example : public ::testing::TestWithParam<std::tuple<fs::path, std::string
     EXPECT_NE(warnings[0].get<std::string>().find("are about 1.0 elements thick"), std::string::npos) << warnings;
   }
 
-  /// No false alarm of units, nor of shapes that pass through themselves.
-  static void expect_plausible(const json& step) {
+  /// No false alarm of units, nor of shapes that pass through themselves: of them but the fingertips of the one whose
+  /// cables close its notches farther than they are wide.
+  static void expect_plausible(const json& step, bool physical) {
     EXPECT_LT(step["strain"]["greatest"], 5);
     const bool asked = std::any_of(step["actuation"].begin(), step["actuation"].end(), [](double m) { return m != 1; });
     EXPECT_TRUE(!asked || step["largest_displacement_mm"] > 1e-3);
-    EXPECT_EQ(step["self_overlap"]["points"], 0) << step["self_overlap"];
+    const bool closes = !physical && scene().stem() == "three_tendon_finger";
+    EXPECT_TRUE(closes || step["self_overlap"]["points"] == 0) << step["self_overlap"];
   }
 
   /// Volumes and lengths are constraints of the physical formulation; a dea is an active stretch, which the body

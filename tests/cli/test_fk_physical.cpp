@@ -329,8 +329,14 @@ TEST(FkLimit, IsToldWithTheLastGoodShape) {
   EXPECT_NEAR(step["actuators"]["air"]["pressure_kPa"], reached, 1e-9 * reached);
   std::ostringstream rounded;
   rounded << reached;
-  EXPECT_EQ(result.errors, "softkin: limit: air reached " + rounded.str() + " kPa of 3000 kPa: " +
-                               step["remark"].get<std::string>() + "; the shape is the last good one\n");
+  const std::string told = "softkin: limit: air reached " + rounded.str() +
+                           " kPa of 3000 kPa: the pressure of chamber 'air' has its maximum there, ";
+  EXPECT_EQ(result.errors.rfind(told, 0), 0u) << result.errors;
+  const json& worst = step["limit"];
+  const std::string where = "; the shape is the last good one. Deformed most is tetrahedron " +
+                            std::to_string(worst["element"].get<int>()) + " (from 0) of region 'body' at (";
+  EXPECT_NE(result.errors.find(where), std::string::npos) << result.errors;
+  EXPECT_NE(result.errors.find(", next to " + worst["beside"].get<std::string>() + ": strain "), std::string::npos);
   EXPECT_NE(result.output.find("  limit\n"), std::string::npos) << result.output;
   EXPECT_EQ(result.output.find("last step of the iteration"), std::string::npos) << "that is of another shape";
   EXPECT_NE(read_text(folder / "a.png"), "");

@@ -40,7 +40,7 @@ struct IkFolder : BlockFolder {
 
   /// By forward kinematics.
   [[nodiscard]] json pose(const std::vector<std::pair<std::string, double>>& settings) const {
-    std::vector<std::string> options{"--json", "--tolerance", "1e-9"};
+    std::vector<std::string> options{"--json", "--solver-tolerance", "1e-9"};
     for (const auto& [name, value] : settings) {
       options.push_back("--set");
       options.push_back(name + "=" + digits(value));

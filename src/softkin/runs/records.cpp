@@ -135,8 +135,14 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
   }
   for (std::size_t s = 0; s < record.reactions.size(); ++s) {
     Finding& reaction = found.emplace_back(Finding{Kind::reaction, model.supports[s].name});
-    for (const Vec3& vector : {record.reactions[s].force, record.reactions[s].moment, record.reactions[s].center})
-      reaction.values.insert(reaction.values.end(), vector.begin(), vector.end());
+    const auto& [force, moment, center] = record.reactions[s];
+    const double rounding = 1e-9 * record.pull_N;
+    const auto add = [&reaction](const Vec3& vector, double least) {
+      for (const double value : vector) reaction.values.push_back(vector.norm() > least ? value : 0);
+    };
+    add(force, rounding);
+    add(moment, rounding * model.diagonal_mm);
+    add(center, 0);
   }
   if (record.buckled > 0)
     found.push_back({Kind::buckled, "", {static_cast<double>(record.buckled), record.buckled_mm}});

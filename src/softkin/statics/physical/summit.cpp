@@ -73,6 +73,7 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
   std::optional<Measured> before;
   double length = first_step * begin;
   for (int i = 0; i < most_steps && length > shortest_step * begin; ++i) {
+    if (report_.iterations >= max_iterations_) return Climb::lost;
     std::optional<Measured> next = at_measure(a, last.measure + way * length, here, last);
     if (interrupted_) return Climb::interrupted;
     const bool falls = next && up * (next->load - last.load) <= 0;
