@@ -238,7 +238,7 @@ TEST(Stress, OfAThickSphereIsThatOfLame) {
   add_volume_region(mesh, "hollow", [](const Vec3& p) { return (p - Vec3(20, 20, 20)).cwiseAbs().maxCoeff() < 10; });
   for (Index v = 0; v < mesh.vertices.rows(); ++v) {
     const Vec3 p = mesh.vertices.row(v).transpose() - Vec3(20, 20, 20);
-    if (p.norm() > 0) mesh.vertices.row(v) = (p * p.cwiseAbs().maxCoeff() / p.norm()).transpose();
+    mesh.vertices.row(v) = (p.norm() > 0 ? Vec3(p * p.cwiseAbs().maxCoeff() / p.norm()) : p).transpose();
   }
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.materials[0].elastic = elastic(Law::neo_hookean, 1, 0.3);
