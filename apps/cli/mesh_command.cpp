@@ -45,24 +45,29 @@ std::string text_of(const std::vector<EmptySpace>& spaces) {
 std::string text_of(const MeshInfo& info) {
   const MeshMeasures& m = info.measures;
   const Vec3 size = m.high - m.low;
-  const Table table{{left, left},
-                    {{"file", info.file + " (" + mesh_form(info.file) + ", lengths in " + info.unit + ")"},
-                     {"vertices", std::to_string(m.vertices)},
-                     {"elements", tetrahedra_text(m.tetrahedra, m.order) + ", " + counted(m.prisms, "prism") + " in " +
-                                      counted(m.parts, "part")},
-                     {"surface cells", counted(m.triangles, "triangle") + ", " + counted(m.quads, "quad")},
-                     {"bounding box", point_text(m.low) + " mm to " + point_text(m.high) + " mm"},
-                     {"size", number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " mm"},
-                     {"volume", number(m.volume) + " mm^3"},
-                     {"boundary area", number(m.boundary) + " mm^2"},
-                     {"quality", "min " + number(m.quality[0], 3) + ", 1st percentile " + number(m.quality[1], 3) +
-                                     ", median " + number(m.quality[2], 3) + " (1: regular, 0: flat)"},
-                     {"edge lengths", "min " + number(m.edge_length[0], 4) + ", median " + number(m.edge_length[1], 4) +
-                                          ", max " + number(m.edge_length[2], 4) + " mm"},
-                     {"regions", std::to_string(m.regions.size())}}};
+  const Table table{
+      {left, left},
+      {{"file", info.file + (is_scene(info.file) ? " (the mesh of the scene)"
+                                                 : " (" + mesh_form(info.file) + ", lengths in " + info.unit + ")")},
+       {"vertices", std::to_string(m.vertices)},
+       {"elements",
+        tetrahedra_text(m.tetrahedra, m.order) + ", " + counted(m.prisms, "prism") + " in " + counted(m.parts, "part")},
+       {"surface cells", counted(m.triangles, "triangle") + ", " + counted(m.quads, "quad")},
+       {"bounding box", point_text(m.low) + " mm to " + point_text(m.high) + " mm"},
+       {"size", number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " mm"},
+       {"volume", number(m.volume) + " mm^3"},
+       {"boundary area", number(m.boundary) + " mm^2"},
+       {"quality", "min " + number(m.quality[0], 3) + ", 1st percentile " + number(m.quality[1], 3) + ", median " +
+                       number(m.quality[2], 3) + " (1: regular, 0: flat)"},
+       {"edge lengths", "min " + number(m.edge_length[0], 4) + ", median " + number(m.edge_length[1], 4) + ", max " +
+                            number(m.edge_length[2], 4) + " mm"},
+       {"regions", std::to_string(m.regions.size())}}};
   Table regions{{left, left, right, right, right}};
   for (const RegionMeasures& region : m.regions) regions.rows.push_back(region_row(region));
-  return joined(table.body(), "") + joined(cut(regions.body(), most_regions), "  ") + text_of(info.empty_spaces);
+  const std::string none = m.regions.empty() ? "  none: the file names no part of the mesh; a scene can define some by "
+                                               "shapes (docs/scene.md, regions)\n"
+                                             : "";
+  return joined(table.body(), "") + none + joined(cut(regions.body(), most_regions), "  ") + text_of(info.empty_spaces);
 }
 
 std::string text_of(const std::vector<MeshFinding>& findings) {
@@ -163,10 +168,15 @@ void add_json(CLI::App& command, MeshOptions& options) {
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
 }
 
+void refuse_unit_of_scene(const CLI::App& command, const MeshOptions& options) {
+  if (is_scene(options.input) && command.count("--unit") > 0)
+    throw CLI::ValidationError("--unit", "a scene names its own unit");
+}
+
 void add_info(CLI::App& mesh, Run& run) {
   const auto options = std::make_shared<MeshOptions>();
   CLI::App& command = *mesh.add_subcommand("info", "Counts, regions, size, volume, quality and edge lengths of a mesh");
-  command.add_option("MESH", options->input, "Mesh: .msh .vtk .vtu .mesh .node .ele .inp .tet")
+  command.add_option("MESH", options->input, "Mesh: .msh .vtk .vtu .mesh .node .ele .inp .tet, or a scene: .yaml")
       ->type_name("")
       ->required();
   add_unit(command, *options);
@@ -175,7 +185,10 @@ void add_info(CLI::App& mesh, Run& run) {
       "Box, volume and area are those of the elements, reversed ones included; volume, area, quality and edge lengths "
       "of order 2 are those of the corners.\n"
       "Example:\n  softkin mesh info finger.msh --unit cm");
-  command.callback([&run, options] { run = [options] { return run_info(*options); }; });
+  command.callback([&run, &command, options] {
+    refuse_unit_of_scene(command, *options);
+    run = [options] { return run_info(*options); };
+  });
 }
 
 void check_check(const CLI::App& command, MeshOptions& options, const std::string& scene) {
@@ -184,8 +197,7 @@ void check_check(const CLI::App& command, MeshOptions& options, const std::strin
   if (!scene.empty() && !is_scene(scene))
     throw CLI::ValidationError("--scene", "a scene is a .yaml file, not " + scene);
   if (options.input.empty()) options.input = scene;
-  if (is_scene(options.input) && command.count("--unit") > 0)
-    throw CLI::ValidationError("--unit", "a scene names its own unit");
+  refuse_unit_of_scene(command, options);
 }
 
 void add_check(CLI::App& mesh, Run& run) {

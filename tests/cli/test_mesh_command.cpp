@@ -75,6 +75,29 @@ TEST(MeshInfo, ListsRegions) {
   EXPECT_EQ(regions[3], json({{"name", "corner"}, {"dimension", 0}, {"vertices", 1}}));
 }
 
+TEST(MeshInfo, TakesScenesAndTellsMeshesWithoutRegions) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.write("cube.msh", cube().text());
+  const std::string scene = folder.write(
+      "two.yaml",
+      "softkin: 1\nunits: {length: cm}\nmeshes: [{file: cube.msh}, {file: cube.msh, name: b, move: [9, 0, 0]}]\n");
+  const json one = run_json({"mesh", "info", mesh, "--unit", "cm"}), both = run_json({"mesh", "info", scene});
+  EXPECT_EQ(both["vertices"], 2 * one["vertices"].get<int>());
+  EXPECT_NEAR(both["volume_mm3"].get<double>(), 2 * one["volume_mm3"].get<double>(),
+              1e-9 * one["volume_mm3"].get<double>());
+  EXPECT_EQ(both["parts"], 2);
+  EXPECT_EQ(both["regions"].size(), 2 * one["regions"].size());
+  expect_contains(run_program({"mesh", "info", scene}).output, "two.yaml (the mesh of the scene)");
+  const ProgramResult unit = run_program({"mesh", "info", scene, "--unit", "m"});
+  EXPECT_EQ(unit.exit_code, 2);
+  expect_contains(unit.errors, "a scene names its own unit");
+  const std::string bare = folder.write(
+      "bare.vtk",
+      "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 "
+      "0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
+  expect_contains(run_program({"mesh", "info", bare}).output, "none: the file names no part of the mesh");
+}
+
 TEST(MeshInfo, StatesOrder2) {
   const TemporaryFolder folder;
   const std::string file = folder.write("cube.msh", quadratic(cube()).text());

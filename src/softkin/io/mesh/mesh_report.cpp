@@ -138,7 +138,7 @@ bool is_scene(const std::string& path) {
 }
 
 MeshInfo mesh_info(const std::string& file, const std::string& unit) {
-  const Mesh mesh = read_mesh_in_mm(file, unit);
+  const Mesh mesh = is_scene(file) ? read_scene(file).mesh : read_mesh_in_mm(file, unit);
   return {file, unit, measure_mesh(mesh, check_mesh(mesh)),
           empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms)};
 }
@@ -197,7 +197,7 @@ std::string to_json(const MeshInfo& info) {
   for (const RegionMeasures& region : m.regions) regions.push_back(region_json(region));
   return json_text(
       {{"file", info.file},
-       {"form", mesh_form(info.file)},
+       {"form", is_scene(info.file) ? "scene" : mesh_form(info.file)},
        {"unit", info.unit},
        {"vertices", m.vertices},
        {"order", m.order},

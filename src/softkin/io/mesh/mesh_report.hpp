@@ -18,6 +18,8 @@ struct MeshInfo {
   std::vector<EmptySpace> empty_spaces;  // that the elements enclose
 };
 
+/// file    a mesh, or a scene, whose mesh it is then, or its meshes as one
+/// unit    of a mesh; a scene knows its own
 /// throws  InvalidInput; also where coordinates are so large that volumes would overflow
 [[nodiscard]] MeshInfo mesh_info(const std::string& file, const std::string& unit);
 
