@@ -6,7 +6,7 @@ add_compile_options(-Wno-psabi)  # no vector type crosses a library boundary
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # gcc 12 reports its own AVX-512 header and std::string
   add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized -Wno-restrict -Wno-array-bounds
-                      -Wno-stringop-overflow)
+                      -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 add_compile_definitions(SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
 if(SOFTKIN_ARCH)
