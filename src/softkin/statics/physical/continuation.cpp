@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <softkin/core/text.hpp>
 #include <softkin/statics/physical/continuation.hpp>
@@ -9,10 +8,6 @@
 namespace softkin::physical {
 
 namespace {
-
-double largest_move(const Points& a, const Points& b) {
-  return (b - a).rowwise().norm().maxCoeff();
-}
 
 bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
@@ -33,11 +28,6 @@ constexpr double most_correction = 0.5, least_snap = 0.01;
 /// Where ratios and supports change alone a step jumps if this share of that distance is no bend of the way; one of
 /// this share of the way that jumps is taken, and told.
 constexpr double least_jump = 0.9, finest = 0.02;
-/// How often a robot is taken from one unstable equilibrium to the next below it, and how far it is pushed, over its
-/// diagonal.
-constexpr int most_buckles = 20, most_downhill = 60;
-constexpr double tie = 1e-9;
-constexpr std::array<double, 3> pushes{0.003, 0.02, 0.1};
 /// Where a step so short fails under one load that changes it is gone on with along what the load does.
 constexpr double climb_below = 0.2;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
@@ -265,73 +255,6 @@ void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
   if (report_.unstable_modes > 0)
     report_.remark = "this equilibrium is unstable in " + std::to_string(report_.unstable_modes) +
                      (report_.unstable_modes == 1 ? " way" : " ways") + ": the robot would buckle or snap away from it";
-}
-
-/// From an unstable equilibrium along its lowest mode to one of less energy, until it is stable or none is found.
-/// False: interrupted.
-bool Continuation::buckle(const Demand& demand, Iterate& at) {
-  for (int i = 0; i < most_buckles; ++i) {
-    const LowestMode mode = lowest_mode(system_, at, demand, active_, work_, team_, report_);
-    last_.modes = mode.unstable;
-    if (mode.unstable == 0 || mode.direction.size() == 0 || !mode.direction.allFinite()) return true;
-    std::optional<Pushed> best = lower(demand, at, mode);
-    if (interrupted_) return false;
-    if (!best) return true;
-    ++report_.buckled;
-    report_.buckled_mm = std::max(report_.buckled_mm, largest_move(at.positions, best->at.positions));
-    at = std::move(best->at);
-    active_ = best->active;
-    last_ = best->last;
-  }
-  last_.modes = 1;  // at least; it was not looked at
-  return true;
-}
-
-/// The equilibrium of less energy to which a push leads, of those of both ways the lower, of two that are alike the
-/// first.
-std::optional<Continuation::Pushed> Continuation::lower(const Demand& demand, const Iterate& from,
-                                                        const LowestMode& mode) {
-  double energy = potential(system_, from, demand, active_, work_, team_);
-  energy -= tie * std::abs(energy);
-  const std::vector<bool> active = active_;
-  std::optional<Pushed> best;
-  for (std::size_t push = 0; push < pushes.size() && !best; ++push)
-    for (const double way : {1.0, -1.0}) {
-      active_ = active;
-      std::optional<Pushed> found = pushed(demand, from, mode, way * pushes[push]);
-      if (interrupted_) return std::nullopt;
-      if (!found || found->energy >= energy) continue;
-      energy = found->energy - tie * std::abs(found->energy);
-      best = std::move(found);
-    }
-  active_ = active;
-  return best;
-}
-
-/// The equilibrium to which the robot goes when it is pushed away so far, over its diagonal; none where it comes back.
-std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, const Iterate& from,
-                                                         const LowestMode& mode, double share) {
-  Pushed found{from};
-  const double reach = share * system_.model().diagonal_mm;
-  system_.advance(mode.direction, reach / system_.size_of(mode.direction, from.positions).largest, work_,
-                  found.at.positions, team_);
-  double shift = mode.steep_shift();
-  bool settled = false;
-  for (int i = 0; i < most_downhill && !settled; ++i) {
-    if (!step_down(system_, demand, active_, shift, found.at, work_, team_, report_)) return std::nullopt;
-    if (prepare(demand, found.at) != 0) continue;
-    Iterate there = found.at;
-    const auto outcome = settle(demand, Newton::Policy::descend, there);
-    interrupted_ = outcome == Newton::Outcome::interrupted;
-    if (interrupted_) return std::nullopt;
-    settled = outcome == Newton::Outcome::converged;
-    if (settled) found.at = std::move(there);
-  }
-  if (!settled || largest_move(found.at.positions, from.positions) < 0.1 * std::abs(reach)) return std::nullopt;
-  found.energy = potential(system_, found.at, demand, active_, work_, team_);
-  found.active = active_;
-  found.last = judged();
-  return found;
 }
 
 /// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.

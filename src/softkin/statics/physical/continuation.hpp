@@ -6,6 +6,11 @@
 
 namespace softkin::physical {
 
+/// Of a vertex [mm].
+inline double largest_move(const Points& from, const Points& to) {
+  return (to - from).rowwise().norm().maxCoeff();
+}
+
 /// The path of equilibria from one demand to another: predictor, length of steps, slack cables, limits, and where it
 /// becomes unstable.
 class Continuation {
