@@ -96,7 +96,6 @@ class FkRun {
     finish();
     if (end != runs::Advance::made) return stopped();
     if (run_.done() > first) say_findings();
-    tell_unstable();
     return judge();
   }
 
@@ -167,24 +166,20 @@ class FkRun {
     };
     std::map<Status, Ended> all;
     OverlapTally overlaps;
+    std::vector<std::size_t> unstable;
     run_.log().each([&](std::size_t number, const StepRecord& step) {
-      if (number + 1 < run_.done()) overlaps.add(number, step);  // the findings tell of the last one
+      if (number + 1 < run_.done()) {  // the findings tell of the last one
+        overlaps.add(number, step);
+        if (step.unstable_modes > 0) unstable.push_back(number);
+      }
       if (step.status == Status::converged) return;
       all[step.status].numbers.push_back(number);
       all[step.status].last = step;
     });
+    if (!unstable.empty()) say(unstable_text("step", unstable));
     if (const std::string text = overlaps.text("step"); !text.empty()) say(text);
     for (const auto& [status, ended] : all) complain(status, ended.numbers, ended.last);
     return all.empty() ? done : not_converged;
-  }
-
-  /// Of steps before the last one, whose findings were told.
-  void tell_unstable() {
-    std::vector<std::size_t> numbers;
-    run_.log().each([&](std::size_t number, const StepRecord& step) {
-      if (step.unstable_modes > 0 && number + 1 < run_.done()) numbers.push_back(number);
-    });
-    if (!numbers.empty()) say(unstable_text("step", numbers));
   }
 
   /// Tells which steps ended so, and of the last of them how.
