@@ -77,6 +77,25 @@ inline RobotSpec cable_beam() {
   return spec;
 }
 
+/// A ball around a hollow, its radius [mm]: a cube of cells pushed onto spheres. Region "hollow" is the inside; three
+/// vertices hold it without force.
+inline RobotSpec hollow_ball(int cells, double diameter, double hollow) {
+  const std::array<int, 3> all{cells, cells, cells};
+  const Vec3 center = Vec3::Constant(diameter / 2);
+  Mesh mesh = block_mesh(all, Vec3::Constant(diameter));
+  add_volume_region(mesh, "hollow", [&](const Vec3& p) { return (p - center).cwiseAbs().maxCoeff() < hollow; });
+  for (Index v = 0; v < mesh.vertices.rows(); ++v) {
+    const Vec3 p = mesh.vertices.row(v).transpose() - center;
+    mesh.vertices.row(v) = (p.norm() > 0 ? Vec3(p * p.cwiseAbs().maxCoeff() / p.norm()) : p).transpose();
+  }
+  RobotSpec spec = physical_robot(std::move(mesh));
+  const int middle = cells / 2;
+  spec.fixed = {{{VertexList{{grid_vertex(all, 0, middle, middle)}}, {}}, {true, true, true}},
+                {{VertexList{{grid_vertex(all, cells, middle, middle)}}, {}}, {false, true, true}},
+                {{VertexList{{grid_vertex(all, middle, 0, middle)}}, {}}, {false, false, true}}};
+  return spec;
+}
+
 /// Fingers of two and three chambers side by side around the axis.
 inline RobotSpec chambers_beam(int count) {
   Mesh mesh = block_mesh({8, 5, 5}, {48, 20, 20});
