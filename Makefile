@@ -81,16 +81,16 @@ test-threads:
 	ctest --test-dir build-threads --no-tests=error --tests-regex '^threads$$'
 
 test-fuzz:
-	cmake --preset fuzz
-	cmake --build --preset fuzz --target softkin_fuzz
-	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz quick
+	cmake --preset sanitize
+	cmake --build --preset sanitize --target softkin_fuzz
+	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
 
 fuzz:
 	@$(SETUP) --tests
-	cmake --preset fuzz
-	cmake --build --preset fuzz --target softkin_fuzz softkin_fuzz_journals
-	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz full $(TARGETS)
-	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz_journals full
+	cmake --preset sanitize
+	cmake --build --preset sanitize --target softkin_fuzz softkin_fuzz_journals
+	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz full $(TARGETS)
+	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz_journals full
 
 random:
 	@$(SETUP) --tests
@@ -113,4 +113,4 @@ format-check:
 	@$(CLANG_FORMAT) --dry-run --Werror $(sources)
 
 clean:
-	rm -rf build build-debug build-sanitize build-threads build-fuzz
+	rm -rf build build-debug build-sanitize build-threads

@@ -21,7 +21,7 @@ using runs::WalkRecord;
 namespace {
 
 constexpr double same_stride_mm = 1e-4;
-constexpr int length_decimals = 4;
+constexpr int stride_decimals = 4;
 
 /// What the user asks of `softkin walk`.
 struct WalkOptions : SolveOptions, RunOptions {
@@ -70,7 +70,7 @@ std::string stride_text(const std::vector<double>& strides) {
   const double last = strides.back();
   std::size_t settled = strides.size();  // cycles before this one have another stride
   while (settled > 0 && std::abs(strides[settled - 1] - last) <= same_stride_mm) --settled;
-  std::string text = "stride: " + decimal(last, length_decimals) + " mm per cycle";
+  std::string text = "stride: " + decimal(last, stride_decimals) + " mm per cycle";
   if (settled + 1 >= strides.size()) {
     if (strides.size() > 1) text += " in the last one, which is not that of the one before: walk more --cycles";
   } else if (settled > 0) {

@@ -80,17 +80,16 @@ void check_usage(const WorkspaceOptions& options) {
 
 /// What a hull is called, and its measure.
 std::string hull_text(const Hull& hull) {
-  constexpr int length_decimals = 3, measure_decimals = 2;
-  const std::string thick = decimal(hull.extents[0], length_decimals) + " x " +
-                            decimal(hull.extents[1], length_decimals) + " x " +
-                            decimal(hull.extents[2], length_decimals) + " mm along its principal axes";
+  constexpr int hull_decimals = 3, measure_decimals = 2;
+  const std::string thick = decimal(hull.extents[0], hull_decimals) + " x " + decimal(hull.extents[1], hull_decimals) +
+                            " x " + decimal(hull.extents[2], hull_decimals) + " mm along its principal axes";
   switch (hull.shape) {
     case HullShape::solid:
       return decimal(hull.volume, measure_decimals) + " mm^3, " + thick;
     case HullShape::flat:
       return "flat, without a volume: " + decimal(hull.area, measure_decimals) + " mm^2, " + thick;
     case HullShape::line:
-      return "none: the positions are on a line of " + decimal(hull.extents[0], length_decimals) + " mm";
+      return "none: the positions are on a line of " + decimal(hull.extents[0], hull_decimals) + " mm";
     case HullShape::point:
       break;
   }

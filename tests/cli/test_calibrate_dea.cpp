@@ -17,11 +17,6 @@ ProgramResult with(const std::vector<std::string>& more) {
   return run_program(arguments);
 }
 
-void expect_words(const std::string& text, const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    EXPECT_NE(text.find(word), std::string::npos) << "no '" << word << "' in:\n" << text;
-}
-
 void expect_bad(const ProgramResult& result, const std::vector<std::string>& words) {
   EXPECT_EQ(result.exit_code, 2) << result.output;
   EXPECT_EQ(result.output, "");

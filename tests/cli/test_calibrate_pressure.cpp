@@ -47,11 +47,6 @@ ProgramResult calibrate(const std::vector<std::string>& files, const std::vector
   return run_program(arguments);
 }
 
-void expect_words(const std::string& text, const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    EXPECT_NE(text.find(word), std::string::npos) << "no '" << word << "' in:\n" << text;
-}
-
 void expect_bad(const BlockFolder& folder, const ProgramResult& result, const std::vector<std::string>& words) {
   EXPECT_EQ(result.exit_code, 2) << result.output;
   EXPECT_EQ(result.output, "");

@@ -21,7 +21,7 @@ using testing::TemporaryFolder;
 const fs::path source = SOFTKIN_SOURCE_DIR;
 
 /// Commands of one block of a document, and what the document says they print.
-struct Block {
+struct CommandBlock {
   fs::path document;
   std::vector<std::pair<std::size_t, std::string>> commands;  // line, text
   std::vector<std::string> shown;
@@ -65,7 +65,7 @@ class Parser {
  public:
   explicit Parser(fs::path document) : document_(std::move(document)) {}
 
-  std::vector<Block> parse() {
+  std::vector<CommandBlock> parse() {
     std::istringstream stream(testing::read_text(document_.string()));
     for (std::string line; std::getline(stream, line);) {
       ++line_;
@@ -135,7 +135,7 @@ class Parser {
   std::string fence_;  // language of the block that is open; empty: none
   bool continued_ = false;
   std::optional<std::size_t> shell_;  // the last block ```sh below this heading
-  std::vector<Block> blocks_;
+  std::vector<CommandBlock> blocks_;
 };
 
 ProgramResult run_line(const std::string& command) {
@@ -157,9 +157,9 @@ std::set<std::string> make_targets() {
 }
 
 std::set<std::string> presets() {
-  const auto json = nlohmann::json::parse(testing::read_text(source / "CMakePresets.json"));
+  const auto file = nlohmann::json::parse(testing::read_text(source / "CMakePresets.json"));
   std::set<std::string> names;
-  for (const auto& preset : json["configurePresets"]) names.insert(preset["name"].get<std::string>());
+  for (const auto& preset : file["configurePresets"]) names.insert(preset["name"].get<std::string>());
   return names;
 }
 
@@ -243,7 +243,7 @@ bool says_the_same(const std::string& shown, const std::string& printed) {
 
 class Checker {
  public:
-  void check(const Block& block) {
+  void check(const CommandBlock& block) {
     std::string printed;
 #ifndef SOFTKIN_OPENCV
     for (const auto& [line, command] : block.commands)
@@ -277,7 +277,7 @@ class Checker {
 
  private:
   /// Runs or checks one command; what it prints.
-  std::string follow(const Block& block, std::size_t line, const std::string& command, int expected) {
+  std::string follow(const CommandBlock& block, std::size_t line, const std::string& command, int expected) {
     const std::vector<std::string> words = words_of(command);
     const std::string& program = words.at(0);
     const std::string at = block.at(line) + command + ": ";
@@ -372,7 +372,7 @@ TEST(Docs, EveryCommandDoesWhatTheDocumentSays) {
   Checker checker;
   std::size_t shown = 0;
   for (const fs::path& document : documents())
-    for (const Block& block : Parser(document).parse()) {
+    for (const CommandBlock& block : Parser(document).parse()) {
       const auto begin = std::chrono::steady_clock::now();
       checker.check(block);
       shown += block.shown.size();

@@ -15,13 +15,6 @@ namespace fs = std::filesystem;
 using namespace softkin::testing;
 using nlohmann::json;
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
 TEST(FkCommand, RefusesSettings) {
   const BlockFolder folder;
   const auto refused = [&](const std::vector<std::string>& settings, const std::string& message) {

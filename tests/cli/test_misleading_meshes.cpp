@@ -14,7 +14,7 @@ using softkin::Index;
 using softkin::Vec3;
 
 /// A cube of 30 mm in hollow.msh, its middle cell the region chamber, with the rest of a scene.
-std::string scene(const std::string& rest, const std::string& mesh = "hollow.msh") {
+std::string hollow_scene(const std::string& rest, const std::string& mesh = "hollow.msh") {
   return "softkin: 1\nmesh: {file: " + mesh + "}\nmaterials: [{region: all, youngs_modulus: 1, poisson_ratio: 0.3}]\n" +
          "fixed: [{region: x_low}]\n" + rest;
 }
@@ -39,9 +39,9 @@ TEST(MisleadingMeshes, AnOpenChamber) {
   add_volume_region(mesh, "mouth",
                     [](const Vec3& p) { return p[0] > 10 && (p.tail<2>().array() - 7.5).abs().maxCoeff() < 2.5; });
   softkin::write_gmsh(folder / "hole.msh", mesh, false);
-  expect_refused(folder,
-                 scene("actuators: [{name: air, kind: pneumatic, region: mouth, range: [0.5, 2]}]\n", "hole.msh"),
-                 "robot.yaml:5: actuator 'air' has a chamber that is open: 2 faces around (30, 7.5, 7.5) mm");
+  expect_refused(
+      folder, hollow_scene("actuators: [{name: air, kind: pneumatic, region: mouth, range: [0.5, 2]}]\n", "hole.msh"),
+      "robot.yaml:5: actuator 'air' has a chamber that is open: 2 faces around (30, 7.5, 7.5) mm");
 }
 
 TEST(MisleadingMeshes, DoubledElements) {
@@ -82,8 +82,8 @@ TEST(MisleadingMeshes, SurfacesOfSkinsAndOfOtherUnits) {
   const TemporaryFolder folder;
   write_hollow(folder);
   const auto with_surface = [](const std::string& surface) {
-    return scene("void: [chamber]\nactuators: [{name: air, kind: pneumatic, surface: " + surface +
-                 ", range: [0.5, 2]}]\n");
+    return hollow_scene("void: [chamber]\nactuators: [{name: air, kind: pneumatic, surface: " + surface +
+                        ", range: [0.5, 2]}]\n");
   };
   const softkin::TriangleSurface cavity = box_surface({10, 10, 10}, {10, 10, 10});
   softkin::write_stl(folder / "metres.stl", cavity.vertices / 1000, cavity.triangles);
@@ -106,7 +106,8 @@ TEST(MisleadingMeshes, SurfacesOfSkinsAndOfOtherUnits) {
 TEST(MisleadingMeshes, EmptySpacesAreListed) {
   const TemporaryFolder folder;
   write_hollow(folder);
-  const std::string solid = folder / "hollow.msh", robot = folder.write("robot.yaml", scene("void: [chamber]\n"));
+  const std::string solid = folder / "hollow.msh",
+                    robot = folder.write("robot.yaml", hollow_scene("void: [chamber]\n"));
   EXPECT_EQ(json::parse(run_program({"mesh", "check", solid, "--json"}).output)["empty_spaces"], json::array());
   EXPECT_EQ(run_program({"mesh", "check", solid}).output.find("empty space"), std::string::npos);
   const json spaces = json::parse(run_program({"mesh", "check", robot, "--json"}).output)["empty_spaces"];
@@ -120,8 +121,8 @@ TEST(MisleadingMeshes, EmptySpacesAreListed) {
       std::string::npos);
 
   softkin::Mesh mesh = hollow_mesh();
-  const std::vector<Index> chamber = mesh.regions.back().tetrahedra;
-  for (std::size_t i = chamber.size(); i-- > 0;) mesh.tetrahedra.erase(mesh.tetrahedra.begin() + chamber[i]);
+  const std::vector<Index> middle = mesh.regions.back().tetrahedra;
+  for (std::size_t i = middle.size(); i-- > 0;) mesh.tetrahedra.erase(mesh.tetrahedra.begin() + middle[i]);
   mesh.regions.clear();
   softkin::write_gmsh(folder / "empty.msh", mesh, false);
   EXPECT_EQ(json::parse(run_program({"mesh", "info", folder / "empty.msh", "--json"}).output)["empty_spaces"].size(),

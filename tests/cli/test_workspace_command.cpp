@@ -38,13 +38,6 @@ struct ReachFolder : BlockFolder {
   [[nodiscard]] std::string text() const { return read_text(output); }
 };
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
 std::size_t row_count(const std::string& text) {
   const auto lines = lines_of(text);
   return static_cast<std::size_t>(std::count_if(

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <random>
+#include <softkin/core/dense.hpp>
 #include <softkin/energy/elastic.hpp>
 #include <vector>
 

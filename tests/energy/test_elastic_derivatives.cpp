@@ -7,7 +7,7 @@ namespace softkin::energy {
 namespace {
 
 template <class ElementKind>
-class ElasticDerivatives : public testing::Test {};
+class ElasticDerivatives : public ::testing::Test {};
 using Kinds = testing::Types<Kind<4, 1>, Kind<10, 4>, Kind<6, 6>>;
 TYPED_TEST_SUITE(ElasticDerivatives, Kinds);
 

@@ -13,7 +13,7 @@ namespace {
 constexpr int tetrahedron_edge[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 
 template <class ElementKind>
-class ElasticElements : public testing::Test {};
+class ElasticElements : public ::testing::Test {};
 using Kinds = testing::Types<Kind<4, 1>, Kind<10, 4>, Kind<6, 6>>;
 TYPED_TEST_SUITE(ElasticElements, Kinds);
 

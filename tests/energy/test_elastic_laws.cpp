@@ -50,7 +50,7 @@ Eigen::MatrixXd linear_stiffness(const ElasticRest<K, Q>& rest, double youngs_mo
 }
 
 template <class ElementKind>
-class ElasticLaws : public testing::Test {};
+class ElasticLaws : public ::testing::Test {};
 using Kinds = testing::Types<Kind<4, 1>, Kind<10, 4>, Kind<6, 6>>;
 TYPED_TEST_SUITE(ElasticLaws, Kinds);
 

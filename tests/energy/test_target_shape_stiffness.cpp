@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <random>
+#include <softkin/core/dense.hpp>
 #include <softkin/energy/target_shape_stiffness.hpp>
 
 namespace softkin::energy {
@@ -142,8 +142,8 @@ Square<K> matrix(const TargetStiffness<K>& stiffness, int lane) {
 /// What is left of a symmetric matrix without its negative eigenvalues.
 template <int K>
 Square<K> positive_part(const Square<K>& m) {
-  const Eigen::SelfAdjointEigenSolver<Square<K>> eigen(m);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+  const SymmetricEigen eigen = symmetric_eigen(m);
+  return eigen.vectors * eigen.values.cwiseMax(0).asDiagonal() * eigen.vectors.transpose();
 }
 
 template <int K>
@@ -234,7 +234,7 @@ int check_exact(const Stiffness& stiffness, const Change& pull_change) {
 
 template <int K>
 double least_eigenvalue(const Square<K>& m) {
-  return Eigen::SelfAdjointEigenSolver<Square<K>>(m).eigenvalues()[0];
+  return symmetric_eigenvalues(m)[0];
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace softkin::energy {
 namespace {
 
 template <class ElementKind>
-class Turning : public testing::Test {};
+class Turning : public ::testing::Test {};
 using Kinds = testing::Types<Kind<4, 1>, Kind<10, 4>, Kind<6, 6>>;
 TYPED_TEST_SUITE(Turning, Kinds);
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Csv : public testing::Test {
+class Csv : public ::testing::Test {
  protected:
   Csv() : folder_(fs::temp_directory_path() / ("softkin_csv_" + std::to_string(::getpid()))) {
     fs::remove_all(folder_);

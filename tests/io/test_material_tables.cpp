@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MaterialTables : public testing::Test {
+class MaterialTables : public ::testing::Test {
  protected:
   MaterialTables() : folder_(fs::temp_directory_path() / ("softkin_material_" + std::to_string(::getpid()))) {
     fs::remove_all(folder_);

@@ -98,7 +98,7 @@ PictureOptions from_above(int width, int height) {
   return options;
 }
 
-class PictureTest : public testing::Test {
+class PictureTest : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = (fs::temp_directory_path() / "softkin_picture_XXXXXX").string();

@@ -14,7 +14,7 @@ namespace {
 using namespace text_mesh_tests;
 using Indices = std::vector<Index>;
 
-const Region& region(const Mesh& mesh, const std::string& name, int dimension) {
+const Region& region_of_dimension(const Mesh& mesh, const std::string& name, int dimension) {
   static const Region none;
   for (const Region& r : mesh.regions)
     if (r.name == name && r.dimension == dimension) return r;
@@ -33,12 +33,12 @@ TEST(TextMeshes, Medit) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}}));
   EXPECT_EQ(mesh.quads, (std::vector<Quad>{{0, 2, 8, 3}}));
   ASSERT_EQ(mesh.regions.size(), 4u);
-  EXPECT_EQ(region(mesh, "ref_7", 3).tetrahedra, Indices{0});
-  EXPECT_EQ(region(mesh, "ref_7", 3).prisms, Indices{0});
-  EXPECT_EQ(region(mesh, "ref_-2", 3).tetrahedra, Indices{1});
-  EXPECT_EQ(region(mesh, "surface_ref_1", 2).triangles, Indices{0});
-  EXPECT_EQ(region(mesh, "surface_ref_2", 2).triangles, Indices{1});
-  EXPECT_EQ(region(mesh, "surface_ref_2", 2).quads, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "ref_7", 3).tetrahedra, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "ref_7", 3).prisms, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "ref_-2", 3).tetrahedra, Indices{1});
+  EXPECT_EQ(region_of_dimension(mesh, "surface_ref_1", 2).triangles, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "surface_ref_2", 2).triangles, Indices{1});
+  EXPECT_EQ(region_of_dimension(mesh, "surface_ref_2", 2).quads, Indices{0});
 }
 
 TEST(TextMeshes, MeditOnOneLineWithWindowsEnds) {
@@ -48,7 +48,7 @@ TEST(TextMeshes, MeditOnOneLineWithWindowsEnds) {
                               "MeshVersionFormatted 1\r\nDimension 3\r\nVertices 4 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0\r\n"
                               "Tetrahedra 1 1 2 3 4 0\r\nEnd"));
   EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}}));
-  EXPECT_EQ(region(mesh, "ref_0", 3).tetrahedra, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "ref_0", 3).tetrahedra, Indices{0});
 }
 
 TEST(TextMeshes, TetgenFromOne) {
@@ -60,11 +60,11 @@ TEST(TextMeshes, TetgenFromOne) {
     ASSERT_EQ(mesh.vertices.rows(), 5);
     EXPECT_EQ(mesh.vertices.row(4), Eigen::RowVector3d(0, 0, -1));
     EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {0, 2, 1, 4}}));
-    EXPECT_EQ(region(mesh, "attribute_3", 3).tetrahedra, Indices{0});
-    EXPECT_EQ(region(mesh, "attribute_10", 3).tetrahedra, Indices{1});
+    EXPECT_EQ(region_of_dimension(mesh, "attribute_3", 3).tetrahedra, Indices{0});
+    EXPECT_EQ(region_of_dimension(mesh, "attribute_10", 3).tetrahedra, Indices{1});
     EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {0, 2, 4}}));
-    EXPECT_EQ(region(mesh, "marker_0", 2).triangles, Indices{0});
-    EXPECT_EQ(region(mesh, "marker_-1", 2).triangles, (Indices{1, 2}));
+    EXPECT_EQ(region_of_dimension(mesh, "marker_0", 2).triangles, Indices{0});
+    EXPECT_EQ(region_of_dimension(mesh, "marker_-1", 2).triangles, (Indices{1, 2}));
     EXPECT_EQ(mesh.regions.size(), 4u);
   }
 }
@@ -97,17 +97,17 @@ TEST(TextMeshes, Abaqus) {
   EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {0, 2, 1, 4}}));
   EXPECT_EQ(mesh.prisms, (std::vector<Prism>{{0, 2, 5, 3, 8, 7}}));
   ASSERT_EQ(mesh.regions.size(), 8u);
-  EXPECT_EQ(region(mesh, "Body", 3).tetrahedra, Indices{0});
-  EXPECT_EQ(region(mesh, "Body", 3).prisms, Indices{0});
-  EXPECT_EQ(region(mesh, "low", 3).tetrahedra, Indices{1});
-  EXPECT_EQ(region(mesh, "every one", 3).tetrahedra, (Indices{0, 1}));
-  EXPECT_EQ(region(mesh, "every one", 3).prisms, Indices{0});
-  EXPECT_EQ(region(mesh, "all", 0).vertices, (Indices{0, 1, 2, 3, 4, 5, 6, 7, 8}));
-  EXPECT_EQ(region(mesh, "feet", 0).vertices, (Indices{0, 1, 2, 3, 4}));
-  EXPECT_EQ(region(mesh, "more", 0).vertices, (Indices{0, 1, 2, 3, 4, 5, 6}));
-  EXPECT_EQ(region(mesh, "of_low", 0).vertices, (Indices{0, 1, 2, 4}));
+  EXPECT_EQ(region_of_dimension(mesh, "Body", 3).tetrahedra, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "Body", 3).prisms, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "low", 3).tetrahedra, Indices{1});
+  EXPECT_EQ(region_of_dimension(mesh, "every one", 3).tetrahedra, (Indices{0, 1}));
+  EXPECT_EQ(region_of_dimension(mesh, "every one", 3).prisms, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "all", 0).vertices, (Indices{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(region_of_dimension(mesh, "feet", 0).vertices, (Indices{0, 1, 2, 3, 4}));
+  EXPECT_EQ(region_of_dimension(mesh, "more", 0).vertices, (Indices{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(region_of_dimension(mesh, "of_low", 0).vertices, (Indices{0, 1, 2, 4}));
   // S1 of 7: 10 30 20; of Body: S2 of 100: 10 40 20, of 101: 40 63 64; S3 of 100: 20 40 30, of 101: 10 40 64 30
-  const Region& skin = region(mesh, "skin", 2);
+  const Region& skin = region_of_dimension(mesh, "skin", 2);
   EXPECT_EQ(skin.triangles, (Indices{0, 1, 2, 3}));
   EXPECT_EQ(skin.quads, Indices{0});
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 2, 1}, {0, 3, 1}, {3, 7, 8}, {1, 3, 2}}));
@@ -139,8 +139,8 @@ TEST(TextMeshes, AbaqusSurfacesShareFaces) {
                                "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n"
                                "*SURFACE,NAME=a\n1,S1\n1,S2\n*SURFACE,NAME=b\n1,S3\n1,S1\n1,S1\n"));
   EXPECT_EQ(mesh.triangles.size(), 3u);
-  EXPECT_EQ(region(mesh, "a", 2).triangles, (Indices{0, 1}));
-  EXPECT_EQ(region(mesh, "b", 2).triangles, (Indices{0, 2}));
+  EXPECT_EQ(region_of_dimension(mesh, "a", 2).triangles, (Indices{0, 1}));
+  EXPECT_EQ(region_of_dimension(mesh, "b", 2).triangles, (Indices{0, 2}));
 }
 
 TEST(TextMeshes, AbaqusPartAndInstance) {
@@ -155,10 +155,10 @@ TEST(TextMeshes, AbaqusPartAndInstance) {
       "*Surface, type=ELEMENT, name=skin\n_skin_S2, S2\n*End Assembly\n*Material, name=rubber\n"));
   expect_consistent(mesh);
   EXPECT_EQ(mesh.tetrahedra.size(), 1u);
-  EXPECT_EQ(region(mesh, "inner", 0).vertices, (Indices{0, 1, 2}));
-  EXPECT_EQ(region(mesh, "tip", 0).vertices, Indices{3});
-  EXPECT_EQ(region(mesh, "mixed", 0).vertices, (Indices{0, 1, 2}));
-  EXPECT_EQ(region(mesh, "_skin_S2", 3).tetrahedra, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "inner", 0).vertices, (Indices{0, 1, 2}));
+  EXPECT_EQ(region_of_dimension(mesh, "tip", 0).vertices, Indices{3});
+  EXPECT_EQ(region_of_dimension(mesh, "mixed", 0).vertices, (Indices{0, 1, 2}));
+  EXPECT_EQ(region_of_dimension(mesh, "_skin_S2", 3).tetrahedra, Indices{0});
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 3, 1}}));
 }
 
@@ -177,16 +177,16 @@ TEST(TextMeshes, AbaqusFlatElementsAndLinesAreRegions) {
                    "*SURFACE, NAME=some, TYPE=NODE\nof_line, 1.\n4, 1.\n"));
   expect_consistent(mesh);
   EXPECT_EQ(mesh.prisms.size(), 1u);
-  EXPECT_EQ(region(mesh, "Line1", 1).vertices, (Indices{0, 1, 2}));
-  EXPECT_EQ(region(mesh, "Surface1", 2).triangles, Indices{0});
-  EXPECT_EQ(region(mesh, "side", 2).quads, Indices{0});
-  EXPECT_EQ(region(mesh, "both", 3).prisms, Indices{0});
-  EXPECT_TRUE(region(mesh, "both", 3).triangles.empty());
-  EXPECT_EQ(region(mesh, "faces", 2).triangles, Indices{1});
-  EXPECT_EQ(region(mesh, "faces", 2).quads, Indices{0});
-  EXPECT_EQ(region(mesh, "lid", 2).triangles, (Indices{1, 2}));
+  EXPECT_EQ(region_of_dimension(mesh, "Line1", 1).vertices, (Indices{0, 1, 2}));
+  EXPECT_EQ(region_of_dimension(mesh, "Surface1", 2).triangles, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "side", 2).quads, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "both", 3).prisms, Indices{0});
+  EXPECT_TRUE(region_of_dimension(mesh, "both", 3).triangles.empty());
+  EXPECT_EQ(region_of_dimension(mesh, "faces", 2).triangles, Indices{1});
+  EXPECT_EQ(region_of_dimension(mesh, "faces", 2).quads, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "lid", 2).triangles, (Indices{1, 2}));
   EXPECT_EQ(mesh.triangles[2], (Triangle{0, 1, 2}));
-  EXPECT_EQ(region(mesh, "some", 0).vertices, (Indices{0, 1, 2, 3}));
+  EXPECT_EQ(region_of_dimension(mesh, "some", 0).vertices, (Indices{0, 1, 2, 3}));
 }
 
 TEST(TextMeshes, AbaqusFormulationsOfATetrahedronAreOneShape) {
@@ -212,7 +212,7 @@ TEST(TextMeshes, AbaqusSetsOfSetsStaySmall) {
   }
   TemporaryFolder folder;
   const Mesh mesh = read_abaqus(folder.write("a.inp", deck));
-  EXPECT_EQ(region(mesh, "s40", 0).vertices, (Indices{0, 2}));
+  EXPECT_EQ(region_of_dimension(mesh, "s40", 0).vertices, (Indices{0, 2}));
 }
 
 TEST(TextMeshes, TetKeepsDoublesAndOrientation) {
@@ -234,11 +234,11 @@ TEST(TextMeshes, TetWithSidecars) {
   folder.write("a_rigid_handle.txt", "0:1:0\n1:1:0\n2:0:0\n3:0:1\n4:1:1\n");
   const Mesh mesh = read_tet(path);
   ASSERT_EQ(mesh.regions.size(), 3u);
-  EXPECT_EQ(region(mesh, "chamber3", 3).tetrahedra, Indices{0});
-  EXPECT_EQ(region(mesh, "handle", 0).vertices, (Indices{0, 1, 4}));
-  EXPECT_EQ(region(mesh, "rigid", 0).vertices, (Indices{3, 4}));
+  EXPECT_EQ(region_of_dimension(mesh, "chamber3", 3).tetrahedra, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "handle", 0).vertices, (Indices{0, 1, 4}));
+  EXPECT_EQ(region_of_dimension(mesh, "rigid", 0).vertices, (Indices{3, 4}));
   folder.write("a_chamber.txt", "0\r\n1\r\n\r\n");
-  EXPECT_EQ(region(read_tet(path), "chamber", 3).tetrahedra, Indices{1});
+  EXPECT_EQ(region_of_dimension(read_tet(path), "chamber", 3).tetrahedra, Indices{1});
 }
 
 TEST(TextMeshes, Sidecar) {
@@ -299,9 +299,9 @@ TEST(TextMeshes, ReferenceRobot) {
   ASSERT_EQ(chambers[3], 0u);
   ASSERT_EQ(mesh.regions.size(), 5u);
   for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(region(mesh, "chamber" + std::to_string(i + 1), 3).tetrahedra.size(), chambers[i]);
-  EXPECT_EQ(region(mesh, "handle", 0).vertices.size(), handles);
-  EXPECT_EQ(region(mesh, "rigid", 0).vertices.size(), rigids);
+    EXPECT_EQ(region_of_dimension(mesh, "chamber" + std::to_string(i + 1), 3).tetrahedra.size(), chambers[i]);
+  EXPECT_EQ(region_of_dimension(mesh, "handle", 0).vertices.size(), handles);
+  EXPECT_EQ(region_of_dimension(mesh, "rigid", 0).vertices.size(), rigids);
 }
 
 }  // namespace

@@ -16,12 +16,12 @@ using namespace text_mesh_tests;
 using Reader = Mesh (*)(const std::filesystem::path&);
 
 /// A file, and how its refusal begins ("NAME:LINE:", or "NAME:" where it concerns the whole file) and what it says.
-struct Bad {
+struct BadText {
   Files files;
   std::string at, says;
 };
 
-void expect_refused(Reader read, const std::string& name, const Bad& bad) {
+void expect_refused(Reader read, const std::string& name, const BadText& bad) {
   TemporaryFolder folder;
   for (const auto& [file, content] : bad.files) folder.write(file, content);
   try {
@@ -38,7 +38,7 @@ TEST(TextRefusals, Medit) {
   const std::string head = "MeshVersionFormatted 2\nDimension 3\n";
   const std::string four = "Vertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";  // lines 3 to 8
   const std::string one = "Tetrahedra\n1\n1 2 3 4 0\n";                          // lines 9 to 11
-  const std::vector<Bad> corpus = {
+  const std::vector<BadText> corpus = {
       {{{"a.mesh", ""}}, "a.mesh:1", "file ends before MeshVersionFormatted"},
       {{{"a.mesh", "MeshVersion 2\n"}}, "a.mesh:1", "expected 'MeshVersionFormatted', found 'MeshVersion'"},
       {{{"a.mesh", "MeshVersionFormatted x\n"}}, "a.mesh:1", "must be an integer, not 'x'"},
@@ -73,12 +73,12 @@ TEST(TextRefusals, Medit) {
       {{{"a.mesh", head + four + "Edges\n1\n1 x 0\n"}}, "a.mesh:11", "must be a finite number, not 'x'"},
       {{}, "a.mesh", "no such file"},
   };
-  for (const Bad& bad : corpus) expect_refused(read_medit, "a.mesh", bad);
+  for (const BadText& bad : corpus) expect_refused(read_medit, "a.mesh", bad);
 }
 
 TEST(TextRefusals, Tetgen) {
   const std::string node = "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", ele = "1 4 0\n0 0 1 2 3\n";
-  const std::vector<Bad> corpus = {
+  const std::vector<BadText> corpus = {
       {{{"a.node", node}}, "a.ele", "no such file"},
       {{{"a.ele", ele}}, "a.node", "no such file"},
       {{{"a.node", "0 3 0 0\n"}, {"a.ele", ele}}, "a.node:1", "number of vertices is 0"},
@@ -114,18 +114,18 @@ TEST(TextRefusals, Tetgen) {
        "a face has 4 numbers after its vertices"},
       {{{"a.node", node}, {"a.ele", ele}, {"a.face", "1 1\n0 0 1 2 1 2 3 4 5 6 7\n"}}, "a.face:2", "a face has 6"},
   };
-  for (const Bad& bad : corpus) expect_refused(read_tetgen, "a.node", bad);
+  for (const BadText& bad : corpus) expect_refused(read_tetgen, "a.node", bad);
 }
 
 const std::string nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n";     // lines 1 to 5
 const std::string deck = nodes + "*ELEMENT,TYPE=C3D4,ELSET=e\n1,1,2,3,4\n";  // lines 6 and 7
 
-Bad inp(const std::string& content, int line, const std::string& says) {
+BadText inp(const std::string& content, int line, const std::string& says) {
   return {{{"a.inp", content}}, "a.inp:" + std::to_string(line), says};
 }
 
 TEST(TextRefusals, AbaqusNodesAndElements) {
-  const std::vector<Bad> corpus = {
+  const std::vector<BadText> corpus = {
       {{{"a.inp", ""}}, "a.inp", "neither tetrahedra nor prisms"},
       inp("1,2,3\n", 1, "data before the first keyword"),
       inp(nodes, 5, "neither tetrahedra nor prisms"),
@@ -160,11 +160,11 @@ TEST(TextRefusals, AbaqusNodesAndElements) {
       inp(deck + "*Element, type=T3D2, elset=rope\n2,1,2\n*Surface, name=s\nrope\n", 11, "a truss or beam has no face"),
       inp(deck + "*Surface, name=s\ne, SPOS\n", 9, "a solid's face must be S1 to S5"),
   };
-  for (const Bad& bad : corpus) expect_refused(read_abaqus, "a.inp", bad);
+  for (const BadText& bad : corpus) expect_refused(read_abaqus, "a.inp", bad);
 }
 
 TEST(TextRefusals, AbaqusSetsAndSurfaces) {
-  const std::vector<Bad> corpus = {
+  const std::vector<BadText> corpus = {
       inp(deck + "*NSET\n1\n", 8, "*NSET needs NSET="),
       inp(deck + "*NSET,NSET=a\n1,2,\n3,9\n", 10, "unknown node 9"),
       inp(deck + "*NSET,NSET=a\n1,,2\n", 9, "an entry of the list is empty"),
@@ -186,12 +186,12 @@ TEST(TextRefusals, AbaqusSetsAndSurfaces) {
       inp(deck + "*SURFACE,NAME=a\n2,S1\n", 9, "unknown element 2"),
       inp(deck + "*SURFACE,NAME=a\nf,S1\n", 9, "unknown element set 'f'"),
   };
-  for (const Bad& bad : corpus) expect_refused(read_abaqus, "a.inp", bad);
+  for (const BadText& bad : corpus) expect_refused(read_abaqus, "a.inp", bad);
 }
 
 TEST(TextRefusals, AbaqusPartsAndOtherKeywords) {
   const std::string part = "*PART,NAME=P\n" + deck + "*END PART\n*ASSEMBLY\n";  // lines 1 to 10
-  const std::vector<Bad> corpus = {
+  const std::vector<BadText> corpus = {
       inp(deck + "*INCLUDE, INPUT=other.inp\n", 8, "*INCLUDE is not supported"),
       inp(deck + "*System\n1,0,0\n", 8, "*SYSTEM is not supported"),
       inp(deck + "*NGEN\n1,4\n", 8, "*NGEN is not supported"),
@@ -206,19 +206,19 @@ TEST(TextRefusals, AbaqusPartsAndOtherKeywords) {
       inp(part + "*INSTANCE,NAME=A,PART=P\n*END INSTANCE\n*ELSET,ELSET=e,INSTANCE=A\n1\n", 13,
           "in the part and in the assembly"),
   };
-  for (const Bad& bad : corpus) expect_refused(read_abaqus, "a.inp", bad);
+  for (const BadText& bad : corpus) expect_refused(read_abaqus, "a.inp", bad);
 }
 
 TEST(TextRefusals, Tet) {
   const std::string head = "4 vertices\n1 tets\n", four = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n", one = "4 0 1 2 3\n";
   const std::string good = head + four + one;
   const auto chamber = [&](const std::string& text, const std::string& at, const std::string& says) {
-    return Bad{{{"a.tet", good}, {"a_chamber.txt", text}}, "a_chamber.txt" + at, says};
+    return BadText{{{"a.tet", good}, {"a_chamber.txt", text}}, "a_chamber.txt" + at, says};
   };
   const auto handle = [&](const std::string& text, const std::string& at, const std::string& says) {
-    return Bad{{{"a.tet", good}, {"a_rigid_handle.txt", text}}, "a_rigid_handle.txt" + at, says};
+    return BadText{{{"a.tet", good}, {"a_rigid_handle.txt", text}}, "a_rigid_handle.txt" + at, says};
   };
-  const std::vector<Bad> corpus = {
+  const std::vector<BadText> corpus = {
       {{{"a.tet", ""}}, "a.tet:1", "file ends before number of vertices"},
       {{{"a.tet", "4\n1 tets\n" + four}}, "a.tet:1", "the line ends before vertices"},
       {{{"a.tet", "4 vertexes\n1 tets\n" + four}}, "a.tet:1", "expected 'vertices', found 'vertexes'"},
@@ -254,7 +254,7 @@ TEST(TextRefusals, Tet) {
       handle("1:0:\n2:0:\n3:0:\n4:1:\n", ":1", "rows must be id:handle:rigid:"),
       handle("1:0:0:\n2:0:0:\n3:0:0:\n4:0:0.5:\n", ":4", "column 2 must be 0 or 1, not '0.5'"),
   };
-  for (const Bad& bad : corpus) expect_refused(read_tet, "a.tet", bad);
+  for (const BadText& bad : corpus) expect_refused(read_tet, "a.tet", bad);
 }
 
 /// A valid set of files of each form, in which one file is to be damaged.

@@ -11,14 +11,14 @@ namespace {
 using namespace vtk_files;
 using Format = XmlForm::Format;
 
-struct Bad {
+struct BadVtk {
   std::string message;  // a part of what() that holds the place too
   std::string content;
 };
 
-void expect_refused(const std::vector<Bad>& cases, const std::string& name) {
+void expect_refused(const std::vector<BadVtk>& cases, const std::string& name) {
   const TempFolder folder;
-  for (const Bad& bad : cases) {
+  for (const BadVtk& bad : cases) {
     const fs::path path = folder.write(name, bad.content);
     const std::string message = refusal([&] { (void)(name.ends_with(".vtk") ? read_vtk(path) : read_vtu(path)); });
     EXPECT_NE(message.find(bad.message), std::string::npos) << "expected " << bad.message << "\nfound    " << message;

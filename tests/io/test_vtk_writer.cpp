@@ -10,7 +10,7 @@ namespace {
 
 using namespace vtk_files;
 
-VtuContent sample() {
+VtuContent sample_content() {
   VtuContent content;
   content.points = Eigen::Map<const Points>(kPoints.data(), 8, 3);
   content.tetrahedra = {{0, 2, 1, 6}, {3, 4, 5, 7}};
@@ -25,7 +25,7 @@ VtuContent sample() {
 
 TEST(VtkWriter, ReaderRecoversMeshAndRegions) {
   const TempFolder folder;
-  const VtuContent content = sample();
+  const VtuContent content = sample_content();
   write_vtu(folder.file("a.vtu"), content);
   const Mesh mesh = read_vtu(folder.file("a.vtu"));
   EXPECT_EQ(mesh.vertices, content.points);
@@ -40,7 +40,7 @@ TEST(VtkWriter, ReaderRecoversMeshAndRegions) {
 
 TEST(VtkWriter, ReaderFindsNoRegionWhereNoCellIsInOne) {
   const TempFolder folder;
-  VtuContent content = sample();
+  VtuContent content = sample_content();
   content.cell_regions = {-1, -1, -1};
   for (const std::size_t names : {2u, 0u}) {
     content.region_names.resize(names);
@@ -77,7 +77,7 @@ std::string stored(const std::string& file, const std::string& name) {
 
 TEST(VtkWriter, StoresWhatTheFormatAsksFor) {
   const TempFolder folder;
-  write_vtu(folder.file("a.vtu"), sample());
+  write_vtu(folder.file("a.vtu"), sample_content());
   const std::string file = slurp(folder.file("a.vtu"));
   EXPECT_EQ(stored(file, "Points"), packed(kPoints));
   EXPECT_EQ(stored(file, "displacement"), packed(std::vector<double>(24, 0.25)));
@@ -169,7 +169,7 @@ TEST(VtkWriter, RefusesBadContent) {
   };
   const TempFolder folder;
   for (const BadContent& bad : cases) {
-    VtuContent content = sample();
+    VtuContent content = sample_content();
     bad.spoil(content);
     const std::string message = refusal([&] { write_vtu(folder.file("a.vtu"), content); });
     EXPECT_NE(message.find(bad.message), std::string::npos) << bad.message << "\n" << message;

@@ -8,7 +8,7 @@ namespace {
 using namespace vtk_files;
 using Format = XmlForm::Format;
 
-Mesh read_text(const std::string& content) {
+Mesh read_xml(const std::string& content) {
   const TempFolder folder;
   return read_vtu(folder.write("mesh.vtu", content));
 }
@@ -20,10 +20,10 @@ TEST(VtkXml, ReadsEveryForm) {
       for (const bool big : {false, true})
         for (const bool long_header : {false, true})
           for (const bool narrow : {false, true}) {
-            SCOPED_TRACE(testing::Message() << "format " << static_cast<int>(format) << " compressed " << compressed
-                                            << " big " << big << " long " << long_header << " narrow " << narrow);
+            SCOPED_TRACE(::testing::Message() << "format " << static_cast<int>(format) << " compressed " << compressed
+                                              << " big " << big << " long " << long_header << " narrow " << narrow);
             expect_reference_mesh(
-                read_text(xml_file({format, big, long_header, compressed, false, narrow, !narrow, 40})));
+                read_xml(xml_file({format, big, long_header, compressed, false, narrow, !narrow, 40})));
             ++forms;
           }
   EXPECT_EQ(forms, 64);
@@ -32,12 +32,12 @@ TEST(VtkXml, ReadsEveryForm) {
 TEST(VtkXml, ReadsHeadersThatAreEncodedByThemselves) {
   for (const Format format : {Format::binary, Format::base64})
     for (const bool long_header : {false, true})
-      expect_reference_mesh(read_text(xml_file({format, false, long_header, false, true})));
+      expect_reference_mesh(read_xml(xml_file({format, false, long_header, false, true})));
 }
 
 TEST(VtkXml, ReadsBlocksWithoutPartialOne) {
   for (const std::size_t block : {std::size_t{1}, std::size_t{8}, std::size_t{192}, std::size_t{100000}})
-    expect_reference_mesh(read_text(xml_file({Format::raw, false, true, true, false, false, true, block})));
+    expect_reference_mesh(read_xml(xml_file({Format::raw, false, true, true, false, false, true, block})));
 }
 
 TEST(VtkXml, ReadsInformationKeysAndWrappedBase64) {
@@ -48,7 +48,7 @@ TEST(VtkXml, ReadsInformationKeysAndWrappedBase64) {
   const std::size_t data = file.find("  ", file.find("format=\"binary\""));
   file.insert(data + 9, "\n   ");
   file.insert(data + 30, "\r\n");
-  expect_reference_mesh(read_text(file));
+  expect_reference_mesh(read_xml(file));
 }
 
 TEST(VtkXml, RefusesToUnpackWhatIsNoMesh) {
@@ -86,7 +86,7 @@ void expect_named_regions(const std::string& names) {
   file = replaced(file, "Name=\"material\"", "Name=\"region\"");
   const std::size_t begin = file.find('\n', file.find("Name=\"region\"")) + 1;
   file.replace(begin, file.find("</DataArray>", begin) - begin, "0 1 1 1 -1 -1 -1 ");
-  const Mesh mesh = read_text(file);
+  const Mesh mesh = read_xml(file);
   EXPECT_EQ(region_names(mesh), (std::vector<std::string>{"body", "\xC3\xA4 b", "\xC3\xA4 b_2d"}));
   EXPECT_EQ(region(mesh, "body").prisms, std::vector<Index>{0});
   EXPECT_EQ(region(mesh, "\xC3\xA4 b").tetrahedra, (std::vector<Index>{0, 1}));

@@ -15,7 +15,7 @@ using testing::bending_finger;
 using testing::by_load;
 using testing::cable_beam;
 
-RobotSpec two_cables(Formulation formulation = Formulation::physical) {
+RobotSpec two_ranged_cables(Formulation formulation = Formulation::physical) {
   RobotSpec spec = cable_beam();
   spec.formulation = formulation;
   for (ActuatorSpec& actuator : spec.actuators) {
@@ -26,12 +26,12 @@ RobotSpec two_cables(Formulation formulation = Formulation::physical) {
   return spec;
 }
 
-struct Robot {
+struct PlannedRobot {
   Model model;
   Statics statics;
   WorkspacePlan plan;
 
-  Robot(const RobotSpec& spec, Sampling kind, Index samples)
+  PlannedRobot(const RobotSpec& spec, Sampling kind, Index samples)
       : model(compile(spec)), statics(model), plan(plan_workspace(model, {kind, samples, 3})) {}
 };
 
@@ -66,7 +66,8 @@ class Memory : public GroupDesk {
   std::size_t next_ = 0;
 };
 
-std::map<Index, WorkspaceSample> solved(const Robot& robot, int threads, std::map<Index, WorkspaceSample> before = {}) {
+std::map<Index, WorkspaceSample> solved(const PlannedRobot& robot, int threads,
+                                        std::map<Index, WorkspaceSample> before = {}) {
   Memory desk(robot.plan, std::move(before));
   solve_groups(robot.model, robot.statics, robot.plan, {}, threads, desk);
   return desk.samples;
@@ -84,7 +85,7 @@ void expect_same(const std::map<Index, WorkspaceSample>& a, const std::map<Index
   }
 }
 
-void expect_those_from_rest(const Robot& robot, const std::map<Index, WorkspaceSample>& samples) {
+void expect_those_from_rest(const PlannedRobot& robot, const std::map<Index, WorkspaceSample>& samples) {
   ASSERT_EQ(samples.size(), static_cast<std::size_t>(robot.plan.samples()));
   for (const auto& [number, sample] : samples) {
     const Actuation actuation = robot.plan.actuations.row(number);
@@ -98,7 +99,7 @@ void expect_those_from_rest(const Robot& robot, const std::map<Index, WorkspaceS
 }
 
 TEST(Workspace, EverySampleIsInOneGroupThatBeginsNearItsMiddle) {
-  const Robot robot(two_cables(), Sampling::sobol, 900);
+  const PlannedRobot robot(two_ranged_cables(), Sampling::sobol, 900);
   std::set<Index> seen;
   for (const auto& group : robot.plan.groups) {
     EXPECT_LE(static_cast<Index>(group.size()), group_size(900));
@@ -115,24 +116,24 @@ TEST(Workspace, EverySampleIsInOneGroupThatBeginsNearItsMiddle) {
 }
 
 TEST(Workspace, SamplesAreTheEquilibriaThatAreFoundFromRest) {
-  const Robot robot(two_cables(), Sampling::grid, 25);
+  const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 25);
   expect_those_from_rest(robot, solved(robot, 1));
 }
 
 TEST(Workspace, SamplesOfTargetShapesAreThoseFromRestToo) {
-  const Robot robot(two_cables(Formulation::target_shape), Sampling::random, 20);
+  const PlannedRobot robot(two_ranged_cables(Formulation::target_shape), Sampling::random, 20);
   expect_those_from_rest(robot, solved(robot, 2));
 }
 
 TEST(Workspace, IsTheSameOnAnyNumberOfThreads) {
-  const Robot robot(two_cables(), Sampling::sobol, 40);
+  const PlannedRobot robot(two_ranged_cables(), Sampling::sobol, 40);
   const auto alone = solved(robot, 1);
   ASSERT_EQ(alone.size(), 40u);
   expect_same(alone, solved(robot, 3));
 }
 
 TEST(Workspace, IsTheSameWhateverHasBeenDoneBefore) {
-  const Robot robot(two_cables(), Sampling::random, 24);
+  const PlannedRobot robot(two_ranged_cables(), Sampling::random, 24);
   const auto whole = solved(robot, 1);
   for (const int keep_every : {2, 3, 7}) {
     std::map<Index, WorkspaceSample> some;
@@ -143,7 +144,8 @@ TEST(Workspace, IsTheSameWhateverHasBeenDoneBefore) {
 }
 
 TEST(Workspace, OfAnotherObjectIsTheSame) {
-  const Robot first(two_cables(), Sampling::random, 16), second(two_cables(), Sampling::random, 16);
+  const PlannedRobot first(two_ranged_cables(), Sampling::random, 16),
+      second(two_ranged_cables(), Sampling::random, 16);
   const auto before = solved(first, 1);
   (void)second.statics.solve(second.plan.actuations.row(3), second.statics.rest());
   expect_same(before, solved(second, 1));
@@ -152,7 +154,7 @@ TEST(Workspace, OfAnotherObjectIsTheSame) {
 TEST(Workspace, SamplesWithoutAnEquilibriumAreTold) {
   RobotSpec spec = bending_finger();
   spec.actuators = {by_load(air("chamber"), 0, 4000)};
-  const Robot robot(spec, Sampling::grid, 5);
+  const PlannedRobot robot(spec, Sampling::grid, 5);
   const auto samples = solved(robot, 1);
   ASSERT_EQ(samples.size(), 5u);
   int missing = 0;
@@ -179,7 +181,7 @@ TEST(Workspace, SamplesWithoutAnEquilibriumAreTold) {
 }
 
 TEST(Workspace, StopsWhereProgressSaysSoAndKeepsWhatIsDone) {
-  const Robot robot(two_cables(), Sampling::grid, 16);
+  const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 16);
   const auto whole = solved(robot, 1);
   Memory desk(robot.plan);
   const auto go_on = [&](const Progress&) { return desk.samples.size() < 5; };
@@ -194,13 +196,13 @@ TEST(Workspace, FailuresOfTheDeskComeThrough) {
     using Memory::Memory;
     void keep(const WorkspaceSample&) override { throw std::runtime_error("full"); }
   };
-  const Robot robot(two_cables(), Sampling::grid, 16);
+  const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 16);
   Full desk(robot.plan);
   EXPECT_THROW(solve_groups(robot.model, robot.statics, robot.plan, {}, 2, desk), std::runtime_error);
 }
 
 TEST(Neighbourhood, PredictsToFirstOrder) {
-  const Robot robot(two_cables(), Sampling::grid, 4);
+  const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 4);
   const Actuation centre = testing::values({0.9, 0.98}), change = testing::values({0.01, -0.004});
   const Equilibrium at = testing::settled(robot.statics, centre);
   Neighbourhood around(robot.statics, at.state);

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using testing::TypeDefinition;
 using testing::TypeFinder;
 
-const fs::path source = SOFTKIN_SOURCE_DIR;
+const fs::path source_folder = SOFTKIN_SOURCE_DIR;
 
 /// By name, the places that define it: one for each file.
 using Places = std::map<std::string, std::map<std::string, std::size_t>>;
@@ -76,12 +76,12 @@ using Names = std::vector<std::string>;
 
 /// What two files call the same is one type to the linker, and a program copies by the code of either.
 TEST(Types, WithExternalLinkageAreDefinedOnce) {
-  for (const std::string& line : defined_twice_in(source)) ADD_FAILURE() << line;
-  EXPECT_GT(types_below(source / "src").size(), 200u);
+  for (const std::string& line : defined_twice_in(source_folder)) ADD_FAILURE() << line;
+  EXPECT_GT(types_below(source_folder / "src").size(), 200u);
 }
 
 TEST(Types, ThoseOfTheSampleDefinedTwiceAreFound) {
-  EXPECT_EQ(defined_twice_in(source / "tests/layout/twice"),
+  EXPECT_EQ(defined_twice_in(source_folder / "tests/layout/twice"),
             (Names{"softkin::Pose: src/pose.hpp:7 src/statics.cpp:9",
                    "softkin::inner::Kind: src/pose.hpp:13 src/statics.cpp:15",
                    "softkin::Row: first/table.cpp:4 src/pose.hpp:18"}));

@@ -8,18 +8,18 @@ namespace softkin::linear {
 
 namespace {
 
-struct Sample {
+struct CliqueSample {
   Cliques cliques;
   LargeVector<double> slots;
   Eigen::MatrixXd dense;
 };
 
 /// Sets of 1 to 7 of the vertices, some of them several times, each with a random symmetric matrix.
-Sample random_cliques(Index vertices, int count, unsigned seed) {
+CliqueSample random_cliques(Index vertices, int count, unsigned seed) {
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal;
   std::uniform_int_distribution<Index> pick(0, vertices - 1), size(1, std::min<Index>(7, vertices));
-  Sample sample;
+  CliqueSample sample;
   sample.dense = Eigen::MatrixXd::Zero(3 * vertices, 3 * vertices);
   for (int c = 0; c < count; ++c) {
     std::vector<Index> set;
@@ -60,7 +60,7 @@ Eigen::MatrixXd dense_of(const BlockPattern& pattern, const LargeVector<double>&
 TEST(BlockMatrix, GathersAndMultipliesAsADenseMatrixDoes) {
   Team alone(1), pair(2);
   for (const auto& [vertices, count] : {std::pair<Index, int>{1, 1}, {1, 3}, {6, 4}, {40, 60}, {200, 30}}) {
-    const Sample sample = random_cliques(vertices, count, static_cast<unsigned>(vertices + count));
+    const CliqueSample sample = random_cliques(vertices, count, static_cast<unsigned>(vertices + count));
     const BlockPattern pattern(vertices, sample.cliques);
     LargeVector<double> blocks, shared;
     pattern.gather(sample.slots, blocks, alone);

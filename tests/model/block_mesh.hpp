@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
@@ -130,6 +131,10 @@ inline TriangleSurface box_surface(const Vec3& low, const Vec3& size) {
 }
 
 /// Adds a region of single vertices.
+inline double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
 inline void add_vertex_region(Mesh& mesh, const std::string& name, std::vector<Index> vertices) {
   Region region;
   region.name = name;

@@ -10,10 +10,6 @@ using namespace softkin::testing;
 
 namespace {
 
-double sum(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 TEST(Compile, ABlockKeepsItsElementsAndVolume) {
   for (const Split split : {Split::five, Split::six, Split::prisms}) {
     const RobotSpec spec = block_robot(block_mesh({3, 2, 2}, {30, 20, 10}, split));

@@ -25,10 +25,6 @@ Mesh quadratic_hollow() {
   return mesh;
 }
 
-double sum(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 TEST(Order2, CompileElevates) {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 2}, {30, 20, 10}));
   spec.quadratic = true;

@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <cmath>
 #include <limits>
 #include <random>
+#include <softkin/core/dense.hpp>
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
@@ -32,8 +33,7 @@ double brute_distance(const std::vector<Vec3>& corners, const Vec3& point) {
       if (subset >> i & 1u) chosen.push_back(corners[i]);
     Eigen::MatrixXd edges(3, static_cast<Eigen::Index>(chosen.size()) - 1);
     for (Eigen::Index i = 0; i < edges.cols(); ++i) edges.col(i) = chosen[i + 1] - chosen[0];
-    const Eigen::VectorXd w =
-        edges.cols() ? Eigen::VectorXd(edges.colPivHouseholderQr().solve(point - chosen[0])) : Eigen::VectorXd(0);
+    const Eigen::VectorXd w = edges.cols() ? least_squares(edges, point - chosen[0]).solution : Eigen::VectorXd(0);
     if (w.size() && (w.minCoeff() < -1e-12 || w.sum() > 1 + 1e-12)) continue;
     const Vec3 nearest = w.size() ? Vec3(chosen[0] + edges * w) : chosen[0];
     best = std::min(best, (nearest - point).norm());

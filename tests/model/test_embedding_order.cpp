@@ -11,7 +11,7 @@ using namespace softkin::testing;
 
 namespace {
 
-class Random {
+class RandomPoints {
  public:
   Vec3 point(double low, double high) {
     std::uniform_real_distribution<double> in(low, high);
@@ -35,14 +35,14 @@ double carried(const EmbeddedPoint& point, const Points& at, const Function& fun
   return value;
 }
 
-Mesh shaken(Random& random) {
+Mesh shaken(RandomPoints& random) {
   Mesh mesh = block_mesh({3, 3, 3}, {3, 3, 3});
   for (Index v = 0; v < mesh.vertices.rows(); ++v) mesh.vertices.row(v) += random.point(-0.1, 0.1).transpose();
   return elevated(mesh);
 }
 
 TEST(EmbeddingOrder2, CarriesQuadraticFunctionsInsideStraightElements) {
-  Random random;
+  RandomPoints random;
   const Mesh mesh = shaken(random);
   const Embedder embedder(mesh.vertices, mesh.tetrahedra, {}, mesh.edge_nodes);
   for (int i = 0; i < 300; ++i) {
@@ -60,7 +60,7 @@ TEST(EmbeddingOrder2, CarriesQuadraticFunctionsInsideStraightElements) {
 }
 
 TEST(EmbeddingOrder2, IsContinuedLinearlyOutside) {
-  Random random;
+  RandomPoints random;
   const Mesh mesh = shaken(random);
   const Embedder embedder(mesh.vertices, mesh.tetrahedra, {}, mesh.edge_nodes);
   for (int i = 0; i < 100; ++i) {
@@ -76,7 +76,7 @@ TEST(EmbeddingOrder2, IsContinuedLinearlyOutside) {
 TEST(EmbeddingOrder2, FindsThePlaceInCurvedElements) {
   const Mesh straight = quadratic_block({3, 3, 3}, {3, 3, 3}), mesh = bent(straight);
   const Embedder embedder(mesh.vertices, mesh.tetrahedra, {}, mesh.edge_nodes);
-  Random random;
+  RandomPoints random;
   int exact = 0;
   for (int i = 0; i < 300; ++i) {
     const Vec3 p = random.point(0.05, 2.95), q = Bend{}(p);

@@ -10,7 +10,7 @@ namespace softkin::random_robots {
 
 namespace {
 
-constexpr Real ulp = std::numeric_limits<double>::epsilon();
+constexpr Real rounding_unit = std::numeric_limits<double>::epsilon();
 /// Of the largest force at a vertex; the solver's own criterion is a step.
 constexpr Real balanced = 1e-5L;
 /// Of what the solver's tolerance stands for: a robot that is only carried elsewhere has no force to compare with.
@@ -37,7 +37,7 @@ struct Forces {
   void add(Index v, const RealVec3& force, Real blur) {
     sum.row(v) += force.transpose();
     size[v] += force.norm();
-    rounding[v] += blur + ulp * force.norm();
+    rounding[v] += blur + rounding_unit * force.norm();
   }
 };
 
@@ -94,7 +94,7 @@ Measure length_of(const Actuator& cable, const Points& positions) {
   for (const EmbeddedPoint& point : cable.points) (void)measure.add_node(point);
   for (std::size_t i = 0; i + 1 < cable.points.size(); ++i) {
     const RealVec3 from = place(cable.points[i], positions), to = place(cable.points[i + 1], positions);
-    const Real length = (to - from).norm(), blur = ulp * (from.norm() + to.norm());
+    const Real length = (to - from).norm(), blur = rounding_unit * (from.norm() + to.norm());
     measure.value += length;
     measure.rounding += blur;
     if (!(length > 0)) continue;
@@ -143,11 +143,11 @@ void add_face(const std::vector<std::size_t>& nodes, const std::vector<RealVec3>
     const Real third = weight / 3;
     measure.value += third * x.dot(along.cross(across));
     const Real edges = along.norm() + across.norm();
-    measure.rounding += ulp * third * (far + x.norm()) * edges * edges;
+    measure.rounding += rounding_unit * third * (far + x.norm()) * edges * edges;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       measure.slopes[nodes[i]] +=
           third * (f.shape[i] * along.cross(across) + f.by_u[i] * across.cross(x) + f.by_v[i] * x.cross(along));
-      measure.blurs[nodes[i]] += ulp * 4 * third * (far + x.norm() + edges) * edges;
+      measure.blurs[nodes[i]] += rounding_unit * 4 * third * (far + x.norm() + edges) * edges;
     }
   });
 }
@@ -184,7 +184,7 @@ void check_measure(const Actuator& actuator, const Measure& now, const Measure& 
                    Confirmation& out) {
   const std::string name = "actuator '" + actuator.name + "'";
   if (actuator.control == Control::load) {
-    if (!(std::abs(multiplier - command) <= 4 * ulp * std::abs(command)))
+    if (!(std::abs(multiplier - command) <= 4 * rounding_unit * std::abs(command)))
       out.faults.push_back(name + ": load " + digits(multiplier) + " instead of " + digits(command));
     return;
   }
@@ -248,7 +248,8 @@ void check_places(const Model& model, const State& state, Confirmation& out) {
     for (int axis = 0; axis < 3; ++axis) {
       if (!model.fixed[v][axis]) continue;
       const double place = model.rest(v, axis) + state.share * (model.held(v, axis) - model.rest(v, axis));
-      const double allowed = of_rigid[v] ? 1e-9 * model.diagonal_mm + 64 * ulp * far : 4 * ulp * far;
+      const double allowed =
+          of_rigid[v] ? 1e-9 * model.diagonal_mm + 64 * rounding_unit * far : 4 * rounding_unit * far;
       worst = std::max(worst, std::abs(state.positions(v, axis) - place) / allowed);
     }
   if (!(worst <= 1))
@@ -264,7 +265,7 @@ void check_shape(const Model& model, const RigidRegion& region, const Points& po
       const double before = (model.rest.row(v) - model.rest.row(u)).norm();
       worst = std::max(worst, std::abs((positions.row(v) - positions.row(u)).norm() - before));
     }
-  if (!(worst <= 1e-9 * model.diagonal_mm + 64 * ulp * far))
+  if (!(worst <= 1e-9 * model.diagonal_mm + 64 * rounding_unit * far))
     out.faults.push_back("a rigid region has changed its shape by " + digits(worst) + " mm");
 }
 

@@ -12,7 +12,7 @@ namespace softkin::random_robots {
 
 namespace {
 
-constexpr double ulp = std::numeric_limits<double>::epsilon();
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// An SVD is as near as this to one with another best rotation [-].
 constexpr double tie = 1e-7;
 /// Steps over the tolerance that an answer may still have ahead, and units in the last place lost in the linear system.
@@ -257,7 +257,7 @@ void check_places(const Model& model, const Points& positions, Confirmation& out
   for (Index v = 0; v < model.rest.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
       if (model.fixed[v][axis]) worst = std::max(worst, std::abs(positions(v, axis) - model.held(v, axis)));
-  if (!(worst <= 1e-9 * model.diagonal_mm + 64 * ulp * far))
+  if (!(worst <= 1e-9 * model.diagonal_mm + 64 * epsilon * far))
     out.faults.push_back("a held vertex is " + digits(worst) + " mm from its place");
   worst = 0;
   for (const RigidRegion& region : model.rigid)
@@ -267,7 +267,7 @@ void check_places(const Model& model, const Points& positions, Confirmation& out
         worst = std::max(worst, std::abs((positions.row(v) - positions.row(u)).norm() -
                                          (model.rest.row(v) - model.rest.row(u)).norm()));
       }
-  if (!(worst <= 1e-9 * model.diagonal_mm + 64 * ulp * far))
+  if (!(worst <= 1e-9 * model.diagonal_mm + 64 * epsilon * far))
     out.faults.push_back("a rigid region has changed its shape by " + digits(worst) + " mm");
 }
 
@@ -300,7 +300,7 @@ void confirm_target_shape(const Model& model, const Equilibrium& found, Confirma
   };
   const double far = std::max(model.rest.cwiseAbs().maxCoeff(), positions.cwiseAbs().maxCoeff());
   const double moved = largest(factor.solve(moves.transpose() * pull));
-  const double hidden = lost * ulp *
+  const double hidden = lost * epsilon *
                         (far + largest(factor.solve(moves.cwiseAbs().transpose() * blur)) +
                          far / model.diagonal_mm * largest(factor.solve(moves.cwiseAbs().transpose() * blur)));
   const double tolerance = found.report.tolerance_mm;

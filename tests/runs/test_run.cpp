@@ -10,7 +10,7 @@ namespace softkin::runs {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::TemporaryFolder;
+using softkin::testing::TemporaryFolder;
 
 /// Every file of a folder, without the seconds of reports.
 std::map<std::string, std::string> files_of(const fs::path& folder) {

@@ -14,8 +14,8 @@ namespace softkin::runs {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::read_text;
-using testing::TemporaryFolder;
+using softkin::testing::read_text;
+using softkin::testing::TemporaryFolder;
 
 const std::string head = "first line\nsecond line\n";
 

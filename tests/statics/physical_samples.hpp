@@ -111,12 +111,6 @@ inline RobotSpec chambers_beam(int count) {
   return spec;
 }
 
-inline Actuation values(std::initializer_list<double> list) {
-  Actuation actuation(static_cast<Index>(list.size()));
-  std::copy(list.begin(), list.end(), actuation.data());
-  return actuation;
-}
-
 inline StaticsOptions tight(double tolerance_mm = 1e-9) {
   StaticsOptions options;
   options.step_tolerance_mm = tolerance_mm;

@@ -5,11 +5,22 @@
 #include <cstdlib>
 #include <filesystem>
 #include <random>
+#include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
 
 #include "model/block_mesh.hpp"
 
 namespace softkin::testing {
+
+inline Actuation values(std::initializer_list<double> list) {
+  Actuation actuation(static_cast<Index>(list.size()));
+  std::copy(list.begin(), list.end(), actuation.data());
+  return actuation;
+}
+
+inline double largest_distance(const Points& a, const Points& b) {
+  return (a - b).rowwise().norm().maxCoeff();
+}
 
 inline ActuatorSpec actuator(const std::string& name, ActuatorKind kind, double low, double high, bool least_norm) {
   ActuatorSpec spec;

@@ -35,8 +35,8 @@ RobotSpec held_robot() {
 }
 
 /// A model, a pattern that couples neighbours and distant vertices, and freedoms over it.
-struct Sample {
-  explicit Sample(const RobotSpec& spec) : model(compile(spec)) {
+struct FreedomSample {
+  explicit FreedomSample(const RobotSpec& spec) : model(compile(spec)) {
     for (const Tetrahedron& t : model.tetrahedra) cliques.add(t);
     const Index n = static_cast<Index>(model.rest.rows());
     cliques.add(std::vector<Index>{0, n - 1, n / 2, 3, n / 3});
@@ -64,7 +64,7 @@ Eigen::Map<const Eigen::VectorXd> flat(const Points& points) {
 }
 
 /// T, column by column.
-Eigen::MatrixXd tangent_of(const Sample& sample) {
+Eigen::MatrixXd tangent_of(const FreedomSample& sample) {
   Eigen::MatrixXd t(3 * sample.model.rest.rows(), sample.freedoms->size());
   Points moves;
   for (Index u = 0; u < t.cols(); ++u) {
@@ -89,7 +89,8 @@ Eigen::MatrixXd dense_of(const BlockColumns& columns, const LargeVector<double>&
 
 /// Random blocks for every clique, those on the diagonal symmetric; their sums over the pattern, and these as a matrix.
 struct RandomMatrix {
-  explicit RandomMatrix(const Sample& sample) : slots(9 * static_cast<std::size_t>(sample.cliques.slots.back())) {
+  explicit RandomMatrix(const FreedomSample& sample)
+      : slots(9 * static_cast<std::size_t>(sample.cliques.slots.back())) {
     std::mt19937 engine(4);
     std::normal_distribution<double> normal;
     for (Index c = 0; c < sample.cliques.count(); ++c) {
@@ -118,7 +119,7 @@ struct RandomMatrix {
 }  // namespace
 
 TEST(Freedoms, CountsWhatMayMove) {
-  const Sample sample(held_robot());
+  const FreedomSample sample(held_robot());
   Index expected = 6 + 3 + 1;  // regions: free, in a plane, along a line
   std::vector<bool> in_region(sample.model.fixed.size());
   for (const RigidRegion& region : sample.model.rigid)
@@ -129,7 +130,7 @@ TEST(Freedoms, CountsWhatMayMove) {
 }
 
 TEST(Freedoms, ExpandIsTheSlopeOfMoveAndReduceItsTranspose) {
-  const Sample sample(held_robot());
+  const FreedomSample sample(held_robot());
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Eigen::VectorXd unknowns = sample.random_unknowns(seed);
     Points high = sample.positions, low = sample.positions, moves;
@@ -146,7 +147,7 @@ TEST(Freedoms, ExpandIsTheSlopeOfMoveAndReduceItsTranspose) {
 }
 
 TEST(Freedoms, MovedFarRegionsKeepTheirShapeAndSupportsTheirPlace) {
-  const Sample sample(held_robot());
+  const FreedomSample sample(held_robot());
   Points moved = sample.positions;
   sample.freedoms->move(sample.random_unknowns(7), 2, moved);
   EXPECT_GT((moved - sample.positions).rowwise().norm().maxCoeff(), 2);
@@ -163,7 +164,7 @@ TEST(Freedoms, MovedFarRegionsKeepTheirShapeAndSupportsTheirPlace) {
 }
 
 TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
-  const Sample sample(held_robot());
+  const FreedomSample sample(held_robot());
   const RandomMatrix matrix(sample);
   const Eigen::MatrixXd t = tangent_of(sample), expected = t.transpose() * matrix.dense * t;
   Team alone(1), pair(2);
@@ -178,7 +179,7 @@ TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
 /// Along a straight line of unknowns regions turn about one axis: the derivative of u . T^T gradient there is u^T K u,
 /// of which all of the symmetric K follows.
 TEST(Freedoms, ReducedMatrixIsTheSlopeOfTheReducedGradient) {
-  const Sample sample(held_robot());
+  const FreedomSample sample(held_robot());
   const RandomMatrix hessian(sample);
   Team alone(1);
   const auto gradient_at = [&](const Points& positions) {
@@ -218,7 +219,7 @@ TEST(Freedoms, ReducedMatrixIsTheSlopeOfTheReducedGradient) {
 }
 
 TEST(Freedoms, HoldProjects) {
-  const Sample sample(held_robot());
+  const FreedomSample sample(held_robot());
   const Model& model = sample.model;
   for (const double share : {0.0, 0.4, 1.0}) {
     Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 2, 3);

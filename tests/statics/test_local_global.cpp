@@ -28,10 +28,6 @@ StaticsOptions to_the_end(int anderson) {
   return options;
 }
 
-double largest_distance(const Points& a, const Points& b) {
-  return (a - b).rowwise().norm().maxCoeff();
-}
-
 Actuation one(double value) {
   return Actuation::Constant(1, value);
 }

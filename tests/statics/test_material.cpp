@@ -7,7 +7,7 @@ namespace softkin {
 
 namespace {
 
-constexpr double length = 10, strain = 1e-4;
+constexpr double cube_edge = 10, small_strain = 1e-4;
 
 FixedSpec face(const std::string& region, int axis, double displacement) {
   FixedSpec spec{{region, {}}};
@@ -23,12 +23,13 @@ struct Response {
 
 /// A cube stretched along x, its sides free, or along all axes; three faces slide in symmetry planes.
 Response stretch(testing::Split split, double shape_ratio, bool all_axes) {
-  RobotSpec spec = testing::block_robot(testing::block_mesh({4, 4, 4}, {length, length, length}, split));
+  RobotSpec spec = testing::block_robot(testing::block_mesh({4, 4, 4}, {cube_edge, cube_edge, cube_edge}, split));
   spec.materials[0].shape_ratio = shape_ratio;
-  spec.fixed = {face("x_low", 0, 0), face("y_low", 1, 0), face("z_low", 2, 0), face("x_high", 0, strain * length)};
+  spec.fixed = {face("x_low", 0, 0), face("y_low", 1, 0), face("z_low", 2, 0),
+                face("x_high", 0, small_strain * cube_edge)};
   if (all_axes) {
-    spec.fixed.push_back(face("y_high", 1, strain * length));
-    spec.fixed.push_back(face("z_high", 2, strain * length));
+    spec.fixed.push_back(face("y_high", 1, small_strain * cube_edge));
+    spec.fixed.push_back(face("z_high", 2, small_strain * cube_edge));
   }
   const Model model = compile(spec);
   const Statics statics(model);
@@ -45,14 +46,14 @@ Response stretch(testing::Split split, double shape_ratio, bool all_axes) {
   double moved = 0;
   int count = 0;
   for (Index v = 0; v < model.rest.rows(); ++v) {
-    if (model.rest(v, 0) > length - 1e-9) response.stress -= 2 * scratch.residual(v, 0) / (length * length);
+    if (model.rest(v, 0) > cube_edge - 1e-9) response.stress -= 2 * scratch.residual(v, 0) / (cube_edge * cube_edge);
     for (const int axis : {1, 2})
-      if (model.rest(v, axis) > length - 1e-9) {
-        moved += positions(v, axis) - length;
+      if (model.rest(v, axis) > cube_edge - 1e-9) {
+        moved += positions(v, axis) - cube_edge;
         ++count;
       }
   }
-  response.contraction = -moved / count / (strain * length);
+  response.contraction = -moved / count / (small_strain * cube_edge);
   return response;
 }
 

@@ -16,13 +16,13 @@ namespace {
 
 using namespace testing;
 
-constexpr double length = 100, width = 4, modulus = 2;
-constexpr double area = width * width, inertia = width * width * width * width / 12;
+constexpr double beam_length = 100, beam_width = 4, beam_modulus = 2;
+constexpr double beam_area = beam_width * beam_width, beam_inertia = beam_area * beam_area / 12;
 
 RobotSpec beam(Law law = Law::st_venant_kirchhoff) {
-  RobotSpec spec = physical_robot(block_mesh({25, 1, 1}, {length, width, width}));
+  RobotSpec spec = physical_robot(block_mesh({25, 1, 1}, {beam_length, beam_width, beam_width}));
   spec.quadratic = true;
-  spec.materials[0].elastic = elastic(law, modulus, 0);
+  spec.materials[0].elastic = elastic(law, beam_modulus, 0);
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   return spec;
 }
@@ -70,15 +70,16 @@ TEST(PhysicalBeams, PayloadBendsACantileverAsTheElasticaSays) {
   for (const Law law : {Law::st_venant_kirchhoff, Law::neo_hookean})
     for (const double load : {0.5, 2.0, 6.0}) {
       RobotSpec spec = beam(law);
-      spec.forces.push_back(
-          {"payload", {std::string("x_high"), {}}, {0, 0, -load * modulus * inertia / (length * length)}});
+      spec.forces.push_back({"payload",
+                             {std::string("x_high"), {}},
+                             {0, 0, -load * beam_modulus * beam_inertia / (beam_length * beam_length)}});
       const Model model = compile(spec);
       const Statics statics(model);
       const Vec3 tip = marker_at(model, settled(statics, {}));
       const Rod rod = elastica(load);
-      EXPECT_NEAR(tip[0], length * rod.x, 0.004 * length) << load;
-      EXPECT_NEAR(tip[1], width / 2, 0.02) << load;  // the mesh is not symmetric
-      EXPECT_NEAR(width / 2 - tip[2], length * rod.z, 0.004 * length) << load;
+      EXPECT_NEAR(tip[0], beam_length * rod.x, 0.004 * beam_length) << load;
+      EXPECT_NEAR(tip[1], beam_width / 2, 0.02) << load;  // the mesh is not symmetric
+      EXPECT_NEAR(beam_width / 2 - tip[2], beam_length * rod.z, 0.004 * beam_length) << load;
     }
 }
 
@@ -89,8 +90,8 @@ TEST(PhysicalBeams, WeightStretchesAHangingRod) {
   spec.gravity = {9.81e-2, 0, 0};
   const Model model = compile(spec);
   const Statics statics(model);
-  const double stretch = 1100e-9 * 9.81e-2 * length * length / (2 * modulus);
-  EXPECT_NEAR(marker_at(model, settled(statics, {}, tight(1e-12)))[0] - length, stretch, 1e-3 * stretch);
+  const double stretch = 1100e-9 * 9.81e-2 * beam_length * beam_length / (2 * beam_modulus);
+  EXPECT_NEAR(marker_at(model, settled(statics, {}, tight(1e-12)))[0] - beam_length, stretch, 1e-3 * stretch);
 }
 
 /// q L^4 / (8 E I) and, by shear, q L^2 / (2 (5/6) G A).
@@ -100,11 +101,11 @@ TEST(PhysicalBeams, WeightBendsALyingRod) {
   spec.gravity = {0, 0, -9.81e-2};
   const Model model = compile(spec);
   const Statics statics(model);
-  const double weight = 1100e-9 * 9.81e-2 * area;
-  const double bent = weight * std::pow(length, 4) / (8 * modulus * inertia),
-               sheared = weight * length * length / (2 * 5.0 / 6 * modulus / 2 * area);
+  const double weight = 1100e-9 * 9.81e-2 * beam_area;
+  const double bent = weight * std::pow(beam_length, 4) / (8 * beam_modulus * beam_inertia),
+               sheared = weight * beam_length * beam_length / (2 * 5.0 / 6 * beam_modulus / 2 * beam_area);
   const Vec3 tip = marker_at(model, settled(statics, {}, tight(1e-12)));
-  EXPECT_NEAR(width / 2 - tip[2], bent + sheared, 0.01 * bent);
+  EXPECT_NEAR(beam_width / 2 - tip[2], bent + sheared, 0.01 * bent);
 }
 
 /// Gravity and forces add up: the sum of supports' reactions is their sum, seen through the energy of a shifted clamp.
@@ -112,13 +113,13 @@ TEST(PhysicalBeams, AClampThatRisesLiftsTheWeight) {
   RobotSpec spec = beam();
   spec.materials[0].density = 1100;
   spec.gravity = {0, 0, -1};
-  spec.forces.push_back({"payload", {Vec3(length, width / 2, width / 2), {}}, {0, 0, -1e-3}});
+  spec.forces.push_back({"payload", {Vec3(beam_length, beam_width / 2, beam_width / 2), {}}, {0, 0, -1e-3}});
   const Model low = compile(spec);
   spec.fixed[0].displacement = {0, 0, 3};
   const Model high = compile(spec);
   const Statics low_statics(low), high_statics(high);
   const Equilibrium a = settled(low_statics, {}), b = settled(high_statics, {});
-  const double weight = 1100e-9 * area * length + 1e-3;
+  const double weight = 1100e-9 * beam_area * beam_length + 1e-3;
   EXPECT_NEAR(b.report.energy - a.report.energy, 3 * weight, 1e-6 * weight);
   EXPECT_LT(distance(a.state.positions.rowwise() + Eigen::RowVector3d(0, 0, 3), b.state.positions), 1e-6);
 }

@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double length = 120, tip_tolerance = 0.005 * length, multiplier_tolerance = 0.01;
+constexpr double robot_length = 120, tip_tolerance = 0.005 * robot_length, multiplier_tolerance = 0.01;
 
 struct Sweep {
   const char* mesh;
@@ -99,7 +99,7 @@ TEST_P(CableReference, TipAndTensionAtEqualLength) {
   for (int i = 1; i <= 7; ++i) cable.points.push_back({"eyelet" + std::to_string(i), {}});
   spec.actuators = {cable};
   const Model model = compile(spec);
-  ASSERT_NEAR(model.actuators[0].rest_measure, length, 1e-6);
+  ASSERT_NEAR(model.actuators[0].rest_measure, robot_length, 1e-6);
   const Statics statics(model);
   const ReferenceTable table(std::string(sweep.table) + ".csv");
   State state = statics.rest();

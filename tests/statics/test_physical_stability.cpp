@@ -1,6 +1,5 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
+#include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/stability.hpp>
 
 #include "statics/physical_samples.hpp"
@@ -33,11 +32,10 @@ struct Equations {
     work.factor.solve(inverse, team);
     Eigen::MatrixXd stiffness = inverse.inverse();
     if (const Eigen::MatrixXd& slopes = work.constraint_slopes; slopes.cols() > 0) {
-      const Eigen::MatrixXd q = slopes.householderQr().householderQ();
-      const Eigen::MatrixXd kept = q.rightCols(q.cols() - slopes.cols());
+      const Eigen::MatrixXd kept = singular_values(slopes.transpose()).right.rightCols(slopes.rows() - slopes.cols());
       stiffness = (kept.transpose() * stiffness * kept).eval();
     }
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(stiffness).eigenvalues();
+    return symmetric_eigenvalues(stiffness);
   }
 
   Model model;

@@ -17,12 +17,12 @@ constexpr double pi = std::numbers::pi;
 
 /// A bar of 100 x 12 x 12 mm rolled up by so many laps around an axis along y, which it goes along by 8 mm a lap and
 /// away from by 3 mm a lap: where laps lie over each other, a layer of 4 mm is in both.
-constexpr double length = 100, width = 12, along = 8, away = 3;
+constexpr double bar_length = 100, bar_width = 12, along = 8, away = 3;
 
 Points rolled(const Points& rest, double laps) {
   Points shape = rest;
   for (Index i = 0; i < rest.rows(); ++i) {
-    const double lap = laps * rest(i, 0) / length, angle = 2 * pi * lap;
+    const double lap = laps * rest(i, 0) / bar_length, angle = 2 * pi * lap;
     const double radius = 10 + rest(i, 2) + away * lap;
     shape.row(i) << radius * std::sin(angle), rest(i, 1) + along * lap, 30 + radius * std::cos(angle);
   }
@@ -30,9 +30,9 @@ Points rolled(const Points& rest, double laps) {
 }
 
 Model bar(Split split = Split::six, bool quadratic = false) {
-  RobotSpec spec = block_robot(block_mesh({40, 3, 3}, {length, width, width}, split));
+  RobotSpec spec = block_robot(block_mesh({40, 3, 3}, {bar_length, bar_width, bar_width}, split));
   if (quadratic) {
-    spec = block_robot(elevated(block_mesh({20, 2, 2}, {length, width, width}, split)));
+    spec = block_robot(elevated(block_mesh({20, 2, 2}, {bar_length, bar_width, bar_width}, split)));
     ElasticSpec elastic;
     elastic.youngs_modulus = 1;
     elastic.poisson_ratio = 0.3;
@@ -92,7 +92,7 @@ TEST(SelfOverlap, IsAsDeepAsTheLapsLieInEachOther) {
     const SelfOverlap found = OverlapSearch(model).in(rolled(model.rest, 1.3));
     const double lean = std::atan(along / (2 * pi * 16));
     EXPECT_GT(found.points, 20u);
-    EXPECT_NEAR(found.deepest_mm, (width - along) * std::cos(lean), 0.05);
+    EXPECT_NEAR(found.deepest_mm, (bar_width - along) * std::cos(lean), 0.05);
   }
 }
 

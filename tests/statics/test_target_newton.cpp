@@ -29,16 +29,6 @@ StaticsOptions as_printed() {
   return options;
 }
 
-double largest_distance(const Points& a, const Points& b) {
-  return (a - b).rowwise().norm().maxCoeff();
-}
-
-Actuation values(std::initializer_list<double> list) {
-  Actuation actuation(static_cast<Index>(list.size()));
-  std::copy(list.begin(), list.end(), actuation.data());
-  return actuation;
-}
-
 /// Newton and Algorithm 1 from rest arrive at one shape, which is not the start.
 void expect_same_fixed_point(const RobotSpec& spec, const Actuation& actuation) {
   const Model model = compile(spec);

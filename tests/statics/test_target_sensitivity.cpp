@@ -10,13 +10,13 @@ namespace {
 
 using namespace testing;
 
-RobotSpec with_rigid_regions(RobotSpec spec) {
+RobotSpec with_rigid_ends(RobotSpec spec) {
   spec.rigid.push_back({{Box{{50, 0, 0}, {60, 20, 24}}, {}}, "end"});
   spec.rigid.push_back({{Box{{20, 0, 8}, {30, 20, 8}}, {}}, "patch"});
   return spec;
 }
 
-StaticsOptions anew() {
+StaticsOptions solved_anew() {
   StaticsOptions options = tight();
   options.reuse_factor = false;
   return options;
@@ -72,7 +72,7 @@ TEST(TargetSensitivity, EveryActuatorAndMaterial) {
 
 TEST(TargetSensitivity, RigidRegions) {
   for (const bool least_norm : {false, true})
-    expect_differences_at(with_rigid_regions(mixed_robot(least_norm, least_norm ? 0.6 : 1)), values({1.2, 1.6, 0.8}),
+    expect_differences_at(with_rigid_ends(mixed_robot(least_norm, least_norm ? 0.6 : 1)), values({1.2, 1.6, 0.8}),
                           2e-6);
 }
 
@@ -99,7 +99,7 @@ TEST(TargetSensitivity, DoesNotDependOnTheFactor) {
     const Model model = compile(mixed_robot(least_norm, 1));
     const Statics statics(model);
     const Equilibrium at = settled(statics, values({1.2, 1.5, 0.85}));
-    const Sensitivity reused = statics.sensitivity(at.state), fresh = statics.sensitivity(at.state, anew()),
+    const Sensitivity reused = statics.sensitivity(at.state), fresh = statics.sensitivity(at.state, solved_anew()),
                       again = statics.sensitivity(at.state);
     StaticsOptions as_printed = tight(1e-7);
     as_printed.solver = Solver::local_global;
@@ -140,7 +140,7 @@ TEST(TargetSensitivity, AMechanismIsNotRegular) {
 
 TEST(TargetSensitivity, WithoutReuseNothingDependsOnEarlierSolves) {
   for (const bool least_norm : {false, true}) {
-    const Model model = compile(with_rigid_regions(mixed_robot(least_norm, least_norm ? 0.5 : 1)));
+    const Model model = compile(with_rigid_ends(mixed_robot(least_norm, least_norm ? 0.5 : 1)));
     const Statics used(model), fresh(model);
     State state = used.rest();
     for (const Actuation& earlier : {values({0.7, 2.0, 0.8}), values({1.1, 1.2, 0.95})}) {
@@ -148,17 +148,17 @@ TEST(TargetSensitivity, WithoutReuseNothingDependsOnEarlierSolves) {
       (void)used.sensitivity(state);
     }
     state = used.solve(values({1.12, 1.22, 0.95}), state, tight()).state;
-    const Sensitivity reused = used.sensitivity(state), at_once = used.sensitivity(state, anew()),
-                      expected = fresh.sensitivity(state, anew());
+    const Sensitivity reused = used.sensitivity(state), at_once = used.sensitivity(state, solved_anew()),
+                      expected = fresh.sensitivity(state, solved_anew());
     EXPECT_NE(reused.positions[0], expected.positions[0]);  // another factor, other rounding
     EXPECT_EQ(at_once.positions[0], expected.positions[0]);
     for (const bool from_rest : {false, true}) {
       const State start = from_rest ? used.rest() : state;
       const Actuation asked = values({1.15, 1.25, 0.93});
-      const Equilibrium a = used.solve(asked, start, anew()), b = fresh.solve(asked, start, anew());
+      const Equilibrium a = used.solve(asked, start, solved_anew()), b = fresh.solve(asked, start, solved_anew());
       EXPECT_EQ(a.state.positions, b.state.positions);
       EXPECT_EQ(a.report.iterations, b.report.iterations);
-      const Sensitivity x = used.sensitivity(a.state, anew()), y = fresh.sensitivity(b.state, anew());
+      const Sensitivity x = used.sensitivity(a.state, solved_anew()), y = fresh.sensitivity(b.state, solved_anew());
       EXPECT_TRUE(x.regular && y.regular);
       for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(x.positions[i], y.positions[i]);
     }

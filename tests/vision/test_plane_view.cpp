@@ -14,33 +14,33 @@ using namespace softkin;
 using namespace softkin::testing;
 using namespace softkin::vision;
 
-const Camera lens{.width = 640,
-                  .height = 480,
-                  .fx = 620,
-                  .fy = 622,
-                  .cx = 315,
-                  .cy = 244,
-                  .k1 = -0.31,
-                  .k2 = 0.12,
-                  .p1 = 0.001,
-                  .p2 = -0.0007,
-                  .k3 = -0.01,
-                  .focal_error = 0.5,
-                  .reprojection_error = 0.08,
-                  .pictures = 9};
+const Camera view_lens{.width = 640,
+                       .height = 480,
+                       .fx = 620,
+                       .fy = 622,
+                       .cx = 315,
+                       .cy = 244,
+                       .k1 = -0.31,
+                       .k2 = 0.12,
+                       .p1 = 0.001,
+                       .p2 = -0.0007,
+                       .k3 = -0.01,
+                       .focal_error = 0.5,
+                       .reprojection_error = 0.08,
+                       .pictures = 9};
 
 TEST(Camera, DistortionIsTakenOutAgain) {
   for (int x = 0; x < 640; x += 71)
     for (int y = 0; y < 480; y += 59) {
-      const Vec2 seen(x, y), ideal = undistorted(lens, seen);
-      EXPECT_LT((bent(lens, ideal) - seen).norm(), 1e-9);
-      EXPECT_LT((distorted(lens, ideal) - seen).norm(), 1e-9);
+      const Vec2 seen(x, y), ideal = undistorted(view_lens, seen);
+      EXPECT_LT((bent(view_lens, ideal) - seen).norm(), 1e-9);
+      EXPECT_LT((distorted(view_lens, ideal) - seen).norm(), 1e-9);
     }
 }
 
 TEST(Camera, FileGivesBackWhatWasWritten) {
   const TemporaryFolder folder;
-  const Camera read = read_camera(folder.write("camera.yaml", camera_text(lens)));
+  const Camera read = read_camera(folder.write("camera.yaml", camera_text(view_lens)));
   EXPECT_EQ(read.width, 640);
   EXPECT_NEAR(read.fy, 622, 1e-9);
   EXPECT_NEAR(read.k1, -0.31, 1e-9);
@@ -51,7 +51,7 @@ TEST(Camera, FileGivesBackWhatWasWritten) {
 
 TEST(Camera, RefusesFilesByLine) {
   const TemporaryFolder folder;
-  const std::string text = camera_text(lens);
+  const std::string text = camera_text(view_lens);
   const auto refused = [&](const std::string& from, const std::string& to) {
     std::string changed = text;
     changed.replace(changed.find(from), from.size(), to);
@@ -70,14 +70,14 @@ TEST(Camera, RefusesFilesByLine) {
 }
 
 TEST(PlaneView, FindsThePerspectiveThatMadeThePoints) {
-  const Photograph photo{.to_picture = tilted(700, {320, 240}, {0.6, -0.3, 0.5}, {-40, 20, 250}), .camera = lens};
+  const Photograph photo{.to_picture = tilted(700, {320, 240}, {0.6, -0.3, 0.5}, {-40, 20, 250}), .camera = view_lens};
   std::vector<PlanePoint> points;
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j < 4; ++j) {
       const Vec2 place(20 * i, 20 * j);
       points.push_back({ideal_pixel(photo, place), place});
     }
-  const PlaneView view(lens, points);
+  const PlaneView view(view_lens, points);
   EXPECT_LT(view.residual(), 1e-9);
   for (const Vec2& place : {Vec2(13, 7), Vec2(77, 55), Vec2(-5, 66)}) {
     EXPECT_LT((view.to_mm(seen_pixel(photo, place)) - place).norm(), 1e-7);
@@ -123,8 +123,10 @@ TEST(PlaneView, RefusesPointsThatFixNoPerspective) {
 }
 
 TEST(QuadEdges, CornersOfABlurredSquareAreWithinATwentiethOfAPixel) {
-  const Photograph photo{
-      .to_picture = tilted(700, {320, 240}, {0.5, -0.4, 0.3}, {-10, 10, 260}), .camera = lens, .blur = 1.3, .noise = 5};
+  const Photograph photo{.to_picture = tilted(700, {320, 240}, {0.5, -0.4, 0.3}, {-10, 10, 260}),
+                         .camera = view_lens,
+                         .blur = 1.3,
+                         .noise = 5};
   const RgbImage picture = render(photo, [](const Vec2& place) {
     const Vec2 middle = place - Vec2(10, 10);
     const double side = std::max(std::abs(middle.x()), std::abs(middle.y()));
@@ -136,12 +138,12 @@ TEST(QuadEdges, CornersOfABlurredSquareAreWithinATwentiethOfAPixel) {
     truth[i] = ideal_pixel(photo, places[i]);
     rough[i] = seen_pixel(photo, places[i]) + Vec2(i % 2 == 0 ? 1.2 : -0.9, 0.8);
   }
-  const auto corners = refine_quad(picture, rough, 0.2, lens);
+  const auto corners = refine_quad(picture, rough, 0.2, view_lens);
   ASSERT_TRUE(corners.has_value());
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT(((*corners)[i] - truth[i]).norm(), 0.05) << i;
   // nothing there
   for (Vec2& corner : rough) corner += Vec2(150, 100);
-  EXPECT_FALSE(refine_quad(picture, rough, 0.2, lens).has_value());
+  EXPECT_FALSE(refine_quad(picture, rough, 0.2, view_lens).has_value());
 }
 
 TEST(Board, ReadsWhatItSaysAndRefusesTheRestByName) {

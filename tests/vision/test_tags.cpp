@@ -13,16 +13,16 @@ using namespace softkin;
 using namespace softkin::testing;
 using namespace softkin::vision;
 
-const Camera lens{.width = 640,
-                  .height = 480,
-                  .fx = 720,
-                  .fy = 722,
-                  .cx = 318,
-                  .cy = 243,
-                  .k1 = -0.22,
-                  .k2 = 0.07,
-                  .p1 = 0.0006,
-                  .p2 = -0.0005};
+const Camera tag_lens{.width = 640,
+                      .height = 480,
+                      .fx = 720,
+                      .fy = 722,
+                      .cx = 318,
+                      .cy = 243,
+                      .k1 = -0.22,
+                      .k2 = 0.07,
+                      .p1 = 0.0006,
+                      .p2 = -0.0005};
 
 /// Largest error of the view over the board and around it, by its size [-].
 double scale_error(const Photograph& photo, const PlaneView& view, const BoardSpec& board) {
@@ -47,7 +47,7 @@ TEST(Board, ScaleIsWithinAFifthOfAPercent) {
       if (shot == 0) photo.to_picture = tilted(720, {318, 243}, {0, 0, 0.05}, {-36, 28, 116});
       if (shot == 1) photo.to_picture = tilted(720, {318, 243}, {0.5, -0.3, 0.2}, {-30, 28, 130});
       if (shot == 2) photo.to_picture = tilted(720, {318, 243}, {-0.4, 0.5, -0.6}, {-35, 8, 150});
-      if (shot > 0) photo.camera = lens;
+      if (shot > 0) photo.camera = tag_lens;
       const RgbImage picture = render(photo, BoardPaint(board, {0, 0}));
       const PlaneView view(photo.camera, find_board(picture, board, photo.camera));
       const double error = scale_error(photo, view, board);
@@ -64,10 +64,12 @@ TEST(Board, ScaleIsWithinAFifthOfAPercent) {
 TEST(Board, DotsBesideItAreWithinThreeTenthsOfAPixelInPerspective) {
   const BoardSpec board = parse_board("5x4,tag=9mm,gap=3mm");
   const std::vector<Disc> discs{{{70, 10}, 3, red}, {{75, 40}, 2.5, blue}};
-  const Photograph photo{
-      .to_picture = tilted(720, {318, 243}, {0.55, 0.3, 0.1}, {-40, 22, 125}), .camera = lens, .blur = 1, .noise = 5};
+  const Photograph photo{.to_picture = tilted(720, {318, 243}, {0.55, 0.3, 0.1}, {-40, 22, 125}),
+                         .camera = tag_lens,
+                         .blur = 1,
+                         .noise = 5};
   const RgbImage picture = render(photo, BoardPaint(board, {0, 0}, discs_on(discs)));
-  const PlaneView view(lens, find_board(picture, board, lens));
+  const PlaneView view(tag_lens, find_board(picture, board, tag_lens));
   for (const auto& [disc, colour] : {std::pair{discs[0], "red"}, std::pair{discs[1], "blue"}}) {
     const MarkerPlace dot = find_dot(picture, Colour(colour), view, colour);
     const double pixel = std::sqrt(view.pixel_area(dot.pixel));
@@ -84,7 +86,7 @@ TEST(Tags, CentresAreWithinATenthOfAPixel) {
     Photograph photo{.blur = 0.7 + 0.4 * shot, .noise = 6, .seed = shot + 3};
     photo.to_picture = shot == 0 ? straight(7.1, {80.3, 300.4})
                                  : tilted(720, {318, 243}, {0.6 - 0.5 * shot, 0.4, 0.2 * shot}, {-28, 5, 110});
-    if (shot > 0) photo.camera = lens;
+    if (shot > 0) photo.camera = tag_lens;
     const std::vector<Tag> tags = find_tags(render(photo, BoardPaint(three, {0, 0})), "5x5_100", photo.camera);
     ASSERT_EQ(tags.size(), 3U);
     for (int i = 0; i < 3; ++i) {

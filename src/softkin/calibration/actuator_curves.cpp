@@ -1,8 +1,8 @@
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <softkin/calibration/actuator_curves.hpp>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/types.hpp>
 #include <string>
@@ -53,7 +53,7 @@ double local_fit(const Samples& samples, double x, double width) {
     for (Eigen::Index term = 0; term < terms; ++term) a(row, term) = weight * std::pow(u, static_cast<double>(term));
     b[row] = weight * ratio;
   }
-  return a.colPivHouseholderQr().solve(b)[0];
+  return least_squares(a, b).solution[0];
 }
 
 /// The places of a branch's points.

@@ -15,7 +15,7 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double rounding = 1e-9;  // relative, of places and starts
+constexpr double negligible = 1e-9;  // relative, of places and starts
 
 Vec3 masked(const Vec3& point, const std::array<bool, 3>& axes) {
   Vec3 result = point;
@@ -48,7 +48,7 @@ std::vector<double> places_of(const Track& track, Resampling by, const std::arra
 
 /// The point at a place, straight between its neighbours; none outside. places do not descend.
 std::optional<Vec3> point_at(const Track& track, const std::vector<double>& places, double place) {
-  const double slack = rounding * std::max(std::abs(places.front()), std::abs(places.back()));
+  const double slack = negligible * std::max(std::abs(places.front()), std::abs(places.back()));
   if (place < places.front() - slack || place > places.back() + slack) return std::nullopt;
   const auto above = std::lower_bound(places.begin(), places.end(), place);
   if (above == places.begin()) return track.points.front();
@@ -79,7 +79,7 @@ void align(PathComparison& comparison) {
   comparison.translation = mean_reference - comparison.rotation * mean_other;
   comparison.aligned = true;
   // determined where all directions but one are spanned; an axis that is not compared counts as spanned
-  comparison.unique = svd.singularValues()[1] > rounding * (scale - 1);
+  comparison.unique = svd.singularValues()[1] > negligible * (scale - 1);
   for (WaypointError& each : comparison.waypoints)
     each.other = masked(comparison.rotation * each.other + comparison.translation, comparison.axes);
 }

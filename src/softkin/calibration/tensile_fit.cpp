@@ -1,7 +1,8 @@
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <softkin/calibration/tensile_fit.hpp>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/model/compile/parts.hpp>
 
@@ -85,13 +86,13 @@ Eigen::VectorXd modulus_row(Law law) {
 }
 
 /// Least squares with row . c >= bound: one inequality, so the optimum is free or on it.
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& stress, const Eigen::VectorXd& row,
-                              double bound, bool& at_bound) {
+Eigen::VectorXd bounded_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& stress, const Eigen::VectorXd& row,
+                            double bound, bool& at_bound) {
   const Eigen::VectorXd scale = columns.colwise().norm().transpose().cwiseInverse();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns * scale.asDiagonal());
-  if (!scale.allFinite() || qr.rank() < columns.cols())
+  const LeastSquares fit = least_squares(columns * scale.asDiagonal(), stress);
+  if (!scale.allFinite() || fit.rank < columns.cols())
     throw InvalidInput("the tensile test has too few different strains for the constants of this law");
-  const Eigen::VectorXd free = scale.cwiseProduct(qr.solve(stress));
+  const Eigen::VectorXd free = scale.cwiseProduct(fit.solution);
   at_bound = row.dot(free) < bound;
   if (!at_bound) return free;
   const Eigen::MatrixXd normal = (scale.asDiagonal() * columns.transpose() * columns * scale.asDiagonal());
@@ -196,7 +197,7 @@ LawFit fit_law(const TensileCurve& curve, Law law, double most) {
   const Eigen::MatrixXd columns = columns_of(law, points.strain);
   LawFit fit;
   const Eigen::VectorXd constants =
-      least_squares(columns, points.stress, row, least_modulus * std::max(secant, 0.0) / 6, fit.at_bound);
+      bounded_fit(columns, points.stress, row, least_modulus * std::max(secant, 0.0) / 6, fit.at_bound);
   if (!constants.allFinite() || !(row.dot(constants) > 0))
     throw InvalidInput("the tensile test has no fit with a modulus above 0: its stress does not grow with strain");
   fit.law = law_of(law, constants);

@@ -1,9 +1,7 @@
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/kinematics/inverse_step.hpp>
 #include <vector>
 
@@ -40,20 +38,20 @@ struct Region {
 /// Directions that move nothing, as columns: by the singular values of the slopes, as those of J^T J are known to the
 /// root of rounding only.
 Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, double resolution_mm) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeFullV);
-  const auto seen = (svd.singularValues().array() >= resolution_mm).count();
-  return svd.matrixV().rightCols(slopes.cols() - seen);
+  const SingularValues singular = singular_values(slopes);
+  const auto seen = (singular.values.array() >= resolution_mm).count();
+  return singular.right.rightCols(slopes.cols() - seen);
 }
 
 /// Positive definite: the magnitudes of its curvatures. Directions that move nothing are made stiff: over them rounding
 /// would decide.
 Eigen::MatrixXd made_definite(const Eigen::MatrixXd& hessian, double resolution_mm) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
-  const Eigen::VectorXd magnitude = eigen.eigenvalues().cwiseAbs();
+  const SymmetricEigen eigen = symmetric_eigen(hessian);
+  const Eigen::VectorXd magnitude = eigen.values.cwiseAbs();
   const double most = std::max(magnitude.maxCoeff(), resolution_mm * resolution_mm);
   const double least = std::max(resolution_mm * resolution_mm, 1e-14 * most);
   const Eigen::VectorXd made = (magnitude.array() < least).select(most, magnitude);
-  return eigen.eigenvectors() * made.asDiagonal() * eigen.eigenvectors().transpose();
+  return eigen.vectors * made.asDiagonal() * eigen.vectors.transpose();
 }
 
 /// A slack cable that is preferred longer than its path is there already, whatever its path.

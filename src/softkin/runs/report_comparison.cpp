@@ -109,15 +109,15 @@ std::vector<double> distances_of(const ReportedPath& path, const ReportedPath& f
 }
 
 std::vector<double> turns_of(const ReportedPath& path, const std::string& from, const std::string& to) {
-  const std::vector<Vec3> begins = places_of(path, from), ends = places_of(path, to);
-  const Vec3 start = ends[0] - begins[0];
+  const std::vector<Vec3> firsts = places_of(path, from), lasts = places_of(path, to);
+  const Vec3 start = lasts[0] - firsts[0];
   if (!(start.norm() > 0))
     throw InvalidInput({path.file}, "markers '" + from + "' and '" + to + "' are at one place in the first step");
   constexpr double rounding = 1e-9;  // below it the axis of a turn is noise
   Vec3 axis = Vec3::Zero();
   std::vector<double> turns;
-  for (std::size_t i = 0; i < begins.size(); ++i) {
-    const Vec3 line = ends[i] - begins[i], turned = start.cross(line);
+  for (std::size_t i = 0; i < firsts.size(); ++i) {
+    const Vec3 line = lasts[i] - firsts[i], turned = start.cross(line);
     if (axis.isZero() && turned.norm() > rounding * start.norm() * line.norm()) axis = turned.normalized();
     double turn = degrees * std::atan2(axis.dot(turned), start.dot(line));
     const double before = turns.empty() ? 0 : turns.back();

@@ -170,8 +170,8 @@ std::vector<double> strides(const std::vector<WalkRecord>& steps, std::size_t cy
   double before = 0;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const std::size_t cycle = steps[i].cycle;
-    const bool ends = i + 1 < steps.size() ? steps[i + 1].cycle > cycle : cycle == cycles;
-    if (!ends || cycle == 0) continue;
+    const bool last = i + 1 < steps.size() ? steps[i + 1].cycle > cycle : cycle == cycles;
+    if (!last || cycle == 0) continue;
     lengths.push_back(steps[i].walk.travel_mm - before);
     before = steps[i].walk.travel_mm;
   }

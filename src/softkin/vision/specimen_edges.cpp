@@ -11,14 +11,14 @@ namespace softkin::vision {
 
 namespace {
 
-constexpr int least_area = 100;      // [px]
-constexpr double rival_share = 0.3;  // of the largest part's area
-constexpr int margin = 4;            // to the frame [px]
-constexpr double used_width = 0.7;   // of the specimen: its long edges are rounded by blur
-constexpr double reach = 6;          // of the window around an edge [px]
-constexpr double levels = 3;         // beyond it, where the colours on both sides are read [px]
-constexpr int level_samples = 6;     // there, in each strip
-constexpr double step = 0.5;         // along a strip [px]
+constexpr int least_part_area = 100;      // [px]
+constexpr double rival_part_share = 0.3;  // of the largest part's area
+constexpr int margin = 4;                 // to the frame [px]
+constexpr double used_width = 0.7;        // of the specimen: its long edges are rounded by blur
+constexpr double reach = 6;               // of the window around an edge [px]
+constexpr double levels = 3;              // beyond it, where the colours on both sides are read [px]
+constexpr int level_samples = 6;          // there, in each strip
+constexpr double strip_step = 0.5;        // along a strip [px]
 constexpr double degrees = 180 / std::numbers::pi;
 
 Vec2 vec(const cv::Point2d& point) {
@@ -27,10 +27,10 @@ Vec2 vec(const cv::Point2d& point) {
 
 /// The outline of the part of a specimen that has this colour [mm].
 std::vector<cv::Point2f> outline_of(const RgbImage& picture, const Colour& colour, const PlaneView& view) {
-  const std::vector<Blob> blobs = find_blobs(picture, colour, least_area);
+  const std::vector<Blob> blobs = find_blobs(picture, colour, least_part_area);
   const std::string part = "part of the specimen that is " + colour.name;
   if (blobs.empty()) throw InvalidInput("no " + part + " found");
-  if (blobs.size() > 1 && blobs[1].area > rival_share * blobs[0].area)
+  if (blobs.size() > 1 && blobs[1].area > rival_part_share * blobs[0].area)
     throw InvalidInput("two candidates for the " + part);
   if (blobs[0].touches_frame(picture, margin)) throw InvalidInput("the " + part + " is partly outside the frame");
   std::vector<std::vector<cv::Point>> outlines;
@@ -119,7 +119,7 @@ SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const BarFrame
   if (strips < 5 || half < 2 * frame.pixel)
     throw InvalidInput("the specimen is too small in the picture: its " + name + " cannot be measured");
   std::vector<double> at;  // along a strip from its middle: the level before, the edge, the level behind
-  const int samples = static_cast<int>(std::ceil(2 * half / (step * frame.pixel)));
+  const int samples = static_cast<int>(std::ceil(2 * half / (strip_step * frame.pixel)));
   for (int k = level_samples - 1; k >= 0; --k) at.push_back(-half - level * k / level_samples);
   for (int k = 0; k < samples; ++k) at.push_back(half * (2 * (k + 0.5) / samples - 1));
   for (int k = 0; k < level_samples; ++k) at.push_back(half + level * k / level_samples);

@@ -1,8 +1,8 @@
-#include <Eigen/SVD>
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>
+#include <softkin/core/dense.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/disjoint_sets.hpp>
 
@@ -167,10 +167,10 @@ Eigen::MatrixXd free_motions(const Model& model, const std::map<Index, Place>& p
       std::max<Eigen::Index>(static_cast<Eigen::Index>(rows.size()), 6 * static_cast<Eigen::Index>(places.size())),
       6 * static_cast<Eigen::Index>(places.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) matrix.row(static_cast<Eigen::Index>(i)) = rows[i];
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
+  const SingularValues singular = singular_values(matrix);
   constexpr double tolerance = 1e-9;
-  const Eigen::Index rank = (svd.singularValues().array() > tolerance * svd.singularValues()[0]).count();
-  return svd.matrixV().rightCols(matrix.cols() - rank);
+  const Eigen::Index rank = (singular.values.array() > tolerance * singular.values[0]).count();
+  return singular.right.rightCols(matrix.cols() - rank);
 }
 
 std::string hinge_text(const std::vector<Index>& shared) {

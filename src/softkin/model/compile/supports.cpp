@@ -1,10 +1,12 @@
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
+#include <softkin/core/dense.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
@@ -156,17 +158,16 @@ Motions free_motions(const Model& model, const std::vector<Index>& vertices, con
   for (std::size_t i = 0; i < rows.size(); ++i) held.row(static_cast<Eigen::Index>(i)) = rows[i];
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(held);
   const Eigen::MatrixXd triangle = qr.matrixQR().topRows(6).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  const Eigen::VectorXd values = svd.singularValues();
-  const Eigen::Index rank = (values.array() > rank_tolerance * std::max(values[0], 1.0)).count();
-  return svd.matrixV().rightCols(6 - rank);
+  const SingularValues singular = singular_values(triangle);
+  const Eigen::Index rank = (singular.values.array() > rank_tolerance * std::max(singular.values[0], 1.0)).count();
+  return singular.right.rightCols(6 - rank);
 }
 
 // An orthonormal basis of what the columns span.
 Directions span_of(const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return Directions(3, 0);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU);
-  return svd.matrixU().leftCols((svd.singularValues().array() > direction_tolerance).count());
+  const SingularValues singular = singular_values(columns.transpose());
+  return singular.right.leftCols((singular.values.array() > direction_tolerance).count());
 }
 
 // "x, y and z" for the space that the columns span; directions that are not along an axis as vectors.
@@ -186,10 +187,10 @@ std::string axes_text(Directions space) {
 
 std::string motion_text(const Motions& motions) {
   const Eigen::MatrixXd rotations = motions.bottomRows(3);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rotations, Eigen::ComputeFullV);
-  const Eigen::Index turning = (svd.singularValues().array() > direction_tolerance).count();
+  const SingularValues singular = singular_values(rotations);
+  const Eigen::Index turning = (singular.values.array() > direction_tolerance).count();
   const Directions turns = span_of(rotations);
-  const Directions moves = span_of(motions.topRows(3) * svd.matrixV().rightCols(motions.cols() - turning));
+  const Directions moves = span_of(motions.topRows(3) * singular.right.rightCols(motions.cols() - turning));
   std::string text;
   if (moves.cols() > 0) text = "move along " + axes_text(moves);
   if (turns.cols() > 0) text += (text.empty() ? "" : " and ") + ("turn about " + axes_text(turns));

@@ -21,13 +21,13 @@ Vec3 mean_position(const Mesh& mesh, std::span<const Index> vertices) {
   return sum / static_cast<double>(vertices.size());
 }
 
-double area(const Points& vertices, const Triangle& t) {
+double face_area(const Points& vertices, const Triangle& t) {
   const Eigen::RowVector3d a = vertices.row(t[0]);
   return 0.5 * Vec3(vertices.row(t[1]) - a).cross(Vec3(vertices.row(t[2]) - a)).norm();
 }
 
-double area(const Points& vertices, const Quad& q) {
-  return area(vertices, Triangle{q[0], q[1], q[2]}) + area(vertices, Triangle{q[0], q[2], q[3]});
+double face_area(const Points& vertices, const Quad& q) {
+  return face_area(vertices, Triangle{q[0], q[1], q[2]}) + face_area(vertices, Triangle{q[0], q[2], q[3]});
 }
 
 template <class Element>
@@ -82,7 +82,7 @@ RegionMeasures measure_region(const Mesh& mesh, const std::vector<QuadraticTrian
   RegionMeasures measures{region.name, region.dimension};
   std::vector<Index> vertices = region.vertices;
   const auto volume_of = [&](const auto& element) { return volume(mesh.vertices, element); };
-  const auto area_of = [&](const auto& face) { return area(mesh.vertices, face); };
+  const auto area_of = [&](const auto& face) { return face_area(mesh.vertices, face); };
   add_cells(mesh.tetrahedra, region.tetrahedra, volume_of, measures, vertices);
   add_cells(mesh.prisms, region.prisms, volume_of, measures, vertices);
   add_cells(mesh.triangles, region.triangles, area_of, measures, vertices);
@@ -227,8 +227,8 @@ MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   for (const Tetrahedron& t : mesh.tetrahedra) measures.volume += volume(mesh.vertices, t);
   for (const Prism& p : mesh.prisms) measures.volume += volume(mesh.vertices, p);
   const Boundary boundary = boundary_of(mesh.tetrahedra, mesh.prisms);
-  for (const Triangle& t : boundary.triangles) measures.boundary += area(mesh.vertices, t);
-  for (const Quad& q : boundary.quads) measures.boundary += area(mesh.vertices, q);
+  for (const Triangle& t : boundary.triangles) measures.boundary += face_area(mesh.vertices, t);
+  for (const Quad& q : boundary.quads) measures.boundary += face_area(mesh.vertices, q);
   std::vector<double> quality = check.quality;
   std::sort(quality.begin(), quality.end());
   const double shares[] = {0, 0.01, 0.5};

@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/system.hpp>
 
 namespace softkin::physical {
@@ -123,9 +123,7 @@ int System::couple(const Iterate& at, const std::vector<bool>& active, Workspace
   schur = work.scale.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * work.scale.asDiagonal();
   work.schur.setThreshold(dependent);
   work.schur.compute(schur);
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(schur, Eigen::EigenvaluesOnly).eigenvalues();
-  return static_cast<int>((eigenvalues.array() < -dependent).count());
+  return static_cast<int>((symmetric_eigenvalues(schur).array() < -dependent).count());
 }
 
 void System::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,

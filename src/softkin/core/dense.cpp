@@ -1,0 +1,28 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <softkin/core/dense.hpp>
+
+namespace softkin {
+
+SingularValues singular_values(const Eigen::MatrixXd& matrix) {
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
+  return {svd.singularValues(), svd.matrixV()};
+}
+
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+LeastSquares least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right, double threshold) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
+  if (threshold > 0) qr.setThreshold(threshold);
+  return {qr.solve(right), qr.rank()};
+}
+
+}  // namespace softkin
