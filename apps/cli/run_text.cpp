@@ -66,14 +66,9 @@ std::string depth_text(double deepest_mm, const Vec3& where) {
   return number(deepest_mm, 2) + " mm at (" + axis(0) + ", " + axis(1) + ", " + axis(2) + ") mm";
 }
 
-/// "(1.25, 0, -3) mm"; what is rounding beside the largest is 0.
-std::string point_text(const double* xyz, const std::string& unit) {
-  constexpr double rounding = 1e-6;
-  const double largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
-  std::string text;
-  for (int axis = 0; axis < 3; ++axis)
-    text += (axis > 0 ? ", " : "(") + number(std::abs(xyz[axis]) < rounding * largest ? 0 : xyz[axis], 4);
-  return text + ")" + unit;
+/// "(1.25, 0, -3)" of three numbers of a finding
+std::string point_text(const double* xyz) {
+  return softkin::point_text({xyz[0], xyz[1], xyz[2]}, 4, 1e-6);
 }
 
 std::string finding_text(const runs::Finding& finding) {
@@ -111,12 +106,12 @@ std::string finding_text(const runs::Finding& finding) {
              (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 3) + " N"
                            : "");
     case Kind::stress:
-      return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + point_text(&v[1], " mm") +
+      return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + point_text(&v[1]) + " mm" +
              (finding.name.empty() ? "" : " in region '" + finding.name + "'") + "; principal " + number(v[5], 4) +
              " to " + number(v[4], 4) + " MPa";
     case Kind::reaction:
-      return "support '" + finding.name + "' exerts " + point_text(&v[0], " N") + " and " + point_text(&v[3], " N mm") +
-             " about " + point_text(&v[6], " mm");
+      return "support '" + finding.name + "' exerts " + point_text(&v[0]) + " N and " + point_text(&v[3]) +
+             " N mm about " + point_text(&v[6]) + " mm";
     case Kind::unstable:
       return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
              ": the robot would buckle or snap away from it; --stable looks for the shape that it goes to";
@@ -243,7 +238,7 @@ std::string worst_text(const WorstPlace& worst) {
   const bool crushed = worst.volume_ratio < 0.2, by_cable = worst.beside.find("cable") != std::string::npos;
   return ". Deformed most is " + std::string(worst.prism ? "prism " : "tetrahedron ") + std::to_string(worst.element) +
          " (from 0)" + (worst.region.empty() ? "" : " of region '" + worst.region + "'") + " at " +
-         point_text(worst.at.data(), " mm") + (worst.beside.empty() ? "" : ", next to " + worst.beside) + ": strain " +
+         point_text(worst.at.data()) + " mm" + (worst.beside.empty() ? "" : ", next to " + worst.beside) + ": strain " +
          percent(worst.strain) + ", " + percent(worst.volume_ratio) + " of its volume" +
          (!crushed   ? ""
           : by_cable ? "; spread the cable's force over a rigid region there"

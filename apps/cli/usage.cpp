@@ -5,6 +5,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <sstream>
+#include <utility>
 
 namespace softkin::cli {
 
@@ -49,6 +50,12 @@ bool takes_positionals(const CLI::App& app) {
   return !app.get_options([](const CLI::Option* option) { return option->get_positional(); }).empty();
 }
 
+/// Whether the word after this option is its value, even if it is the name of a command.
+bool takes_value(const CLI::App& app, const std::string& argument) {
+  const CLI::Option* option = argument.starts_with('-') ? app.get_option_no_throw(argument) : nullptr;
+  return option != nullptr && option->get_items_expected_min() > 0;
+}
+
 std::vector<std::string> long_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
@@ -60,8 +67,10 @@ std::vector<std::string> long_names(const CLI::App& app) {
 
 std::string misspelt(const CLI::App& app, int argc, const char* const* argv, std::string& command) {
   const CLI::App* at = &app;
+  bool is_value = false;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
+    if (std::exchange(is_value, takes_value(*at, argument)) && !argument.starts_with("--")) continue;
     if (at->get_prefix_command() || argument == "--") return "";
     if (argument.starts_with("--")) {
       const std::string name = argument.substr(0, argument.find('='));
@@ -69,10 +78,11 @@ std::string misspelt(const CLI::App& app, int argc, const char* const* argv, std
       return "there is no option " + printable(name) + near_text("--", nearest_name(name.substr(2), long_names(*at)));
     }
     const auto subs = at->get_subcommands([](const CLI::App*) { return true; });
-    if (argument.starts_with('-') || subs.empty() || takes_positionals(*at)) continue;
+    if (argument.starts_with('-') || subs.empty()) continue;
     std::vector<std::string> names;
     for (const CLI::App* sub : subs) names.push_back(sub->get_name());
     const auto found = std::find(names.begin(), names.end(), argument);
+    if (found == names.end() && takes_positionals(*at)) continue;
     if (found == names.end()) return "there is no command " + excerpt(argument) + suggest_name(argument, names);
     at = subs[static_cast<std::size_t>(found - names.begin())];
     command += " " + argument;

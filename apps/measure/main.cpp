@@ -280,6 +280,9 @@ int main(int argc, char** argv) {
   add_camera(app, run);
   add_board(app, run);
   return outcome_of([&] {
+    std::string command = "softkin measure";
+    if (const std::string wrong = misspelt(app, argc, argv, command); !wrong.empty())
+      return refuse_usage(wrong, command);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -259,6 +259,10 @@ TEST_F(Measure, RefusesOptionsByName) {
   refused({"--interface", "red,blue", "--scale", "0,0,100,0=20mm", "--fps", "5"}, {"--interface"});
   expect_refused({good, "--dots", "red", "--scale", "0,0,100,0=20mm", "-o", good}, {"-o", ".csv"});
   expect_refused({}, {"PICTURES"});
+  expect_refused({good, "--dotts", "red"},
+                 {"there is no option --dotts; did you mean --dots? (softkin measure --help"});
+  expect_refused({"camera", good, "--bord", "checker"}, {"did you mean --board? (softkin measure camera --help"});
+  refused({"--camera", "camera", "--dots", "red", "--scale", "0,0,100,0=20mm"}, {"camera: "});
   EXPECT_EQ(measure({"--help"}).exit_code, 0);
   EXPECT_EQ(measure({"camera", "--help"}).exit_code, 0);
 }

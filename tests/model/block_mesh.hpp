@@ -53,6 +53,20 @@ inline void split_cell(const std::array<Index, 8>& v, Split split, bool odd, Mes
   }
 }
 
+/// A block whose lowest layer is of prisms.
+[[nodiscard]] inline Mesh layered_mesh(const std::array<int, 3>& cells, const Vec3& size, Split above) {
+  Mesh mesh;
+  mesh.vertices = grid_points(cells, size);
+  for (int k = 0; k < cells[2]; ++k)
+    for (int j = 0; j < cells[1]; ++j)
+      for (int i = 0; i < cells[0]; ++i) {
+        std::array<Index, 8> corners{};
+        for (int c = 0; c < 8; ++c) corners[c] = grid_vertex(cells, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+        split_cell(corners, k == 0 ? Split::prisms : above, false, mesh);
+      }
+  return mesh;
+}
+
 inline void add_face_regions(Mesh& mesh, const Vec3& size) {
   const Boundary boundary = boundary_of(mesh.tetrahedra, mesh.prisms);
   for (int axis = 0; axis < 3; ++axis)

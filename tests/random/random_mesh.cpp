@@ -10,16 +10,8 @@ using namespace testing;
 namespace {
 
 /// Cells of several kinds: prisms below, tetrahedra above.
-Mesh layered_mesh(const std::array<int, 3>& cells, const Vec3& size, Split above) {
-  Mesh mesh;
-  mesh.vertices = grid_points(cells, size);
-  for (int k = 0; k < cells[2]; ++k)
-    for (int j = 0; j < cells[1]; ++j)
-      for (int i = 0; i < cells[0]; ++i) {
-        std::array<Index, 8> corners{};
-        for (int c = 0; c < 8; ++c) corners[c] = grid_vertex(cells, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
-        split_cell(corners, k == 0 ? Split::prisms : above, false, mesh);
-      }
+Mesh layered_block(const std::array<int, 3>& cells, const Vec3& size, Split above) {
+  Mesh mesh = testing::layered_mesh(cells, size, above);
   add_volume_region(mesh, "body", [](const Vec3&) { return true; });
   add_face_regions(mesh, size);
   return mesh;
@@ -79,7 +71,7 @@ void make_mesh(Making& m) {
   }
   for (int axis = 0; axis < 3; ++axis) m.size[axis] = m.cells[axis] * m.draw.between(0.6, 1.6);
   if (m.draw.chance(0.15)) m.size[2] *= m.draw.log_between(0.05, 1);  // thin
-  m.mesh() = layered ? layered_mesh(m.cells, m.size, split) : block_mesh(m.cells, m.size, split);
+  m.mesh() = layered ? layered_block(m.cells, m.size, split) : block_mesh(m.cells, m.size, split);
   add_regions(m, m.draw.chance(0.85));
   if (m.draw.chance(0.6)) jitter(m, m.draw.between(0, 0.12));
   const std::size_t tetrahedra = m.mesh().tetrahedra.size();

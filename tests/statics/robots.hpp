@@ -18,10 +18,6 @@ inline Actuation values(std::initializer_list<double> list) {
   return actuation;
 }
 
-inline double largest_distance(const Points& a, const Points& b) {
-  return (a - b).rowwise().norm().maxCoeff();
-}
-
 inline ActuatorSpec actuator(const std::string& name, ActuatorKind kind, double low, double high, bool least_norm) {
   ActuatorSpec spec;
   spec.name = name;
@@ -37,15 +33,7 @@ inline ActuatorSpec actuator(const std::string& name, ActuatorKind kind, double 
 inline RobotSpec mixed_robot(bool least_norm, double shape_ratio = 1, int refine = 1) {
   const std::array<int, 3> cells{6 * refine, 2 * refine, 3 * refine};
   const Vec3 size(60, 20, 24);
-  Mesh mesh;
-  mesh.vertices = grid_points(cells, size);
-  for (int k = 0; k < cells[2]; ++k)
-    for (int j = 0; j < cells[1]; ++j)
-      for (int i = 0; i < cells[0]; ++i) {
-        std::array<Index, 8> corners{};
-        for (int c = 0; c < 8; ++c) corners[c] = grid_vertex(cells, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
-        split_cell(corners, k == 0 ? Split::prisms : Split::six, false, mesh);
-      }
+  Mesh mesh = layered_mesh(cells, size, Split::six);
   add_volume_region(mesh, "skin", [&](const Vec3& p) { return p.z() < 8.0 / refine && p.x() > 20; });
   mesh.regions.back().tetrahedra.clear();
   add_volume_region(mesh, "chamber", [](const Vec3& p) { return p.z() > 8 && p.z() < 16 && p.x() > 20 && p.x() < 40; });

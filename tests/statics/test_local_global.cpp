@@ -59,7 +59,7 @@ TEST(LocalGlobal, SameShapeFromRestAndFromARandomStart) {
   EXPECT_NEAR(static_cast<double>(model.tetrahedra.size()), 500, 50);
   const Statics statics(model);
   const Points from_rest = statics.solve(one(1.8), statics.rest(), to_the_end(0)).state.positions;
-  EXPECT_GT(largest_distance(from_rest, model.rest), 1);
+  EXPECT_GT(largest_move(from_rest, model.rest), 1);
   for (const double size : {1.0, 5.0, 10.0, 20.0}) {
     State start = statics.rest();
     start.positions += noise(static_cast<Index>(model.rest.rows()), size, 17);
@@ -67,7 +67,7 @@ TEST(LocalGlobal, SameShapeFromRestAndFromARandomStart) {
       if (anderson > 0 && size > 10) continue;  // from a crumpled start its jumps may end in another equilibrium
       const Equilibrium found = statics.solve(one(1.8), start, to_the_end(anderson));
       EXPECT_EQ(found.report.status, Status::converged);
-      EXPECT_LT(largest_distance(found.state.positions, from_rest), 1e-6)
+      EXPECT_LT(largest_move(found.state.positions, from_rest), 1e-6)
           << "noise of " << size << " mm, Anderson " << anderson;
     }
   }
@@ -83,7 +83,7 @@ TEST(LocalGlobal, AndersonReachesTheSameShapeInFewerIterations) {
       const Equilibrium fast = statics.solve(actuation, statics.rest(), to_the_end(6));
       EXPECT_EQ(plain.report.status, Status::converged);
       EXPECT_EQ(fast.report.status, Status::converged);
-      EXPECT_LT(largest_distance(plain.state.positions, fast.state.positions), 1e-6);
+      EXPECT_LT(largest_move(plain.state.positions, fast.state.positions), 1e-6);
       EXPECT_LT(2 * fast.report.iterations, plain.report.iterations);
     }
 }
@@ -97,7 +97,7 @@ TEST(LocalGlobal, EstimatedErrorBoundsTheTrueOne) {
     options.step_tolerance_mm = 1e-4;
     options.anderson = anderson;
     const Equilibrium found = statics.solve(one(1.5), statics.rest(), options);
-    const double true_error = largest_distance(found.state.positions, end);
+    const double true_error = largest_move(found.state.positions, end);
     EXPECT_GT(true_error, 5e-4);  // the step alone would promise 1e-4
     EXPECT_GT(found.report.estimated_error_mm, 0.3 * true_error);
     EXPECT_LT(found.report.estimated_error_mm, 30 * true_error);
@@ -118,8 +118,8 @@ TEST(LocalGlobal, RigidMotionOfTheSceneMovesTheResult) {
   const Points a = statics_here.solve(actuation, statics_here.rest(), to_the_end(6)).state.positions;
   const Points b = statics_there.solve(actuation, statics_there.rest(), to_the_end(6)).state.positions;
   const Points expected = (a * turn.transpose()).rowwise() + shift.transpose();
-  EXPECT_LT(largest_distance(b, expected), 1e-9 * here.diagonal_mm);
-  EXPECT_GT(largest_distance(a, here.rest), 1);
+  EXPECT_LT(largest_move(b, expected), 1e-9 * here.diagonal_mm);
+  EXPECT_GT(largest_move(a, here.rest), 1);
 }
 
 TEST(LocalGlobal, ScalingTheSceneScalesTheResult) {
@@ -137,7 +137,7 @@ TEST(LocalGlobal, ScalingTheSceneScalesTheResult) {
     StaticsOptions options = to_the_end(6);
     options.step_tolerance_mm *= scale;
     const Points b = statics_there.solve(actuation, statics_there.rest(), options).state.positions;
-    EXPECT_LT(largest_distance(b / scale, a), 1e-9 * here.diagonal_mm) << "scale " << scale;
+    EXPECT_LT(largest_move(b / scale, a), 1e-9 * here.diagonal_mm) << "scale " << scale;
     // the default tolerance scales with the robot
     EXPECT_NEAR(statics_there.solve(actuation, statics_there.rest()).report.tolerance_mm,
                 scale * statics.solve(actuation, statics.rest(), local_global()).report.tolerance_mm, 1e-12 * scale);
@@ -237,7 +237,7 @@ TEST(LocalGlobal, UniformRatiosAreKeptAndLeastNormMeetsTheSum) {
     EXPECT_NEAR(achieved_ratio(model, model.actuators[0], found.state.positions), 1.7, 1e-8);
     // uniform scaling about the held corner
     if (!least_norm) {
-      EXPECT_LT(largest_distance(found.state.positions, std::cbrt(1.7) * model.rest), 1e-7);
+      EXPECT_LT(largest_move(found.state.positions, std::cbrt(1.7) * model.rest), 1e-7);
     }
   }
 }

@@ -25,10 +25,10 @@ std::string decimal(double value, int decimals) {
   return text;
 }
 
-std::string point_text(const Vec3& point) {
-  const double rounding = 1e-12 * point.cwiseAbs().maxCoeff();
+std::string point_text(const Vec3& point, int digits, double rounding) {
+  const double least = rounding * point.cwiseAbs().maxCoeff();
   std::string text;
-  for (const double x : point) text += (text.empty() ? "(" : ", ") + number(std::abs(x) < rounding ? 0 : x);
+  for (const double x : point) text += (text.empty() ? "(" : ", ") + number(std::abs(x) < least ? 0 : x, digits);
   return text + ")";
 }
 

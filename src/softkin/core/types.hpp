@@ -15,4 +15,9 @@ using Mat3 = Eigen::Matrix3d;
 /// A point a row, #V by 3 [mm].
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// Of a point, from one to the other [mm].
+[[nodiscard]] inline double largest_move(const Points& from, const Points& to) {
+  return (to - from).rowwise().norm().maxCoeff();
+}
+
 }  // namespace softkin

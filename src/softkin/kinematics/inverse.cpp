@@ -94,7 +94,7 @@ class Inverse {
   /// The start as an equilibrium; it is taken for one where it says all that solve() says.
   bool settle(const State& start, Equilibrium& first) {
     const auto m = static_cast<Index>(model_.actuators.size());
-    const bool known = start.actuation.size() == m && start.multipliers.size() == m && start.share == 1;
+    const bool known = start.knows(m) && start.multipliers.size() == m && start.share == 1;
     first.state = start;
     first.actuation = start.actuation.size() > 0 ? start.actuation : model_.rest_actuation();
     first.report.status = Status::converged;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double most_waypoints = 1e6;
 constexpr double damping = 1e-5;       // of the largest slope: below it a direction moves nothing
-constexpr double largest_move = 0.5;   // of a range, that a prediction is trusted with
+constexpr double trusted_move = 0.5;   // of a range, that a prediction is trusted with
 constexpr double largest_stretch = 2;  // of the last move, over which its curvature is trusted
 constexpr double least_move = 1e-6;    // shares, over which a change of slopes can be told
 
@@ -186,7 +186,7 @@ std::optional<Actuation> PathFollower::predicted(const std::vector<Goal>& goals)
   if (!(std::abs(stretch) <= largest_stretch)) return std::nullopt;
   const Eigen::VectorXd bend = 0.5 * stretch * stretch * (slopes_ - slopes_before_) * move_;
   const Eigen::VectorXd move = move_to(terms + bend, slopes_, shares);
-  if (!move.allFinite() || move.cwiseAbs().maxCoeff() > largest_move) return std::nullopt;
+  if (!move.allFinite() || move.cwiseAbs().maxCoeff() > trusted_move) return std::nullopt;
   return actuation_of(shares + move);
 }
 

@@ -16,10 +16,6 @@ namespace {
 /// the robot's diagonal, may be another one than the robot would move to.
 constexpr double most_correction = 0.5, least_snap = 0.01;
 
-double largest_move(const Points& a, const Points& b) {
-  return (b - a).rowwise().norm().maxCoeff();
-}
-
 /// Moves the sample nearest to the mean to the front; distances in shares of the ranges.
 void begin_with_the_middle(const Model& model, const Actuations& actuations, std::vector<Index>& group) {
   const std::vector<Index> varied = varied_actuators(model);

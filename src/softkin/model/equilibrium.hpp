@@ -13,7 +13,10 @@ struct State {
   Points positions;               // #V by 3 [mm]
   Actuation actuation{};          // of which positions is an equilibrium; empty: not known
   Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa], 0 for a dea; empty: not known
-  double share = 1;               // of dead loads and displacements of supports, where actuation is known [-]
+  double share = 1;  // of dead loads and displacements of supports; -1: of no equilibrium that is known [-]
+
+  /// Whether it tells of which actuation, of so many values, positions is an equilibrium.
+  [[nodiscard]] bool knows(Eigen::Index actuators) const { return actuation.size() == actuators && share >= 0; }
 };
 
 /// limit: there is no equilibrium to be followed as far as was asked; the shape is the last good one.

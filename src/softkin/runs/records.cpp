@@ -44,11 +44,13 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   static_cast<SolveReport&>(record) = found.report;
   record.actuation = found.actuation;
   record.reached_share = reached_share(model, found.report);
-  if (found.state.actuation.size() == found.actuation.size()) record.shape_actuation = found.state.actuation;
-  record.shape_load_share = found.state.share;
+  if (found.state.knows(found.actuation.size())) {
+    record.shape_actuation = found.state.actuation;
+    record.shape_load_share = found.state.share;
+  }
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
-  record.largest_displacement_mm = (found.state.positions - model.rest).rowwise().norm().maxCoeff();
+  record.largest_displacement_mm = largest_move(model.rest, found.state.positions);
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
   for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
   record.strain = strain_histogram(model, deformation);
@@ -87,7 +89,7 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
   State state{std::move(positions), record.shape_actuation.value_or(Actuation()),
               Eigen::VectorXd::Zero(static_cast<Index>(model.actuators.size()))};
   if (model.formulation != Formulation::physical) return state;
-  state.share = record.shape_load_share;
+  state.share = record.shape_actuation ? record.shape_load_share : -1;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     state.multipliers[static_cast<Index>(a)] = record.actuators[a].multiplier;
   return state;

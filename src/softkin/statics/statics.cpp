@@ -99,7 +99,7 @@ struct Statics::Parts {
   /// of: for messages
   void check_known(const State& at, const StaticsOptions& options, const std::string& of) const {
     check_start(model, at, options);
-    if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
+    if (!at.knows(static_cast<Index>(model.actuators.size())))
       throw InvalidInput(of + " needs the actuation of which it is the equilibrium");
     if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
     if (physical && at.multipliers.size() != at.actuation.size())
@@ -197,7 +197,7 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
   StaticsOptions options;
   options.threads = threads;
   check_start(model, at, options);
-  if (at.actuation.size() != static_cast<Index>(model.actuators.size()))
+  if (!at.knows(static_cast<Index>(model.actuators.size())))
     throw InvalidInput("predictions around a shape need the actuation of which it is the equilibrium");
   parts_ = std::make_unique<Parts>(model, at, statics.parts_->team(options));
   if (!statics.parts_->physical || at.multipliers.size() == 0) return;

@@ -213,7 +213,8 @@ std::string Canvas::fitted(const std::string& text, double cell, double width) {
   return result + "...";
 }
 
-void Canvas::text(const Place& at, const std::string& text, double cell, const Rgb& color, Anchor anchor, bool upward) {
+void Canvas::text(const Place& at, const std::string& text, double cell, const Rgb& color, Anchor anchor, bool upward,
+                  double line) {
   const std::string characters = displayable(text);
   const double width = line_width(characters.size(), cell);
   const double start = anchor == Anchor::start ? 0 : anchor == Anchor::middle ? -width / 2 : -width;
@@ -225,7 +226,7 @@ void Canvas::text(const Place& at, const std::string& text, double cell, const R
     };
     std::vector<Stroke> glyph;
     for_each_stroke(characters[i], [&](const Cell& a, const Cell& b) { glyph.push_back({place(a), place(b)}); });
-    strokes(glyph, stroke_cells * cell, color);
+    strokes(glyph, line * stroke_cells * cell, color);
   }
 }
 

@@ -30,9 +30,10 @@ class Canvas {
   /// Lines with round ends, as one area.
   void strokes(const std::vector<Stroke>& strokes, double width, const Rgb& color);
   /// One line of text whose half capital height is at the place; cell: size of a cell of the font [pixel];
-  /// upward: reads from bottom to top. A character outside ASCII (one UTF-8 code point) is an empty box.
+  /// upward: reads from bottom to top; line: width of its lines over that of the font. A character outside ASCII (one
+  /// UTF-8 code point) is an empty box.
   void text(const Place& at, const std::string& text, double cell, const Rgb& color, Anchor anchor = Anchor::start,
-            bool upward = false);
+            bool upward = false, double line = 1);
 
   [[nodiscard]] static double text_width(const std::string& text, double cell);
   /// The text, or its beginning and "..." where it is wider than `width`.

@@ -338,7 +338,9 @@ void draw_mark(const PictureMark& mark, const Screen& screen, double cell, Canva
   }
   canvas.strokes(strokes, thickness + rim, {1, 1, 1});
   canvas.strokes(strokes, thickness, mark.color);
-  if (!mark.label.empty()) canvas.text(last + Place(6 * cell, -5 * cell), mark.label, cell, mark.color);
+  const Place beside = last + Place(6 * cell, -5 * cell);
+  for (const auto& [line, color] : {std::pair(3.0, Rgb{1, 1, 1}), std::pair(1.0, Rgb(mark.color))})
+    canvas.text(beside, mark.label, cell, color, Anchor::start, false, line);
 }
 
 void refuse_edge_on(const std::vector<ScreenLayer>& layers, const Checker& checker) {

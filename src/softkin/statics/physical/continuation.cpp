@@ -84,98 +84,123 @@ bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate
 Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   active_.resize(static_cast<std::size_t>(system_.actuators()));
   for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
-  double done = 0, advance = 1, marked = 0;
-  int marked_iterations = report_.iterations;
-  Demand here = from;
-  std::optional<Beyond> beyond;
-  const bool loads_change = change_loads(from, to);
-  Index load = only_load(from, to);
+  way_ = {.from = from, .to = to, .here = from};
+  way_.loads_change = change_loads(from, to);
+  way_.load = only_load(from, to);
+  way_.marked_iterations = report_.iterations;
   (void)release(to, at, false);
-  bool factorised = same_shape(work_.home, at.positions) && factor_holds_active();
+  way_.factorised = same_shape(work_.home, at.positions) && factor_holds_active();
   work_.home.resize(0, 3);
-  if (!factorised && from.actuation == to.actuation && from.share == to.share) {
+  if (!way_.factorised && from.actuation == to.actuation && from.share == to.share) {
     const auto outcome = settle_here(to, at);
     if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
     if (outcome == Newton::Outcome::converged) return arrive(to, at);
   }
-  while (done < 1) {
-    const double next = std::min(1.0, done + advance);
-    const Demand there = between(from, to, next);
-    Iterate trial = at;
-    if (release(there, at, false)) factorised = false;
-    if (!factorised && prepare(here, at) < 0) return limit(done, "the stiffness at the start is not stable");
-    factorised = true;
-    const int before = report_.iterations;
-    const std::vector<bool> active = active_;
-    auto outcome = step(here, there, next - done, at, trial);
-    if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
-    if (loads_change && snapped(move_mm_, largest_move(predicted_, trial.positions))) outcome = Newton::Outcome::stuck;
-    const bool snap = outcome != Newton::Outcome::stuck && !loads_change && jumped(here, there, at, trial);
-    const bool unstable = outcome == Newton::Outcome::unstable;
-    if (outcome != Newton::Outcome::stuck && newton_.inverted() && !last_.inverted && next - done > most_inverting)
-      outcome = Newton::Outcome::stuck;
-    if (outcome == Newton::Outcome::stuck) {
-      factorised = false;
-      active_ = active;
-      advance = 0.4 * (next - done);
-      if (load >= 0 && next - done < climb_below) {
-        const Climb end = climb(std::exchange(load, -1), from, here, to, at);
-        if (end == Climb::interrupted) return Status::interrupted;
-        if (end == Climb::arrived) return arrive(to, at);
-        if (end == Climb::summit) return limit(report_.reached, report_.remark);
-        active_ = active;
-      }
-      if (beyond && advance < finest) {
-        tell_snap(beyond->jump_mm, done);
-        at = std::move(beyond->at);
-        here = beyond->demand;
-        done = report_.reached = beyond->done;
-        active_ = std::move(beyond->active);
-        last_ = beyond->last;
-        beyond.reset();
-        ++report_.continuation_steps;
-        advance = follow_below;
-      } else if (advance < least_advance || move_mm_ < least_move * tolerance_mm_) {
-        return limit(done, "beyond this point no equilibrium follows");
-      }
-    } else if (const double longest = longest_step(snap, unstable); next - done > 1.001 * longest) {
-      if (snap) beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
-      factorised = false;
-      active_ = active;
-      advance = std::max(longest, 0.4 * (next - done));
-    } else {
-      if (snap) tell_snap(jump_mm_, done);
-      at = std::move(trial);
-      here = there;
-      done = next;
-      last_ = judged();
-      if (unstable && stable_ && done < 1) {
-        if (!buckle(there, at)) return Status::interrupted;
-        factorised = false;
-      } else if (unstable && done < 1 && report_.unstable_from == 0 && prepare(there, at) > 0) {
-        report_.unstable_from = done;  // in the shape itself: the last factorisation was of one close to it
-      }
-      if (beyond && done >= beyond->done) beyond.reset();
-      ++report_.continuation_steps;
-      report_.reached = done;
-      const int used = report_.iterations - before;
-      advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
-      if (unstable) advance = std::min(advance, follow_below);
-    }
-    if (done - marked >= least_progress) {
-      marked = done;
-      marked_iterations = report_.iterations;
-    } else if (done < 1 && report_.iterations - marked_iterations >= patience) {
-      return limit(done, "the way there goes on in ever smaller steps: " + std::to_string(patience) +
-                             " iterations brought less than 1 % of it");
-    }
-    if (done < 1 && report_.iterations >= max_iterations_) {
-      tell_balance();
-      report_.remark = "the limit of iterations was reached";
-      return Status::not_converged;
-    }
-  }
+  while (way_.done < 1)
+    if (const std::optional<Status> end = go_on(at)) return *end;
   return arrive(to, at);
+}
+
+/// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
+std::optional<Status> Continuation::go_on(Iterate& at) {
+  const double next = std::min(1.0, way_.done + way_.advance), length = next - way_.done;
+  const Demand there = between(way_.from, way_.to, next);
+  Iterate trial = at;
+  if (release(there, at, false)) way_.factorised = false;
+  if (!way_.factorised && prepare(way_.here, at) < 0)
+    return limit(way_.done, "the stiffness at the start is not stable");
+  way_.factorised = true;
+  const int before = report_.iterations;
+  const std::vector<bool> active = active_;
+  auto outcome = step(way_.here, there, length, at, trial);
+  if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
+  if (way_.loads_change && snapped(move_mm_, largest_move(predicted_, trial.positions)))
+    outcome = Newton::Outcome::stuck;
+  const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
+  const bool unstable = outcome == Newton::Outcome::unstable;
+  if (newton_.inverted() && !last_.inverted && length > most_inverting) outcome = Newton::Outcome::stuck;
+
+  std::optional<Status> end;
+  const double longest = longest_step(snap, unstable);
+  if (outcome == Newton::Outcome::stuck) {
+    way_.factorised = false;
+    active_ = active;
+    end = shorten(length, at);
+  } else if (length > 1.001 * longest) {
+    if (snap) way_.beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
+    way_.factorised = false;
+    active_ = active;
+    way_.advance = std::max(longest, 0.4 * length);
+  } else {
+    if (snap) tell_snap(jump_mm_, way_.done);
+    at = std::move(trial);
+    if (!come_to(there, next, unstable, at)) return Status::interrupted;
+    const int used = report_.iterations - before;
+    way_.advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
+    if (unstable) way_.advance = std::min(way_.advance, follow_below);
+  }
+  return end ? end : out_of_patience();
+}
+
+/// After a step of this length that led to no equilibrium.
+std::optional<Status> Continuation::shorten(double length, Iterate& at) {
+  const std::vector<bool> active = active_;
+  way_.advance = 0.4 * length;
+  if (way_.load >= 0 && length < climb_below) {
+    const Climb end = climb(std::exchange(way_.load, -1), way_.from, way_.here, way_.to, at);
+    if (end == Climb::interrupted) return Status::interrupted;
+    if (end == Climb::arrived) return arrive(way_.to, at);
+    if (end == Climb::summit) return limit(report_.reached, report_.remark);
+    active_ = active;
+  }
+  if (way_.beyond && way_.advance < finest) {
+    Beyond beyond = std::move(*way_.beyond);
+    way_.beyond.reset();
+    tell_snap(beyond.jump_mm, way_.done);
+    at = std::move(beyond.at);
+    active_ = std::move(beyond.active);
+    last_ = beyond.last;
+    pass(beyond.demand, beyond.done);
+    way_.advance = follow_below;
+    return std::nullopt;
+  }
+  if (way_.advance < least_advance || move_mm_ < least_move * tolerance_mm_)
+    return limit(way_.done, "beyond this point no equilibrium follows");
+  return std::nullopt;
+}
+
+/// An equilibrium on the way; false: interrupted.
+bool Continuation::come_to(const Demand& there, double next, bool unstable, Iterate& at) {
+  last_ = judged();
+  if (unstable && stable_ && next < 1) {
+    if (!buckle(there, at)) return false;
+    way_.factorised = false;
+  } else if (unstable && next < 1 && report_.unstable_from == 0 && prepare(there, at) > 0) {
+    report_.unstable_from = next;  // in the shape itself: the last factorisation was of one close to it
+  }
+  if (way_.beyond && next >= way_.beyond->done) way_.beyond.reset();
+  pass(there, next);
+  return true;
+}
+
+void Continuation::pass(const Demand& demand, double done) {
+  way_.here = demand;
+  way_.done = report_.reached = done;
+  ++report_.continuation_steps;
+}
+
+std::optional<Status> Continuation::out_of_patience() {
+  if (way_.done - way_.marked >= least_progress) {
+    way_.marked = way_.done;
+    way_.marked_iterations = report_.iterations;
+  } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= patience) {
+    return limit(way_.done, "the way there goes on in ever smaller steps: " + std::to_string(patience) +
+                                " iterations brought less than 1 % of it");
+  }
+  if (way_.done == 1 || report_.iterations < max_iterations_) return std::nullopt;
+  tell_balance();
+  report_.remark = "the limit of iterations was reached";
+  return Status::not_converged;
 }
 
 Continuation::Judgement Continuation::judged() const {

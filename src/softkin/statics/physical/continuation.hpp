@@ -6,11 +6,6 @@
 
 namespace softkin::physical {
 
-/// Of a vertex [mm].
-inline double largest_move(const Points& from, const Points& to) {
-  return (to - from).rowwise().norm().maxCoeff();
-}
-
 /// The path of equilibria from one demand to another: predictor, length of steps, slack cables, limits, and where it
 /// becomes unstable.
 class Continuation {
@@ -55,6 +50,18 @@ class Continuation {
   };
   enum class Climb { lost, arrived, summit, interrupted };
 
+  /// The way asked for, and how far it was gone.
+  struct Way {
+    Demand from{}, to{}, here{};
+    double done = 0, advance = 1;  // shares of it: gone, and of the next step
+    Index load = -1;               // that alone changes, until it was climbed along what it does
+    bool loads_change = false;
+    bool factorised = false;  // the stiffness here
+    std::optional<Beyond> beyond{};
+    double marked = 0;  // the last share at which it was getting on
+    int marked_iterations = 0;
+  };
+
   [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
   std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from);
   Climb climb(Index a, const Demand& from, const Demand& here, const Demand& to, Iterate& at);
@@ -69,6 +76,11 @@ class Continuation {
   [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
   void tell_balance();
   Status limit(double done, const std::string& why);
+  std::optional<Status> go_on(Iterate& at);
+  std::optional<Status> shorten(double length, Iterate& at);
+  bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
+  void pass(const Demand& demand, double done);
+  std::optional<Status> out_of_patience();
   bool release(const Demand& there, Iterate& at, bool contradicting);
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
   bool jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial);
@@ -91,6 +103,7 @@ class Continuation {
   int max_iterations_;
   bool stable_;
   SolveReport& report_;
+  Way way_;
   std::vector<bool> active_;
   Points predicted_;                  // by the last step
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way

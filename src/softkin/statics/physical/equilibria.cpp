@@ -82,6 +82,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   const bool unknown = start.actuation.size() == 0 && start.positions != model.rest;
   if (report.status != Status::converged && report.reached == 0 && unknown) {  // the start, which is of nothing known
     result.state.actuation.resize(0);
+    result.state.share = -1;
     return result;
   }
   result.state.multipliers = at.multipliers;

@@ -218,7 +218,7 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   for (Index a = 0; a < system.actuators(); ++a)
     if (!active[a] && !system.constrains(a) && system.measures().measures(a))
       at.multipliers[a] = system.unit(a) * there.actuation[a];
-  return (at.positions - before).rowwise().norm().maxCoeff();
+  return largest_move(before, at.positions);
 }
 
 Predictor::Predictor(const System& system, System::Workspace& work, const State& at, Team& team)

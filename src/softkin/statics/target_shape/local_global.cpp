@@ -95,7 +95,7 @@ bool LocalGlobal::iterate(const Actuation& actuation, System::Scratch& scratch, 
   tolerated_ = anderson_ > 0 ? tolerated_growth * record.energy : unlimited;
   before_ = positions_;
   global_.step(scratch.residual, positions_, poses_, team);
-  record.step_mm = (positions_ - before_).rowwise().norm().maxCoeff();
+  record.step_mm = largest_move(before_, positions_);
   // the squares of far-off coordinates overflow
   if (!std::isfinite(record.energy + record.gradient_norm + record.step_mm) || !positions_.allFinite()) {
     positions_ = accepted_;

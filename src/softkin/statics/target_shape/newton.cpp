@@ -129,7 +129,7 @@ double NewtonSearch::natural_norm(const Points& positions) {
 
 /// A whole, exact step that ends the search: what it does to energy or residual may be rounding.
 bool NewtonSearch::negligible(int halvings, const Points& positions) const {
-  return halvings == 0 && exact_ && (positions - before_).rowwise().norm().maxCoeff() < report_.tolerance_mm;
+  return halvings == 0 && exact_ && largest_move(before_, positions) < report_.tolerance_mm;
 }
 
 /// The step that the last factor asks for from here on, taken if it ends the search.
@@ -261,7 +261,7 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points
       if (const End end = local_global(actuation, rescue, positions); end != End::stuck) return end;
       continue;
     }
-    record.step_mm = (positions - before_).rowwise().norm().maxCoeff();
+    record.step_mm = largest_move(before_, positions);
     const End end = enter(record);
     const bool whole = step == Step::full && exact_;
     if (whole && record.step_mm < report_.tolerance_mm) return End::converged;
