@@ -83,7 +83,7 @@ test-threads:
 test-fuzz:
 	cmake --preset sanitize
 	cmake --build --preset sanitize --target softkin_fuzz
-	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
+	SECONDS_IN_ALL=40 scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
 
 fuzz:
 	@$(SETUP) --tests
