@@ -53,8 +53,9 @@ inline void split_cell(const std::array<Index, 8>& v, Split split, bool odd, Mes
   }
 }
 
-/// A block whose lowest layer is of prisms.
-[[nodiscard]] inline Mesh layered_mesh(const std::array<int, 3>& cells, const Vec3& size, Split above) {
+/// Elements alone; the lowest layer of cells may be split in another way, unless one of them is five.
+[[nodiscard]] inline Mesh layered_mesh(const std::array<int, 3>& cells, const Vec3& size, Split above,
+                                       Split lowest = Split::prisms) {
   Mesh mesh;
   mesh.vertices = grid_points(cells, size);
   for (int k = 0; k < cells[2]; ++k)
@@ -62,7 +63,7 @@ inline void split_cell(const std::array<Index, 8>& v, Split split, bool odd, Mes
       for (int i = 0; i < cells[0]; ++i) {
         std::array<Index, 8> corners{};
         for (int c = 0; c < 8; ++c) corners[c] = grid_vertex(cells, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
-        split_cell(corners, k == 0 ? Split::prisms : above, false, mesh);
+        split_cell(corners, k == 0 ? lowest : above, (i + j + k) % 2 != 0, mesh);
       }
   return mesh;
 }
@@ -96,15 +97,7 @@ inline void add_face_regions(Mesh& mesh, const Vec3& size) {
 /// A box of cells[0] x cells[1] x cells[2] cells from the origin to size [mm], split conformingly. Vertices run along
 /// x first, then y, then z. Regions: "body" (all elements) and the faces "x_low", "x_high", "y_low", ... as cells.
 [[nodiscard]] inline Mesh block_mesh(const std::array<int, 3>& cells, const Vec3& size, Split split = Split::six) {
-  Mesh mesh;
-  mesh.vertices = grid_points(cells, size);
-  for (int k = 0; k < cells[2]; ++k)
-    for (int j = 0; j < cells[1]; ++j)
-      for (int i = 0; i < cells[0]; ++i) {
-        std::array<Index, 8> corners{};
-        for (int c = 0; c < 8; ++c) corners[c] = grid_vertex(cells, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
-        split_cell(corners, split, (i + j + k) % 2 != 0, mesh);
-      }
+  Mesh mesh = layered_mesh(cells, size, split, split);
   Region body;
   body.name = "body";
   for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) body.tetrahedra.push_back(static_cast<Index>(i));

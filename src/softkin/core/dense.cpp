@@ -19,9 +19,8 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-LeastSquares least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right, double threshold) {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
-  if (threshold > 0) qr.setThreshold(threshold);
+LeastSquares least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
   return {qr.solve(right), qr.rank()};
 }
 

@@ -27,8 +27,6 @@ struct LeastSquares {
   Eigen::VectorXd solution;
   Eigen::Index rank = 0;
 };
-/// @param threshold  pivots below this share of the largest count as zero; 0: by rounding
-[[nodiscard]] LeastSquares least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right,
-                                         double threshold = 0);
+[[nodiscard]] LeastSquares least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
 }  // namespace softkin
