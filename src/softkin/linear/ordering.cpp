@@ -1,6 +1,7 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <mutex>
 #include <numeric>
 #include <softkin/linear/ordering.hpp>
 #include <stdexcept>
@@ -35,6 +36,9 @@ std::vector<Index> dissect(Graph& graph) {
   idx_t count = static_cast<idx_t>(graph.starts.size()) - 1;
   std::vector<idx_t> order(count), place(count);
   std::iota(order.begin(), order.end(), 0);
+  // METIS draws from rand() after srand(): two at once would each get a part of one sequence, and another order
+  static std::mutex one;
+  const std::lock_guard lock(one);
   if (!graph.neighbours.empty() && METIS_NodeND(&count, graph.starts.data(), graph.neighbours.data(), nullptr, nullptr,
                                                 order.data(), place.data()) != METIS_OK)
     throw std::runtime_error("METIS could not order the matrix");
