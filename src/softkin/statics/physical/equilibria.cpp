@@ -28,12 +28,12 @@ void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) c
   out.multipliers = at.multipliers;
 }
 
-/// From a start that is no equilibrium no path may lead away; from rest one may.
 void Equilibria::forget() const {
   const std::lock_guard lock(mutex_);
   idle_.clear();
 }
 
+/// From a start that is no equilibrium no path may lead away; from rest one may.
 void Equilibria::begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
                              System::Workspace& work, Iterate& at, SolveReport& report) const {
   const std::string remark = report.remark;
