@@ -10,7 +10,7 @@ endif
 export CTEST_OUTPUT_ON_FAILURE = 1
 
 cores := $(shell nproc)
-sources = $(shell find src apps bench tests examples -name '*.cpp' -o -name '*.hpp')
+sources = $(shell find src apps bench tests examples python -name '*.cpp' -o -name '*.hpp')
 RUNS ?= 20000
 example := examples/pneumatic_finger
 # without `large`, which takes long and up to 24 GiB

@@ -24,6 +24,10 @@ else()
     add_compile_options(-fno-sanitize=pointer-overflow)
   endif()
 endif()
+if(SOFTKIN_PYTHON)
+  # for every target alike, programs too: they share precompiled headers, and command and module give the same bits
+  add_compile_options(-fPIC -fno-semantic-interposition)
+endif()
 
 # What users get too. Eigen chooses by -march how it aligns, and with it how it allocates and frees: a matrix of a room
 # built for AVX-512 would crash a user's program built for any x86-64. So both are told one alignment. Of those that
