@@ -18,4 +18,7 @@ NB_MODULE(_core, module) {
   python::bind_inverse(module);
   python::bind_runs(module);
   python::bind_workspace(module);
+  python::bind_compare(module);
+  python::bind_calibrate(module);
+  python::bind_drive(module);
 }
