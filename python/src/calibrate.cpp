@@ -111,6 +111,7 @@ calibration::SpecimenTask task_of(const Specimens& given) {
   options.grip = given.grip == "sliding" ? calibration::Grip::sliding : calibration::Grip::clamped;
   for (const Law law : {Law::corotational, Law::st_venant_kirchhoff})
     if (given.law == law_name(law)) options.law = law;
+  task.set_up = calibration::set_up_lines(task, [](const std::string&) { return ""; });
   return task;
 }
 
