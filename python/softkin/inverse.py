@@ -92,6 +92,9 @@ class Answer:
             return self
         raise NotConverged(f"{self.status}, {self.error_mm:.3g} mm off: {self.reason}", self.shape)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled, (self._robot, self._core.pickled())
+
     def __repr__(self) -> str:
         if not self._core.has_shape:
             return f"<softkin.Answer {self.status}: {self.reason}>"
@@ -100,3 +103,7 @@ class Answer:
             for info, value in zip(self._robot.actuator_infos, self.shape.actuation)
         )
         return f"<softkin.Answer {self.status}, {self.error_mm:.3g} mm off: {commands}>"
+
+
+def _unpickled(robot: Robot, state: bytes) -> Answer:
+    return Answer(robot, _core.Answer.unpickled(robot._core, state))

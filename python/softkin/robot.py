@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _core
+from . import _core, neighbours
 from ._arrays import Floats, Indices, floats, indices, vector
 from ._solving import Command
 from .errors import SoftkinWarning
@@ -161,6 +161,24 @@ class Robot(_Runs, _Workspaces):
         }
         source = _core.Source.of_mesh(name, mesh, _plain(description, "description"), "", [])
         self._take(_core.Robot(source, True))
+
+    @classmethod
+    def from_meshio(cls, mesh: Any, *, regions: Mapping[str, Any] | None = None, **description: Any) -> Robot:
+        """A robot of a meshio.Mesh; its cell sets, point sets and physical groups are regions.
+
+        description  as of Robot(...)
+        """
+        found = neighbours.from_meshio(mesh)
+        return cls(**{**found, "regions": {**found["regions"], **(regions or {})}}, **description)
+
+    @classmethod
+    def from_pyvista(cls, grid: Any, *, regions: Mapping[str, Any] | None = None, **description: Any) -> Robot:
+        """A robot of a pyvista.UnstructuredGrid; values of its cell array "region" are regions "region_0", ...
+
+        description  as of Robot(...)
+        """
+        found = neighbours.from_pyvista(grid)
+        return cls(**{**found, "regions": {**found["regions"], **(regions or {})}}, **description)
 
     @classmethod
     def _of(cls, core: _core.Robot) -> Robot:

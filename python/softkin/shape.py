@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, neighbours
 from ._arrays import Floats, vector
 from .errors import NotConverged
 
@@ -300,6 +300,14 @@ class Shape:
         if direction and not any(direction):
             raise ValueError("view must be a direction, so not zero")
         return self._core.png(direction, self._title())
+
+    def to_meshio(self) -> Any:
+        """A meshio.Mesh of it, with displacements, strains and stresses; needs meshio."""
+        return neighbours.to_meshio(self)
+
+    def to_pyvista(self) -> Any:
+        """A pyvista.UnstructuredGrid of it, with displacements, strains and stresses; needs PyVista."""
+        return neighbours.to_pyvista(self)
 
     def _title(self) -> str:
         commands = zip(self._robot.actuator_infos, self.actuation)

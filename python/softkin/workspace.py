@@ -115,6 +115,9 @@ class Workspace:
         kind, vertices, triangles, volume, area, (long, wide, thin) = self._core.hull(marker or "")
         return Hull(kind, vertices, triangles, volume, area, (long, wide, thin))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled, (self._robot, self._core.pickled())
+
     def __repr__(self) -> str:
         good = int((self.status == "converged").sum())
         return f"<softkin.Workspace of {self._robot.name}: {self.sampling}; {good} of {len(self)} converged>"
@@ -130,6 +133,10 @@ class Workspace:
             for row in self.samples[:most].tolist()
         )
         return f"<p>{escape(repr(self)[1:-1])}</p><table><tr>{head}</tr>{rows}</table>"
+
+
+def _unpickled(robot: Robot, state: bytes) -> Workspace:
+    return Workspace(robot, _core.Workspace.unpickled(robot._core, state))
 
 
 class _Workspaces(Solving):

@@ -11,6 +11,7 @@
 
 #include "bindings.hpp"
 #include "convert.hpp"
+#include "pickles.hpp"
 #include "solve.hpp"
 #include "watch.hpp"
 
@@ -170,6 +171,25 @@ void bind_inverse(nb::module_& module) {
       .def_prop_ro("equilibria", [](const Answer& a) { return a.found.equilibria; })
       .def_prop_ro("remark", [](const Answer& a) { return a.found.remark; })
       .def_prop_ro("seconds", [](const Answer& a) { return a.found.seconds; })
+      .def("pickled",
+           [](const Answer& a) {
+             Writer writer;
+             writer(a.goals.named, a.options, a.found);
+             return nb::bytes(writer.bytes().data(), writer.bytes().size());
+           })
+      .def_static(
+          "unpickled",
+          [](RobotPtr robot, nb::bytes bytes) {
+            auto answer = std::make_shared<Answer>();
+            Reader reader({bytes.c_str(), bytes.size()});
+            reader(answer->goals.named, answer->options, answer->found);
+            reader.finish();
+            answer->goals.robot = answer->robot = robot;
+            answer->shape =
+                std::make_shared<Shape>(std::move(robot), answer->found.equilibrium, answer->options.statics);
+            return answer;
+          },
+          nb::arg("robot"), nb::arg("bytes"))
       .def("report", [](const Answer& a) {
         const nb::gil_scoped_release released;
         return report_of(a);

@@ -11,9 +11,9 @@
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
 
-#include "archive.hpp"
 #include "bindings.hpp"
 #include "convert.hpp"
+#include "pickles.hpp"
 
 namespace softkin::python {
 
@@ -28,29 +28,6 @@ const runs::StepRecord& Shape::record() const {
     record_.self_overlap = robot_->overlaps().in(positions());
   });
   return record_;
-}
-
-// Found by the archive's namespace, so in no unnamed one.
-
-template <class A>
-void members(A& archive, IterationRecord& r) {
-  archive(r.energy, r.step_mm, r.gradient_norm);
-}
-template <class A>
-void members(A& archive, SolveReport& r) {
-  archive(r.status, r.solver, r.iterations, r.factorisations, r.projections, r.shifts, r.continuation_steps, r.reached,
-          r.remark, r.energy, r.step_mm, r.tolerance_mm, r.gradient_norm, r.residual_N, r.pull_N, r.unstable_modes,
-          r.buckled, r.buckled_mm, r.snapped_mm, r.snapped_from, r.unstable_from, r.estimated_error_mm, r.history,
-          r.seconds);
-}
-template <class A>
-void members(A& archive, Equilibrium& e) {
-  archive(e.state.positions, e.state.actuation, e.state.multipliers, e.state.share, e.actuation, e.report);
-}
-template <class A>
-void members(A& archive, StaticsOptions& o) {
-  archive(o.solver, o.step_tolerance_mm, o.max_iterations, o.anderson, o.threads, o.keep_history, o.stable,
-          o.reuse_factor);
 }
 
 namespace {

@@ -12,6 +12,7 @@
 
 #include "bindings.hpp"
 #include "convert.hpp"
+#include "pickles.hpp"
 #include "solve.hpp"
 #include "watch.hpp"
 
@@ -200,6 +201,22 @@ void bind_workspace(nb::module_& module) {
             return list_of(all.data(), all.size());
           },
           nb::rv_policy::automatic)
+      .def("pickled",
+           [](const Workspace& w) {
+             Writer writer;
+             writer(w.sampling, w.samples);
+             return nb::bytes(writer.bytes().data(), writer.bytes().size());
+           })
+      .def_static(
+          "unpickled",
+          [](RobotPtr robot, nb::bytes bytes) {
+            auto read = std::make_shared<Workspace>(Workspace{std::move(robot), "", {}});
+            Reader reader({bytes.c_str(), bytes.size()});
+            reader(read->sampling, read->samples);
+            reader.finish();
+            return read;
+          },
+          nb::arg("robot"), nb::arg("bytes"))
       .def("hull", &hull_of, nb::arg("marker"));
   module.def("workspace", &workspace, nb::arg("robot"), nb::arg("samples"), nb::arg("sampling"), nb::arg("seed"),
              nb::arg("options"), nb::arg("threads"), nb::arg("store"), nb::arg("begin").none(), nb::arg("kept").none());

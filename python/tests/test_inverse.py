@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,8 @@ def test_reached(robot: softkin.Robot, goal: softkin.Shape) -> None:
     assert answer.equilibria > 1 and answer.iterations > 0 and answer.seconds > 0
     assert answer.report["ik"]["reached"] is True
     assert "reached" in repr(answer) and answer.shape.converged
+    again = pickle.loads(pickle.dumps(answer))
+    assert again.report == answer.report and again.shape.fingerprint == answer.shape.fingerprint
 
 
 def test_coordinates_planes_directions_weights(robot: softkin.Robot, goal: softkin.Shape) -> None:

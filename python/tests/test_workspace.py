@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,8 @@ def test_grid(robot: softkin.Robot) -> None:
     )
     np.testing.assert_array_equal(samples["tip_y_mm"], cloud["tip"][:, 1])
     assert samples["reached"].tolist() == [1] * 8
+    again = pickle.loads(pickle.dumps(cloud))
+    assert again.samples.tobytes() == samples.tobytes() and again.sampling == cloud.sampling
     hull = cloud.hull()
     assert hull.kind == "solid" and hull.volume_mm3 > 0 and hull.area_mm2 > 0
     assert hull.vertices.shape[1] == 3 and hull.triangles.shape[1] == 3 and len(hull.extents_mm) == 3
