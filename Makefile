@@ -83,7 +83,7 @@ test-threads:
 test-fuzz:
 	cmake --preset sanitize
 	cmake --build --preset sanitize --target softkin_fuzz
-	SECONDS_IN_ALL=40 scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
+	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
 
 fuzz:
 	@$(SETUP) --tests
