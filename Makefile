@@ -96,7 +96,7 @@ random:
 	@$(SETUP) --tests
 	cmake --preset release -DSOFTKIN_TESTS=ON
 	cmake --build --preset release --target softkin_random
-	build/tests/softkin_random --count $(RUNS) --threads $(cores) --out out/random --known tests/random/known_failures.txt
+	build/tests/softkin_random --count $(RUNS) --threads $(cores) --out out/random
 
 bench: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON
