@@ -3,7 +3,8 @@
 Lengths are in mm, pressures in kPa (gauge), forces in N, ratios without unit. docs/python.md
 """
 
-from ._core import ActuatorInfo, __version__
+from ._core import ActuatorInfo
+from ._core import version as __version__
 from ._solving import Progress
 from .errors import InvalidInput, NotConverged, SoftkinWarning
 from .inverse import Answer

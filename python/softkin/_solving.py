@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
@@ -37,13 +38,18 @@ class Progress(NamedTuple):
 ProgressFunction = Callable[[Progress], object]
 
 
-def _telling(progress: ProgressFunction | None) -> Callable[[int, float, float, float], bool] | None:
-    if progress is None:
-        return None
-    tell = progress
+@lru_cache(maxsize=64)
+def _options(
+    solver: str, tolerance_mm: float | None, max_iterations: int, anderson: int, threads: int, stable: bool
+) -> _core.SolveOptions:
+    if tolerance_mm is not None and not tolerance_mm > 0:
+        raise ValueError(f"the tolerance must be a length > 0 in mm, not {tolerance_mm}")
+    return _core.SolveOptions(solver, tolerance_mm or 0.0, max_iterations, anderson, threads, stable)
 
+
+def _telling(progress: ProgressFunction) -> Callable[[int, float, float, float], bool]:
     def told(iteration: int, step_mm: float, tolerance_mm: float, share: float) -> bool:
-        return tell(Progress(iteration, step_mm, tolerance_mm, share)) is not False
+        return progress(Progress(iteration, step_mm, tolerance_mm, share)) is not False
 
     return told
 
@@ -71,14 +77,25 @@ class Solving:
         if isinstance(value, str):
             return self._owner._core.parsed("command", name, value)
         number = float(value)
-        if not np.isfinite(number):
+        if not math.isfinite(number):
             raise ValueError(f"{name} must be a finite number, not {number}")
         return number
 
-    def _options(
-        self, solver: str, tolerance_mm: float | None, max_iterations: int, anderson: int, threads: int, stable: bool
-    ) -> _core.SolveOptions:
-        return _core.SolveOptions(solver, tolerance_mm or 0.0, max_iterations, anderson, threads, stable)
+    def _solve(
+        self,
+        asked: Floats,
+        start: Shape | ArrayLike | None,
+        options: _core.SolveOptions,
+        progress: ProgressFunction | None,
+    ) -> Shape:
+        robot = self._owner
+        begin = positions = None
+        if isinstance(start, Shape):
+            begin = start._core
+        elif start is not None:
+            positions = floats("start", start, (len(robot.rest), 3))
+        tell = None if progress is None else _telling(progress)
+        return Shape(robot, _core.solve(robot._core, self._session, asked, begin, positions, options, tell))
 
     def solve(
         self,
@@ -109,15 +126,8 @@ class Solving:
         progress        called with a Progress at most 20 times a second; False stops the solve
         returns         not converging is its status
         """
-        asked = self._actuation(actuation, commands)
-        options = self._options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        robot = self._owner
-        begin = start._core if isinstance(start, Shape) else None
-        positions = None
-        if start is not None and begin is None:
-            positions = floats("start", start, (len(robot.rest), 3))  # type: ignore[arg-type]
-        core = _core.solve(robot._core, self._session, asked, begin, positions, options, _telling(progress))
-        return Shape(robot, core)
+        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        return self._solve(self._actuation(actuation, commands), start, options, progress)
 
     def jacobian(self, shape: Shape, markers: str | Sequence[str] | None = None) -> Floats:
         """Derivatives of marker positions by commands.
@@ -207,7 +217,7 @@ class Solving:
             preferred,
             free,
             options,
-            _telling(progress),
+            None if progress is None else _telling(progress),
         )
         return Answer(robot, core)
 
@@ -257,6 +267,6 @@ class Solving:
         progress        as solve's
         """
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
-        statics = self._options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
+        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
         options = self._inverse_options(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         return self._solve_inverse(goals, start, None, prefer, fix, options, progress)

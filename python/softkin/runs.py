@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, floats
-from ._solving import DEFAULT_ITERATIONS, Command, Commands, Solving
+from ._solving import DEFAULT_ITERATIONS, Command, Commands, Solving, _options
 from .errors import SoftkinWarning
 from .shape import Shape
 from .table import Table
@@ -193,7 +193,7 @@ class _Runs(Solving):
         others    as solve's
         """
         robot = self._owner
-        options = self._options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
         folder = "" if store is None else os.fspath(store)
         if isinstance(steps, (str, os.PathLike)):
             if times is not None:
@@ -244,7 +244,7 @@ class _Runs(Solving):
         others       as inverse's
         """
         robot = self._owner
-        statics = self._options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
+        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
         inverse = self._inverse_options(method, tolerance_mm, 200, descents, 3, statics)
         name = "the path"
         if isinstance(path, (str, os.PathLike)):
@@ -286,12 +286,12 @@ class _Runs(Solving):
             raise ValueError("path: every marker needs as many places as the others, at least one")
         axes: list[tuple[bool, bool, bool]] = []
         for name, array in zip(path, arrays):
-            missing = np.isnan(array)
+            missing: NDArray[np.bool_] = np.isnan(array)
             if (missing.any(axis=0) != missing.all(axis=0)).any():
                 raise ValueError(f"path: {name}: a coordinate counts at every waypoint or (all NaN) at none")
-            counts = ~missing.all(axis=0)
-            if not counts.any():
+            x, y, z = (not missing[:, axis].all() for axis in range(3))
+            if not (x or y or z):
                 raise ValueError(f"path: {name}: no coordinate counts")
-            axes.append((bool(counts[0]), bool(counts[1]), bool(counts[2])))
+            axes.append((bool(x), bool(y), bool(z)))
         targets = np.ascontiguousarray(np.nan_to_num(np.stack(arrays, axis=1)))
         return _core.MarkerPath.of_targets(robot._core, list(path), targets, axes, _times(times, len(targets)))

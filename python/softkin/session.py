@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._solving import DEFAULT_ITERATIONS, Command, Commands, ProgressFunction, Solving, Target
+from ._solving import DEFAULT_ITERATIONS, Command, Commands, ProgressFunction, Solving, Target, _options
 from .inverse import Answer
 from .shape import Shape
 
@@ -55,17 +55,9 @@ class Session(Solving):
         **commands: Command,
     ) -> Shape:
         """As Robot.solve, from the last equilibrium where no start is given."""
-        found = super().solve(
-            actuation,
-            start=self._last if start is None else start,
-            solver=solver,
-            tolerance_mm=tolerance_mm,
-            max_iterations=max_iterations,
-            anderson=anderson,
-            threads=threads,
-            stable=stable,
-            progress=progress,
-            **commands,
+        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        found = self._solve(
+            self._actuation(actuation, commands), self._last if start is None else start, options, progress
         )
         if found.converged:
             self._last, self._answer = found, None
@@ -99,7 +91,7 @@ class Session(Solving):
     ) -> Answer:
         """As Robot.inverse, from the last equilibrium, with its derivatives, where no start is given."""
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
-        statics = self._options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
+        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
         options = self._inverse_options(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         last = self._answer if start is None else None
         found = self._solve_inverse(goals, self._last if start is None else start, last, prefer, fix, options, progress)

@@ -236,6 +236,11 @@ class Shape:
         """Ways in which the equilibrium is unstable; physical formulation."""
         return self._core.unstable_modes
 
+    @property
+    def fingerprint(self) -> str:
+        """16 digits that change with any bit of the positions."""
+        return self._core.fingerprint
+
     def require(self) -> Shape:
         """Itself; raises NotConverged where it is no equilibrium of what was asked for."""
         if self.converged:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import Floats, Indices
-from ._solving import DEFAULT_ITERATIONS, Solving
+from ._solving import DEFAULT_ITERATIONS, Solving, _options
 
 if TYPE_CHECKING:
     import pandas
@@ -112,7 +112,8 @@ class Workspace:
 
     def hull(self, marker: str | None = None) -> Hull:
         """Of the samples that have an equilibrium; None: the robot's first marker."""
-        return Hull(*self._core.hull(marker or ""))
+        kind, vertices, triangles, volume, area, (long, wide, thin) = self._core.hull(marker or "")
+        return Hull(kind, vertices, triangles, volume, area, (long, wide, thin))
 
     def __repr__(self) -> str:
         good = int((self.status == "converged").sum())
@@ -160,7 +161,7 @@ class _Workspaces(Solving):
         others    as solve's
         """
         robot = self._owner
-        options = self._options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
         bar: Any = None
         done = 0
 

@@ -8,7 +8,7 @@ namespace nb = nanobind;
 NB_MODULE(_core, module) {
   using namespace softkin;
   module.doc() = "What softkin does in C++; the public interface is the package softkin.";
-  module.attr("__version__") = version();
+  module.attr("version") = version();
   nb::exception<InvalidInput>(module, "InvalidInput", PyExc_ValueError).doc() =
       "Input that softkin refuses: one sentence that begins with where it stands.";
   python::bind_source(module);

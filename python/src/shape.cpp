@@ -148,6 +148,7 @@ void bind_shape(nb::module_& module) {
              const nb::gil_scoped_release released;
              return report_of(s);
            })
+      .def_prop_ro("fingerprint", [](const Shape& s) { return fingerprint_of(s.positions()); })
       .def("measure",
            [](const Shape& s) {
              const nb::gil_scoped_release released;
