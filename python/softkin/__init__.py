@@ -3,6 +3,7 @@
 Lengths are in mm, pressures in kPa (gauge), forces in N, ratios without unit. docs/python.md
 """
 
+from . import calibrate, compare, drive
 from ._core import ActuatorInfo
 from ._core import version as __version__
 from ._solving import Progress
@@ -36,5 +37,8 @@ __all__ = [
     "Waypoint",
     "Workspace",
     "__version__",
+    "calibrate",
+    "compare",
+    "drive",
     "load",
 ]

@@ -69,8 +69,11 @@ class Solving:
             values = self._actuation(None, given)
         else:
             values = floats("actuation", given, (len(robot._places),)).copy()
+        places = robot._places
         for name, value in named.items():
-            values[robot._place(name)] = self._number(name, value)
+            place = places.get(name)
+            number = value if type(value) is float and math.isfinite(value) else self._number(name, value)
+            values[robot._place(name) if place is None else place] = number
         return values
 
     def _number(self, name: str, value: Command) -> float:

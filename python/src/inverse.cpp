@@ -33,7 +33,7 @@ struct Goals {
 };
 
 /// What inverse kinematics came to.
-struct Answer {
+struct Answer : std::enable_shared_from_this<Answer> {
   RobotPtr robot;
   Goals goals;
   InverseOptions options;
@@ -56,28 +56,30 @@ InverseOptions options_of(const std::string& method, std::optional<double> toler
   return options;
 }
 
-std::shared_ptr<Answer> inverse(const Goals& goals, const Session* session, const std::optional<VectorIn>& from,
-                                const Shape* start, const Answer* last, const std::optional<VectorIn>& preferred,
-                                std::vector<bool> free, InverseOptions options, nb::object progress) {
+/// Without a session by statics of its own, as the command does it.
+std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, const std::optional<VectorIn>& from,
+                                const ShapePtr& start, const std::shared_ptr<Answer>& last,
+                                const std::optional<VectorIn>& preferred, std::vector<bool> free,
+                                InverseOptions options, nb::object progress) {
   const RobotPtr& robot = goals.robot;
-  const Statics& statics = statics_of(*robot, session);
-  auto answer = std::make_shared<Answer>();
-  answer->robot = robot;
-  answer->goals = goals;
-  options.statics.reuse_factor = session != nullptr;
+  if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
   options.free = std::move(free);
   if (preferred) options.preferred = vector_of(*preferred);
-  if (last != nullptr && last->found.sensitivity.regular) options.start_sensitivity = &last->found.sensitivity;
-  const std::vector<Goal> plain = goals.plain();
-  const Actuation begin = from ? vector_of(*from) : robot->model().rest_actuation();
-  answer->found = watched(std::move(progress), [&](const ProgressCallback& callback) {
-    return start != nullptr ? solve_inverse(robot->model(), statics, plain, start->found().state, options, callback)
-                            : solve_inverse_from(robot->model(), statics, plain, begin, options, callback);
-  });
-  options.start_sensitivity = nullptr;
-  options.statics.reuse_factor = true;
+  const auto work = [robot, session, start, last, options, plain = goals.plain(),
+                     begin =
+                         from ? vector_of(*from) : robot->model().rest_actuation()](const ProgressCallback& callback) {
+    const SessionPtr with = session ? session : std::make_shared<Session>(robot);
+    InverseOptions known = options;
+    if (last && last->found.sensitivity.regular) known.start_sensitivity = &last->found.sensitivity;
+    return start ? solve_inverse(robot->model(), with->statics, plain, start->found().state, known, callback)
+                 : solve_inverse_from(robot->model(), with->statics, plain, begin, known, callback);
+  };
+  auto answer = std::make_shared<Answer>();
+  answer->found = watched_solve(*robot, std::move(progress), work);
+  answer->robot = robot;
+  answer->goals = goals;
+  answer->shape = std::make_shared<Shape>(robot, answer->found.equilibrium, options.statics);
   answer->options = std::move(options);
-  answer->shape = std::make_shared<Shape>(robot, answer->found.equilibrium, answer->options.statics);
   return answer;
 }
 

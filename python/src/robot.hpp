@@ -24,6 +24,8 @@ class Robot : public std::enable_shared_from_this<Robot> {
     std::call_once(overlap_made_, [this] { overlap_.emplace(model_); });
     return *overlap_;
   }
+  /// Does an iteration of a solve take so long that a user who stops it would notice?
+  [[nodiscard]] bool is_large() const { return model_.rest.rows() > 3000; }
   /// throws  InvalidInput with the nearest name
   [[nodiscard]] Index marker(const std::string& name) const;
   [[nodiscard]] Index actuator(const std::string& name) const;
@@ -38,15 +40,16 @@ class Robot : public std::enable_shared_from_this<Robot> {
 using RobotPtr = std::shared_ptr<Robot>;
 
 /// Statics of its own, which keep threads and factors from call to call: for one user at a time.
-struct Session {
+struct Session : std::enable_shared_from_this<Session> {
   explicit Session(RobotPtr of) : robot(std::move(of)), statics(robot->model()) {}
 
   RobotPtr robot;
   Statics statics;
 };
+using SessionPtr = std::shared_ptr<Session>;
 
 /// An equilibrium and what was asked. The record is made when it is asked for.
-class Shape {
+class Shape : public std::enable_shared_from_this<Shape> {
  public:
   Shape(RobotPtr robot, Equilibrium found, StaticsOptions options)
       : robot_(std::move(robot)), found_(std::move(found)), options_(options) {}

@@ -15,17 +15,17 @@ namespace softkin::python {
 
 namespace {
 
-ShapePtr solve(const RobotPtr& robot, const Session* session, const VectorIn& actuation, const Shape* start,
+ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn& actuation, const ShapePtr& start,
                const std::optional<PointsIn>& positions, StaticsOptions options, nb::object progress) {
-  const Statics& statics = statics_of(*robot, session);
-  const Actuation asked = vector_of(actuation);
-  State from = positions ? State{points_of(*positions)} : State();
-  if (start != nullptr && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
-  const State& begin = start != nullptr ? start->found().state : positions ? from : (from = statics.rest());
+  if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
+  State from = positions ? State{points_of(*positions)} : start ? State() : robot->statics().rest();
   options.reuse_factor = session != nullptr;
-  Equilibrium found = watched(std::move(progress), [&](const ProgressCallback& callback) {
-    return statics.solve(asked, begin, options, callback);
-  });
+  const auto work = [robot, session, start, options, from = std::move(from),
+                     asked = vector_of(actuation)](const ProgressCallback& callback) {
+    const State& begin = start ? start->found().state : from;
+    return statics_of(*robot, session.get()).solve(asked, begin, options, callback);
+  };
+  Equilibrium found = watched_solve(*robot, std::move(progress), work);
   // what the report tells of options is what the user can set
   options.reuse_factor = true;
   return std::make_shared<Shape>(robot, std::move(found), options);

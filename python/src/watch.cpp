@@ -1,17 +1,11 @@
 #include "watch.hpp"
 
-#include <condition_variable>
-#include <exception>
-#include <thread>
+#include <algorithm>
+#include <vector>
 
 namespace softkin::python {
 
-namespace {
-
 using Clock = std::chrono::steady_clock;
-constexpr Clock::duration between_looks = std::chrono::milliseconds(50);
-
-}  // namespace
 
 Watch::Watch(nb::object tell)
     : tell_(std::move(tell)), next_((Clock::now() + between_looks).time_since_epoch().count()) {}
@@ -21,17 +15,18 @@ ProgressCallback Watch::callback() {
     if (stopped_) return false;
     const auto now = Clock::now().time_since_epoch().count();
     auto next = next_.load();
-    if (now < next || !next_.compare_exchange_strong(next, now + between_looks.count())) return true;
+    if (now < next || !next_.compare_exchange_strong(next, (Clock::now() + between_looks).time_since_epoch().count()))
+      return true;
     const nb::gil_scoped_acquire gil;
-    return look(progress);
+    return look(&progress);
   };
 }
 
-bool Watch::look(const Progress& progress) {
+bool Watch::look(const Progress* progress) {
   try {
     if (PyErr_CheckSignals() != 0) nb::raise_python_error();
-    if (tell_.is_none()) return true;
-    const nb::object answer = tell_(progress.iteration, progress.step_mm, progress.tolerance_mm, progress.share);
+    if (tell_.is_none() || progress == nullptr) return true;
+    const nb::object answer = tell_(progress->iteration, progress->step_mm, progress->tolerance_mm, progress->share);
     if (answer.is(nb::bool_(false))) stopped_ = true;
   } catch (nb::python_error& error) {
     const std::lock_guard lock(mutex_);
@@ -71,7 +66,7 @@ void Watch::watch(const std::function<void()>& work, const std::function<void()>
       {
         const nb::gil_scoped_acquire gil;
         try {
-          if (look({}) && tick) tick();
+          if (look(nullptr) && tick) tick();
         } catch (nb::python_error& error) {
           if (!raised_) raised_.emplace(std::move(error));
           stopped_ = true;
@@ -85,6 +80,31 @@ void Watch::watch(const std::function<void()>& work, const std::function<void()>
   rethrow();
   if (failure) std::rethrow_exception(failure);
   if (tick) tick();
+}
+
+namespace {
+
+struct Left {
+  std::thread thread;
+  std::shared_ptr<std::atomic<bool>> ended;
+};
+std::mutex left_mutex;
+std::vector<Left> left;
+
+}  // namespace
+
+void Abandoned::take(std::thread thread, std::shared_ptr<std::atomic<bool>> ended) {
+  const std::lock_guard lock(left_mutex);
+  for (Left& each : left)
+    if (*each.ended) each.thread.join();
+  std::erase_if(left, [](const Left& each) { return !each.thread.joinable(); });
+  left.push_back({std::move(thread), std::move(ended)});
+}
+
+void Abandoned::join() {
+  const std::lock_guard lock(left_mutex);
+  for (Left& each : left) each.thread.join();
+  left.clear();
 }
 
 }  // namespace softkin::python

@@ -27,6 +27,7 @@ def test_properties(robot: softkin.Robot) -> None:
     assert [info.kind for info in robot.actuator_infos] == ["pneumatic"] * 3
     assert robot.actuator_infos[0].control == "volume" and robot.actuator_infos[0].unit == ""
     assert robot.actuator_infos[0].column == "air1" and robot.actuator_infos[0].load_key == "pressure_kPa"
+    assert robot.actuator_infos[0].command_text(1.5) == "1.5" and robot.actuator_infos[0].rest == 1
     assert robot.markers == ["tip"] and robot.supports == ["base"]
     assert robot.materials == ["all"] and "chamber1" in robot.region_names
     assert robot.rest_actuation.tolist() == [1, 1, 1]
