@@ -168,27 +168,6 @@ void check(MaterialOptions& options) {
   if (options.regions[0] == options.regions[1]) throw CLI::ValidationError("--regions", "the two are one");
 }
 
-/// What the simulations take as given, with " (default)" where the user did not say it.
-std::vector<std::string> set_up_lines(const MaterialOptions& options) {
-  const calibration::SpecimenOptions& s = options.task.options;
-  const bool own_size = options.given.contains("--width") && options.given.contains("--height");
-  std::vector<std::string> lines{"cross-section " + number(s.width_mm) + " x " + number(s.height_mm) + " mm" +
-                                     (own_size ? "" : options.unless_given("--width")),
-                                 "ends " + options.grip + options.unless_given("--grip")};
-  const auto cells = [&](Formulation formulation) {
-    return std::to_string(calibration::cells_across(s, formulation)) + " cells across the height" +
-           options.unless_given("--cells");
-  };
-  if (options.task.physical)
-    lines.push_back(std::string("physical: law ") + law_name(s.law) + options.unless_given("--law") +
-                    ", Poisson's ratio " + number(s.poisson_ratio) + options.unless_given("--poisson-ratio") + ", " +
-                    cells(Formulation::physical));
-  if (options.task.target_shape)
-    lines.push_back("target-shape: R_omega " + number(s.stiffer_shape_ratio, 4) + " of the stiffer material" +
-                    options.unless_given("--stiffer") + ", " + cells(Formulation::target_shape));
-  return lines;
-}
-
 /// The tasks as the options have them.
 void take(MaterialOptions& options) {
   calibration::SpecimenTask& task = options.task;
@@ -198,7 +177,7 @@ void take(MaterialOptions& options) {
   task.physical = options.formulation != "target-shape";
   task.target_shape = options.formulation != "physical";
   task.regions = {options.regions[0], options.regions[1]};
-  task.set_up = set_up_lines(options);
+  task.set_up = set_up_lines(task, [&](const std::string& option) { return options.unless_given(option); });
   options.tensile.law = options.law;
   options.tensile.poisson_ratio = task.options.poisson_ratio;
 }

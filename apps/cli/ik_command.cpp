@@ -59,22 +59,16 @@ class IkRun {
   int run() {
     ProgressLine line;
     const double begin = seconds_now();
-    const Equilibrium first = statics_.solve(search_.start, statics_.rest(), search_.inverse.statics,
-                                             [](const Progress&) { return !interrupted(); });
-    if (first.report.status != Status::converged) return no_start(first);
-    found_ = solve_inverse(model_, statics_, search_.goals, first.state, search_.inverse, [&](const Progress& p) {
+    const auto show = [&](const Progress& p) {
       std::string text = counted(static_cast<std::size_t>(p.iteration + 1), "equilibrium", "equilibria") + ", " +
                          duration(seconds_now() - begin);
       if (std::isfinite(p.step_mm)) text += ", " + number(p.step_mm, 2) + " mm off";
       line.show(-1, text);
       return !interrupted();
-    });
+    };
+    found_ = solve_inverse_from(model_, statics_, search_.goals, search_.start, search_.inverse, show);
     line.clear();
-    const double error = goal_errors(model_, search_.goals, first.state.positions).maxCoeff();
-    found_.history.insert(found_.history.begin(),
-                          {first.actuation, first.report.status, error, first.report.iterations});
-    ++found_.equilibria;
-    found_.seconds = seconds_now() - begin;
+    if (found_.errors_mm.size() == 0) return no_start();
     write();
     if (found_.status == InverseStatus::reached) return done;
     std::fprintf(stderr, "softkin: %s\n", ik_shortfall(model_, found_).c_str());
@@ -82,11 +76,8 @@ class IkRun {
   }
 
  private:
-  [[nodiscard]] static int no_start(const Equilibrium& first) {
-    const bool stopped = first.report.status == Status::interrupted;
-    std::fprintf(stderr, "softkin: %s\n",
-                 stopped ? "interrupted; nothing was finished"
-                         : ("the start has no equilibrium: " + first.report.remark).c_str());
+  [[nodiscard]] int no_start() const {
+    std::fprintf(stderr, "softkin: %s\n", found_.remark.c_str());
     return not_converged;
   }
 

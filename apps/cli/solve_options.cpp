@@ -11,8 +11,6 @@ namespace {
 constexpr int most_threads = 512;
 constexpr int most_iterations = 1'000'000'000;
 
-constexpr double tolerance_of_gradient_mm = 0.2;  // the paper's lambda
-
 }  // namespace
 
 CLI::Validator integer_from(std::int64_t low, std::int64_t high) {
@@ -163,11 +161,7 @@ Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path
 }
 
 InverseOptions MethodOptions::by_method() const {
-  InverseOptions result;
-  if (method == "gradient") {
-    result.method = InverseMethod::gradient;
-    result.tolerance_mm = tolerance_of_gradient_mm;
-  }
+  InverseOptions result = usual_options(method == "gradient" ? InverseMethod::gradient : InverseMethod::newton);
   result.tolerance_mm = tolerance_asked_mm.value_or(result.tolerance_mm);
   result.max_iterations = descents.value_or(result.max_iterations);
   return result;

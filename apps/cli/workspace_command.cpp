@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <softkin/core/error.hpp>
@@ -129,9 +128,7 @@ struct Asked {
     model = asked_robot(options, inputs);
     (void)runs::shown_marker(model, options.marker);
     sampling = {options.kind(), options.samples, options.seed.value_or(0)};
-    if (sampling.kind == Sampling::grid)
-      sampling.samples = static_cast<Index>(std::llround(
-          std::pow(nearest_grid(model, options.samples), static_cast<double>(varied_actuators(model).size()))));
+    if (sampling.kind == Sampling::grid) sampling.samples = full_grid(model, options.samples);
     plan = plan_workspace(model, sampling);
     head = runs::workspace_head(model, sampling, options.statics());
   }

@@ -268,6 +268,24 @@ const RatioFit* SpecimenResults::fit(Formulation formulation) const {
   return nullptr;
 }
 
+std::vector<std::string> set_up_lines(const SpecimenTask& task,
+                                      const std::function<std::string(const std::string&)>& remark) {
+  const SpecimenOptions& s = task.options;
+  std::vector<std::string> lines{
+      "cross-section " + number(s.width_mm) + " x " + number(s.height_mm) + " mm" + remark("--width"),
+      std::string("ends ") + (s.grip == Grip::sliding ? "sliding" : "clamped") + remark("--grip")};
+  const auto cells = [&](Formulation formulation) {
+    return std::to_string(cells_across(s, formulation)) + " cells across the height" + remark("--cells");
+  };
+  if (task.physical)
+    lines.push_back(std::string("physical: law ") + law_name(s.law) + remark("--law") + ", Poisson's ratio " +
+                    number(s.poisson_ratio) + remark("--poisson-ratio") + ", " + cells(Formulation::physical));
+  if (task.target_shape)
+    lines.push_back("target-shape: R_omega " + number(s.stiffer_shape_ratio, 4) + " of the stiffer material" +
+                    remark("--stiffer") + ", " + cells(Formulation::target_shape));
+  return lines;
+}
+
 std::string tests_set_up(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens,
                          const std::vector<TwistedSpecimen>& twists) {
   const SpecimenOptions& o = task.options;

@@ -22,6 +22,11 @@ struct SpecimenTask {
   std::array<std::string, 2> regions{"A", "B"};  // of the scene
 };
 
+/// What the simulations take as given, for set_up. remark: on the option of that name of `softkin calibrate material`,
+/// such as " (default)"
+[[nodiscard]] std::vector<std::string> set_up_lines(
+    const SpecimenTask& task, const std::function<std::string(const std::string& option)>& remark);
+
 /// The tests simulated with one formulation, at the ratio that fits best or at one given.
 struct SimulatedTests {
   std::string name;             // "physical", "target-shape", "R_A / R_B 2"

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/inverse_robot.hpp>
 #include <softkin/kinematics/inverse_search.hpp>
@@ -261,6 +262,13 @@ const char* name_of(InverseMethod method) {
   return method == InverseMethod::newton ? "newton" : "gradient";
 }
 
+InverseOptions usual_options(InverseMethod method) {
+  InverseOptions options;
+  options.method = method;
+  if (method == InverseMethod::gradient) options.tolerance_mm = 0.2;
+  return options;
+}
+
 const char* name_of(InverseStatus status) {
   switch (status) {
     case InverseStatus::reached:
@@ -282,6 +290,37 @@ InverseResult solve_inverse(const Model& model, const Statics& statics, const st
   check_options(model, start, options);
   InverseResult result = Inverse(model, statics, goals, options, progress).solve(start);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+InverseResult solve_inverse_from(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
+                                 const Actuation& start, const InverseOptions& options,
+                                 const ProgressCallback& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [begin] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  check_goals(model, goals);
+  const Progress nothing_yet{0, std::numeric_limits<double>::infinity(), options.tolerance_mm, -1};
+  Equilibrium first = statics.solve(start, statics.rest(), options.statics,
+                                    [&](const Progress&) { return !progress || progress(nothing_yet); });
+  InverseResult result;
+  if (first.report.status != Status::converged) {
+    const bool stopped = first.report.status == Status::interrupted;
+    result.status = stopped ? InverseStatus::interrupted : InverseStatus::not_converged;
+    result.remark =
+        stopped ? "interrupted; nothing was finished" : "the start has no equilibrium: " + first.report.remark;
+    result.active.assign(model.actuators.size(), 0);
+    result.equilibria = 1;
+    result.equilibrium = std::move(first);
+    result.seconds = seconds();
+    return result;
+  }
+  const double error = goal_errors(model, goals, first.state.positions).maxCoeff();
+  result = solve_inverse(model, statics, goals, first.state, options, progress);
+  result.history.insert(result.history.begin(), {first.actuation, first.report.status, error, first.report.iterations});
+  ++result.equilibria;
+  result.seconds = seconds();
   return result;
 }
 

@@ -25,6 +25,9 @@ struct InverseOptions {
   StaticsOptions statics{};
 };
 
+/// All as it is by default with this method, whose tolerance is its own: 0.2 mm with gradient, the paper's lambda.
+[[nodiscard]] InverseOptions usual_options(InverseMethod method);
+
 /// reached: every goal is met. unreachable: no allowed change of the actuation brings the goals nearer, to first order.
 enum class InverseStatus { reached, unreachable, not_converged, interrupted };
 /// "reached", "not reached", "not converged" or "interrupted".
@@ -67,5 +70,12 @@ struct InverseResult {
 [[nodiscard]] InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
                                           const State& start, const InverseOptions& options = {},
                                           const ProgressCallback& progress = {});
+
+/// The same from an actuation, whose equilibrium is found first, from rest; it is the first of the history. Where it
+/// has none, errors_mm is empty and the remark tells why.
+[[nodiscard]] InverseResult solve_inverse_from(const Model& model, const Statics& statics,
+                                               const std::vector<Goal>& goals, const Actuation& start,
+                                               const InverseOptions& options = {},
+                                               const ProgressCallback& progress = {});
 
 }  // namespace softkin

@@ -169,6 +169,10 @@ Index nearest_grid(const Model& model, Index samples) {
   return best;
 }
 
+Index full_grid(const Model& model, Index samples) {
+  return static_cast<Index>(std::llround(grid_samples(nearest_grid(model, samples), varied_or_refuse(model))));
+}
+
 Actuations sample_actuations(const Model& model, const SamplingOptions& options) {
   const std::size_t dimensions = varied_or_refuse(model);
   if (options.samples < 1) throw InvalidInput("the number of samples must be 1 or more");

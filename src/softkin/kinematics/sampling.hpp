@@ -25,6 +25,9 @@ using Actuations = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 /// Values per varied actuator of the full grid whose number of samples is nearest to the one given, 2 or more.
 [[nodiscard]] Index nearest_grid(const Model& model, Index samples);
 
+/// Samples of that grid.
+[[nodiscard]] Index full_grid(const Model& model, Index samples);
+
 /// Samples inside the ranges of the actuators; the same on every machine.
 ///
 /// returns  grid: the last actuator changes fastest

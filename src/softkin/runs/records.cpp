@@ -39,6 +39,12 @@ std::optional<double> reached_share(const Model& model, const SolveReport& repor
 
 }  // namespace
 
+std::vector<ActuatorRecord> actuator_records(const Model& model, const Equilibrium& found) {
+  std::vector<ActuatorRecord> records;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) records.push_back(actuator_record(model, found, a));
+  return records;
+}
+
 StepRecord step_record(const Model& model, const Equilibrium& found, const ElementDeformation& deformation) {
   StepRecord record;
   static_cast<SolveReport&>(record) = found.report;
@@ -52,7 +58,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   record.largest_displacement_mm = largest_move(model.rest, found.state.positions);
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
-  for (std::size_t a = 0; a < model.actuators.size(); ++a) record.actuators.push_back(actuator_record(model, found, a));
+  record.actuators = actuator_records(model, found);
   record.strain = strain_histogram(model, deformation);
   if (model.formulation == Formulation::physical && record.status == Status::limit)
     record.worst = worst_place(model, found.state.positions, deformation);

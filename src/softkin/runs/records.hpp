@@ -65,6 +65,9 @@ struct WalkRecord : StepRecord {
   WalkStep walk;
 };
 
+/// In the order of the model's actuators.
+[[nodiscard]] std::vector<ActuatorRecord> actuator_records(const Model& model, const Equilibrium& found);
+
 /// deformation: of the equilibrium's shape; what is not of it is left as it is: shape, time_s, self_overlap
 [[nodiscard]] StepRecord step_record(const Model& model, const Equilibrium& found,
                                      const ElementDeformation& deformation);

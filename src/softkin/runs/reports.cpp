@@ -236,6 +236,13 @@ std::string walk_head(const Model& model, const std::string& scene, const Static
   return line_of(head);
 }
 
+RecordLog step_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
+                      const StaticsOptions& options, const StepRecord& record) {
+  RecordLog log(model, {file}, report_head(model, scene, options), {});
+  log.add(line_of(to_json(model, record)), record.seconds);
+  return log;
+}
+
 Vec3 place_of(const Model& model, const Goal& goal, const Points& positions) {
   const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].point.at(positions); };
   if (const auto* position = std::get_if<PositionGoal>(&goal.what)) return at(position->marker);

@@ -21,6 +21,10 @@ namespace softkin::runs {
 [[nodiscard]] std::string walk_head(const Model& model, const std::string& scene, const StaticsOptions& options,
                                     const std::string& gait, std::size_t cycles, const Vec3& direction);
 
+/// The report of one equilibrium, as of a path of one step; to be written to file at its finish().
+[[nodiscard]] RecordLog step_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
+                                    const StaticsOptions& options, const StepRecord& record);
+
 /// A goal and what the user calls it: "tip", "base:tip".
 struct NamedGoal {
   std::string name;

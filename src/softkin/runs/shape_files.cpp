@@ -117,8 +117,16 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
   write_vtu(path, content);
 }
 
-void write_image(const fs::path& path, const Model& model, const Points& positions, const std::vector<double>& view,
-                 const std::string& title, const std::vector<Goal>& goals) {
+namespace {
+
+struct Image {
+  std::vector<PictureLayer> layers;
+  PictureOptions options;
+  std::vector<PictureMark> marks;
+};
+
+Image image_of(const Model& model, const Points& positions, const std::vector<double>& view, const std::string& title,
+               const std::vector<Goal>& goals) {
   const std::vector<Triangle> surface = visible_surface(model);
   PictureLayer shape, ghost;
   shape.points = positions;
@@ -135,7 +143,21 @@ void write_image(const fs::path& path, const Model& model, const Points& positio
   if (options.view.head<2>().norm() < 1e-6) options.up = Vec3::UnitY();  // from above or below
   options.title = title;
   options.value_label = "displacement [mm]";
-  write_picture(path, {shape, ghost}, options, marks_of(model, positions, goals));
+  return {{shape, ghost}, options, marks_of(model, positions, goals)};
+}
+
+}  // namespace
+
+void write_image(const fs::path& path, const Model& model, const Points& positions, const std::vector<double>& view,
+                 const std::string& title, const std::vector<Goal>& goals) {
+  const Image image = image_of(model, positions, view, title, goals);
+  write_picture(path, image.layers, image.options, image.marks);
+}
+
+std::string image_png(const Model& model, const Points& positions, const std::vector<double>& view,
+                      const std::string& title, const std::vector<Goal>& goals) {
+  const Image image = image_of(model, positions, view, title, goals);
+  return picture_png("the picture", image.layers, image.options, image.marks);
 }
 
 }  // namespace softkin::runs

@@ -21,4 +21,8 @@ void write_shape(const std::filesystem::path& path, const Model& model, const Po
 void write_image(const std::filesystem::path& path, const Model& model, const Points& positions,
                  const std::vector<double>& view, const std::string& title, const std::vector<Goal>& goals = {});
 
+/// The content of such a file.
+[[nodiscard]] std::string image_png(const Model& model, const Points& positions, const std::vector<double>& view,
+                                    const std::string& title, const std::vector<Goal>& goals = {});
+
 }  // namespace softkin::runs

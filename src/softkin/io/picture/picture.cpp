@@ -354,6 +354,11 @@ void refuse_edge_on(const std::vector<ScreenLayer>& layers, const Checker& check
 
 void write_picture(const std::filesystem::path& path, const std::vector<PictureLayer>& layers,
                    const PictureOptions& options, const std::vector<PictureMark>& marks) {
+  write_file(path, picture_png(path, layers, options, marks));
+}
+
+std::string picture_png(const std::filesystem::path& path, const std::vector<PictureLayer>& layers,
+                        const PictureOptions& options, const std::vector<PictureMark>& marks) {
   const Checker checker(path);
   checker.check(options);
   checker.check(layers);
@@ -370,7 +375,7 @@ void write_picture(const std::filesystem::path& path, const std::vector<PictureL
   Canvas canvas(image);
   for (const PictureMark& mark : marks) draw_mark(mark, screen, legend.cell(), canvas);
   legend.draw(screen.scale, image);
-  write_file(path, encode_png(image));
+  return encode_png(image);
 }
 
 }  // namespace softkin

@@ -52,4 +52,8 @@ struct PictureOptions {
 void write_picture(const std::filesystem::path& path, const std::vector<PictureLayer>& layers,
                    const PictureOptions& options = {}, const std::vector<PictureMark>& marks = {});
 
+/// The content of the file. path: for messages alone
+[[nodiscard]] std::string picture_png(const std::filesystem::path& path, const std::vector<PictureLayer>& layers,
+                                      const PictureOptions& options = {}, const std::vector<PictureMark>& marks = {});
+
 }  // namespace softkin

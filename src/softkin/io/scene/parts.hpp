@@ -15,7 +15,7 @@ struct Context {
   std::int64_t vertices = 0, tetrahedra = 0;  // of the mesh
 };
 
-/// Names that must differ; a second use fails and names the line of the first.
+/// Names that must differ; a second use fails and names the place of the first.
 class Names {
  public:
   const std::string& add(const Node& node);
@@ -23,7 +23,7 @@ class Names {
   const std::string& add_label(const Node& node);
 
  private:
-  std::map<std::string, std::size_t> lines_;
+  std::map<std::string, Origin> origins_;
 };
 
 /// What load(path) returns, path being named by a node; its InvalidInput gains the scene's line.

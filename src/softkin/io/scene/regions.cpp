@@ -108,9 +108,12 @@ Selector read_selector(const Context& context, const std::string& key, const Nod
 }  // namespace
 
 const std::string& Names::add(const Node& node) {
-  const auto [found, fresh] = lines_.emplace(text(node), node.origin.line);
-  if (!fresh)
-    fail(node, "the name " + excerpt(node.text) + " is taken; it is given in line " + std::to_string(found->second));
+  const auto [found, fresh] = origins_.emplace(text(node), node.origin);
+  if (!fresh) {
+    const Origin& first = found->second;
+    fail(node, "the name " + excerpt(node.text) + " is taken; it is given in " +
+                   (first.line > 0 ? "line " + std::to_string(first.line) : first.file));
+  }
   return node.text;
 }
 

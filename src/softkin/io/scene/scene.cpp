@@ -112,11 +112,14 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
 }  // namespace scene
 
 RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name, const SceneFiles& files) {
-  const auto root = scene::parse_yaml(yaml_text, file_name);
-  scene::check_version(*root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
+  return parse_scene(*scene::parse_yaml(yaml_text, file_name), file_name, files);
+}
+
+RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files) {
+  scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
-  const scene::Map map(*root, {"softkin", "units", "mesh", "meshes", "formulation", "regions", "materials", "void",
-                               "fixed", "rigid", "actuators", "gravity", "forces", "markers", "feet"});
+  const scene::Map map(root, {"softkin", "units", "mesh", "meshes", "formulation", "regions", "materials", "void",
+                              "fixed", "rigid", "actuators", "gravity", "forces", "markers", "feet"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   RobotSpec spec;
@@ -169,14 +172,14 @@ std::string unknown_force(const RobotSpec& spec, const std::string& name) {
   return "no force " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
 }
 
-void change_forces(RobotSpec& spec, const std::vector<std::string>& forces) {
+void change_forces(RobotSpec& spec, const std::vector<std::string>& forces, const std::string& option) {
   std::set<std::string> changed;
   for (const std::string& force : forces) {
-    const auto refuse = [&](const std::string& why) { throw InvalidInput("--force " + excerpt(force) + ": " + why); };
+    const auto refuse = [&](const std::string& why) { throw InvalidInput(option + " " + excerpt(force) + ": " + why); };
     if (spec.formulation != Formulation::physical)
       refuse("the target-shape formulation knows no forces; the physical one does (--formulation physical)");
     const std::size_t equals = force.find('=');
-    if (equals == std::string::npos) refuse("expected NAME=FX,FY,FZ in N, for example --force payload=0,0,-0.5");
+    if (equals == std::string::npos) refuse("expected NAME=FX,FY,FZ in N, for example " + option + " payload=0,0,-0.5");
     const std::string name = force.substr(0, equals), text = force.substr(equals + 1);
     ForceSpec* found = find_force(spec, name);
     if (found == nullptr) refuse(unknown_force(spec, name));
@@ -190,10 +193,14 @@ void change_forces(RobotSpec& spec, const std::vector<std::string>& forces) {
 
 RobotSpec read_asked_scene(const AskedScene& asked, std::vector<fs::path>& inputs) {
   RobotSpec spec = read_scene_and(inputs, asked.scene);
+  change(spec, asked);
+  return spec;
+}
+
+void change(RobotSpec& spec, const AskedScene& asked, const std::string& option) {
   if (asked.formulation == "physical") spec.formulation = Formulation::physical;
   if (asked.formulation == "target-shape") spec.formulation = Formulation::target_shape;
-  change_forces(spec, asked.forces);
-  return spec;
+  change_forces(spec, asked.forces, option);
 }
 
 }  // namespace softkin

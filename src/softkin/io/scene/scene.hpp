@@ -10,6 +10,10 @@
 
 namespace softkin {
 
+namespace scene {
+struct Node;
+}
+
 /// Reads a scene (YAML, docs/scene.md) and the files that it names, relative to it. Lengths become mm.
 /// throws  InvalidInput naming file and line; unknown keys are errors with the nearest valid name
 [[nodiscard]] RobotSpec read_scene(const std::filesystem::path& path);
@@ -27,6 +31,9 @@ struct SceneFiles {
 [[nodiscard]] RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name,
                                     const SceneFiles& files);
 
+/// The same of a scene that was not written as a text: the keys and values of docs/scene.md as a tree.
+[[nodiscard]] RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files);
+
 /// A scene, and what the user changes in it.
 struct AskedScene {
   std::string scene;                // file
@@ -37,5 +44,11 @@ struct AskedScene {
 /// inputs  the files that the scene names are added
 /// throws  InvalidInput naming --force, or file and line
 [[nodiscard]] RobotSpec read_asked_scene(const AskedScene& asked, std::vector<std::filesystem::path>& inputs);
+
+/// Changes in a description what the user changes: all of `asked` but the scene.
+///
+/// option  that gives the forces, for messages
+/// throws  InvalidInput naming it
+void change(RobotSpec& spec, const AskedScene& asked, const std::string& option = "--force");
 
 }  // namespace softkin

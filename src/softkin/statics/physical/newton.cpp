@@ -35,21 +35,31 @@ void Newton::record(double step_mm) {
 
 /// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, then by
 /// a shift.
-bool Newton::factorise(const Iterate& at, Policy policy) {
+bool Newton::goes_on() const {
+  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
+}
+
+/// none: no shift makes it positive.
+Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = System::Stiffness;
-  const auto negative = [&](Stiffness kind, double shift) {
+  int negative = 0;
+  const auto attempted = [&](Stiffness kind, double shift) {
+    if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
     ++report_.factorisations;
-    return system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
+    negative = system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
+    return negative == 0 ? Advance::made : Advance::none;
   };
-  negative_ = negative(Stiffness::exact, 0);
-  if (negative_ == 0 || policy == Policy::follow) return true;
+  Advance end = attempted(Stiffness::exact, 0);
+  if (end == Advance::interrupted) return end;
+  negative_ = negative;
+  if (end == Advance::made || policy == Policy::follow) return Advance::made;
   ++report_.projections;
-  if (negative(Stiffness::projected, 0) == 0) return true;
-  for (double shift = 1e-4; shift < 100; shift *= 10) {
+  end = attempted(Stiffness::projected, 0);
+  for (double shift = 1e-4; end == Advance::none && shift < 100; shift *= 10) {
     ++report_.shifts;
-    if (negative(Stiffness::projected, shift) == 0) return true;
+    end = attempted(Stiffness::projected, shift);
   }
-  return false;
+  return end;
 }
 
 /// Moves by `damping` times a step and finds the simplified step there. False where the law has no energy.
@@ -71,7 +81,7 @@ bool Newton::accept(double moved_mm, Iterate& at) {
   record(moved_mm);
   std::swap(at, trial_);
   std::swap(balance_, trial_balance_);
-  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
+  return goes_on();
 }
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
@@ -177,7 +187,9 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   double damping = 1;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
-    if (!factorise(at, policy)) return Outcome::stuck;
+    const Advance ready = factorise(at, policy);
+    if (ready == Advance::interrupted) return Outcome::interrupted;
+    if (ready == Advance::none) return Outcome::stuck;
     advance = damped_step(at, damping);
     if (advance != Advance::made || damping < 1) continue;
     if (step_.size.largest < settings_.tolerance_mm) {

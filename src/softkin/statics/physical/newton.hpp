@@ -49,7 +49,8 @@ class Newton {
   };
   enum class Advance { none, made, arrived, interrupted };
 
-  bool factorise(const Iterate& at, Policy policy);
+  [[nodiscard]] bool goes_on() const;
+  Advance factorise(const Iterate& at, Policy policy);
   void find(const System::Balance& balance, const Points& positions, Step& step);
   bool attempt(const Step& step, double damping, const Iterate& from);
   bool accept(double moved_mm, Iterate& at);

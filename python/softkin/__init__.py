@@ -1,0 +1,44 @@
+"""softkin: kinematics of soft robots.
+
+Lengths are in mm, pressures in kPa (gauge), forces in N, ratios without unit. docs/python.md
+"""
+
+from . import calibrate, compare, drive
+from ._core import ActuatorInfo
+from ._core import version as __version__
+from ._solving import Progress
+from .errors import InvalidInput, NotConverged, SoftkinWarning
+from .inverse import Answer
+from .robot import Robot, load
+from .runs import FollowRun, PathRun, Waypoint
+from .session import Session
+from .shape import ActuatorState, Deformation, Reaction, SelfOverlap, Shape
+from .table import Table
+from .workspace import Hull, Workspace
+
+__all__ = [
+    "ActuatorInfo",
+    "ActuatorState",
+    "Answer",
+    "Deformation",
+    "FollowRun",
+    "Hull",
+    "InvalidInput",
+    "NotConverged",
+    "PathRun",
+    "Progress",
+    "Reaction",
+    "Robot",
+    "SelfOverlap",
+    "Session",
+    "Shape",
+    "SoftkinWarning",
+    "Table",
+    "Waypoint",
+    "Workspace",
+    "__version__",
+    "calibrate",
+    "compare",
+    "drive",
+    "load",
+]

@@ -1,0 +1,61 @@
+"""Arrays of the user's as the library takes them: C order, checked, with an error that names the argument."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int32]
+
+
+def _shape_text(shape: tuple[int | None, ...]) -> str:
+    names = iter("nkp")
+    sizes = [str(size) if size is not None else next(names) for size in shape]
+    return "(" + ", ".join(sizes) + ("," if len(sizes) == 1 else "") + ")"
+
+
+def _checked(name: str, array: NDArray[Any], shape: tuple[int | None, ...]) -> None:
+    fits = array.ndim == len(shape) and all(want in (None, has) for want, has in zip(shape, array.shape))
+    if not fits:
+        raise ValueError(f"{name} must have shape {_shape_text(shape)}, not {array.shape}")
+
+
+def floats(name: str, values: ArrayLike, shape: tuple[int | None, ...], *, nan: bool = False) -> Floats:
+    """Finite numbers of this shape (None: any size); nan: may some be unknown."""
+    try:
+        array = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} must be an array of numbers of shape {_shape_text(shape)}: {error}") from None
+    if np.ndim(values) == 0:
+        array = array.reshape(())
+    _checked(name, array, shape)
+    bad = np.isinf(array) if nan else ~np.isfinite(array)
+    if bad.any():
+        first = tuple(int(i) for i in np.argwhere(bad)[0])
+        place = ", ".join(str(i) for i in first)
+        raise ValueError(f"{name}[{place}] is {array[first]}; every value must be finite")
+    return array
+
+
+def indices(name: str, values: ArrayLike, shape: tuple[int | None, ...], below: int, of: str) -> Indices:
+    """Whole numbers from 0 to below."""
+    array = np.asarray(values)
+    if array.size == 0:
+        array = array.reshape(tuple(0 if size is None else size for size in shape)).astype(np.int32)
+    _checked(name, array, shape)
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name} must hold whole numbers, not {array.dtype}")
+    wrong = (array < 0) | (array >= below)
+    if wrong.any():
+        first = array[wrong].flat[0]
+        raise ValueError(f"{name} holds {first}, but there are {below} {of}, numbered from 0")
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def vector(name: str, values: ArrayLike) -> tuple[float, float, float]:
+    """Three finite numbers."""
+    x, y, z = floats(name, values, (3,)).tolist()
+    return x, y, z

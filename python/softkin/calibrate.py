@@ -1,0 +1,284 @@
+"""Parameters of the model from measurements: docs/calibration.md, docs/pressure.md, docs/voltage.md."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import Floats
+from .robot import Robot
+from .table import Table
+
+__all__ = ["Branch", "Calibration", "Curve", "dea", "material", "pressure", "tensile"]
+
+PathLike = str | os.PathLike[str]
+
+
+class Calibration:
+    """Materials, and how they were found."""
+
+    def __init__(self, core: _core.Calibration) -> None:
+        self._core = core
+
+    @property
+    def failure(self) -> str:
+        """Why no material was found; '' where it was."""
+        return self._core.failure
+
+    @property
+    def report(self) -> Any:
+        """What `softkin calibrate material --json` prints."""
+        return json.loads(self._core.json)
+
+    @property
+    def materials(self) -> str:
+        """The materials of a scene, YAML; '' where none was found."""
+        return self._core.fragment
+
+    @property
+    def residuals(self) -> Table:
+        """Measured, fitted and their difference."""
+        return Table(self._core.residuals)
+
+    def save(self, path: PathLike) -> None:
+        """The materials, to paste into a scene: a .yaml."""
+        if self.failure:
+            raise ValueError(f"there is nothing to save: {self.failure}")
+        Path(path).write_text(self.materials)
+
+    def save_plot(self, path: PathLike) -> None:
+        """Measured and fitted: an .svg."""
+        if self.failure:
+            raise ValueError(f"there is nothing to plot: {self.failure}")
+        self._core.save_plot(os.fspath(path))
+
+    def __repr__(self) -> str:
+        return self._core.text.rstrip("\n")
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Of a curve: its points."""
+
+    input: Floats
+    """(k,) gauge pressure [kPa] or voltage [kV], ascending"""
+    ratio: Floats
+    """(k,) volume or area over that without input [-]"""
+    spread: Floats
+    """(k,) standard deviation of the ratio between repeated runs [-]; empty: not known"""
+
+
+class Curve:
+    """An actuator's ratio by gauge pressure [kPa] or voltage [kV]."""
+
+    def __init__(self, core: _core.CurveCalibration) -> None:
+        self._core = core
+
+    @property
+    def loading(self) -> Branch:
+        return Branch(*(np.array(values) for values in self._core.loading))
+
+    @property
+    def unloading(self) -> Branch | None:
+        """None: no such rows."""
+        branch = self._core.unloading
+        return None if branch is None else Branch(*(np.array(values) for values in branch))
+
+    @property
+    def samples(self) -> Floats:
+        """(s, 4) measured: input, ratio, 1 where it falls, number of the sweep; (0, 4) of a computed curve."""
+        return np.array(self._core.samples, dtype=float).reshape(-1, 4)
+
+    def ratio(self, input: float, *, unloading: bool = False) -> float:
+        """Volume or area over that without input [-].
+
+        input   gauge pressure [kPa] or voltage [kV]
+        raises  InvalidInput outside the curve: nothing is extrapolated
+        """
+        return self._core.ratio(input, unloading)
+
+    @property
+    def report(self) -> Any:
+        """What `softkin calibrate pressure --json` prints."""
+        return json.loads(self._core.json)
+
+    def save(self, path: PathLike) -> None:
+        """For key 'curve' of a scene's actuator: a .yaml."""
+        Path(path).write_text(self._core.file)
+
+    def save_plot(self, path: PathLike) -> None:
+        """Rows and branches: an .svg."""
+        self._core.save_plot(os.fspath(path))
+
+    def __repr__(self) -> str:
+        return self._core.text.rstrip("\n")
+
+
+def material(
+    specimens: PathLike,
+    *,
+    twist: PathLike | None = None,
+    formulation: str | None = None,
+    width_mm: float = 20,
+    height_mm: float = 10,
+    grip: str = "clamped",
+    law: str = "neo-hookean",
+    poisson_ratio: float = 0.45,
+    stiffer_shape_ratio: float = 1,
+    cells: int = 0,
+    modulus_b_MPa: float | None = None,
+    tried: Sequence[float] = (),
+    regions: tuple[str, str] = ("A", "B"),
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+) -> Calibration:
+    """R_omega and Young's moduli from stretched bars of two materials, by simulated tests (Fang et al. 2020).
+
+    specimens            CSV: l_mm, l1_mm, dl_mm, dl1_mm; force_n and area_mm2 where measured
+    twist                CSV to validate: l_mm, l1_mm, twist_deg; interface_deg where measured
+    formulation          'physical': E_A / E_B; 'target-shape': R_omega; None: both
+    width_mm, height_mm  of the specimens' cross-section [mm]
+    grip                 'clamped' or 'sliding': the ends are free to contract
+    law                  physical: 'neo-hookean', 'corotational' or 'st-venant-kirchhoff'
+    stiffer_shape_ratio  R_omega of the stiffer material, 0 < R <= 1
+    cells                of the simulated mesh across the height; 0: 3 physical, 4 target-shape
+    modulus_b_MPa        Young's modulus of B, where no force was measured
+    tried                R_omega A / R_omega B to look at too
+    regions              names of A and B in the scene
+    progress             called with the share that is done, now and then
+    """
+    if formulation not in (None, "physical", "target-shape"):
+        raise ValueError(f"formulation must be 'physical' or 'target-shape', not {formulation!r}")
+    if grip not in ("clamped", "sliding"):
+        raise ValueError(f"grip must be 'clamped' or 'sliding', not {grip!r}")
+    if law not in ("neo-hookean", "corotational", "st-venant-kirchhoff"):
+        raise ValueError(f"law must take E and nu: neo-hookean, corotational or st-venant-kirchhoff, not {law!r}")
+    for name, value in (("width_mm", width_mm), ("height_mm", height_mm)):
+        if not value > 0:
+            raise ValueError(f"{name} must be greater than 0 mm, not {value}")
+    if not -1 < poisson_ratio < 0.5:
+        raise ValueError(f"poisson_ratio must be greater than -1 and less than 0.5, not {poisson_ratio}")
+    if not 0 < stiffer_shape_ratio <= 1:
+        raise ValueError(f"stiffer_shape_ratio must be greater than 0 and at most 1, not {stiffer_shape_ratio}")
+    given = _core.Specimens()
+    given.file = os.fspath(specimens)
+    given.twist_file = "" if twist is None else os.fspath(twist)
+    given.physical, given.target_shape = formulation != "target-shape", formulation != "physical"
+    given.width_mm, given.height_mm, given.grip, given.law = width_mm, height_mm, grip, law
+    given.poisson_ratio, given.stiffer_shape_ratio = poisson_ratio, stiffer_shape_ratio
+    given.cells, given.threads, given.modulus_b_MPa = cells, threads, modulus_b_MPa
+    given.tried, given.regions = list(tried), list(regions)
+    return Calibration(_core.calibrate_specimens(given, progress))
+
+
+def tensile(
+    test: PathLike,
+    *,
+    poisson_ratio: float = 0.45,
+    linear_tolerance_percent: float = 5,
+    up_to: float | None = None,
+    law: str | None = None,
+    region: str = "body",
+) -> Calibration:
+    """An elastic law from the tensile test of one material.
+
+    test                      CSV: strain or strain_percent, and stress_mpa; both nominal
+    linear_tolerance_percent  of the line's stress at its end: where a stress is farther off, the linear range ends
+    up_to                     strain up to which laws are fitted [-]; None: all
+    law                       of the scene: 'linear', 'neo-hookean', 'mooney-rivlin' or 'yeoh'; None: the one that fits
+    region                    of the scene
+    """
+    if law not in (None, "linear", "neo-hookean", "mooney-rivlin", "yeoh"):
+        raise ValueError(f"law must be linear, neo-hookean, mooney-rivlin or yeoh, not {law!r}")
+    core = _core.calibrate_tensile(
+        os.fspath(test), poisson_ratio, linear_tolerance_percent, up_to or 0.0, law or "", region
+    )
+    return Calibration(core)
+
+
+def _files(tests: PathLike | Sequence[PathLike]) -> list[str]:
+    if isinstance(tests, (str, os.PathLike)):
+        tests = [tests]
+    return [os.fspath(test) for test in tests]
+
+
+def _volume(name: str, volume: float | str) -> float:
+    return _core.volume_mm3(name, volume if isinstance(volume, str) else f"{float(volume)!r}mm3")
+
+
+def pressure(
+    tests: PathLike | Sequence[PathLike],
+    *,
+    syringe_volume: float | str,
+    chamber_volume: float | str | None = None,
+    tube_volume: float | str = 0,
+    robot: Robot | None = None,
+    actuator: str | None = None,
+    atmosphere_kPa: float = 100,
+    scale: str | None = None,
+) -> Curve:
+    """Volume ratio of a chamber by its pressure, from syringe tests (Fang et al. 2020, Eq. (19)).
+
+    tests            CSV: p_abs_kpa or p_gauge_kpa (p_kpa with scale), dv_sy_mm3 or dv_sy_ml; run, t_s
+    syringe_volume   air in the syringe at the start: [mm^3], or a text: "60mL"
+    chamber_volume   at rest; None: that of the robot's mesh
+    tube_volume      air in tubes and sensor
+    robot, actuator  whose chamber it is
+    atmosphere_kPa   absolute; 100 as in the paper
+    scale            of column p_kpa: 'absolute' or 'gauge'
+    """
+    if scale not in (None, "absolute", "gauge"):
+        raise ValueError(f"scale must be 'absolute' or 'gauge', not {scale!r}")
+    if chamber_volume is None:
+        if robot is None:
+            raise ValueError("chamber_volume at rest is not known: give it, or robot=, whose mesh has it")
+        chambers = [info for info in robot.actuator_infos if info.kind == "pneumatic" and actuator in (None, info.name)]
+        if len(chambers) != 1:
+            raise ValueError(f"actuator must name the chamber that was tested, not {actuator!r}")
+        chamber = chambers[0].rest_measure
+    else:
+        chamber = _volume("chamber_volume", chamber_volume)
+    tube = 0.0 if tube_volume == 0 else _volume("tube_volume", tube_volume)
+    core = _core.calibrate_pressure(
+        _files(tests), scale or "", chamber, tube, _volume("syringe_volume", syringe_volume), atmosphere_kPa
+    )
+    return Curve(core)
+
+
+def dea(
+    tests: PathLike | Sequence[PathLike] = (),
+    *,
+    law: str | None = None,
+    shear_modulus_MPa: float | None = None,
+    permittivity: float | None = None,
+    thickness_mm: float | None = None,
+    prestretch: float | None = None,
+    stretch_limit: float | None = None,
+    breakdown_kV_mm: float | None = None,
+) -> Curve:
+    """Area ratio of a dielectric elastomer by its voltage, measured or computed.
+
+    tests            CSV: voltage_kv or voltage_v; area_ratio or stretch; run, t_s
+    law              in place of tests: 'neo-hookean' or 'gent', from the equations of state
+    permittivity     relative to vacuum
+    thickness_mm     before any stretch [mm]
+    prestretch       length without voltage over that without forces [-]
+    stretch_limit    gent: J_lim
+    breakdown_kV_mm  true field at which the curve ends at the latest
+    """
+    files = _files(tests)
+    if bool(files) == (law is not None):
+        raise ValueError("give either tests or law")
+    if law not in (None, "neo-hookean", "gent"):
+        raise ValueError(f"law must be 'neo-hookean' or 'gent', not {law!r}")
+    core = _core.calibrate_dea(
+        files, law or "", shear_modulus_MPa, permittivity, thickness_mm, prestretch, stretch_limit, breakdown_kV_mm
+    )
+    return Curve(core)

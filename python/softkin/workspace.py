@@ -1,0 +1,185 @@
+"""Workspaces: the equilibria of many actuations."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._arrays import Floats, Indices
+from ._solving import DEFAULT_ITERATIONS, Solving, _options
+
+if TYPE_CHECKING:
+    import pandas
+
+    from .robot import Robot
+
+__all__ = ["Hull", "ProgressBar", "Workspace"]
+
+
+class ProgressBar(Protocol):
+    """What tqdm is."""
+
+    def __call__(self, *, total: int) -> Any: ...
+
+
+@dataclass(frozen=True)
+class Hull:
+    """Convex hull of the places of a marker."""
+
+    kind: str
+    """'solid', 'flat', 'line' or 'point'"""
+    vertices: Floats
+    """(v, 3) corners [mm]"""
+    triangles: Indices
+    """(t, 3) solid: its surface, normals outwards; flat: its area"""
+    volume_mm3: float
+    area_mm2: float
+    """of the surface, or of one side where flat"""
+    extents_mm: tuple[float, float, float]
+    """along the principal axes of the places, descending"""
+
+
+class Workspace:
+    """Samples in their order, as a structured array: `samples`."""
+
+    def __init__(self, robot: Robot, core: _core.Workspace) -> None:
+        self._robot = robot
+        self._core = core
+
+    @property
+    def robot(self) -> Robot:
+        return self._robot
+
+    @property
+    def sampling(self) -> str:
+        """'grid of 15 x 15 x 15', 'sobol' or 'random, seed 7'."""
+        return self._core.sampling
+
+    @cached_property
+    def actuation(self) -> Floats:
+        """(s, m) commands: ratio [-], tension [N] or pressure [kPa]."""
+        return self._core.actuation
+
+    @cached_property
+    def places(self) -> Floats:
+        """(s, p, 3) of the markers [mm]; NaN where there is no shape."""
+        return self._core.markers.reshape(len(self), -1, 3)
+
+    @cached_property
+    def status(self) -> NDArray[np.str_]:
+        """(s,) 'converged', 'limit' (values are those of the last good shape) or 'not_converged'."""
+        return np.array(self._core.status)
+
+    def __len__(self) -> int:
+        return len(self._core.actuation)
+
+    def __getitem__(self, marker: str) -> Floats:
+        """(s, 3) places of a marker [mm]; NaN where there is no shape."""
+        place: Floats = self.places[:, self._robot._core.marker(marker)]
+        return place
+
+    @cached_property
+    def samples(self) -> NDArray[np.void]:
+        """(s,) with the columns of the CSV that `softkin workspace` writes: sample, air_kPa, tip_x_mm, ..., status."""
+        core = self._core
+        actuators, markers, loads, loaded = core.columns
+        fields: list[tuple[str, Any]] = [("sample", np.int64)]
+        fields += [(name, np.float64) for name in [*actuators, *markers, *loads]]
+        fields += [("status", self.status.dtype), ("reached", np.float64), ("iterations", np.int64)]
+        table = np.zeros(len(self), dtype=fields)
+        table["sample"] = np.arange(len(self))
+        for names, values in (
+            (actuators, self.actuation),
+            (markers, core.markers),
+            (loads, core.multipliers[:, loaded]),
+        ):
+            for name, column in zip(names, values.T):
+                table[name] = column
+        table["status"], table["reached"], table["iterations"] = self.status, core.reached, core.iterations
+        return table
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The samples as a pandas.DataFrame."""
+        import pandas
+
+        return pandas.DataFrame({name: self.samples[name] for name in self.samples.dtype.names or ()})
+
+    def hull(self, marker: str | None = None) -> Hull:
+        """Of the samples that have an equilibrium; None: the robot's first marker."""
+        kind, vertices, triangles, volume, area, (long, wide, thin) = self._core.hull(marker or "")
+        return Hull(kind, vertices, triangles, volume, area, (long, wide, thin))
+
+    def __repr__(self) -> str:
+        good = int((self.status == "converged").sum())
+        return f"<softkin.Workspace of {self._robot.name}: {self.sampling}; {good} of {len(self)} converged>"
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        most = 10
+        names = self.samples.dtype.names or ()
+        head = "".join(f"<th>{escape(name)}</th>" for name in names)
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{v:.6g}</td>" if isinstance(v, float) else f"<td>{v}</td>" for v in row) + "</tr>"
+            for row in self.samples[:most].tolist()
+        )
+        return f"<p>{escape(repr(self)[1:-1])}</p><table><tr>{head}</tr>{rows}</table>"
+
+
+class _Workspaces(Solving):
+    """Of a robot."""
+
+    def workspace(
+        self,
+        samples: int,
+        *,
+        sampling: str = "grid",
+        seed: int = 0,
+        store: str | os.PathLike[str] | None = None,
+        progress: ProgressBar | None = None,
+        solver: str = "newton",
+        tolerance_mm: float | None = None,
+        max_iterations: int = DEFAULT_ITERATIONS,
+        anderson: int = 6,
+        threads: int = 0,
+        stable: bool = False,
+    ) -> Workspace:
+        """The equilibria of many actuations inside the ranges of the actuators.
+
+        samples   how many; a grid takes the nearest number that fills it
+        sampling  'grid', 'sobol' or 'random'
+        seed      of random samples
+        store     CSV that grows meanwhile: a workspace that was stopped goes on where it was
+        progress  such as tqdm: called with total=, then told by update(n)
+        threads   samples solved at once, each on one thread; 0: as many as the machine has
+        others    as solve's
+        """
+        robot = self._owner
+        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        bar: Any = None
+        done = 0
+
+        def begin(total: int) -> None:
+            nonlocal bar
+            if progress is not None:
+                bar = progress(total=total)
+
+        def kept(count: int) -> None:
+            nonlocal done
+            if bar is not None and count > done:
+                bar.update(count - done)
+                done = count
+
+        file = "" if store is None else os.fspath(store)
+        try:
+            core = _core.workspace(robot._core, samples, sampling, seed, options, threads, file, begin, kept)
+        finally:
+            if bar is not None:
+                bar.close()
+        return Workspace(robot, core)

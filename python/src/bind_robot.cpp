@@ -1,0 +1,149 @@
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <softkin/io/table/settings.hpp>
+#include <softkin/model/names.hpp>
+
+#include "bindings.hpp"
+#include "convert.hpp"
+#include "robot.hpp"
+
+namespace softkin::python {
+
+Index Robot::marker(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const Marker& marker : model_.markers) names.push_back(marker.name);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<Index>(i);
+  throw InvalidInput("no marker '" + name + "'" + (names.empty() ? "; the robot has none" : suggest_name(name, names)));
+}
+
+Index Robot::actuator(const std::string& name) const {
+  if (const auto found = find_actuator(model_, name)) return *found;
+  throw InvalidInput(unknown_actuator(model_, name));
+}
+
+namespace {
+
+/// The elements of each region of the model, and the materials, as the solver has them.
+std::vector<std::string> materials_of(const Model& model) {
+  std::vector<std::string> names;
+  for (const Material& material : model.materials) names.push_back(material.region);
+  return names;
+}
+
+template <class Of>
+std::vector<Index> roles_of(const Model& model, const Of& of) {
+  std::vector<Index> values;
+  for (const ElementRole& role : model.tetrahedron_roles) values.push_back(of(role));
+  for (const ElementRole& role : model.prism_roles) values.push_back(of(role));
+  return values;
+}
+
+void bind_actuator(nb::module_& module) {
+  nb::class_<Actuator>(module, "ActuatorInfo", "An actuator of a robot, as it is commanded.")
+      .def_ro("name", &Actuator::name)
+      .def_prop_ro(
+          "kind", [](const Actuator& a) { return kind_name(a); }, "'pneumatic', 'cable' or 'dea'.")
+      .def_prop_ro(
+          "control", [](const Actuator& a) { return control_name(a); },
+          "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure' or 'tension'.")
+      .def_prop_ro(
+          "unit", [](const Actuator& a) { return command_unit(a); }, "Of a command: 'kPa' or 'N'; '' for a ratio [-].")
+      .def_prop_ro(
+          "range", [](const Actuator& a) { return std::pair(a.low, a.high); }, "Of commands.")
+      .def_ro("rest", &Actuator::rest, "The command where none is given.")
+      .def_ro("rest_measure", &Actuator::rest_measure, "Length [mm], area [mm^2] or volume [mm^3] at rest.")
+      .def_prop_ro(
+          "column", [](const Actuator& a) { return command_column(a); }, "Of tables: 'air', 'air_kPa'.")
+      .def_prop_ro(
+          "load_key", [](const Actuator& a) { return multiplier_key(a); }, "'pressure_kPa', 'tension_N' or ''.")
+      .def(
+          "command_text", [](const Actuator& a, double value) { return command_text(a, value); }, nb::arg("value"));
+}
+
+}  // namespace
+
+void bind_robot(nb::module_& module) {
+  bind_actuator(module);
+  nb::class_<Robot>(module, "Robot", "A compiled robot; immutable.")
+      .def(
+          "__init__",
+          [](Robot* self, const Source& source, bool read) {
+            const nb::gil_scoped_release released;
+            new (self) Robot(source, read);
+          },
+          nb::arg("source"), nb::arg("read"))
+      .def("pickled",
+           [](const Robot& robot) {
+             const std::string bytes = pickled(robot.source());
+             return nb::bytes(bytes.data(), bytes.size());
+           })
+      .def_prop_ro("name", [](const Robot& r) { return r.model().name; })
+      .def_prop_ro("formulation", [](const Robot& r) { return formulation_name(r.model().formulation); })
+      .def_prop_ro("fingerprint", [](const Robot& r) { return fingerprint_of(r.model()); })
+      .def_prop_ro("diagonal_mm", [](const Robot& r) { return r.model().diagonal_mm; })
+      .def_prop_ro("notes", [](const Robot& r) { return r.model().notes; })
+      .def_prop_ro("warnings", [](const Robot& r) { return r.model().warnings; })
+      .def_prop_ro("materials", [](const Robot& r) { return materials_of(r.model()); })
+      .def_prop_ro("region_names", [](const Robot& r) { return r.model().region_names; })
+      .def_prop_ro("actuators", [](const Robot& r) { return r.model().actuators; })
+      .def_prop_ro("markers",
+                   [](const Robot& r) {
+                     std::vector<std::string> names;
+                     for (const Marker& marker : r.model().markers) names.push_back(marker.name);
+                     return names;
+                   })
+      .def_prop_ro("supports",
+                   [](const Robot& r) {
+                     std::vector<std::string> names;
+                     for (const Support& support : r.model().supports) names.push_back(support.name);
+                     return names;
+                   })
+      .def_prop_ro(
+          "rest", [](nb::pointer_and_handle<Robot> self) { return view_of(self.p->model().rest, self.h); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "tetrahedra", [](const Robot& r) { return cells_out(r.model().tetrahedra); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "edge_nodes", [](const Robot& r) { return cells_out(r.model().edge_nodes); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "prisms", [](const Robot& r) { return cells_out(r.model().prisms); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "element_regions",
+          [](const Robot& r) {
+            const auto values = roles_of(r.model(), [](const ElementRole& role) { return role.region; });
+            return list_of(values.data(), values.size());
+          },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "element_materials",
+          [](const Robot& r) {
+            const auto values = roles_of(r.model(), [](const ElementRole& role) { return role.material; });
+            return list_of(values.data(), values.size());
+          },
+          nb::rv_policy::automatic)
+      .def("rest_actuation", [](const Robot& r) { return vector_out(r.model().rest_actuation()); })
+      .def(
+          "parsed",
+          [](const Robot& r, const std::string& option, const std::string& actuator, const std::string& text) {
+            const auto values = read_settings(r.model(), option, {actuator + "=" + text});
+            return *values[static_cast<std::size_t>(r.actuator(actuator))];
+          },
+          nb::arg("option"), nb::arg("actuator"), nb::arg("text"), "A command with its unit as a number.")
+      .def("marker", &Robot::marker, nb::arg("name"))
+      .def("actuator", &Robot::actuator, nb::arg("name"));
+  nb::class_<Session>(module, "Session", "Threads and factors that are kept from call to call.")
+      .def("__init__",
+           [](Session* self, RobotPtr robot) {
+             const nb::gil_scoped_release released;
+             new (self) Session(std::move(robot));
+           })
+      .def("forget", [](const Session& session) { session.statics.forget(); });
+}
+
+}  // namespace softkin::python

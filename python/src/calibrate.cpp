@@ -1,0 +1,216 @@
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <softkin/calibration/actuator_report.hpp>
+#include <softkin/calibration/specimen_report.hpp>
+#include <softkin/calibration/tensile_report.hpp>
+#include <softkin/calibration/test_log.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/io/table/actuator_curve_file.hpp>
+#include <softkin/io/table/measurements.hpp>
+#include <softkin/model/names.hpp>
+
+#include "bindings.hpp"
+#include "robot.hpp"
+#include "watch.hpp"
+
+namespace softkin::python {
+
+namespace {
+
+using calibration::FittedCurve;
+using Files = std::vector<std::string>;
+
+/// A calibration with what is told of it.
+struct Calibration {
+  std::string text, json, fragment;  // fragment: the materials of a scene; empty: a simulation is not converged
+  std::string failure;               // why; empty: none
+  Table residuals;
+  Plot plot;
+};
+
+/// An actuator's curve with what is told of it.
+struct CurveCalibration {
+  FittedCurve fitted;
+  std::string text, json, file, title;
+};
+
+using BranchOut = std::tuple<std::vector<double>, std::vector<double>, std::vector<double>>;
+
+BranchOut branch_out(const CurveBranch& branch) {
+  return {branch.ratio.x(), branch.ratio.y(), branch.spread};
+}
+
+CurveCalibration told(FittedCurve fitted, const std::string& head, std::string json, const std::string& made_by,
+                      const std::string& title, bool measured) {
+  std::string text = head + (measured ? calibration::quality_text(fitted) + "\n" : "\n");
+  text += calibration::curve_text(fitted.curve);
+  std::string file = actuator_curve_text(fitted.curve, "made by softkin calibrate " + made_by + " from:\n" + head);
+  return {std::move(fitted), std::move(text), std::move(json), std::move(file), title};
+}
+
+CurveCalibration pressure(const Files& tests, const std::string& scale, double chamber_mm3, double tube_mm3,
+                          double syringe_mm3, double atmosphere_kPa) {
+  calibration::SyringeTask task{tests, {}, {chamber_mm3, tube_mm3, syringe_mm3, atmosphere_kPa}};
+  if (!scale.empty()) task.scale = scale == "absolute" ? PressureScale::absolute : PressureScale::gauge;
+  calibration::SyringeResults results = calibration::evaluate(task, "of the test");
+  std::string json = calibration::pressure_json(tests, task.setup, results.fitted, nullptr);
+  return told(std::move(results.fitted), results.head, std::move(json), "pressure", "volume ratio by Eq. (19)", true);
+}
+
+CurveCalibration dea(const Files& tests, const std::string& law, std::optional<double> shear_modulus_MPa,
+                     std::optional<double> permittivity, std::optional<double> thickness_mm,
+                     std::optional<double> prestretch, std::optional<double> stretch_limit,
+                     std::optional<double> breakdown_kV_mm) {
+  const calibration::DeaTask task{tests,      law,           permittivity,   thickness_mm, shear_modulus_MPa,
+                                  prestretch, stretch_limit, breakdown_kV_mm};
+  auto [fitted, head, computed] = calibration::evaluate(task, "of the elastomer");
+  std::string json = calibration::dea_json(tests, fitted, computed ? &*computed : nullptr);
+  return told(std::move(fitted), head, std::move(json), "dea", "area ratio by voltage", !computed);
+}
+
+Calibration tensile(const std::string& file, double poisson_ratio, double tolerance_percent, double most_strain,
+                    const std::string& law, const std::string& region) {
+  const calibration::TensileTask task{file, poisson_ratio, tolerance_percent, most_strain, law, region};
+  const calibration::TensileResults results = calibration::evaluate(task, read_tensile_curve(file));
+  return {tensile_text(task, results), tensile_json(task, results), tensile_fragment(task, results), "",
+          residual_table(results),     tensile_plot(task, results)};
+}
+
+/// Specimens of two materials as the Python layer has them.
+struct Specimens {
+  std::string file, twist_file, law, grip;
+  bool physical = true, target_shape = true;
+  double width_mm = 20, height_mm = 10, poisson_ratio = 0.45, stiffer_shape_ratio = 1;
+  int cells = 0, threads = 0;
+  std::optional<double> modulus_b_MPa;
+  std::vector<double> tried;
+  std::array<std::string, 2> regions{"A", "B"};
+};
+
+calibration::SpecimenTask task_of(const Specimens& given) {
+  calibration::SpecimenTask task;
+  task.file = given.file;
+  task.twist_file = given.twist_file;
+  task.physical = given.physical;
+  task.target_shape = given.target_shape;
+  task.tried = given.tried;
+  task.modulus_b = given.modulus_b_MPa;
+  task.regions = given.regions;
+  calibration::SpecimenOptions& options = task.options;
+  options.width_mm = given.width_mm;
+  options.height_mm = given.height_mm;
+  options.poisson_ratio = given.poisson_ratio;
+  options.stiffer_shape_ratio = given.stiffer_shape_ratio;
+  options.cells = given.cells;
+  options.statics.threads = given.threads;
+  options.grip = given.grip == "sliding" ? calibration::Grip::sliding : calibration::Grip::clamped;
+  for (const Law law : {Law::corotational, Law::st_venant_kirchhoff})
+    if (given.law == law_name(law)) options.law = law;
+  task.set_up = calibration::set_up_lines(task, [](const std::string&) { return ""; });
+  return task;
+}
+
+Calibration specimens(const Specimens& given, const nb::object& progress) {
+  calibration::SpecimenTask task = task_of(given);
+  Watch watch{nb::none()};
+  std::atomic<double> share = 0;
+  task.options.go_on = [&watch] { return watch.go_on(); };
+  calibration::SpecimenResults results;
+  const auto work = [&] {
+    std::vector<TwistedSpecimen> twists;
+    if (!task.twist_file.empty()) twists = read_twisted_specimens(task.twist_file);
+    results = calibration::evaluate(task, read_stretched_specimens(task.file), std::move(twists),
+                                    [&](const std::string&, double done) { share = done; });
+  };
+  watch.watch(work, [&] {
+    if (!progress.is_none()) progress(share.load());
+  });
+  Calibration calibrated{
+      specimens_text(task, results), specimens_json(task, results), "", calibration::failure(task, results), {}, {}};
+  if (!calibrated.failure.empty()) return calibrated;
+  calibrated.fragment = specimens_fragment(task, results);
+  calibrated.residuals = residual_table(results);
+  calibrated.plot = specimens_plot(task, results);
+  return calibrated;
+}
+
+void bind_curve(nb::module_& module) {
+  nb::class_<CurveCalibration>(module, "CurveCalibration", "An actuator's curve and how it was found.")
+      .def_ro("text", &CurveCalibration::text)
+      .def_ro("json", &CurveCalibration::json)
+      .def_ro("file", &CurveCalibration::file)
+      .def_prop_ro("loading", [](const CurveCalibration& c) { return branch_out(c.fitted.curve.loading); })
+      .def_prop_ro("unloading",
+                   [](const CurveCalibration& c) {
+                     const auto& branch = c.fitted.curve.unloading;
+                     return branch ? std::optional(branch_out(*branch)) : std::nullopt;
+                   })
+      .def_prop_ro("samples",
+                   [](const CurveCalibration& c) {
+                     std::vector<std::tuple<double, double, bool, std::size_t>> all;
+                     for (const calibration::CurveSample& s : c.fitted.samples)
+                       all.emplace_back(s.input, s.ratio, s.branch == Branch::unloading, s.repeat);
+                     return all;
+                   })
+      .def(
+          "ratio",
+          [](const CurveCalibration& c, double input, bool unloading) {
+            return c.fitted.curve.ratio(input, unloading ? Branch::unloading : Branch::loading);
+          },
+          nb::arg("input"), nb::arg("unloading"))
+      .def(
+          "save_plot",
+          [](const CurveCalibration& c, const std::string& path) {
+            write_svg(path, calibration::curve_plot(c.fitted, c.title));
+          },
+          nb::arg("path"));
+}
+
+}  // namespace
+
+void bind_calibrate(nb::module_& module) {
+  bind_curve(module);
+  nb::class_<Calibration>(module, "Calibration", "Materials and how they were found.")
+      .def_ro("text", &Calibration::text)
+      .def_ro("json", &Calibration::json)
+      .def_ro("fragment", &Calibration::fragment)
+      .def_ro("failure", &Calibration::failure)
+      .def_ro("residuals", &Calibration::residuals)
+      .def(
+          "save_plot", [](const Calibration& c, const std::string& path) { write_svg(path, c.plot); }, nb::arg("path"));
+  nb::class_<Specimens>(module, "Specimens", "Stretched bars of two materials and how they are simulated.")
+      .def(nb::init<>())
+      .def_rw("file", &Specimens::file)
+      .def_rw("twist_file", &Specimens::twist_file)
+      .def_rw("law", &Specimens::law)
+      .def_rw("grip", &Specimens::grip)
+      .def_rw("physical", &Specimens::physical)
+      .def_rw("target_shape", &Specimens::target_shape)
+      .def_rw("width_mm", &Specimens::width_mm)
+      .def_rw("height_mm", &Specimens::height_mm)
+      .def_rw("poisson_ratio", &Specimens::poisson_ratio)
+      .def_rw("stiffer_shape_ratio", &Specimens::stiffer_shape_ratio)
+      .def_rw("cells", &Specimens::cells)
+      .def_rw("threads", &Specimens::threads)
+      .def_rw("modulus_b_MPa", &Specimens::modulus_b_MPa)
+      .def_rw("tried", &Specimens::tried)
+      .def_rw("regions", &Specimens::regions);
+  module.def("calibrate_specimens", &specimens, nb::arg("specimens"), nb::arg("progress").none());
+  module.def("calibrate_tensile", &tensile, nb::arg("file"), nb::arg("poisson_ratio"), nb::arg("tolerance_percent"),
+             nb::arg("most_strain"), nb::arg("law"), nb::arg("region"), nb::call_guard<nb::gil_scoped_release>());
+  module.def("calibrate_pressure", &pressure, nb::arg("tests"), nb::arg("scale"), nb::arg("chamber_mm3"),
+             nb::arg("tube_mm3"), nb::arg("syringe_mm3"), nb::arg("atmosphere_kPa"),
+             nb::call_guard<nb::gil_scoped_release>());
+  module.def("calibrate_dea", &dea, nb::arg("tests"), nb::arg("law"), nb::arg("shear_modulus_MPa").none(),
+             nb::arg("permittivity").none(), nb::arg("thickness_mm").none(), nb::arg("prestretch").none(),
+             nb::arg("stretch_limit").none(), nb::arg("breakdown_kV_mm").none(),
+             nb::call_guard<nb::gil_scoped_release>());
+  module.def("volume_mm3", &read_volume, nb::arg("option"), nb::arg("text"));
+}
+
+}  // namespace softkin::python

@@ -1,0 +1,29 @@
+#include <softkin/core/error.hpp>
+#include <softkin/core/version.hpp>
+
+#include "bindings.hpp"
+#include "watch.hpp"
+
+namespace nb = nanobind;
+
+NB_MODULE(_core, module) {
+  using namespace softkin;
+  module.doc() = "What softkin does in C++; the public interface is the package softkin.";
+  module.attr("version") = version();
+  nb::exception<InvalidInput>(module, "InvalidInput", PyExc_ValueError).doc() =
+      "Input that softkin refuses: one sentence that begins with where it stands.";
+  nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {
+    const nb::gil_scoped_release released;
+    python::Abandoned::join();
+  }));
+  python::bind_source(module);
+  python::bind_robot(module);
+  python::bind_shape(module);
+  python::bind_solve(module);
+  python::bind_inverse(module);
+  python::bind_runs(module);
+  python::bind_workspace(module);
+  python::bind_compare(module);
+  python::bind_calibrate(module);
+  python::bind_drive(module);
+}

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <softkin/runs/records.hpp>
+#include <softkin/statics/statics.hpp>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "source.hpp"
+
+namespace softkin::python {
+
+/// A compiled robot with its statics; shared by all that was made of it, not modified.
+class Robot : public std::enable_shared_from_this<Robot> {
+ public:
+  /// read: may files of the description that the source does not hold be read from disk
+  Robot(Source source, bool read) : source_(std::move(source)), model_(compile(source_.spec(read))), statics_(model_) {}
+
+  [[nodiscard]] const Source& source() const { return source_; }
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const Statics& statics() const { return statics_; }
+  [[nodiscard]] const OverlapSearch& overlaps() const {
+    std::call_once(overlap_made_, [this] { overlap_.emplace(model_); });
+    return *overlap_;
+  }
+  /// Does an iteration of a solve take so long that a user who stops it would notice?
+  [[nodiscard]] bool is_large() const { return model_.rest.rows() > 3000; }
+  /// throws  InvalidInput with the nearest name
+  [[nodiscard]] Index marker(const std::string& name) const;
+  [[nodiscard]] Index actuator(const std::string& name) const;
+
+ private:
+  Source source_;
+  Model model_;
+  Statics statics_;
+  mutable std::once_flag overlap_made_;
+  mutable std::optional<OverlapSearch> overlap_;
+};
+using RobotPtr = std::shared_ptr<Robot>;
+
+/// Statics of its own, which keep threads and factors from call to call: for one user at a time.
+struct Session : std::enable_shared_from_this<Session> {
+  explicit Session(RobotPtr of) : robot(std::move(of)), statics(robot->model()) {}
+
+  RobotPtr robot;
+  Statics statics;
+};
+using SessionPtr = std::shared_ptr<Session>;
+
+/// An equilibrium and what was asked. The record is made when it is asked for.
+class Shape : public std::enable_shared_from_this<Shape> {
+ public:
+  Shape(RobotPtr robot, Equilibrium found, StaticsOptions options)
+      : robot_(std::move(robot)), found_(std::move(found)), options_(options) {}
+
+  [[nodiscard]] const RobotPtr& robot() const { return robot_; }
+  [[nodiscard]] const Model& model() const { return robot_->model(); }
+  [[nodiscard]] const Equilibrium& found() const { return found_; }
+  [[nodiscard]] const Points& positions() const { return found_.state.positions; }
+  [[nodiscard]] const StaticsOptions& options() const { return options_; }
+  [[nodiscard]] const ElementDeformation& deformation() const;
+  [[nodiscard]] const runs::StepRecord& record() const;
+
+ private:
+  RobotPtr robot_;
+  Equilibrium found_;
+  StaticsOptions options_;
+  mutable std::once_flag measured_, recorded_;
+  mutable ElementDeformation deformation_;
+  mutable runs::StepRecord record_;
+};
+using ShapePtr = std::shared_ptr<Shape>;
+
+}  // namespace softkin::python

@@ -1,0 +1,268 @@
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <softkin/io/file.hpp>
+#include <softkin/io/table/commands.hpp>
+#include <softkin/io/table/marker_path.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/jobs.hpp>
+#include <softkin/runs/reports.hpp>
+#include <softkin/runs/run_tables.hpp>
+#include <softkin/runs/workspace_file.hpp>
+
+#include "bindings.hpp"
+#include "convert.hpp"
+#include "solve.hpp"
+#include "watch.hpp"
+
+namespace softkin::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Steps = std::vector<ActuationStep>;
+
+/// Files of a run that goes on where it was; an empty folder: none.
+runs::RunFiles files_in(const std::string& folder) {
+  if (folder.empty()) return {};
+  fs::create_directories(folder);
+  return {fs::path(folder) / "report.json", fs::path(folder) / "path.pvd"};
+}
+
+/// A job and its run, record by record, by statics of its own.
+template <class Record, class JobOf>
+class Runner {
+ public:
+  virtual ~Runner() = default;
+
+  [[nodiscard]] std::size_t size() const { return run_->size(); }
+  [[nodiscard]] std::size_t done() const { return run_->done(); }
+  [[nodiscard]] const std::string& remark() const { return remark_; }
+  [[nodiscard]] const Record& last() const { return run_->last(); }
+
+  /// The next shape; none at the end.
+  [[nodiscard]] ShapePtr next() {
+    if (lost_ || run_->is_complete()) return nullptr;
+    const runs::Advance end =
+        watched(nb::none(), [&](const ProgressCallback& callback) { return run_->advance(callback); });
+    lost_ = end == runs::Advance::lost;
+    return shape_of(run_->last(), lost_ ? session_.robot->model().rest : run_->last_positions());
+  }
+  void finish() { run_->finish(); }
+  [[nodiscard]] std::string report() {
+    std::string text;
+    run_->log().report([&](std::string_view piece) { text += piece; });
+    return text;
+  }
+  [[nodiscard]] std::vector<Record> records() {
+    std::vector<Record> all;
+    run_->log().each([&](std::size_t, const Record& record) { all.push_back(record); });
+    return all;
+  }
+
+ protected:
+  Runner(RobotPtr robot, StaticsOptions options) : session_(std::move(robot)), options_(options) {}
+
+  template <class... Arguments>
+  void begin(const std::string& store, const std::string& head, const std::vector<std::string>& same,
+             Arguments&&... arguments) {
+    job_.emplace(std::forward<Arguments>(arguments)...);
+    const runs::RunFiles files = files_in(store);
+    run_.emplace(session_.robot->model(), *job_, files, head, same);
+    if (!store.empty()) run_->resume(remark_);
+  }
+  [[nodiscard]] const JobOf& job() const { return *job_; }
+  [[nodiscard]] const Model& model() const { return session_.robot->model(); }
+  [[nodiscard]] const Statics& statics() const { return session_.statics; }
+  [[nodiscard]] const StaticsOptions& options() const { return options_; }
+
+ private:
+  [[nodiscard]] ShapePtr shape_of(const runs::StepRecord& record, const Points& positions) const {
+    Equilibrium found{runs::state_of(model(), record, positions), record.actuation, record};
+    return std::make_shared<Shape>(session_.robot, std::move(found), options_);
+  }
+
+  Session session_;
+  StaticsOptions options_;
+  std::optional<JobOf> job_;
+  std::optional<runs::Run<Record>> run_;
+  std::string remark_;
+  bool lost_ = false;
+};
+
+class PathRun : public Runner<runs::StepRecord, runs::PathJob> {
+ public:
+  PathRun(const RobotPtr& robot, Steps steps, const std::string& name, const StaticsOptions& options,
+          const std::string& store)
+      : Runner(robot, options), steps_(std::move(steps)) {
+    begin(store, runs::report_head(model(), model().name, options), {}, model(), statics(), steps_, name, options);
+  }
+
+ private:
+  Steps steps_;
+};
+
+class FollowRun : public Runner<runs::WaypointRecord, runs::FollowJob> {
+ public:
+  FollowRun(const RobotPtr& robot, MarkerPath path, const std::string& name, const TrajectoryOptions& options,
+            const std::string& store)
+      : Runner(robot, options.inverse.statics), path_(std::move(path)) {
+    begin(store, runs::follow_head(model(), model().name, options), {"follow"}, model(), statics(), path_, name,
+          options);
+  }
+  [[nodiscard]] const MarkerPath& path() const { return path_; }
+  [[nodiscard]] Table commands() { return runs::commands_table(model(), path_, records()); }
+  [[nodiscard]] Table errors() { return runs::errors_table(model(), path_, records()); }
+  /// Status, error [mm], targets by marker, equilibria, why the search stopped, time [s], inserted.
+  using Asked = std::tuple<std::string, double, std::map<std::string, std::vector<std::optional<double>>>, int,
+                           std::string, std::optional<double>, bool>;
+  [[nodiscard]] Asked asked() const {
+    const runs::WaypointRecord& record = last();
+    Asked all{name_of(record.end), record.error_mm,      {}, record.equilibria, record.search_remark,
+              record.asked.time,   record.asked.inserted};
+    for (std::size_t p = 0; p < path_.markers.size(); ++p) {
+      auto& target = std::get<2>(all)[model().markers[static_cast<std::size_t>(path_.markers[p])].name];
+      for (Index axis = 0; axis < 3; ++axis)
+        target.push_back(path_.axes[p][static_cast<std::size_t>(axis)] ? std::optional(record.asked.targets[p][axis])
+                                                                       : std::nullopt);
+    }
+    return all;
+  }
+  [[nodiscard]] std::string step() const { return job().codec().write(last()); }
+
+ private:
+  MarkerPath path_;
+};
+
+Steps steps_of(const Robot& robot, const TableIn& rows, const std::optional<VectorIn>& times) {
+  Steps steps;
+  const auto columns = static_cast<Eigen::Index>(rows.shape(1));
+  for (std::size_t i = 0; i < rows.shape(0); ++i) {
+    ActuationStep step;
+    step.actuation = Eigen::Map<const Eigen::VectorXd>(rows.data() + i * rows.shape(1), columns);
+    if (times) step.time = times->data()[i];
+    check_actuation(robot.model(), step.actuation);
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
+using TargetsIn = nb::ndarray<const double, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+
+/// targets: k x p x 3; a coordinate that does not count is 0
+MarkerPath path_of(const Robot& robot, const std::vector<std::string>& markers, const TargetsIn& targets,
+                   const std::vector<std::array<bool, 3>>& axes, const std::optional<VectorIn>& times) {
+  MarkerPath path;
+  for (const std::string& marker : markers) path.markers.push_back(robot.marker(marker));
+  path.axes = axes;
+  for (std::size_t i = 0; i < targets.shape(0); ++i) {
+    Waypoint waypoint;
+    for (std::size_t p = 0; p < targets.shape(1); ++p) {
+      const double* at = targets.data() + 3 * (i * targets.shape(1) + p);
+      waypoint.targets.emplace_back(at[0], at[1], at[2]);
+    }
+    if (times) waypoint.time = times->data()[i];
+    path.waypoints.push_back(std::move(waypoint));
+  }
+  return path;
+}
+
+void bind_table(nb::module_& module) {
+  nb::class_<Table>(module, "Table", "Columns and rows, as the command prints and writes them.")
+      .def_prop_ro("keys",
+                   [](const Table& table) {
+                     std::vector<std::string> keys;
+                     for (const Column& column : table.columns) keys.push_back(column.key);
+                     return keys;
+                   })
+      .def_prop_ro(
+          "titles",
+          [](const Table& table) {
+            std::vector<std::string> titles;
+            for (const Column& c : table.columns)
+              titles.push_back((c.title.empty() ? c.key : c.title) + (c.unit.empty() ? "" : " [" + c.unit + "]"));
+            return titles;
+          })
+      .def_prop_ro("rows", [](const Table& table) { return table.rows; })
+      .def("csv", &Table::csv)
+      .def("text", [](const Table& table) {
+        std::string text;
+        for (const std::string& line : table.lines()) text += line + "\n";
+        return text;
+      });
+}
+
+template <class Run>
+nb::class_<Run> bind_runner(nb::module_& module, const char* name, const char* what) {
+  return nb::class_<Run>(module, name, what)
+      .def_prop_ro("size", &Run::size)
+      .def_prop_ro("done", &Run::done)
+      .def_prop_ro("remark", &Run::remark, "What was not there as it was written, of a run that goes on; else ''.")
+      .def("next", &Run::next)
+      .def("finish", &Run::finish)
+      .def("report", &Run::report);
+}
+
+}  // namespace
+
+void bind_runs(nb::module_& module) {
+  bind_table(module);
+  nb::class_<MarkerPath>(module, "MarkerPath", "Places that markers are to visit one after another.")
+      .def_static("of_targets", &path_of, nb::arg("robot"), nb::arg("markers"), nb::arg("targets"), nb::arg("axes"),
+                  nb::arg("times").none())
+      .def_static(
+          "of_file",
+          [](const Robot& robot, const std::string& file, const std::string& marker) {
+            return read_marker_path(file, robot.model(), marker);
+          },
+          nb::arg("robot"), nb::arg("file"), nb::arg("marker"))
+      .def(
+          "densified", [](const MarkerPath& path, double step) { return densified(path, step); },
+          nb::arg("max_step_mm"))
+      .def("doubts", [](const MarkerPath& path, const Robot& robot) { return doubts_about(robot.model(), path); })
+      .def_prop_ro("size", [](const MarkerPath& path) { return path.waypoints.size(); });
+  bind_runner<PathRun>(module, "PathRun", "Equilibria along a path of actuations, each from the last.")
+      .def_static(
+          "of_rows",
+          [](const RobotPtr& robot, const TableIn& rows, const std::optional<VectorIn>& times,
+             const StaticsOptions& options, const std::string& store) {
+            return new PathRun(robot, steps_of(*robot, rows, times), "the path", options, store);
+          },
+          nb::arg("robot"), nb::arg("rows"), nb::arg("times").none(), nb::arg("options"), nb::arg("store"),
+          nb::rv_policy::take_ownership)
+      .def_static(
+          "of_file",
+          [](const RobotPtr& robot, const std::string& file, const std::vector<std::string>& settings,
+             const StaticsOptions& options, const std::string& store) {
+            const Settings others = read_settings(robot->model(), "path", settings);
+            return new PathRun(robot, read_actuation_path(robot->model(), file, others), file, options, store);
+          },
+          nb::arg("robot"), nb::arg("file"), nb::arg("settings"), nb::arg("options"), nb::arg("store"),
+          nb::rv_policy::take_ownership);
+  bind_runner<FollowRun>(module, "FollowRun", "Inverse kinematics along a path of markers.")
+      .def(
+          "__init__",
+          [](FollowRun* self, const RobotPtr& robot, const MarkerPath& path, const std::string& name,
+             const InverseOptions& inverse, bool predict, const std::optional<VectorIn>& start,
+             const std::string& workspace, const std::string& store) {
+            TrajectoryOptions options{inverse, predict, start ? vector_of(*start) : Actuation()};
+            if (!workspace.empty() && !path.waypoints.empty())
+              options.start =
+                  runs::nearest_actuation(robot->model(), workspace, goals_of(path, path.waypoints.front()));
+            new (self) FollowRun(robot, path, name, options, store);
+          },
+          nb::arg("robot"), nb::arg("path"), nb::arg("name"), nb::arg("inverse"), nb::arg("predict"),
+          nb::arg("start").none(), nb::arg("workspace"), nb::arg("store"))
+      .def("commands", &FollowRun::commands)
+      .def("errors", &FollowRun::errors)
+      .def("asked", &FollowRun::asked)
+      .def("step", &FollowRun::step, "The last record as a step of the report, JSON.");
+}
+
+}  // namespace softkin::python

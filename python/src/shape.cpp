@@ -1,0 +1,198 @@
+#include "robot.hpp"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <softkin/model/names.hpp>
+#include <softkin/runs/reports.hpp>
+#include <softkin/runs/shape_files.hpp>
+
+#include "archive.hpp"
+#include "bindings.hpp"
+#include "convert.hpp"
+
+namespace softkin::python {
+
+const ElementDeformation& Shape::deformation() const {
+  std::call_once(measured_, [this] { deformation_ = robot_->statics().measured(found_.state); });
+  return deformation_;
+}
+
+const runs::StepRecord& Shape::record() const {
+  std::call_once(recorded_, [this] {
+    record_ = runs::step_record(model(), found_, deformation());
+    record_.self_overlap = robot_->overlaps().in(positions());
+  });
+  return record_;
+}
+
+// Found by the archive's namespace, so in no unnamed one.
+
+template <class A>
+void members(A& archive, IterationRecord& r) {
+  archive(r.energy, r.step_mm, r.gradient_norm);
+}
+template <class A>
+void members(A& archive, SolveReport& r) {
+  archive(r.status, r.solver, r.iterations, r.factorisations, r.projections, r.shifts, r.continuation_steps, r.reached,
+          r.remark, r.energy, r.step_mm, r.tolerance_mm, r.gradient_norm, r.residual_N, r.pull_N, r.unstable_modes,
+          r.buckled, r.buckled_mm, r.snapped_mm, r.snapped_from, r.unstable_from, r.estimated_error_mm, r.history,
+          r.seconds);
+}
+template <class A>
+void members(A& archive, Equilibrium& e) {
+  archive(e.state.positions, e.state.actuation, e.state.multipliers, e.state.share, e.actuation, e.report);
+}
+template <class A>
+void members(A& archive, StaticsOptions& o) {
+  archive(o.solver, o.step_tolerance_mm, o.max_iterations, o.anderson, o.threads, o.keep_history, o.stable,
+          o.reuse_factor);
+}
+
+namespace {
+
+/// The report of `softkin fk` with this shape as its only step.
+std::string report_of(const Shape& shape) {
+  const Model& model = shape.model();
+  const runs::RecordLog log = runs::step_report(model, model.name, {}, shape.options(), shape.record());
+  std::string text;
+  log.report([&](std::string_view piece) { text += piece; });
+  return text;
+}
+
+/// An actuator in a shape: requested, ratio, measure, load, input by its curve, slack.
+using ActuatorOut = std::tuple<double, double, double, std::optional<double>, std::optional<double>, bool>;
+ActuatorOut actuator_of(const Shape& shape, std::size_t a, const runs::ActuatorRecord& record) {
+  const Actuator& actuator = shape.model().actuators[a];
+  const bool loaded = !multiplier_key(actuator).empty() && shape.model().formulation == Formulation::physical;
+  return {record.requested,
+          record.achieved,
+          record.achieved * actuator.rest_measure,
+          loaded ? std::optional(record.multiplier) : std::nullopt,
+          record.by_curve,
+          record.slack};
+}
+
+void bind_fields(nb::class_<Shape>& type) {
+  type.def_prop_ro(
+          "volume_ratio",
+          [](const Shape& s) {
+            const auto& values = s.deformation().volume_ratio;
+            return list_of(values.data(), values.size());
+          },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "strain", [](const Shape& s) { return rows_out(s.deformation().strain); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "von_mises",
+          [](const Shape& s) {
+            const auto& values = s.deformation().stress.von_mises;
+            return list_of(values.data(), values.size());
+          },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "principal_stress", [](const Shape& s) { return rows_out(s.deformation().stress.principal); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "vertex_reactions",
+          [](nb::pointer_and_handle<Shape> s) { return view_of(s.p->deformation().reactions, s.h); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "reactions",
+          [](const Shape& s) {
+            using Three = std::array<double, 3>;
+            std::vector<std::tuple<Three, Three, Three>> all;
+            for (const Reaction& r : s.record().reactions)
+              all.emplace_back(array_of(r.force), array_of(r.moment), array_of(r.center));
+            return all;
+          },
+          "Force [N], moment [N mm] and centre [mm] of every support.")
+      .def_prop_ro("self_overlap", [](const Shape& s) {
+        const SelfOverlap& overlap = s.record().self_overlap;
+        return std::tuple(overlap.points, overlap.deepest_mm, array_of(overlap.where));
+      });
+}
+
+}  // namespace
+
+void bind_shape(nb::module_& module) {
+  nb::class_<Shape> type(module, "Shape", "An equilibrium of a robot.");
+  type.def_prop_ro("robot", [](const Shape& s) { return s.robot(); })
+      .def_prop_ro(
+          "positions", [](nb::pointer_and_handle<Shape> s) { return view_of(s.p->positions(), s.h); },
+          nb::rv_policy::automatic)
+      .def("marker", [](const Shape& s,
+                        std::size_t marker) { return array_of(s.model().markers.at(marker).point.at(s.positions())); })
+      .def("actuators",
+           [](const Shape& s) {
+             std::vector<ActuatorOut> all;
+             const auto records = runs::actuator_records(s.model(), s.found());
+             for (std::size_t a = 0; a < records.size(); ++a) all.push_back(actuator_of(s, a, records[a]));
+             return all;
+           })
+      .def_prop_ro(
+          "actuation", [](const Shape& s) { return vector_out(s.found().actuation); }, nb::rv_policy::automatic)
+      .def_prop_ro("status", [](const Shape& s) { return name_of(s.found().report.status); })
+      .def_prop_ro("converged", [](const Shape& s) { return s.found().report.status == Status::converged; })
+      .def_prop_ro("reached", [](const Shape& s) { return s.found().report.reached; })
+      .def_prop_ro("remark", [](const Shape& s) { return s.found().report.remark; })
+      .def_prop_ro("iterations", [](const Shape& s) { return s.found().report.iterations; })
+      .def_prop_ro("seconds", [](const Shape& s) { return s.found().report.seconds; })
+      .def_prop_ro("unstable_modes", [](const Shape& s) { return s.found().report.unstable_modes; })
+      .def("report",
+           [](const Shape& s) {
+             const nb::gil_scoped_release released;
+             return report_of(s);
+           })
+      .def_prop_ro("fingerprint", [](const Shape& s) { return fingerprint_of(s.positions()); })
+      .def("measure",
+           [](const Shape& s) {
+             const nb::gil_scoped_release released;
+             (void)s.record();
+           })
+      .def(
+          "save_vtu",
+          [](const Shape& s, const std::string& path) {
+            const nb::gil_scoped_release released;
+            runs::write_shape(path, s.model(), s.positions(), s.deformation(),
+                              s.found().report.status == Status::converged);
+          },
+          nb::arg("path"))
+      .def(
+          "png",
+          [](const Shape& s, const std::vector<double>& view, const std::string& title) {
+            std::string bytes;
+            {
+              const nb::gil_scoped_release released;
+              bytes = runs::image_png(s.model(), s.positions(), view, title);
+            }
+            return nb::bytes(bytes.data(), bytes.size());
+          },
+          nb::arg("view"), nb::arg("title"))
+      .def("pickled",
+           [](const Shape& s) {
+             Writer writer;
+             writer(s.found(), s.options());
+             return nb::bytes(writer.bytes().data(), writer.bytes().size());
+           })
+      .def_static(
+          "unpickled",
+          [](RobotPtr robot, nb::bytes bytes) {
+            Equilibrium found;
+            StaticsOptions options;
+            Reader reader({bytes.c_str(), bytes.size()});
+            reader(found, options);
+            reader.finish();
+            if (found.state.positions.rows() != robot->model().rest.rows())
+              throw InvalidInput("the pickled shape is one of another robot");
+            return std::make_shared<Shape>(std::move(robot), std::move(found), options);
+          },
+          nb::arg("robot"), nb::arg("bytes"));
+  bind_fields(type);
+}
+
+}  // namespace softkin::python

@@ -1,0 +1,75 @@
+#include "solve.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <softkin/kinematics/jacobian.hpp>
+
+#include "bindings.hpp"
+#include "convert.hpp"
+#include "watch.hpp"
+
+namespace softkin::python {
+
+namespace {
+
+ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn& actuation, const ShapePtr& start,
+               const std::optional<PointsIn>& positions, StaticsOptions options, nb::object progress) {
+  if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
+  State from = positions ? State{points_of(*positions)} : start ? State() : robot->statics().rest();
+  options.reuse_factor = session != nullptr;
+  const auto work = [robot, session, start, options, from = std::move(from),
+                     asked = vector_of(actuation)](const ProgressCallback& callback) {
+    const State& begin = start ? start->found().state : from;
+    return statics_of(*robot, session.get()).solve(asked, begin, options, callback);
+  };
+  Equilibrium found = watched_solve(*robot, std::move(progress), work);
+  // what the report tells of options is what the user can set
+  options.reuse_factor = true;
+  return std::make_shared<Shape>(robot, std::move(found), options);
+}
+
+TableOut jacobian_of(const Shape& shape, const Session* session, const std::vector<Index>& markers) {
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes;
+  {
+    const nb::gil_scoped_release released;
+    StaticsOptions options = shape.options();
+    options.reuse_factor = session != nullptr;
+    const Sensitivity sensitivity = statics_of(*shape.robot(), session).sensitivity(shape.found().state, options);
+    if (!sensitivity.regular)
+      throw InvalidInput("the shape stands at a limit of existence or a branch, where it has no Jacobian");
+    slopes = jacobian(shape.model(), sensitivity, markers);
+  }
+  return table_of<double>(slopes.data(), static_cast<std::size_t>(slopes.rows()),
+                          static_cast<std::size_t>(slopes.cols()));
+}
+
+}  // namespace
+
+void bind_solve(nb::module_& module) {
+  nb::class_<StaticsOptions>(module, "SolveOptions", "How equilibria are solved.")
+      .def(
+          "__init__",
+          [](StaticsOptions* self, const std::string& solver, double tolerance_mm, int max_iterations, int anderson,
+             int threads, bool stable) {
+            if (solver != "newton" && solver != "local-global")
+              throw InvalidInput("solver must be 'newton' or 'local-global', not '" + solver + "'");
+            auto* options = new (self) StaticsOptions();
+            options->solver = solver == "newton" ? Solver::newton : Solver::local_global;
+            options->step_tolerance_mm = tolerance_mm;
+            options->max_iterations = max_iterations;
+            options->anderson = anderson;
+            options->threads = threads;
+            options->stable = stable;
+          },
+          nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations"), nb::arg("anderson"),
+          nb::arg("threads"), nb::arg("stable"));
+  module.def("solve", &solve, nb::arg("robot"), nb::arg("session").none(), nb::arg("actuation"),
+             nb::arg("start").none(), nb::arg("positions").none(), nb::arg("options"), nb::arg("progress").none());
+  module.def("jacobian", &jacobian_of, nb::arg("shape"), nb::arg("session").none(), nb::arg("markers"),
+             "3p x m [mm per unit of command].");
+}
+
+}  // namespace softkin::python

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <softkin/core/progress.hpp>
+#include <thread>
+#include <utility>
+
+namespace softkin::python {
+
+namespace nb = nanobind;
+
+/// Lets Python have its say while C++ works without the GIL: signals such as Ctrl-C, and a function of the user's.
+class Watch {
+ public:
+  /// tell: called with (iteration, step_mm, tolerance_mm, share) at most 20 times a second; False stops the work; or None
+  explicit Watch(nb::object tell);
+
+  /// For work that is done on the calling thread. The watch must outlive it.
+  [[nodiscard]] ProgressCallback callback();
+  /// Throws what was raised: KeyboardInterrupt, or what `tell` raised. With the GIL.
+  void rethrow();
+
+  /// Does work without the GIL on a thread of its own, and looks for signals meanwhile; calls tick, with the GIL, as
+  /// often. go_on() is false once something was raised.
+  void watch(const std::function<void()>& work, const std::function<void()>& tick);
+  [[nodiscard]] bool go_on() const { return !stopped_; }
+
+  static constexpr std::chrono::milliseconds between_looks{50};
+  /// With the GIL; false where the work is to stop. progress: to be told, or null
+  [[nodiscard]] bool look(const Progress* progress);
+  [[nodiscard]] bool has_raised() const { return raised_.has_value(); }
+
+ private:
+  nb::object tell_;
+  std::atomic<bool> stopped_ = false;
+  std::atomic<std::chrono::steady_clock::rep> next_;
+  std::mutex mutex_;
+  std::optional<nb::python_error> raised_;
+};
+
+/// Threads whose work nobody waits for any more; they end by themselves. They are joined before Python ends.
+class Abandoned {
+ public:
+  static void take(std::thread thread, std::shared_ptr<std::atomic<bool>> ended);
+  static void join();
+};
+
+/// Calls work without the GIL, then throws what was raised meanwhile.
+template <class Work>
+auto watched(nb::object tell, const Work& work) {
+  Watch watch(std::move(tell));
+  auto result = [&] {
+    nb::gil_scoped_release released;
+    return work(watch.callback());
+  }();
+  watch.rethrow();
+  return result;
+}
+
+/// The same on a thread of its own, for work that takes long from one look to the next: what is raised does not wait
+/// for it. work is told to stop then, and owns all that it touches; none of it is Python's.
+template <class Work>
+auto watched_apart(nb::object tell, Work work) -> decltype(work(ProgressCallback())) {
+  using Result = decltype(work(ProgressCallback()));
+  struct Shared {
+    std::mutex mutex;
+    std::condition_variable news;
+    std::optional<Result> result;
+    std::exception_ptr failure;
+    std::optional<Progress> progress;  // not told yet
+    bool done = false;
+    std::atomic<bool> stopped = false;
+  };
+  const auto shared = std::make_shared<Shared>();
+  const auto ended = std::make_shared<std::atomic<bool>>(false);
+  Watch watch(std::move(tell));
+  std::thread thread([shared, ended, work = std::optional<Work>(std::move(work))]() mutable {
+    try {
+      Result result = (*work)([&shared](const Progress& progress) {
+        const std::lock_guard lock(shared->mutex);
+        shared->progress = progress;
+        return !shared->stopped;
+      });
+      const std::lock_guard lock(shared->mutex);
+      shared->result = std::move(result);
+    } catch (...) {
+      shared->failure = std::current_exception();
+    }
+    work.reset();
+    const std::lock_guard lock(shared->mutex);
+    shared->done = *ended = true;
+    shared->news.notify_one();
+  });
+  {
+    nb::gil_scoped_release released;
+    std::unique_lock lock(shared->mutex);
+    while (!shared->news.wait_for(lock, Watch::between_looks, [&] { return shared->done; })) {
+      const std::optional<Progress> progress = std::exchange(shared->progress, std::nullopt);
+      lock.unlock();
+      {
+        const nb::gil_scoped_acquire gil;
+        if (!watch.go_on() || !watch.look(progress ? &*progress : nullptr)) shared->stopped = true;
+      }
+      lock.lock();
+      if (watch.has_raised()) break;
+    }
+  }
+  if (watch.has_raised()) {
+    Abandoned::take(std::move(thread), ended);
+    watch.rethrow();
+  }
+  thread.join();
+  if (shared->failure) std::rethrow_exception(shared->failure);
+  return std::move(*shared->result);
+}
+
+}  // namespace softkin::python

@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import softkin
+from softkin import calibrate
+
+
+def told(command: str, *arguments: object) -> Any:
+    done = subprocess.run(
+        [command, "calibrate", *map(str, arguments), "--json"], check=True, capture_output=True, text=True
+    )
+    return json.loads(done.stdout)
+
+
+def test_tensile(examples: Path, command: str, tmp_path: Path) -> None:
+    test = examples / "two_material_bar/tensile.csv"
+    found = calibrate.tensile(test)
+    assert found.report == told(command, "material", "--tensile", test)
+    assert found.failure == "" and "materials:" in found.materials and len(found.residuals) > 10
+    found.save(tmp_path / "m.yaml")
+    assert (tmp_path / "m.yaml").read_text() == found.materials
+    found.save_plot(tmp_path / "m.svg")
+    assert "law" in repr(found)
+    with pytest.raises(ValueError, match="law must be linear"):
+        calibrate.tensile(test, law="hookean")
+
+
+def test_material(examples: Path, command: str) -> None:
+    file, shares = examples / "two_material_bar/specimens.csv", []
+    found = calibrate.material(file, formulation="physical", cells=1, progress=shares.append)
+    options = ("--formulation", "physical", "--cells", 1, "--width", 20, "--grip", "clamped", "--law", "neo-hookean")
+    expected = told(command, "material", file, *options, "--poisson-ratio", 0.45)
+    assert found.report == expected  # nothing is marked as a default where all is given
+    assert found.failure == "" and shares
+    for keywords, message in (
+        ({"grip": "glued"}, "grip must be"),
+        ({"formulation": "x"}, "formulation must be"),
+        ({"width_mm": 0}, "width_mm must be greater than 0 mm, not 0"),
+        ({"poisson_ratio": 0.5}, "poisson_ratio must be"),
+        ({"stiffer_shape_ratio": 2}, "stiffer_shape_ratio must be"),
+        ({"law": "yeoh"}, "law must take E and nu"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            calibrate.material(file, **keywords)  # type: ignore[arg-type]
+
+
+def test_pressure(examples: Path, command: str, tmp_path: Path) -> None:
+    test = examples / "three_chamber_actuator/measured/syringe.csv"
+    volumes = ["--chamber-volume", "21mL", "--syringe-volume", "60mL", "--tube-volume", "1.5mL"]
+    found = calibrate.pressure(test, chamber_volume="21mL", syringe_volume=60e3, tube_volume="1.5mL")
+    assert found.report == told(command, "pressure", test, *volumes)
+    loading = found.loading
+    assert loading.input.shape == loading.ratio.shape and loading.ratio[0] == 1
+    assert found.ratio(float(loading.input[1])) == pytest.approx(loading.ratio[1])
+    assert loading.spread.size in (0, loading.ratio.size)
+    assert found.unloading is None or found.unloading.input.size > 1
+    assert found.samples.shape[1] == 4 and len(found.samples) > 10
+    found.save(tmp_path / "air.yaml")
+    found.save_plot(tmp_path / "air.svg")
+    assert "loading" in repr(found) and "made by softkin" in (tmp_path / "air.yaml").read_text()
+    with pytest.raises(softkin.InvalidInput):
+        found.ratio(1e6)
+    with pytest.raises(ValueError, match="chamber_volume at rest is not known"):
+        calibrate.pressure(test, syringe_volume="60mL")
+    with pytest.raises(softkin.InvalidInput, match="syringe_volume"):
+        calibrate.pressure(test, syringe_volume="60 buckets", chamber_volume=1)
+    with pytest.raises(ValueError, match="scale must be"):
+        calibrate.pressure(test, syringe_volume="60mL", chamber_volume=1, scale="torr")
+
+
+def test_pressure_of_a_robot(robot: softkin.Robot, examples: Path) -> None:
+    test = examples / "three_chamber_actuator/measured/syringe.csv"
+    with pytest.raises(ValueError, match="actuator must name the chamber"):
+        calibrate.pressure(test, syringe_volume="60mL", robot=robot)
+    with pytest.raises(softkin.InvalidInput):  # a chamber of 0.5 mL does not hold what the syringe gave
+        calibrate.pressure(test, syringe_volume="60mL", robot=robot, actuator="air1")
+
+
+def test_dea(examples: Path, command: str) -> None:
+    test = examples / "dea_crawler/measured/voltage.csv"
+    assert calibrate.dea(test).report == told(command, "dea", test)
+    computed = calibrate.dea(law="neo-hookean", shear_modulus_MPa=0.07, permittivity=4.4, thickness_mm=0.5, prestretch=2)
+    assert computed.ratio(0) == pytest.approx(1) and computed.samples.shape == (0, 4)
+    with pytest.raises(ValueError, match="give either tests or law"):
+        calibrate.dea()
+    with pytest.raises(ValueError, match="law must be"):
+        calibrate.dea(law="rubber")
+    with pytest.raises(softkin.InvalidInput, match="permittivity"):
+        calibrate.dea(law="gent", shear_modulus_MPa=0.07)

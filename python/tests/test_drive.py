@@ -1,0 +1,143 @@
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import subprocess
+import threading
+import time
+import tty
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import softkin
+from softkin import drive
+
+SCENE = "three_tendon_finger/three_tendon_finger.yaml"
+
+
+class Board:
+    """What a Marlin board answers, at the other end of a pseudo terminal."""
+
+    def __init__(self, delay_s: float = 0) -> None:
+        self.controller, self.device = pty.openpty()
+        tty.setraw(self.device)
+        self.port = os.ttyname(self.device)
+        self.position: dict[str, float] = {}
+        self.executed: list[str] = []
+        self.delay_s = delay_s
+        threading.Thread(target=self.serve, daemon=True).start()
+
+    def serve(self) -> None:
+        pending = b""
+        while True:
+            try:
+                pending += os.read(self.controller, 4096)
+            except OSError:
+                return
+            *lines, pending = pending.split(b"\n")
+            for line in lines:
+                os.write(self.controller, (self.answer(line.decode()) + "\n").encode())
+
+    def answer(self, line: str) -> str:
+        text = re.sub(r"^N\d+ ", "", line.split("*")[0])
+        self.executed.append(text)
+        if text.startswith(("G1", "G92")):
+            time.sleep(self.delay_s)
+            self.position.update({axis: float(value) for axis, value in re.findall(r"([XYZ])(-?[\d.]+)", text)})
+        if text.startswith("M114"):
+            return " ".join(f"{axis}:{value:.4f}" for axis, value in self.position.items()) + " Count X:0\nok"
+        return "ok"
+
+    def close(self) -> None:
+        os.close(self.device)
+        os.close(self.controller)
+
+
+@pytest.fixture(scope="module")
+def finger(examples: Path) -> softkin.Robot:
+    return softkin.load(examples / SCENE)
+
+
+@pytest.fixture
+def board() -> Iterator[Board]:
+    made = Board()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def short(finger: softkin.Robot) -> drive.Plan:
+    return drive.plan(finger, [[1, 1, 1], [0.99, 1, 1], [0.98, 1, 0.99]], times=[0, 1, 2], return_home=True)
+
+
+def test_plan_is_the_command_s(finger: softkin.Robot, examples: Path, command: str) -> None:
+    path = examples / "three_tendon_finger/path.csv"
+    plan = drive.plan(finger, path)
+    arguments = [command, "drive", finger.name, str(path), "--dry-run", "--json"]
+    told = subprocess.run(arguments, check=True, capture_output=True, text=True)
+    assert plan.report == json.loads(told.stdout)
+    assert plan.gcode == plan.report["gcode"] and plan.schedule == "" and plan.lines == plan.report["lines"]
+    assert plan.seconds > 0 and plan.defaults == plan.report["defaults"] and "G-code" in repr(plan)
+
+
+def test_plan_of_a_run(finger: softkin.Robot) -> None:
+    run = finger.follow([finger.solve(tendon1=0.99)["tip"]], marker="tip")
+    list(run)
+    assert drive.plan(finger, run).lines > 0
+
+
+def test_wrong_plans(finger: softkin.Robot, robot: softkin.Robot, tmp_path: Path) -> None:
+    with pytest.raises(softkin.InvalidInput, match="tendon1"):
+        drive.plan(finger, [[1, 1, 1], [0.7, 1, 1]], times=[0, 0.01])
+    with pytest.raises(ValueError, match=r"commands must have shape \(n, 3\)"):
+        drive.plan(finger, [[1, 1]])
+    with pytest.raises(ValueError, match="hardware: there is no beam.hardware.yaml"):
+        drive.plan(robot, [[1, 1, 1]])
+    hardware = tmp_path / "h.yaml"
+    hardware.write_text("softkin_hardware: 1\nchambers:\n" + "".join(f"  - {{actuator: air{i}}}\n" for i in (1, 2, 3)))
+    with pytest.raises(softkin.InvalidInput, match="pressure"):
+        drive.plan(robot, [[1, 1, 1]], times=[0], hardware=hardware)
+    plan = drive.plan(
+        robot, np.ones((2, 3)), times=[0, 1], hardware=hardware, pressures={f"air{i}": [0, 1] for i in (1, 2, 3)}
+    )
+    assert plan.schedule.startswith("t_s,air1_kPa") and plan.gcode == "" and plan.lines == 0
+
+
+def test_send(short: drive.Plan, board: Board, tmp_path: Path) -> None:
+    counts: list[int] = []
+    with drive.Marlin(board.port, boot_wait_s=0) as link:
+        assert link.last is None
+        sent = link.send(short, log=tmp_path / "log", progress=counts.append)
+        assert link.last is not None and link.last.end == "finished"
+    assert sent.finished and sent.end == "finished" and sent.message and "finished" in repr(sent)
+    assert sent.acknowledged == sent.sent == sent.lines == short.lines and counts[-1] == sent.lines
+    assert sent.resends == sent.timeouts == 0
+    assert sent.position_mm is not None and sent.position_mm["X"] == pytest.approx(board.position["X"])
+    assert any(line.startswith("G1") for line in board.executed) and (tmp_path / "log").stat().st_size > 100
+    with pytest.raises(softkin.InvalidInput, match="closed"):
+        link.send(short)
+
+
+def test_orders_from_another_thread(finger: softkin.Robot) -> None:
+    board = Board(delay_s=0.02)
+    plan = drive.plan(finger, [[1 - 0.0005 * i, 1, 1] for i in range(100)], times=[0.2 * i for i in range(100)])
+    with drive.Marlin(board.port, boot_wait_s=0) as link:
+        threading.Timer(0.3, link.pause).start()
+        threading.Timer(0.4, link.go_on).start()
+        threading.Timer(0.6, link.stop).start()
+        sent = link.send(plan)
+        assert sent.end == "stopped" and 0 < sent.acknowledged < sent.lines
+        threading.Timer(0.3, link.quick_stop).start()
+        assert link.send(plan).end == "quick stopped"
+        link.close()
+    board.close()
+
+
+def test_no_port() -> None:
+    with pytest.raises(softkin.InvalidInput, match="no_such_port"):
+        drive.Marlin("/dev/no_such_port")

@@ -1,0 +1,104 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import softkin
+
+
+@pytest.fixture(scope="module")
+def goal(robot: softkin.Robot) -> softkin.Shape:
+    return robot.solve(air1=1.4, air2=1.3, air3=1.2)
+
+
+def test_reached(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    answer = robot.inverse(tip=goal["tip"])
+    assert answer.reached and answer.status == "reached" and answer.reason == ""
+    assert answer.error_mm == answer.errors_mm.max() < 1e-3
+    assert answer.actuation == pytest.approx({"air1": 1.4, "air2": 1.3, "air3": 1.2}, abs=1e-3)
+    assert answer.require() is answer and answer.at_end_of_range == {}
+    assert answer.equilibria > 1 and answer.iterations > 0 and answer.seconds > 0
+    assert answer.report["ik"]["reached"] is True
+    assert "reached" in repr(answer) and answer.shape.converged
+
+
+def test_coordinates_planes_directions_weights(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    x, y, z = goal["tip"]
+    assert robot.inverse({"tip": (None, y, None)}).reached
+    assert robot.inverse(planes={"tip": ((x, y, z), (1, 0, 0))}).reached
+    both = robot.inverse(tip=(x, None, None), planes={"tip": ((x, y, z), (0, 0, 1))}, weights={"tip": 2})
+    assert both.reached and len(both.errors_mm) == 2
+
+
+def test_direction(robot: softkin.Robot) -> None:
+    from beams import beam
+
+    two = beam(markers=[{"name": "tip", "region": "end"}, {"name": "base", "region": "base"}])
+    aim = two.solve(air1=1.4)
+    answer = two.inverse(directions={("base", "tip"): aim["tip"] - aim["base"]})
+    assert answer.reached
+
+
+def test_starts_preferences_and_what_is_fixed(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    y = goal["tip"][1]
+    kept = robot.inverse(tip=(None, y, None), fix={"air1": 1.1})
+    assert kept.actuation["air1"] == 1.1
+    as_it_is = robot.inverse(tip=(None, y, None), start=goal, fix=["air2"])
+    assert as_it_is.reached and as_it_is.actuation["air2"] == 1.3
+    near = robot.inverse(tip=(None, y, None), prefer={"air3": 1.5})
+    assert near.reached
+    assert robot.inverse(tip=goal["tip"], start={"air1": 1.3}).reached
+    assert robot.inverse(tip=goal["tip"], method="gradient", tolerance_mm=0.5).error_mm < 0.5
+
+
+def test_out_of_reach(robot: softkin.Robot) -> None:
+    answer = robot.inverse(tip=(0, 200, 0))
+    assert answer.status == "not reached" and not answer.reached and answer.reason
+    assert set(answer.at_end_of_range.values()) <= {"low", "high"} and answer.at_end_of_range
+    assert answer.error_mm > 10
+    with pytest.raises(softkin.NotConverged, match="not reached"):
+        answer.require()
+
+
+def test_jacobian(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    slopes = robot.jacobian(goal, "tip")
+    assert slopes.shape == (3, 3) and robot.jacobian(goal).shape == (3, 3)
+    step = 1e-4
+    moved = robot.solve(goal.actuation + [0, step, 0], start=goal)
+    np.testing.assert_allclose((moved["tip"] - goal["tip"]) / step, slopes[:, 1], rtol=1e-2, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "message"),
+    [
+        ({}, "goal"),
+        ({"tpi": (0, 0, 0)}, "no marker 'tpi'; did you mean 'tip'"),
+        ({"tip": (0, 0)}, "target of 'tip' must be three coordinates"),
+        ({"tip": (0, 0, float("nan"))}, "the target of 'tip'.* is nan"),
+        ({"tip": (None, None, None)}, "axis|coordinate"),
+        ({"tip": (0, 0, 0), "weights": {"end": 1}}, "weights: nothing is asked of 'end'"),
+        ({"tip": (0, 0, 0), "fix": ["ari1"]}, "no actuator 'ari1'"),
+        ({"tip": (0, 0, 0), "method": "luck"}, "method must be 'newton' or 'gradient', not 'luck'"),
+        ({"tip": (0, 0, 0), "fix": ["air1"], "prefer": {"air1": 1.2}}, "fix: 'air1' does not change"),
+        ({"planes": {"tip": ((0, 0, 0), (0, 0, 0))}}, "normal"),
+    ],
+)
+def test_wrong_goals(robot: softkin.Robot, keywords: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        robot.inverse(**keywords)  # type: ignore[arg-type]
+
+
+def test_session(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    session = robot.session()
+    assert session.robot is robot and session.shape is None
+    assert session.solve(air1=1.4, air2=1.3, air3=1.2).converged
+    np.testing.assert_allclose(session.shape.positions, goal.positions, atol=1e-5)  # type: ignore[union-attr]
+    first = session.inverse(tip=goal["tip"] + [0.02, 0.02, 0.02])
+    second = session.inverse(tip=goal["tip"] + [0.04, 0.04, 0.04])
+    assert first.reached and second.reached and second.equilibria <= 2
+    assert session.jacobian(session.shape, "tip").shape == (3, 3)  # type: ignore[arg-type]
+    assert "Session of beam" in repr(session)
+    session.forget()
+    assert session.shape is None
+    again = session.solve(air1=1.4, air2=1.3, air3=1.2)
+    np.testing.assert_array_equal(again.positions, goal.positions)

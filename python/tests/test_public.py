@@ -1,0 +1,55 @@
+"""Every public name is documented, typed, and used by a test."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+
+import softkin
+
+TESTS = "\n".join(file.read_text() for file in Path(__file__).parent.glob("test_*.py"))
+DOCUMENT = (Path(__file__).parents[2] / "docs/python.md").read_text()
+
+
+def members(kind: type) -> list[str]:
+    return [name for name in vars(kind) if not name.startswith("_")]
+
+
+def public() -> list[str]:
+    names = []
+    for name in softkin.__all__:
+        names.append(name)
+        value = getattr(softkin, name)
+        if inspect.isclass(value) and value.__module__.startswith("softkin") and not issubclass(value, (Exception, tuple)):
+            for base in value.__mro__:
+                if base.__module__.startswith("softkin"):
+                    names += [f"{name}.{member}" for member in members(base)]
+    return sorted(set(names))
+
+
+@pytest.mark.parametrize("name", public())
+def test_is_tested_and_documented(name: str) -> None:
+    word = name.rpartition(".")[2]
+    if not inspect.isclass(getattr(softkin, name, None)):  # of a class its members
+        assert word in TESTS, f"no test uses {name}"
+    assert word in DOCUMENT, f"docs/python.md does not tell of {name}"
+
+
+def test_all_is_sorted_and_there() -> None:
+    assert softkin.__all__ == sorted(softkin.__all__)
+    for name in softkin.__all__:
+        assert hasattr(softkin, name)
+
+
+def test_version() -> None:
+    assert softkin.__version__.count(".") == 2
+
+
+def test_typed() -> None:
+    folder = Path(softkin.__file__).parent
+    assert (folder / "py.typed").exists() and (folder / "_core.pyi").exists()
+    stub = "\n".join(line for line in (folder / "_core.pyi").read_text().splitlines() if not line.startswith("from typing"))
+    assert re.findall(r"\bAny\b", stub.replace("description: dict[str, Any]", "")) == []

@@ -1,0 +1,180 @@
+from __future__ import annotations
+
+import gc
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from beams import beam, block
+
+import softkin
+
+
+@pytest.fixture(scope="module")
+def shape(robot: softkin.Robot) -> softkin.Shape:
+    return robot.solve(air1=1.3)
+
+
+def test_what_it_tells(shape: softkin.Shape, robot: softkin.Robot) -> None:
+    assert shape.robot is robot
+    assert shape.converged and shape.status == "converged" and shape.reached == 1 and shape.remark == ""
+    assert shape.iterations > 0 and shape.seconds > 0 and shape.unstable_modes == 0
+    assert shape.require() is shape
+    assert shape.actuation.tolist() == [1.3, 1, 1]
+    air = shape.actuators["air1"]
+    assert air.requested == 1.3 and air.ratio == pytest.approx(1.3) and air.unit == "" and not air.slack
+    assert air.volume_mm3 == air.measure == pytest.approx(1.3 * robot.actuator_infos[0].rest_measure)
+    assert air.pressure_kPa == air.load > 0 and air.by_curve is None
+    with pytest.raises(AttributeError, match="air1' is a pneumatic: it has no tension"):
+        air.tension_N
+    with pytest.raises(AttributeError, match="no length"):
+        air.length_mm
+    with pytest.raises(AttributeError, match="no area"):
+        air.area_mm2
+    assert list(shape.markers) == ["tip"] and len(shape.markers) == 1
+    np.testing.assert_array_equal(shape["tip"], shape.markers["tip"])
+    np.testing.assert_allclose(shape.displacements, shape.positions - robot.rest)
+    with pytest.raises(softkin.InvalidInput, match="no marker 'tipp'; did you mean 'tip'"):
+        shape["tipp"]
+
+
+def test_positions_are_read_only_and_outlive_everything() -> None:
+    positions = beam().solve(air1=1.2).positions
+    before = positions.copy()
+    gc.collect()
+    assert not positions.flags.writeable
+    with pytest.raises(ValueError):
+        positions[0, 0] = 1
+    np.testing.assert_array_equal(positions, before)
+
+
+def test_deformation(shape: softkin.Shape, robot: softkin.Robot) -> None:
+    deformation, elements = shape.deformation, len(robot.tetrahedra)
+    assert deformation.volume_ratio.shape == deformation.von_mises_MPa.shape == (elements,)
+    assert deformation.strain.shape == deformation.principal_stress_MPa.shape == (elements, 3)
+    assert not deformation.inverted.any()
+    np.testing.assert_allclose(deformation.stretches.prod(axis=1), deformation.volume_ratio, rtol=1e-9)
+    assert (np.diff(deformation.strain) <= 0).all()
+    assert deformation.von_mises_MPa.max() > 0
+
+
+def test_reactions_balance(shape: softkin.Shape) -> None:
+    base = shape.reactions["base"]
+    assert base.name == "base"
+    np.testing.assert_allclose(base.force_N, 0, atol=1e-6)  # closed chambers push at nothing outside
+    np.testing.assert_allclose(shape.vertex_reactions.sum(axis=0), base.force_N, atol=1e-9)
+    assert base.moment_Nmm.shape == base.center_mm.shape == (3,)
+
+
+def test_overlap(shape: softkin.Shape) -> None:
+    assert shape.self_overlap.points == 0 and shape.self_overlap.deepest_mm == 0
+    assert shape.self_overlap.at_mm.shape == (3,)
+
+
+def test_report(shape: softkin.Shape) -> None:
+    step = shape.report["steps"][0]
+    assert step["markers"]["tip"] == shape["tip"].tolist()
+    assert step["actuators"]["air1"]["pressure_kPa"] == shape.actuators["air1"].pressure_kPa
+
+
+def test_files_and_notebooks(shape: softkin.Shape, tmp_path: Path) -> None:
+    for name in ("s.vtu", "s.png", "s.json"):
+        shape.save(tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 1000
+    shape.save(tmp_path / "above.png", view=(0, 0, 1))
+    assert (tmp_path / "above.png").read_bytes() != (tmp_path / "s.png").read_bytes()
+    assert shape._repr_png_() == shape.png() == (tmp_path / "s.png").read_bytes()
+    assert shape.png().startswith(b"\x89PNG")
+    assert "kPa" in shape._repr_html_()
+    assert "air1=1.3" in repr(shape) and "tip at" in repr(shape)
+    with pytest.raises(ValueError, match="path must end in .vtu, .png or .json, not 's.stl'"):
+        shape.save(tmp_path / "s.stl")
+    with pytest.raises(ValueError, match="view must be a direction"):
+        shape.png((0, 0, 0))
+
+
+def test_pickle(shape: softkin.Shape) -> None:
+    again = pickle.loads(pickle.dumps(shape))
+    assert again.fingerprint == shape.fingerprint and again.report == shape.report
+    other = pickle.loads(pickle.dumps([shape, shape.robot]))
+    assert other[0].robot is other[1]
+
+
+def test_solver_options(robot: softkin.Robot, shape: softkin.Shape) -> None:
+    np.testing.assert_array_equal(robot.solve([1.3, 1, 1]).positions, shape.positions)
+    np.testing.assert_array_equal(robot.solve({"air1": 1.3}).positions, shape.positions)
+    np.testing.assert_array_equal(robot.solve(air1=1.3, threads=2).positions, shape.positions)
+    warm = robot.solve(air1=1.3, start=shape)
+    assert warm.iterations < shape.iterations
+    placed = robot.solve(air1=1.3, start=shape.positions)
+    assert placed.converged
+    coarse = robot.solve(air1=1.3, tolerance_mm=0.1)
+    assert coarse.iterations <= shape.iterations
+
+
+@pytest.mark.parametrize(
+    ("arguments", "keywords", "message"),
+    [
+        ((), {"ari1": 1.2}, "no actuator 'ari1'; did you mean 'air1'"),
+        ((), {"air1": 5}, "'air1': the ratio 5 is outside its range 1 to 2"),
+        ((), {"air1": "five"}, "must be a finite number without unit"),
+        ((), {"air1": float("nan")}, "air1 must be a finite number, not nan"),
+        (([1, 1],), {}, r"actuation must have shape \(3,\), not \(2,\)"),
+        (([1, 1, np.inf],), {}, r"actuation\[2\] is inf"),
+        ((), {"start": np.zeros((3, 3))}, r"start must have shape \(324, 3\), not \(3, 3\)"),
+        ((), {"tolerance_mm": -1}, "the tolerance must be a length > 0 in mm, not -1"),
+        ((), {"max_iterations": 0}, "iterations >= 1"),
+        ((), {"solver": "local-global"}, "is for the target-shape formulation"),
+        ((), {"solver": "magic"}, "solver must be 'newton' or 'local-global', not 'magic'"),
+    ],
+)
+def test_wrong_solves(robot: softkin.Robot, arguments: tuple[object, ...], keywords: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        robot.solve(*arguments, **keywords)  # type: ignore[arg-type]
+
+
+def test_shape_of_another_robot(shape: softkin.Shape) -> None:
+    other = beam(across=5, along=9)
+    with pytest.raises(ValueError, match="start is a shape of another robot"):
+        other.solve(start=shape)
+    with pytest.raises(ValueError, match="shape is one of another robot"):
+        other.jacobian(shape)
+
+
+def test_target_shapes() -> None:
+    vertices, tetrahedra = block((8, 2, 2), (80, 20, 20))
+    robot = softkin.Robot(
+        vertices,
+        tetrahedra,
+        materials=[{"shape_ratio": 0.5}],
+        fixed=[{"halfspace": {"point": (0, 0, 0), "normal": (-1, 0, 0)}}],
+        actuators=[{"name": "t", "kind": "cable", "points": [(0, 10, 20), (80, 10, 20)], "range": (0.5, 1)}],
+    )
+    shape = robot.solve(t=0.9)
+    assert robot.formulation == "target-shape" and shape.converged
+    assert shape.actuators["t"].length_mm == pytest.approx(80 * shape.actuators["t"].ratio)
+    with pytest.raises(AttributeError, match="only the physical formulation"):
+        shape.actuators["t"].tension_N
+    algorithm = robot.solve(t=0.9, solver="local-global")
+    np.testing.assert_allclose(algorithm.positions, shape.positions, atol=0.01)
+    lazy = robot.solve(t=0.9, solver="local-global", max_iterations=1, anderson=0)
+    assert lazy.status == "not converged" and lazy.iterations == 1
+    with pytest.raises(softkin.NotConverged, match="not converged at") as caught:
+        lazy.require()
+    assert caught.value.shape is lazy
+
+
+def test_progress(robot: softkin.Robot) -> None:
+    told: list[softkin.Progress] = []
+    big = beam(24, 10)
+    stopped = big.solve(air1=1.5, air2=1.2, progress=lambda p: told.append(p) or False)
+    assert stopped.status == "interrupted" and len(told) == 1
+    assert told[0].tolerance_mm > 0 and told[0].iteration >= 0 and -1 <= told[0].share <= 1 and told[0].step_mm >= 0
+
+    def fails(_: softkin.Progress) -> None:
+        raise RuntimeError("from within")
+
+    with pytest.raises(RuntimeError, match="from within"):
+        big.solve(air1=1.5, air2=1.2, progress=fails)
+    assert big.solve(air1=1.01).converged
