@@ -94,13 +94,16 @@ test-fuzz:
 	cmake --build --preset sanitize --target softkin_fuzz
 	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
 
+# in the folder where test-release built all but the extension module
 test-python:
 	@PYTHON=$(PYTHON) $(SETUP) --python
 	rm -rf build-wheel/test
-	scripts/wheels.sh -o build-wheel/test $(PYTHON)
 	$(PYTHON) -m venv --clear build-wheel/venv
+	build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test -C build-dir=build \
+	  -C cmake.define.SOFTKIN_TESTS=ON -C cmake.define.SOFTKIN_BENCH=ON .
+	cmake --preset release
 	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[all,test]"
-	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin examples/python
+	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin
 	build-wheel/venv/bin/pytest -q python/tests
 
 fuzz:
