@@ -1,0 +1,160 @@
+"""Surfaces as they come: flipped faces, shells inside out, holes."""
+
+from __future__ import annotations
+
+import warnings
+from collections import defaultdict
+
+import numpy as np
+
+from .errors import MeshWarning
+from .surface import Surface
+
+LARGE_HOLE = 0.05  # of the surface's area; more than that is rather a missing part
+
+
+def repaired(surface: Surface) -> Surface:
+    """Faces turned to agree with their neighbours, holes closed, shells turned as `_shells_turned` says; what was
+    done stands in `notes`. Overlaps and self-intersections stay: winding numbers bear them."""
+    surface = _holes_closed(_faces_turned(surface))
+    return _shells_turned(surface)
+
+
+def open_edges(surface: Surface) -> np.ndarray:
+    """Edges of one triangle only, (e, 2), in its direction."""
+    edges = _directed_edges(surface.triangles)
+    _, which, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
+    return edges[counts[which.reshape(-1)] == 1]
+
+
+def components(triangles: np.ndarray, count: int) -> np.ndarray:
+    """Number of the connected part of each of `count` vertices' triangles, (k,)."""
+    label = np.arange(count)
+    while True:  # the least label of each triangle spreads, and labels point ever further down
+        least = label[triangles].min(axis=1)
+        before = label.copy()
+        np.minimum.at(label, triangles.reshape(-1), np.repeat(least, triangles.shape[1]))
+        label = label[label]
+        if np.array_equal(label, before):
+            return np.unique(label[triangles[:, 0]], return_inverse=True)[1].reshape(-1)
+
+
+def _directed_edges(triangles: np.ndarray) -> np.ndarray:
+    return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+
+
+def _faces_turned(surface: Surface) -> Surface:
+    triangles = surface.triangles.copy()
+    edges = _directed_edges(triangles)
+    owner = np.tile(np.arange(len(triangles)), 3)
+    key, which, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
+    order = np.argsort(which.reshape(-1), kind="stable")
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])[counts == 2]
+    first, second = order[starts], order[starts + 1]
+    against = (edges[first] == edges[second]).all(axis=1)  # neighbours that agree run along their edge in opposite directions
+    if not against.any():
+        return surface
+    neighbours: dict[int, list[tuple[int, bool]]] = defaultdict(list)
+    for a, b, differs in zip(owner[first].tolist(), owner[second].tolist(), against.tolist()):
+        neighbours[a].append((b, differs))
+        neighbours[b].append((a, differs))
+    areas = np.linalg.norm(surface.normals, axis=1)
+    turned = np.full(len(triangles), -1)
+    for seed in range(len(triangles)):
+        if turned[seed] < 0:
+            patch = _spread(seed, neighbours, turned)
+            if areas[patch[turned[patch] == 1]].sum() > areas[patch].sum() / 2:  # the larger share stays as it is
+                turned[patch] ^= 1
+    flipped = turned == 1
+    triangles[flipped] = triangles[flipped][:, [0, 2, 1]]
+    return surface.with_triangles(triangles, f"{surface.name}: {int(flipped.sum())} faces turned to agree with their neighbours")
+
+
+def _spread(seed: int, neighbours: dict[int, list[tuple[int, bool]]], turned: np.ndarray) -> np.ndarray:
+    turned[seed] = 0
+    patch = [seed]
+    for face in patch:
+        for other, differs in neighbours[face]:
+            if turned[other] < 0:
+                turned[other] = turned[face] ^ int(differs)
+                patch.append(other)
+    return np.array(patch)
+
+
+def _holes_closed(surface: Surface) -> Surface:
+    edges = open_edges(surface)
+    if len(edges) == 0:
+        return surface
+    vertices, added, widest = surface.vertices, [], 0.0
+    points = [vertices]
+    loops, left = _loops(edges)
+    for loop in loops:
+        rim = vertices[loop]
+        widest = max(widest, float(np.linalg.norm(np.ptp(rim, axis=0))))
+        following = np.roll(loop, -1)
+        if len(loop) == 3:
+            added.append([[loop[1], loop[0], loop[2]]])
+            continue
+        middle = len(vertices) + sum(len(block) for block in points[1:])
+        points.append(rim.mean(axis=0, keepdims=True))
+        added.append(np.stack([following, loop, np.full(len(loop), middle)], axis=1))
+    note = f"{surface.name}: {len(loops)} holes closed, the widest {widest:.3g} mm across"
+    if left:
+        note += f"; {left} open edges that bound no hole stay"
+    if not added:
+        return surface.with_triangles(surface.triangles, note)
+    closed = surface.with_triangles(np.concatenate([surface.triangles, *added]), note, vertices=np.concatenate(points))
+    patched = np.linalg.norm(closed.normals[len(surface.triangles) :], axis=1).sum()
+    if patched > LARGE_HOLE * surface.area:
+        warnings.warn(f"{note}; they are {100 * patched / surface.area:.0f} % of its area: is a part of the surface missing?", MeshWarning, stacklevel=2)
+    return closed
+
+
+def _loops(edges: np.ndarray) -> tuple[list[np.ndarray], int]:
+    """Closed ways along directed edges, and how many edges are in none."""
+    following: dict[int, list[int]] = defaultdict(list)
+    for start, end in edges.tolist():
+        following[start].append(end)
+    loops, left = [], 0
+    for start in [edge[0] for edge in edges.tolist()]:
+        way, place = [start], {start: 0}
+        while following[way[-1]]:
+            vertex = following[way[-1]].pop()
+            if vertex in place:  # a loop; where two touch in a vertex, each is one of its own
+                loop = way[place[vertex] :]
+                loops.append(np.array(loop))
+                for gone in loop[1:]:
+                    del place[gone]
+                way = way[: place[vertex] + 1]
+            else:
+                place[vertex] = len(way)
+                way.append(vertex)
+        left += len(way) - 1
+    return [loop for loop in loops if len(loop) >= 3], left
+
+
+def _shells_turned(surface: Surface) -> Surface:
+    """Shells keep the direction that they have relative to the largest, so that a cavity that turns inwards stays one;
+    all are turned where the largest is inside out, and those that turn inwards without being inside another."""
+    shell = components(surface.triangles, len(surface.vertices))
+    parts = [surface.with_triangles(surface.triangles[shell == number]) for number in range(shell.max() + 1)]
+    volumes = np.array([part.volume for part in parts])
+    turn = np.full(len(parts), bool(volumes[np.argmax(np.abs(volumes))] < 0))
+    for number in np.flatnonzero(np.where(turn, -volumes, volumes) < 0):
+        turn[number] ^= not any(_encloses(parts[other], parts[number]) for other in range(len(parts)) if other != number)
+    if not turn.any():
+        return surface
+    flipped = turn[shell]
+    triangles = surface.triangles.copy()
+    triangles[flipped] = triangles[flipped][:, [0, 2, 1]]
+    return surface.with_triangles(triangles, f"{surface.name}: {int(turn.sum())} of {len(parts)} shells were inside out and are turned")
+
+
+def _encloses(outer: Surface, inner: Surface) -> bool:
+    from .winding import winding_numbers
+
+    points = outer.vertices[np.unique(outer.triangles)]
+    point = inner.corners[0].mean(axis=0, keepdims=True)
+    if (point < points.min(axis=0)).any() or (point > points.max(axis=0)).any():
+        return False
+    return bool(abs(winding_numbers(outer, point)[0]) > 0.5)
