@@ -1,0 +1,40 @@
+"""How far the surface of a mesh is from the one that was given."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .distance import distances
+from .surface import Surface
+from .winding import winding_numbers
+
+SAMPLES = 4000  # spread by area, beside the corners of all triangles
+CORNER = np.array([[0.98, 0.01, 0.01], [0.01, 0.98, 0.01], [0.01, 0.01, 0.98]])
+
+
+def deviation(surface: Surface, vertices: np.ndarray, faces: np.ndarray, tolerance: float) -> float:
+    """Largest distance between a surface and the faces (k, 3) of a mesh, either way, at samples, mm. What of the
+    surface lies inside itself, where it overlaps, bounds nothing and does not count."""
+    made = Surface(vertices, faces, "mesh")
+    points, normals = _samples(surface)
+    there = distances(made.corners, points)
+    far = np.flatnonzero(there > tolerance)
+    if len(far):
+        step = 1e-5 * surface.diagonal * normals[far]
+        sides = [winding_numbers(surface, points[far] + sign * step) > 0.5 for sign in (1, -1)]
+        there[far[sides[0] == sides[1]]] = 0
+    back = distances(surface.corners, np.concatenate([vertices[np.unique(faces)], _samples(made)[0]]))
+    return float(max(there.max(), back.max()))
+
+
+def _samples(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Points of a surface, and its unit normals there."""
+    random = np.random.default_rng(0)
+    normals = surface.normals
+    areas = np.linalg.norm(normals, axis=1)
+    units = normals / np.maximum(areas, 1e-300)[:, None]
+    chosen = random.choice(len(areas), SAMPLES, p=areas / areas.sum())
+    weights = random.dirichlet([1, 1, 1], SAMPLES)
+    inner = np.einsum("ij,ijk->ik", weights, surface.corners[chosen])
+    corners = np.einsum("ci,tik->tck", CORNER, surface.corners).reshape(-1, 3)
+    return np.concatenate([inner, corners]), np.concatenate([units[chosen], np.repeat(units, 3, axis=0)])

@@ -1,0 +1,126 @@
+"""Which tetrahedra are inside which surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import InvalidInput
+from .repair import components, open_edges
+from .surface import Surface
+from .volume_mesh import face_pairs, signed_volumes
+from .winding import winding_numbers
+
+UNCLEAR = 0.1  # of the volume inside a surface: more with winding numbers of 1/4 to 3/4, and it has no inside
+CRUMB = 1e-3  # of the volume: smaller loose pieces are left out
+
+
+@dataclass(frozen=True)
+class Labels:
+    """Flags of all tetrahedra, (m,) each. inside: by surface. regions: by region, exclusive. kept: in any region.
+    volumes: of what is inside each surface and kept, mm^3."""
+
+    inside: dict[str, np.ndarray]
+    regions: dict[str, np.ndarray]
+    kept: np.ndarray
+    volumes: dict[str, float]
+    notes: tuple[str, ...]
+
+
+def label(
+    points: np.ndarray, tetrahedra: np.ndarray, body: Surface, chambers: dict[str, Surface], parts: dict[str, Surface], tolerance: float
+) -> Labels:  # fmt: skip
+    """Labels tetrahedra by the winding numbers around their middles. Throws InvalidInput."""
+    middles = points[tetrahedra].mean(axis=1)
+    volumes = signed_volumes(points, tetrahedra)
+    inside = {name: _inside(name, s, middles, volumes) for name, s in {"body": body, **chambers, **parts}.items()}
+    hull = inside["body"] | _inside_hull(body, middles)
+    notes: list[str] = []
+    for name, surface in chambers.items():
+        _check_within(name, surface, inside[name] & ~hull, inside[name], middles, volumes, tolerance)
+        inside[name] &= hull
+    for name in parts:
+        outside = float(volumes[inside[name] & ~hull].sum())
+        if outside > tolerance * parts[name].area:
+            notes.append(f"part {name}: {outside:.4g} mm^3 of it stick out of the body and add to it")
+    left = np.ones(len(tetrahedra), dtype=bool)
+    regions: dict[str, np.ndarray] = {}
+    for group in (chambers, parts):
+        for name in sorted(group, key=lambda each: float(volumes[inside[each]].sum())):
+            regions[name] = inside[name] & left
+            left &= ~regions[name]
+    regions["body"] = inside["body"] & left
+    kept = np.any(list(regions.values()), axis=0)
+    kept, crumbs = _without_crumbs(tetrahedra, kept, volumes)
+    if crumbs:
+        notes.append(f"{crumbs} tetrahedra in loose crumbs are left out")
+    ordered = {name: regions[name] & kept for name in ("body", *chambers, *parts)}
+    for name, flags in ordered.items():
+        if not flags.any() and not (name == "body" and parts):
+            raise InvalidInput(f"{name}: no tetrahedra are left for it; other surfaces take all of its inside, or it is thinner than the tolerance")
+    inside_kept = {name: flags & kept for name, flags in inside.items()}
+    return Labels(inside_kept, ordered, kept, {name: float(volumes[flags].sum()) for name, flags in inside_kept.items()}, tuple(notes))
+
+
+def place(point: np.ndarray) -> str:
+    return "(" + ", ".join(f"{value:.4g}" for value in point) + ") mm"
+
+
+def _inside(name: str, surface: Surface, middles: np.ndarray, volumes: np.ndarray) -> np.ndarray:
+    winding = _winding(surface, middles)
+    inside = winding > 0.5
+    if not inside.any():
+        raise InvalidInput(f"{name}: {surface.name} encloses nothing; {_state(surface)}")
+    unclear = float(volumes[np.abs(winding - 0.5) < 0.25].sum() / volumes[inside].sum())
+    if unclear > UNCLEAR:
+        raise InvalidInput(f"{name}: {surface.name} has no clear inside ({100 * unclear:.0f} % of it are doubtful); {_state(surface)}")
+    return inside
+
+
+def _state(surface: Surface) -> str:
+    count = len(open_edges(surface))
+    return f"it has {count} open edges after its holes were closed" if count else "its faces cross or face each other"
+
+
+def _inside_hull(body: Surface, middles: np.ndarray) -> np.ndarray:
+    """Inside of the shells of the body that do not turn inwards: with its cavities."""
+    shell = components(body.triangles, len(body.vertices))
+    shells = [body.with_triangles(body.triangles[shell == number]) for number in range(shell.max() + 1)]
+    outward = [part for part in shells if part.volume > 0]
+    if len(outward) == len(shells):
+        return np.zeros(len(middles), dtype=bool)  # the body itself
+    return _winding(body.with_triangles(np.concatenate([part.triangles for part in outward])), middles) > 0.5
+
+
+def _winding(surface: Surface, middles: np.ndarray) -> np.ndarray:
+    corners = surface.corners.reshape(-1, 3)
+    near = ((middles >= corners.min(axis=0)) & (middles <= corners.max(axis=0))).all(axis=1)
+    winding = np.zeros(len(middles))
+    winding[near] = winding_numbers(surface, middles[near])
+    return winding
+
+
+def _check_within(
+    name: str, surface: Surface, out: np.ndarray, inside: np.ndarray, middles: np.ndarray, volumes: np.ndarray, tolerance: float
+) -> None:  # fmt: skip
+    beyond, all_of_it = float(volumes[out].sum()), float(volumes[inside].sum())
+    if beyond > 0.99 * all_of_it:
+        raise InvalidInput(f"chamber {name} ({surface.name}) lies outside of the body, around {place(middles[inside].mean(axis=0))}; are both in one unit and place?")
+    if beyond > max(0.5 * tolerance * surface.area * beyond / all_of_it, 1e-3 * all_of_it):
+        raise InvalidInput(f"chamber {name} ({surface.name}) sticks out of the body by {beyond:.3g} mm^3, around {place(middles[out].mean(axis=0))}")
+
+
+def _without_crumbs(tetrahedra: np.ndarray, kept: np.ndarray, volumes: np.ndarray) -> tuple[np.ndarray, int]:
+    numbers = np.flatnonzero(kept)
+    if len(numbers) == 0:
+        return kept, 0
+    _, first, second = face_pairs(tetrahedra[numbers])
+    alone = np.arange(len(numbers))
+    pairs = np.concatenate([np.stack([alone, alone], axis=1), np.stack([first, second], axis=1)[second >= 0]])
+    part = components(pairs, len(numbers))[: len(numbers)]
+    sizes = np.bincount(part, weights=volumes[numbers])
+    crumbs = sizes[part] < CRUMB * sizes.sum()
+    kept = kept.copy()
+    kept[numbers[crumbs]] = False
+    return kept, int(crumbs.sum())

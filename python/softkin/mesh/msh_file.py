@@ -1,0 +1,104 @@
+"""Gmsh .msh: 4.1 out, 2.2 text in (what the program gmsh is asked to write here)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Union
+
+import numpy as np
+
+from .errors import InvalidInput
+from .volume_mesh import VolumeMesh
+
+TRIANGLE, TETRAHEDRON = 2, 4  # types of Gmsh, by their number of dimensions
+
+
+def write_msh(path: Union[str, Path], mesh: VolumeMesh) -> None:
+    """Writes .msh 4.1, binary. Elements that are in the same regions make one entity, whose physical groups these are."""
+    blocks = _blocks(mesh, 2) + _blocks(mesh, 3)
+    names = [(2, name) for name in mesh.face_regions] + [(3, name) for name in mesh.volume_regions]
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    entities = [np.array([0, 0, sum(d == 2 for d, _, _ in blocks), sum(d == 3 for d, _, _ in blocks)], "<u8").tobytes()]
+    elements, total, tag = [], sum(len(cells) for _, _, cells in blocks), 0
+    for number, (dimension, groups, cells) in enumerate(blocks, 1):
+        entities += [np.array([number], "<i4").tobytes(), np.concatenate([low, high]).astype("<f8").tobytes()]
+        entities += [np.array([len(groups)], "<u8").tobytes(), np.array(groups, "<i4").tobytes(), np.array([0], "<u8").tobytes()]
+        kind = TRIANGLE if dimension == 2 else TETRAHEDRON
+        tags = np.arange(tag + 1, tag + 1 + len(cells))
+        tag += len(cells)
+        elements += [np.array([dimension, number, kind], "<i4").tobytes(), np.array([len(cells)], "<u8").tobytes()]
+        elements.append(np.column_stack([tags, cells + 1]).astype("<u8").tobytes())
+    count = len(mesh.vertices)
+    nodes = [np.array([1, count, 1, count], "<u8").tobytes(), np.array([3, len(blocks), 0], "<i4").tobytes()]
+    nodes += [np.array([count], "<u8").tobytes(), np.arange(1, count + 1).astype("<u8").tobytes(), mesh.vertices.astype("<f8").tobytes()]
+    heading = [np.array([len(blocks), total, 1, total], "<u8").tobytes()]
+    labels = "".join(f'{dimension} {number} "{name}"\n' for number, (dimension, name) in enumerate(names, 1))
+    sections = [
+        ("MeshFormat", b"4.1 1 8\n" + np.array([1], "<i4").tobytes()),
+        ("PhysicalNames", f"{len(names)}\n{labels}".encode().rstrip(b"\n")),
+        ("Entities", b"".join(entities)),
+        ("Nodes", b"".join(nodes)),
+        ("Elements", b"".join(heading + elements)),
+    ]
+    content = b"".join(b"$%s\n%s\n$End%s\n" % (title.encode(), body, title.encode()) for title, body in sections)
+    try:
+        Path(path).write_bytes(content)
+    except OSError as error:
+        raise InvalidInput(f"{path}: {error.strerror}") from None
+
+
+def _blocks(mesh: VolumeMesh, dimension: int) -> list[tuple[int, list[int], np.ndarray]]:
+    """Dimension, numbers of physical groups and elements, for every set of regions that elements are in."""
+    faces, volumes = list(mesh.face_regions.values()), list(mesh.volume_regions.values())
+    if dimension == 3:
+        member = np.zeros((len(mesh.tetrahedra), len(volumes)), dtype=bool)
+        for column, region in enumerate(volumes):
+            member[region, column] = True
+        cells, offset = mesh.tetrahedra, len(faces)
+    elif not faces:
+        return []
+    else:
+        every = np.concatenate(faces)
+        _, first, which = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_inverse=True)
+        cells, offset = every[first], 0
+        member = np.zeros((len(cells), len(faces)), dtype=bool)
+        member[which.reshape(-1), np.repeat(np.arange(len(faces)), [len(region) for region in faces])] = True
+    if member.shape[1] == 0:
+        return [(dimension, [], cells)]
+    kinds, which = np.unique(member, axis=0, return_inverse=True)
+    which = which.reshape(-1)
+    return [(dimension, (np.flatnonzero(kind) + 1 + offset).tolist(), cells[which == k]) for k, kind in enumerate(kinds)]
+
+
+def read_msh2(path: Path) -> VolumeMesh:
+    """Reads .msh 2.2 text: tetrahedra and triangles of order 1, physical groups by name (or physical_DIMENSION_TAG)."""
+    sections: dict[str, list[str]] = {}
+    title = ""
+    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        if line.startswith("$End"):
+            title = ""
+        elif line.startswith("$"):
+            title = line[1:].strip()
+            sections[title] = []
+        elif title:
+            sections[title].append(line)
+    if not sections.get("MeshFormat", [""])[0].startswith("2.2") or "Nodes" not in sections or "Elements" not in sections:
+        raise InvalidInput(f"{path}: no mesh of Gmsh 2.2")
+    table = np.array([line.split() for line in sections["Nodes"][1:]], dtype=float).reshape(-1, 4)
+    number = {int(tag): row for row, tag in enumerate(table[:, 0])}
+    names = {(int(d), int(t)): n.strip().strip('"') for d, t, n in (line.split(maxsplit=2) for line in sections.get("PhysicalNames", ["0"])[1:])}
+    found: dict[int, list[tuple[int, list[int]]]] = {TRIANGLE: [], TETRAHEDRON: []}
+    for line in sections["Elements"][1:]:
+        words = [int(word) for word in line.split()]
+        if words[1] in found:
+            found[words[1]].append((words[3] if words[2] else 0, [number[node] for node in words[3 + words[2] :]]))
+    cells = np.array([nodes for _, nodes in found[TETRAHEDRON]], dtype=np.int64).reshape(-1, 4)
+    volumes: dict[str, list[int]] = {}
+    faces: dict[str, list[list[int]]] = {}
+    for row, (tag, _) in enumerate(found[TETRAHEDRON]):
+        if tag:
+            volumes.setdefault(names.get((3, tag), f"physical_3_{tag}"), []).append(row)
+    for tag, nodes in found[TRIANGLE]:
+        if tag:
+            faces.setdefault(names.get((2, tag), f"physical_2_{tag}"), []).append(nodes)
+    return VolumeMesh(table[:, 1:], cells, {n: np.array(r) for n, r in volumes.items()}, {n: np.array(r) for n, r in faces.items()})
