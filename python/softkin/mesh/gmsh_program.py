@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import subprocess
 import sys
@@ -12,7 +13,7 @@ from typing import Optional
 import numpy as np
 
 from .errors import InvalidInput
-from .msh_file import read_msh2
+from .msh_read import read_msh
 from .repair import components, open_edges
 from .surface import Surface, SurfaceLike, as_surface
 from .volume_mesh import VolumeMesh
@@ -20,7 +21,7 @@ from .winding import winding_numbers
 
 INSTALL = "backend='gmsh' needs the program gmsh: apt-get install gmsh, or pip install gmsh, or https://gmsh.info"
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")
-FEATURE_DEG = 30  # edges of a surface that are sharper than this stay edges
+FEATURE_DEG = 15  # edges of a surface that are sharper than this stay edges
 
 
 def find_gmsh() -> Optional[list[str]]:
@@ -37,7 +38,7 @@ def read_surface(given: SurfaceLike, name: str) -> Surface:
     if not Path(given).is_file():
         raise InvalidInput(f"{given}: no such file")
     with tempfile.TemporaryDirectory() as folder:
-        script = f'SetFactory("OpenCASCADE");\nMerge "{Path(given).resolve()}";\nMesh.MeshSizeFromCurvature = 36;\n'
+        script = f'SetFactory("OpenCASCADE");\nMerge "{Path(given).resolve()}";\nMesh.MeshSizeFromCurvature = 36;\nMesh.CharacteristicLengthFromCurvature = 1;\n'
         _run(Path(folder), script, 2, str(given), "stl")
         surface = as_surface(Path(folder) / "out.stl", name)
     return Surface(surface.vertices, surface.triangles, str(given))
@@ -50,7 +51,7 @@ def mesh_geo(path: Path, edge_length: float) -> VolumeMesh:
     if not path.is_file():
         raise InvalidInput(f"{path}: no such file")
     heading = 'SetFactory("OpenCASCADE");\n' if path.suffix.lower() in CAD else ""
-    bound = f"Mesh.MeshSizeMax = {edge_length!r};\nMesh.CharacteristicLengthMax = {edge_length!r};\n"
+    bound = _size(0, edge_length) + "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.ElementOrder = 1;\n"
     with tempfile.TemporaryDirectory() as folder:
         mesh = _run(Path(folder), f'{heading}Merge "{path.resolve()}";\n{bound}', 3, str(path), "msh")
     if mesh is None or len(mesh.tetrahedra) == 0:
@@ -62,7 +63,7 @@ def mesh_geo(path: Path, edge_length: float) -> VolumeMesh:
 
 def background(surfaces: list[Surface], edge_length: float) -> tuple[np.ndarray, np.ndarray]:
     """Tetrahedra inside closed surfaces that neither touch nor cross, with faces along each. The surfaces are divided
-    into faces at edges of more than 30 degrees and triangulated anew. edge_length: mm. Returns (n, 3), (m, 4).
+    into faces at edges of more than 15 degrees and triangulated anew. edge_length: mm. Returns (n, 3), (m, 4).
     Throws InvalidInput, ImportError."""
     shells = [shell for surface in surfaces for shell in _shells(surface)]
     with tempfile.TemporaryDirectory() as name:
@@ -70,7 +71,7 @@ def background(surfaces: list[Surface], edge_length: float) -> tuple[np.ndarray,
         remeshed = [_remeshed(folder, shell, edge_length) for shell in shells]
         _write_shells(folder / "shells.msh", remeshed)
         script = 'Merge "shells.msh";\n' + "".join(f"Surface Loop({k}) = {{{k}}};\n" for k in range(1, len(shells) + 1))
-        script += _volumes(remeshed) + _size(edge_length) + "Mesh.Optimize = 1;\n"
+        script += _volumes(remeshed) + _size(edge_length, edge_length) + "Mesh.Optimize = 1;\n"
         mesh = _run(folder, script, 3, ", ".join(surface.name for surface in surfaces), "msh")
     if mesh is None or len(mesh.tetrahedra) == 0:
         raise InvalidInput(f"gmsh made no tetrahedra of {', '.join(surface.name for surface in surfaces)}; backend='tetwild' bears bad surfaces")
@@ -86,7 +87,7 @@ def _shells(surface: Surface) -> list[Surface]:
 
 def _remeshed(folder: Path, shell: Surface, edge_length: float) -> Surface:
     _write_shells(folder / "one.msh", [shell])
-    script = f'Merge "one.msh";\nClassifySurfaces{{{np.radians(FEATURE_DEG)!r}, 1, 1, Pi}};\nCreateGeometry;\n' + _size(edge_length)
+    script = f'Merge "one.msh";\nClassifySurfaces{{{math.radians(FEATURE_DEG)!r}, 1, 1, Pi}};\nCreateGeometry;\n' + _size(edge_length, edge_length)
     _run(folder, script, 2, shell.name, "stl")
     surface = as_surface(folder / "out.stl", shell.name)
     if len(open_edges(surface)):
@@ -94,9 +95,9 @@ def _remeshed(folder: Path, shell: Surface, edge_length: float) -> Surface:
     return surface
 
 
-def _size(edge_length: float) -> str:
-    names = ("MeshSizeMin", "MeshSizeMax", "CharacteristicLengthMin", "CharacteristicLengthMax")
-    return "".join(f"Mesh.{name} = {edge_length!r};\n" for name in names)
+def _size(least: float, greatest: float) -> str:
+    """Bounds of the edges' lengths; by the names that every version knows."""
+    return f"Mesh.CharacteristicLengthMin = {float(least)!r};\nMesh.CharacteristicLengthMax = {float(greatest)!r};\n"
 
 
 def _volumes(shells: list[Surface]) -> str:
@@ -137,4 +138,4 @@ def _run(folder: Path, script: str, dimension: int, what: str, form: str) -> Opt
     if done.returncode != 0 or said or not out.is_file():
         reason = said[0] if said else f"it ended with code {done.returncode} and no mesh"
         raise InvalidInput(f"{what}: gmsh: {reason}; backend='tetwild' bears bad surfaces")
-    return read_msh2(out) if form == "msh" else None
+    return read_msh(out) if form == "msh" else None

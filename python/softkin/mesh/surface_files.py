@@ -24,7 +24,7 @@ def read_surface(path: Union[str, Path]) -> Surface:
     readers: dict[str, Callable[[Path, bytes], Surface]] = {".stl": _stl, ".obj": _obj, ".ply": _ply}
     reader = readers.get(path.suffix.lower())
     if reader is None:
-        raise InvalidInput(f"{path}: surfaces are .stl, .obj or .ply")
+        raise InvalidInput(f"{path}: surfaces are .stl, .obj or .ply; backend 'gmsh' reads CAD models too")
     try:
         content = path.read_bytes()
     except OSError as error:

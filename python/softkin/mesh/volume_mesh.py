@@ -113,7 +113,7 @@ class VolumeMesh:
 
     def write(self, path: Union[str, Path]) -> None:
         """Writes Gmsh .msh 4.1, binary, regions as physical groups."""
-        from .msh_file import write_msh
+        from .msh_write import write_msh
 
         write_msh(path, self)
 

@@ -1,4 +1,4 @@
-"""Gmsh .msh: 4.1 out, 2.2 text in (what the program gmsh is asked to write here)."""
+"""Gmsh .msh 4.1 out."""
 
 from __future__ import annotations
 
@@ -68,37 +68,3 @@ def _blocks(mesh: VolumeMesh, dimension: int) -> list[tuple[int, list[int], np.n
     kinds, which = np.unique(member, axis=0, return_inverse=True)
     which = which.reshape(-1)
     return [(dimension, (np.flatnonzero(kind) + 1 + offset).tolist(), cells[which == k]) for k, kind in enumerate(kinds)]
-
-
-def read_msh2(path: Path) -> VolumeMesh:
-    """Reads .msh 2.2 text: tetrahedra and triangles of order 1, physical groups by name (or physical_DIMENSION_TAG)."""
-    sections: dict[str, list[str]] = {}
-    title = ""
-    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-        if line.startswith("$End"):
-            title = ""
-        elif line.startswith("$"):
-            title = line[1:].strip()
-            sections[title] = []
-        elif title:
-            sections[title].append(line)
-    if not sections.get("MeshFormat", [""])[0].startswith("2.2") or "Nodes" not in sections or "Elements" not in sections:
-        raise InvalidInput(f"{path}: no mesh of Gmsh 2.2")
-    table = np.array([line.split() for line in sections["Nodes"][1:]], dtype=float).reshape(-1, 4)
-    number = {int(tag): row for row, tag in enumerate(table[:, 0])}
-    names = {(int(d), int(t)): n.strip().strip('"') for d, t, n in (line.split(maxsplit=2) for line in sections.get("PhysicalNames", ["0"])[1:])}
-    found: dict[int, list[tuple[int, list[int]]]] = {TRIANGLE: [], TETRAHEDRON: []}
-    for line in sections["Elements"][1:]:
-        words = [int(word) for word in line.split()]
-        if words[1] in found:
-            found[words[1]].append((words[3] if words[2] else 0, [number[node] for node in words[3 + words[2] :]]))
-    cells = np.array([nodes for _, nodes in found[TETRAHEDRON]], dtype=np.int64).reshape(-1, 4)
-    volumes: dict[str, list[int]] = {}
-    faces: dict[str, list[list[int]]] = {}
-    for row, (tag, _) in enumerate(found[TETRAHEDRON]):
-        if tag:
-            volumes.setdefault(names.get((3, tag), f"physical_3_{tag}"), []).append(row)
-    for tag, nodes in found[TRIANGLE]:
-        if tag:
-            faces.setdefault(names.get((2, tag), f"physical_2_{tag}"), []).append(nodes)
-    return VolumeMesh(table[:, 1:], cells, {n: np.array(r) for n, r in volumes.items()}, {n: np.array(r) for n, r in faces.items()})
