@@ -12,7 +12,7 @@ from . import gmsh_program, tetwild
 from .deviation import deviation
 from .errors import InvalidInput, MeshWarning
 from .face_regions import choose_faces
-from .labels import Labels, label, place
+from .labels import Labels, check_clear, label, place
 from .repair import repaired
 from .surface import MM_PER_UNIT, Surface, SurfaceLike, as_surface
 from .volume_mesh import Volume, VolumeMesh, boundary_faces, compacted, face_pairs, positive
@@ -71,6 +71,8 @@ def from_surfaces(
     if tolerance is None:
         tolerance = min(edge_length / 20, given.body.diagonal / 1000)
     given = Given(repaired(given.body), _each(repaired, given.chambers), _each(repaired, given.parts))
+    for name, surface in given.all.items():
+        check_clear(name, surface)
     surfaces = list(given.all.values())
     if backend == "gmsh":
         points, tetrahedra = gmsh_program.background(surfaces, edge_length)
@@ -155,11 +157,13 @@ def _assemble(
         chambers |= labels.regions[name]
     solid = labels.kept & ~chambers
     walls = _walls(tetrahedra, solid, labels, given.chambers)
-    chosen = labels.kept if chambers_as == "region" else solid
-    used, new_number = _renumbering(len(points), tetrahedra[chosen])
+    left_out = set() if chambers_as == "region" else set(given.chambers)
+    blocks = {name: np.flatnonzero(flags) for name, flags in labels.regions.items() if flags.any() and name not in left_out}
+    chosen = np.concatenate(list(blocks.values()))  # region by region, as files of Gmsh have them
+    new_number = _renumbering(len(points), tetrahedra[chosen])
     vertices, cells = compacted(points, tetrahedra[chosen])
-    number = np.cumsum(chosen) - 1
-    volumes = {name: number[np.flatnonzero(flags & chosen)] for name, flags in labels.regions.items() if (flags & chosen).any()}
+    ends = np.cumsum([len(block) for block in blocks.values()])
+    volumes = {name: np.arange(end - len(block), end) for (name, block), end in zip(blocks.items(), ends)}
     suffix = "_wall" if chambers_as == "region" else ""
     faces = {f"{name}{suffix}": new_number[wall] for name, wall in walls.items()}
     outer = new_number[boundary_faces(tetrahedra[labels.kept])]
@@ -188,11 +192,11 @@ def _walls(tetrahedra: np.ndarray, solid: np.ndarray, labels: Labels, chambers: 
     return walls
 
 
-def _renumbering(count: int, tetrahedra: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _renumbering(count: int, tetrahedra: np.ndarray) -> np.ndarray:
     used = np.unique(tetrahedra)
     number = np.full(count, -1)
     number[used] = np.arange(len(used))
-    return used, number
+    return number
 
 
 def _warn(mesh: VolumeMesh) -> None:

@@ -12,7 +12,8 @@ from .surface import Surface
 from .volume_mesh import face_pairs, signed_volumes
 from .winding import winding_numbers
 
-UNCLEAR = 0.1  # of the volume inside a surface: more with winding numbers of 1/4 to 3/4, and it has no inside
+UNCLEAR = 0.1  # of the volume with winding numbers above 1/4: more of it below 3/4, and the surface has no inside
+PROBES = 2000
 CRUMB = 1e-3  # of the volume: smaller loose pieces are left out
 
 
@@ -63,19 +64,31 @@ def label(
     return Labels(inside_kept, ordered, kept, {name: float(volumes[flags].sum()) for name, flags in inside_kept.items()}, tuple(notes))
 
 
+def check_clear(name: str, surface: Surface) -> None:
+    """Throws InvalidInput where a surface has no clear inside, before hours are spent on it."""
+    corners = surface.corners.reshape(-1, 3)
+    low, size = corners.min(axis=0), np.ptp(corners, axis=0)
+    winding = winding_numbers(surface, low + np.random.default_rng(0).random((PROBES, 3)) * size)
+    _judge(name, surface, winding, np.ones(PROBES))
+
+
 def place(point: np.ndarray) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in point) + ") mm"
 
 
 def _inside(name: str, surface: Surface, middles: np.ndarray, volumes: np.ndarray) -> np.ndarray:
     winding = _winding(surface, middles)
-    inside = winding > 0.5
-    if not inside.any():
+    if not (winding > 0.5).any():
         raise InvalidInput(f"{name}: {surface.name} encloses nothing; {_state(surface)}")
-    unclear = float(volumes[np.abs(winding - 0.5) < 0.25].sum() / volumes[inside].sum())
-    if unclear > UNCLEAR:
-        raise InvalidInput(f"{name}: {surface.name} has no clear inside ({100 * unclear:.0f} % of it are doubtful); {_state(surface)}")
-    return inside
+    _judge(name, surface, winding, volumes)
+    return winding > 0.5
+
+
+def _judge(name: str, surface: Surface, winding: np.ndarray, weights: np.ndarray) -> None:
+    all_of_it = float(weights[winding > 0.25].sum())
+    doubtful = float(weights[np.abs(winding - 0.5) < 0.25].sum())
+    if doubtful > UNCLEAR * all_of_it:
+        raise InvalidInput(f"{name}: {surface.name} has no clear inside ({100 * doubtful / all_of_it:.0f} % of it are doubtful); {_state(surface)}")
 
 
 def _state(surface: Surface) -> str:
@@ -106,9 +119,9 @@ def _check_within(
 ) -> None:  # fmt: skip
     beyond, all_of_it = float(volumes[out].sum()), float(volumes[inside].sum())
     if beyond > 0.99 * all_of_it:
-        raise InvalidInput(f"chamber {name} ({surface.name}) lies outside of the body, around {place(middles[inside].mean(axis=0))}; are both in one unit and place?")
+        raise InvalidInput(f"chamber {name} ({surface.name}) lies outside of the body, around {place(np.average(middles[inside], axis=0, weights=volumes[inside]))}; are both in one unit and place?")
     if beyond > max(0.5 * tolerance * surface.area * beyond / all_of_it, 1e-3 * all_of_it):
-        raise InvalidInput(f"chamber {name} ({surface.name}) sticks out of the body by {beyond:.3g} mm^3, around {place(middles[out].mean(axis=0))}")
+        raise InvalidInput(f"chamber {name} ({surface.name}) sticks out of the body by {beyond:.3g} mm^3, around {place(np.average(middles[out], axis=0, weights=volumes[out]))}")
 
 
 def _without_crumbs(tetrahedra: np.ndarray, kept: np.ndarray, volumes: np.ndarray) -> tuple[np.ndarray, int]:

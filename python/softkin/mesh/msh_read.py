@@ -155,5 +155,8 @@ def _mesh(path: Path, points: np.ndarray, tags: np.ndarray, cells: Cells, names:
             faces.setdefault(names.get((2, group), f"physical_2_{group}"), []).append(number[rows(block)])
     vertices, tetrahedra = compacted(points, tetrahedra)
     joined = {name: np.concatenate(blocks) for name, blocks in faces.items()}
-    joined = {f"{name}_2d" if name in volumes else name: block for name, block in joined.items() if (block >= 0).all()}
+    for name, block in joined.items():
+        if (block < 0).any():
+            raise InvalidInput(f"{path}: region '{name}' has faces with vertices of no tetrahedron")
+    joined = {f"{name}_2d" if name in volumes else name: block for name, block in joined.items()}
     return VolumeMesh(vertices, positive(vertices, tetrahedra), {name: np.concatenate(blocks) for name, blocks in volumes.items()}, joined)

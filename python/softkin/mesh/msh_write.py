@@ -65,6 +65,6 @@ def _blocks(mesh: VolumeMesh, dimension: int) -> list[tuple[int, list[int], np.n
         member[which.reshape(-1), np.repeat(np.arange(len(faces)), [len(region) for region in faces])] = True
     if member.shape[1] == 0:
         return [(dimension, [], cells)]
-    kinds, which = np.unique(member, axis=0, return_inverse=True)
+    others, which = np.unique(~member, axis=0, return_inverse=True)  # ~: those of the first region come first
     which = which.reshape(-1)
-    return [(dimension, (np.flatnonzero(kind) + 1 + offset).tolist(), cells[which == k]) for k, kind in enumerate(kinds)]
+    return [(dimension, (np.flatnonzero(~other) + 1 + offset).tolist(), cells[which == k]) for k, other in enumerate(others)]

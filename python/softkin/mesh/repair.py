@@ -98,7 +98,8 @@ def _holes_closed(surface: Surface) -> Surface:
         middle = len(vertices) + sum(len(block) for block in points[1:])
         points.append(rim.mean(axis=0, keepdims=True))
         added.append(np.stack([following, loop, np.full(len(loop), middle)], axis=1))
-    note = f"{surface.name}: {len(loops)} holes closed, the widest {widest:.3g} mm across"
+    holes = "1 hole" if len(loops) == 1 else f"{len(loops)} holes"
+    note = f"{surface.name}: {holes} closed, the widest {widest:.3g} mm across"
     if left:
         note += f"; {left} open edges that bound no hole stay"
     if not added:
