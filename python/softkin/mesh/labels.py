@@ -14,6 +14,7 @@ from .winding import winding_numbers
 
 UNCLEAR = 0.1  # of the volume with winding numbers above 1/4: more of it below 3/4, and the surface has no inside
 PROBES = 2000
+FLAT = 1e-9  # of area times diagonal: less volume is none
 CRUMB = 1e-3  # of the volume: smaller loose pieces are left out
 
 
@@ -66,6 +67,8 @@ def label(
 
 def check_clear(name: str, surface: Surface) -> None:
     """Throws InvalidInput where a surface has no clear inside, before hours are spent on it."""
+    if abs(surface.volume) <= FLAT * surface.area * surface.diagonal:
+        raise InvalidInput(f"{name}: {surface.name} encloses nothing; {_state(surface)}")
     corners = surface.corners.reshape(-1, 3)
     low, size = corners.min(axis=0), np.ptp(corners, axis=0)
     winding = winding_numbers(surface, low + np.random.default_rng(0).random((PROBES, 3)) * size)

@@ -88,6 +88,10 @@ def _holes_closed(surface: Surface) -> Surface:
     vertices, added, widest = surface.vertices, [], 0.0
     points = [vertices]
     loops, left = _loops(edges)
+    known = {tuple(corners) for corners in np.sort(surface.triangles, axis=1).tolist()}
+    bounding = [loop for loop in loops if tuple(sorted(loop.tolist())) not in known]  # others are the rim of one triangle
+    left += 3 * (len(loops) - len(bounding))
+    loops = bounding
     for loop in loops:
         rim = vertices[loop]
         widest = max(widest, float(np.linalg.norm(np.ptp(rim, axis=0))))
