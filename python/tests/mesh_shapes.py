@@ -33,7 +33,9 @@ def fine_box(low, high, divisions, name="box"):
         for i in range(divisions + 1):
             for j in range(divisions + 1 - i):
                 index[i, j] = len(points)
-                points.append(corners[0] + (corners[1] - corners[0]) * i / divisions + (corners[2] - corners[0]) * j / divisions)
+                points.append(
+                    corners[0] + (corners[1] - corners[0]) * i / divisions + (corners[2] - corners[0]) * j / divisions
+                )
         for i, j in index:
             if i + j < divisions:
                 triangles.append((index[i, j], index[i + 1, j], index[i, j + 1]))
@@ -45,7 +47,11 @@ def fine_box(low, high, divisions, name="box"):
 def sphere(radius, centre=(0, 0, 0), rings=16, name="sphere"):
     """A sphere whose corners lie on the radius."""
     polar, around = np.linspace(0, np.pi, rings + 1), np.linspace(0, 2 * np.pi, 2 * rings, endpoint=False)
-    points = [[0, 0, 1]] + [[np.sin(p) * np.cos(a), np.sin(p) * np.sin(a), np.cos(p)] for p in polar[1:-1] for a in around] + [[0, 0, -1]]
+    points = (
+        [[0, 0, 1]]
+        + [[np.sin(p) * np.cos(a), np.sin(p) * np.sin(a), np.cos(p)] for p in polar[1:-1] for a in around]
+        + [[0, 0, -1]]
+    )
     n, last = 2 * rings, 1 + (rings - 1) * 2 * rings
     triangles = [(0, 1 + k, 1 + (k + 1) % n) for k in range(n)]
     for ring in range(rings - 2):
@@ -77,7 +83,9 @@ def softkin_command():
 
 
 def run_softkin(*arguments, cwd=None):
-    return subprocess.run([softkin_command(), *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [softkin_command(), *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False
+    )
 
 
 def check_usable(mesh, folder):

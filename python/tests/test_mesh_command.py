@@ -3,8 +3,8 @@
 import json
 
 import pytest
-
 from mesh_shapes import box, run_softkin
+
 from softkin.mesh import VolumeMesh, from_surfaces, scene_text, write_stl
 from softkin.mesh.command import main
 
@@ -28,9 +28,25 @@ def generate(*arguments):
 @pytest.mark.parametrize("chambers_as", ["region", "void"])
 def test_from_stl_files_to_a_scene_that_moves(files, capsys, chambers_as):
     pytest.importorskip("pytetwild", reason="pytetwild, of the extra mesh, is not installed")
-    assert generate("--chamber", "air=cavity.stl", "--region", "base=plane x=0", "--scene", "finger.yaml", "--chambers-as", chambers_as) == 0
+    assert (
+        generate(
+            "--chamber",
+            "air=cavity.stl",
+            "--region",
+            "base=plane x=0",
+            "--scene",
+            "finger.yaml",
+            "--chambers-as",
+            chambers_as,
+        )
+        == 0
+    )
     said = capsys.readouterr().out
-    assert "region body:" in said and "least dihedral angle" in said and said.endswith("written: finger.msh and finger.yaml\n")
+    assert (
+        "region body:" in said
+        and "least dihedral angle" in said
+        and said.endswith("written: finger.msh and finger.yaml\n")
+    )
     scene = (files / "finger.yaml").read_text()
     assert "edit" in scene and "region: base" in scene
     done = run_softkin("fk", "finger.yaml", "--set", "air=1.1", "--json", cwd=files)

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
-
 from mesh_shapes import EXAMPLES, check_usable, run_softkin
+
 from softkin.mesh import from_surfaces, read_msh, write_stl
 
 FOLDER = EXAMPLES / "pneumatic_finger"

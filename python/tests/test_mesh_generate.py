@@ -4,8 +4,8 @@ import warnings
 
 import numpy as np
 import pytest
-
 from mesh_shapes import box, check_usable, fine_box, joined, sphere, turned
+
 from softkin.mesh import InvalidInput, MeshWarning, Surface, from_surfaces, write_stl
 
 pytest.importorskip("pytetwild", reason="pytetwild, of the extra mesh, is not installed")
@@ -26,9 +26,14 @@ def finger():
         {"air": CAVITY},
         {"core": box((13.5, 2, 2), (18.5, 8, 8)), "pin": box((15, 4, 4), (17, 6, 6))},
         edge_length=3,
-        regions={"base": "plane x=0", "corner": "box 19 0 0 20 10 10", "ball": {"sphere": {"center": [20, 5, 5], "radius": 4}},
-                 "low": {"plane": "0 0 2 = 0", "within": 0.2}, "like_base": {"near": (BODY.vertices, BODY.triangles[:2])}},
-    )  # fmt: skip
+        regions={
+            "base": "plane x=0",
+            "corner": "box 19 0 0 20 10 10",
+            "ball": {"sphere": {"center": [20, 5, 5], "radius": 4}},
+            "low": {"plane": "0 0 2 = 0", "within": 0.2},
+            "like_base": {"near": (BODY.vertices, BODY.triangles[:2])},
+        },
+    )
 
 
 def test_volumes_are_those_of_the_boxes(finger):
@@ -106,7 +111,9 @@ def test_metres_warn_and_with_the_unit_it_is_the_same_body(tmp_path):
     write_stl(tmp_path / "body.stl", BODY.scaled(0.001))
     write_stl(tmp_path / "air.stl", CAVITY.scaled(0.001))
     files = (tmp_path / "body.stl", {"air": tmp_path / "air.stl"})
-    with pytest.warns(MeshWarning, match=r"body.stl measures 0.02 x 0.01 x 0.01 mm: are these metres\? Then say unit='m'"):
+    with pytest.warns(
+        MeshWarning, match=r"body.stl measures 0.02 x 0.01 x 0.01 mm: are these metres\? Then say unit='m'"
+    ):
         small = from_surfaces(*files, edge_length=0.004)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -117,13 +124,18 @@ def test_metres_warn_and_with_the_unit_it_is_the_same_body(tmp_path):
 
 
 def test_metres_with_an_edge_length_in_mm_are_an_error():
-    with pytest.warns(MeshWarning, match="metres"), pytest.raises(InvalidInput, match="edge_length=4 mm is longer than the body, which measures 0.02 x"):
+    with (
+        pytest.warns(MeshWarning, match="metres"),
+        pytest.raises(InvalidInput, match="edge_length=4 mm is longer than the body, which measures 0.02 x"),
+    ):
         from_surfaces(BODY.scaled(0.001), edge_length=4)
 
 
 def test_holes_flipped_faces_and_self_intersections_still_give_a_mesh(tmp_path):
     random = np.random.default_rng(5)
-    body = joined(fine_box((0, 0, 0), (14, 10, 10), 5), fine_box((9.7, 0.3, 0.3), (20, 9.7, 9.7), 5))  # two boxes that cross
+    body = joined(
+        fine_box((0, 0, 0), (14, 10, 10), 5), fine_box((9.7, 0.3, 0.3), (20, 9.7, 9.7), 5)
+    )  # two boxes that cross
     triangles = body.triangles[random.random(len(body.triangles)) > 0.02]
     body = turned(Surface(body.vertices, triangles, "bad body"), random.random(len(triangles)) < 0.2)
     mesh = from_surfaces(body, {"air": turned(CAVITY)}, edge_length=4, tolerance=0.1)
@@ -138,7 +150,10 @@ def test_holes_flipped_faces_and_self_intersections_still_give_a_mesh(tmp_path):
 def test_a_soup_without_inside_is_one_clear_error():
     random = np.random.default_rng(2)
     soup = Surface(random.random((300, 3)) * 20, np.arange(300).reshape(100, 3), "soup.stl")
-    with warnings.catch_warnings(), pytest.raises(InvalidInput, match=r"body: soup.stl (encloses nothing|has no clear inside)") as raised:
+    with (
+        warnings.catch_warnings(),
+        pytest.raises(InvalidInput, match=r"body: soup.stl (encloses nothing|has no clear inside)") as raised,
+    ):
         warnings.simplefilter("ignore", MeshWarning)
         from_surfaces(soup, edge_length=5)
     assert "\n" not in str(raised.value)
@@ -147,9 +162,18 @@ def test_a_soup_without_inside_is_one_clear_error():
 @pytest.mark.parametrize(
     ("chamber", "told"),
     [
-        (box((30, 3, 3), (35, 7, 7), "cavity.stl"), r"chamber air \(cavity.stl\) lies outside of the body, around \(32.5, 5, 5\) mm"),
-        (box((15, 3, 3), (25, 7, 7), "cavity.stl"), r"chamber air \(.*\) sticks out of the body by 80 mm\^3, around \(22.5"),
-        (box((0, 3, 3), (9, 7, 7), "cavity.stl"), r"chamber air touches the outside of the body at \(.*\) mm, over 16 mm\^2"),
+        (
+            box((30, 3, 3), (35, 7, 7), "cavity.stl"),
+            r"chamber air \(cavity.stl\) lies outside of the body, around \(32.5, 5, 5\) mm",
+        ),
+        (
+            box((15, 3, 3), (25, 7, 7), "cavity.stl"),
+            r"chamber air \(.*\) sticks out of the body by 80 mm\^3, around \(22.5",
+        ),
+        (
+            box((0, 3, 3), (9, 7, 7), "cavity.stl"),
+            r"chamber air touches the outside of the body at \(.*\) mm, over 16 mm\^2",
+        ),
     ],
 )
 def test_chambers_outside_are_refused(chamber, told):
@@ -178,7 +202,10 @@ def test_parts_that_stick_out_add_to_the_body():
         ({"edge_length": 3, "backend": "magic"}, "backend='magic': it is one of tetwild, gmsh"),
         ({"edge_length": 3, "chambers": {"body": CAVITY}}, "'body' names two surfaces"),
         ({"edge_length": 3, "chambers": {"a b": CAVITY}}, "'a b' is no name of a region"),
-        ({"edge_length": 3, "chambers": {"air": CAVITY.scaled(1000)}}, "air: .* times as large as the body; are both in mm"),
+        (
+            {"edge_length": 3, "chambers": {"air": CAVITY.scaled(1000)}},
+            "air: .* times as large as the body; are both in mm",
+        ),
         ({"edge_length": 3, "chambers": {"air": 3}}, "air: a surface is a file"),
     ],
 )
@@ -190,7 +217,13 @@ def test_bad_arguments(given, told):
 @pytest.mark.parametrize(
     ("chosen_by", "told"),
     [
-        ("plane x=-3", r"no face of the boundary lies within 0.0367 mm of 'plane x=-3'; the nearest, .* is 3 mm away. The body reaches from"),
+        (
+            "plane x=-3",
+            (
+                r"no face of the boundary lies within 0.0367 mm of 'plane x=-3'; the nearest, .* is 3 mm away. The body"
+                r" reaches from"
+            ),
+        ),
         ("plane w=0", "'w' are not 3 numbers"),
         ("cone 1 2", "'cone 1 2' chooses no faces; give 'plane z=0'"),
         ("box 1 1 1 0 0 0", "the low corner comes first"),

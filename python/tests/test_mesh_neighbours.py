@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from mesh_shapes import EXAMPLES, run_softkin
+
 from softkin.mesh import InvalidInput, VolumeMesh, read_msh
 
 
@@ -26,7 +26,12 @@ def overlapping():
     """Two tetrahedra, both in one region, one in another; a face in two regions."""
     vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)
     tetrahedra = np.array([[0, 1, 2, 3], [1, 4, 2, 3]])
-    return VolumeMesh(vertices, tetrahedra, {"both": np.array([0, 1]), "one": np.array([1])}, {"a": np.array([[0, 2, 1]]), "b": np.array([[0, 2, 1], [0, 1, 3]])})
+    return VolumeMesh(
+        vertices,
+        tetrahedra,
+        {"both": np.array([0, 1]), "one": np.array([1])},
+        {"a": np.array([[0, 2, 1]]), "b": np.array([[0, 2, 1], [0, 1, 3]])},
+    )
 
 
 def test_the_shipped_finger_is_read_as_softkin_reads_it():
@@ -40,7 +45,9 @@ def test_msh_round_trip(tmp_path):
     for mesh in (example(), overlapping()):
         mesh.write(tmp_path / "a.msh")
         again = read_msh(tmp_path / "a.msh")
-        assert sorted(len(r) for r in again.volume_regions.values()) == sorted(len(r) for r in mesh.volume_regions.values())
+        assert sorted(len(r) for r in again.volume_regions.values()) == sorted(
+            len(r) for r in mesh.volume_regions.values()
+        )
         assert again.element_volumes.sum() == pytest.approx(mesh.element_volumes.sum(), rel=1e-12)
         again.write(tmp_path / "b.msh")
         same(read_msh(tmp_path / "b.msh"), again)
@@ -100,7 +107,9 @@ def test_surfaces_of_pyvista_and_meshio():
     cube = pyvista.Cube(x_length=2, y_length=3, z_length=4)
     assert as_surface(cube, "cube").volume == pytest.approx(24)
     flat = cube.triangulate()
-    assert as_surface(meshio.Mesh(flat.points, [("triangle", flat.faces.reshape(-1, 4)[:, 1:])]), "cube").volume == pytest.approx(24)
+    assert as_surface(
+        meshio.Mesh(flat.points, [("triangle", flat.faces.reshape(-1, 4)[:, 1:])]), "cube"
+    ).volume == pytest.approx(24)
 
 
 def test_bad_arrays_name_themselves():

@@ -4,11 +4,13 @@ import struct
 
 import numpy as np
 import pytest
-
 from mesh_shapes import box, fine_box, joined, sphere, turned
+
 from softkin.mesh import InvalidInput, MeshWarning, Surface, read_surface, write_stl
 from softkin.mesh.repair import open_edges, repaired
 
+CUBE = box((0, 0, 0), (1, 1, 1))
+CUT_STL = b"x" * 80 + struct.pack("<I", 3) + b"y" * 100
 ASCII_STL = """solid a
 facet normal 0 0 1
  outer loop
@@ -26,21 +28,30 @@ def ascii_stl(surface):
     for corners in surface.corners:
         vertices = "\n".join("vertex " + " ".join(map(repr, p)) for p in corners.tolist())
         lines.append(f"facet normal 0 0 0\nouter loop\n{vertices}\nendloop\nendfacet")
-    return "solid one\n" + "\n".join(lines[:6]) + "\nendsolid one\nsolid two\n" + "\n".join(lines[6:]) + "\nendsolid two\n"
+    return (
+        "solid one\n" + "\n".join(lines[:6]) + "\nendsolid one\nsolid two\n" + "\n".join(lines[6:]) + "\nendsolid two\n"
+    )
 
 
 def obj(surface):
-    lines = ["# quads and triangles", "o thing"] + ["v " + " ".join(map(repr, p)) for p in surface.vertices.tolist()] + ["vn 0 0 1"]
+    lines = (
+        ["# quads and triangles", "o thing"]
+        + ["v " + " ".join(map(repr, p)) for p in surface.vertices.tolist()]
+        + ["vn 0 0 1"]
+    )
     return "\n".join(lines + [f"f {a + 1}//1 {b + 1}/ {c - 8}" for a, b, c in surface.triangles.tolist()]) + "\n"
 
 
 def ply(surface, form, list_name="vertex_indices"):
     header = (
-        f"ply\nformat {form} 1.0\ncomment made by a test\nelement vertex {len(surface.vertices)}\nproperty uchar red\nproperty double x\n"
-        f"property double y\nproperty double z\nelement face {len(surface.triangles)}\nproperty list uchar int {list_name}\nend_header\n"
+        f"ply\nformat {form} 1.0\ncomment made by a test\nelement vertex {len(surface.vertices)}\nproperty uchar"
+        " red\nproperty double x\nproperty double y\nproperty double z\nelement face"
+        f" {len(surface.triangles)}\nproperty list uchar int {list_name}\nend_header\n"
     )
     if form == "ascii":
-        rows = [f"7 {x!r} {y!r} {z!r}" for x, y, z in surface.vertices.tolist()] + [f"3 {a} {b} {c}" for a, b, c in surface.triangles.tolist()]
+        rows = [f"7 {x!r} {y!r} {z!r}" for x, y, z in surface.vertices.tolist()] + [
+            f"3 {a} {b} {c}" for a, b, c in surface.triangles.tolist()
+        ]
         return (header + "\n".join(rows) + "\n").encode()
     order = "<" if form == "binary_little_endian" else ">"
     body = b"".join(struct.pack(order + "B3d", 7, *p) for p in surface.vertices.tolist())
@@ -83,15 +94,15 @@ def test_triangles_without_area_and_doubled_ones_go(tmp_path):
         ("a.stl", ASCII_STL.replace("1 0 0", "nan 0 0").encode(), "a.stl:5: 'nan 0 0' are not finite"),
         ("a.stl", ASCII_STL.replace("  vertex 0 1 0\n", "").encode(), "a.stl:6: a facet of 2 vertices"),
         ("a.stl", ASCII_STL.replace("endfacet", "endfacte").encode(), "a.stl:8: 'endfacte' is no word of STL"),
-        ("a.stl", b"x" * 80 + struct.pack("<I", 3) + b"y" * 100, "byte 80: the header tells of 3 facets, which take 234 bytes, but the file has 184"),
+        ("a.stl", CUT_STL, "byte 80: the header tells of 3 facets, which take 234 bytes, but the file has 184"),
         ("a.stl", b"hello", "5 bytes are neither"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "a.obj:3: '3' names no vertex; there are 2"),
         ("a.obj", b"v 0 0 0\nf a b c\n", "a.obj:2: 'a' is no index"),
         ("a.obj", b"v 0 0 0\n", "no faces"),
         ("a.ply", b"plx", "a.ply:1: no PLY header"),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex x\nend_header\n", "a.ply:3: 'element vertex x' is no line"),
-        ("a.ply", ply(box((0, 0, 0), (1, 1, 1)), "ascii").replace(b"\n3 0 1 3", b"\n3 0 1"), "a.ply:20: 3 indices are told and 2 are there"),
-        ("a.ply", ply(box((0, 0, 0), (1, 1, 1)), "binary_little_endian")[:-5], "the file ends at element 11 of 12 'face'"),
+        ("a.ply", ply(CUBE, "ascii").replace(b"\n3 0 1 3", b"\n3 0 1"), "a.ply:20: 3 indices are told and 2 are there"),
+        ("a.ply", ply(CUBE, "binary_little_endian")[:-5], "the file ends at element 11 of 12 'face'"),
         ("a.off", b"OFF", "surfaces are .stl, .obj or .ply"),
     ],
 )  # fmt: skip

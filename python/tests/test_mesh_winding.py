@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from mesh_shapes import box, fine_box, joined, sphere, turned
+
 from softkin.mesh.distance import distances
 from softkin.mesh.surface import Surface
 from softkin.mesh.winding import winding_numbers

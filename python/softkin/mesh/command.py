@@ -6,8 +6,9 @@ import argparse
 import os
 import sys
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Optional, Sequence
+from typing import Any
 
 from .errors import InvalidInput, MeshWarning
 from .face_regions import choose_faces
@@ -52,7 +53,9 @@ def _show(message: Any, category: Any, filename: str, lineno: int, file: Any = N
 
 def _generate(arguments: argparse.Namespace) -> str:
     if Path(arguments.output).suffix.lower() != ".msh":
-        raise InvalidInput(f"-o {arguments.output}: meshes are written as .msh; softkin mesh convert makes other forms of it")
+        raise InvalidInput(
+            f"-o {arguments.output}: meshes are written as .msh; softkin mesh convert makes other forms of it"
+        )
     parts, regions = _pairs("part", arguments.part), _pairs("region", arguments.region)
     form = Path(arguments.body).suffix.lower()
     if form == ".geo" or (form in CAD and not arguments.chamber and not parts):
@@ -79,23 +82,29 @@ def _generate(arguments: argparse.Namespace) -> str:
     return f"{mesh.summary()}\nwritten: {written}"
 
 
-def _from_geo(arguments: argparse.Namespace, parts: dict, regions: dict) -> VolumeMesh:
+def _from_geo(arguments: argparse.Namespace, parts: dict[str, str], regions: dict[str, str]) -> VolumeMesh:
     if arguments.backend != "gmsh":
         raise InvalidInput(f"{arguments.body}: only --backend gmsh reads that")
     if parts:
-        raise InvalidInput(f"{arguments.body}: its physical groups are the regions; --part goes with .stl, .obj, .ply or CAD models")
+        raise InvalidInput(
+            f"{arguments.body}: its physical groups are the regions; --part goes with .stl, .obj, .ply or CAD models"
+        )
     scale = MM_PER_UNIT[arguments.unit]
     mesh = mesh_geo(Path(arguments.body), arguments.edge_length / scale)
     for name in arguments.chamber:
         if name not in mesh.regions:
-            raise InvalidInput(f"--chamber {name}: of a .geo give the name of a physical group: {', '.join(mesh.regions)}")
+            raise InvalidInput(
+                f"--chamber {name}: of a .geo give the name of a physical group: {', '.join(mesh.regions)}"
+            )
     vertices = mesh.vertices * scale
     faces = dict(mesh.face_regions)
     for name, chosen_by in regions.items():
         check_name(name)
         if name in mesh.regions:
             raise InvalidInput(f"--region {name}: the file has a region of that name")
-        faces[name] = choose_faces(name, chosen_by, vertices, boundary_faces(mesh.tetrahedra), 1e-6 * arguments.edge_length)
+        faces[name] = choose_faces(
+            name, chosen_by, vertices, boundary_faces(mesh.tetrahedra), 1e-6 * arguments.edge_length
+        )
     return VolumeMesh(vertices, mesh.tetrahedra, mesh.volume_regions, faces)
 
 
@@ -121,18 +130,74 @@ def _parser() -> argparse.ArgumentParser:
         "generate", help="A mesh and a scene from surfaces", formatter_class=formatter, epilog=EPILOG,
         description="A volume mesh with named regions from the surface of a body and those of its chambers and parts.",
     )  # fmt: skip
-    one.add_argument("--body", metavar="F", required=True, help=".stl, .obj or .ply; with --backend gmsh also .step, .brep, .iges and .geo")
-    one.add_argument("--chamber", metavar="NAME=F", action="append", default=[], help="Surface of a chamber; repeatable; of a .geo: NAME of a physical group")
-    one.add_argument("--part", metavar="NAME=F", action="append", default=[], help="Surface of a part of another material; repeatable")
-    one.add_argument("--region", metavar="NAME=FACES", action="append", default=[], help="Faces of the boundary, see below; repeatable")
-    one.add_argument("--edge-length", metavar="MM", type=float, required=True, help="Of the tetrahedra, where nothing asks for smaller ones [mm]")
-    one.add_argument("--tolerance", metavar="MM", type=float, help="How far the mesh may be from the surfaces [mm]; default: a 20th of the edge length, at most a 1000th of the body's diagonal")
+    one.add_argument(
+        "--body",
+        metavar="F",
+        required=True,
+        help=".stl, .obj or .ply; with --backend gmsh also .step, .brep, .iges and .geo",
+    )
+    one.add_argument(
+        "--chamber",
+        metavar="NAME=F",
+        action="append",
+        default=[],
+        help="Surface of a chamber; repeatable; of a .geo: NAME of a physical group",
+    )
+    one.add_argument(
+        "--part",
+        metavar="NAME=F",
+        action="append",
+        default=[],
+        help="Surface of a part of another material; repeatable",
+    )
+    one.add_argument(
+        "--region",
+        metavar="NAME=FACES",
+        action="append",
+        default=[],
+        help="Faces of the boundary, see below; repeatable",
+    )
+    one.add_argument(
+        "--edge-length",
+        metavar="MM",
+        type=float,
+        required=True,
+        help="Of the tetrahedra, where nothing asks for smaller ones [mm]",
+    )
+    one.add_argument(
+        "--tolerance",
+        metavar="MM",
+        type=float,
+        help=(
+            "How far the mesh may be from the surfaces [mm]; default: a 20th of the edge length, at most a 1000th of"
+            " the body's diagonal"
+        ),
+    )
     one.add_argument("--unit", choices=tuple(MM_PER_UNIT), default="mm", help="Unit of the surfaces (default: mm)")
-    one.add_argument("--backend", choices=("tetwild", "gmsh"), default="tetwild", help="tetwild bears bad surfaces; gmsh is the program of that name (default: tetwild)")
-    one.add_argument("--chambers-as", choices=("region", "void"), default="region", help="region: meshed, a region of elements each; void: left empty, a region of faces each (default: region)")
-    one.add_argument("--open-chambers", action="store_true", help="A chamber may reach the outside, where a plate closes it")
-    one.add_argument("--coarsen", action="store_true", help="tetwild: as few tetrahedra as their shapes allow, of any length")
+    one.add_argument(
+        "--backend",
+        choices=("tetwild", "gmsh"),
+        default="tetwild",
+        help="tetwild bears bad surfaces; gmsh is the program of that name (default: tetwild)",
+    )
+    one.add_argument(
+        "--chambers-as",
+        choices=("region", "void"),
+        default="region",
+        help="region: meshed, a region of elements each; void: left empty, a region of faces each (default: region)",
+    )
+    one.add_argument(
+        "--open-chambers", action="store_true", help="A chamber may reach the outside, where a plate closes it"
+    )
+    one.add_argument(
+        "--coarsen", action="store_true", help="tetwild: as few tetrahedra as their shapes allow, of any length"
+    )
     one.add_argument("-o", "--output", metavar="F.msh", required=True, help="The mesh, in mm")
     one.add_argument("--scene", metavar="F.yaml", help="A scene to start from, with comments on what to edit")
-    one.add_argument("--fixed", metavar="NAME", default="", help="Region that the scene holds (default: base, or else the low end of the longest side)")
+    one.add_argument(
+        "--fixed",
+        metavar="NAME",
+        default="",
+        help="Region that the scene holds (default: base, or else the low end of the longest side)",
+    )
     return parser

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arrays import Array
 from .distance import distances
 from .surface import Surface
 from .winding import winding_numbers
@@ -13,7 +14,7 @@ CORNERS = 20_000  # of more, evenly chosen ones
 CORNER = np.array([[0.98, 0.01, 0.01], [0.01, 0.98, 0.01], [0.01, 0.01, 0.98]])
 
 
-def deviation(surface: Surface, vertices: np.ndarray, faces: np.ndarray, tolerance: float) -> float:
+def deviation(surface: Surface, vertices: Array, faces: Array, tolerance: float) -> float:
     """Largest distance between a surface and the faces (k, 3) of a mesh, either way, at samples, mm. What of the
     surface lies inside itself, where it overlaps, bounds nothing and does not count."""
     made = Surface(vertices, faces, "mesh")
@@ -28,7 +29,7 @@ def deviation(surface: Surface, vertices: np.ndarray, faces: np.ndarray, toleran
     return float(max(there.max(), back.max()))
 
 
-def _samples(surface: Surface) -> tuple[np.ndarray, np.ndarray]:
+def _samples(surface: Surface) -> tuple[Array, Array]:
     """Points of a surface, and its unit normals there."""
     random = np.random.default_rng(0)
     normals = surface.normals

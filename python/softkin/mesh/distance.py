@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arrays import Array
 from .triangle_tree import Node, TriangleTree
 
 PAIRS = 200_000
 
 
-def distances(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+def distances(corners: Array, points: Array) -> Array:
     """Distance of each of the points (q, 3) from the nearest of the triangles (k, 3, 3), (q,)."""
     points = np.ascontiguousarray(points, dtype=np.float64)
     tree = TriangleTree(corners)
     best = np.full(len(points), np.inf)
-    level: list[tuple[Node, np.ndarray]] = [(tree.root, np.arange(len(points)))]
+    level: list[tuple[Node, Array]] = [(tree.root, np.arange(len(points)))]
     while level:
         gaps = [np.sqrt(((points[asked] - node.centre) ** 2).sum(axis=1)) for node, asked in level]
         for (node, asked), gap in zip(level, gaps):  # every group has a triangle within its ball
@@ -30,7 +31,7 @@ def distances(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     return best
 
 
-def _to_triangles(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+def _to_triangles(points: Array, corners: Array) -> Array:
     least = np.empty(len(points))
     step = max(1, PAIRS // len(corners))
     for begin in range(0, len(points), step):
@@ -38,7 +39,7 @@ def _to_triangles(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     return least
 
 
-def _pairwise(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+def _pairwise(points: Array, corners: Array) -> Array:
     """Distances (q, k): that from the plane where the foot is inside the triangle, else that from its nearest edge."""
     normal = np.cross(corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :])
     squared = np.maximum((normal**2).sum(axis=-1), 1e-300)

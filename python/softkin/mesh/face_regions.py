@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Callable, Mapping
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
+from .arrays import Array
 from .distance import distances
 from .errors import InvalidInput
 from .surface import as_surface
@@ -18,12 +20,12 @@ FORMS = (
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
-def choose_faces(name: str, chosen_by: Any, vertices: np.ndarray, faces: np.ndarray, tolerance: float) -> np.ndarray:
+def choose_faces(name: str, chosen_by: Any, vertices: Array, faces: Array, tolerance: float) -> Array:
     """The faces (k, 3) of which all corners are within `within` of what is told, default 1.5 times the tolerance.
 
     chosen_by: 'plane z=0', 'plane 0 0 1 = 0', 'box 0 0 0 1 1 1', 'sphere x y z radius', each in mm; or a map with the
-    key plane ('z=0'), box ([[x, y, z], [x, y, z]]), sphere ({'center': [x, y, z], 'radius': r}) or near (a surface in mm),
-    and 'within' (mm). Of a plane only faces along it are taken. Throws InvalidInput, which tells what is nearest.
+    key plane ('z=0'), box ([[x, y, z], [x, y, z]]), sphere ({'center': [x, y, z], 'radius': r}) or near (a surface
+    in mm), and 'within' (mm). Of a plane only faces along it are taken. Throws InvalidInput, which tells what is near.
     """
     key, value, within = _parse(name, chosen_by)
     within = 1.5 * tolerance if within is None else within
@@ -38,10 +40,14 @@ def choose_faces(name: str, chosen_by: Any, vertices: np.ndarray, faces: np.ndar
     if not chosen.any():
         nearest = int(np.argmin(corner_gaps.max(axis=1)))
         middle = ", ".join(f"{value:.4g}" for value in vertices[faces[nearest]].mean(axis=0))
-        low, high = (", ".join(f"{value:.4g}" for value in corner) for corner in (vertices[used].min(axis=0), vertices[used].max(axis=0)))
+        low, high = (
+            ", ".join(f"{value:.4g}" for value in corner)
+            for corner in (vertices[used].min(axis=0), vertices[used].max(axis=0))
+        )
         raise InvalidInput(
-            f"region {name}: no face of the boundary lies within {within:.3g} mm of {chosen_by!r}; the nearest, at ({middle}) mm, is "
-            f"{corner_gaps.max(axis=1)[nearest]:.4g} mm away. The body reaches from ({low}) to ({high}) mm"
+            f"region {name}: no face of the boundary lies within {within:.3g} mm of {chosen_by!r}; the nearest, at"
+            f" ({middle}) mm, is {corner_gaps.max(axis=1)[nearest]:.4g} mm away. The body reaches from ({low}) to"
+            f" ({high}) mm"
         )
     return faces[chosen]
 
@@ -49,9 +55,9 @@ def choose_faces(name: str, chosen_by: Any, vertices: np.ndarray, faces: np.ndar
 def _parse(name: str, chosen_by: Any) -> tuple[str, Any, Any]:
     if isinstance(chosen_by, str):
         key, _, rest = chosen_by.strip().partition(" ")
-        rest, _, within = rest.partition(" within ")
+        rest, _, told = rest.partition(" within ")
         if key in ("plane", "box", "sphere"):
-            return key, rest.strip(), _length(name, within) if within else None
+            return key, rest.strip(), _length(name, told) if told else None
     elif isinstance(chosen_by, Mapping):
         keys = [key for key in chosen_by if key in _MEASURES]
         if len(keys) == 1 and set(chosen_by) <= {keys[0], "within"}:
@@ -70,7 +76,7 @@ def _length(name: str, value: Any) -> float:
     return length
 
 
-Measure = tuple[Callable[[np.ndarray], np.ndarray], Any]
+Measure = tuple[Callable[[Array], Array], Any]
 
 
 def _plane(name: str, value: Any) -> Measure:
@@ -111,7 +117,7 @@ def _near(name: str, value: Any) -> Measure:
 _MEASURES: dict[str, Callable[[str, Any], Measure]] = {"plane": _plane, "box": _box, "sphere": _sphere, "near": _near}
 
 
-def _numbers(name: str, value: Any, count: int) -> np.ndarray:
+def _numbers(name: str, value: Any, count: int) -> Array:
     try:
         parts = value.replace(",", " ").split() if isinstance(value, str) else np.ravel(value).tolist()
         numbers = np.array([float(part) for part in parts])

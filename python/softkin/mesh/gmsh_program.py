@@ -8,10 +8,10 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Optional
 
 import numpy as np
 
+from .arrays import Array
 from .errors import InvalidInput
 from .msh_read import read_msh
 from .repair import components, open_edges
@@ -24,8 +24,8 @@ CAD = (".step", ".stp", ".brep", ".iges", ".igs")
 FEATURE_DEG = 15  # edges of a surface that are sharper than this stay edges
 
 
-def find_gmsh() -> Optional[list[str]]:
-    """How to start gmsh: the program on PATH, or that of the pip package beside this Python; None where there is none."""
+def find_gmsh() -> list[str] | None:
+    """How to start gmsh: the program on PATH, or that of the pip package beside this Python; None: there is none."""
     beside = Path(sys.executable).parent / "gmsh"
     found = shutil.which("gmsh") or (str(beside) if beside.exists() else None)
     return [found] if found else None
@@ -38,7 +38,10 @@ def read_surface(given: SurfaceLike, name: str) -> Surface:
     if not Path(given).is_file():
         raise InvalidInput(f"{given}: no such file")
     with tempfile.TemporaryDirectory() as folder:
-        script = f'SetFactory("OpenCASCADE");\nMerge "{Path(given).resolve()}";\nMesh.MeshSizeFromCurvature = 36;\nMesh.CharacteristicLengthFromCurvature = 1;\n'
+        script = (
+            f'SetFactory("OpenCASCADE");\nMerge "{Path(given).resolve()}";\nMesh.MeshSizeFromCurvature ='
+            " 36;\nMesh.CharacteristicLengthFromCurvature = 1;\n"
+        )
         _run(Path(folder), script, 2, str(given), "stl")
         surface = as_surface(Path(folder) / "out.stl", name)
     return Surface(surface.vertices, surface.triangles, str(given))
@@ -61,7 +64,7 @@ def mesh_geo(path: Path, edge_length: float) -> VolumeMesh:
     return mesh
 
 
-def background(surfaces: list[Surface], edge_length: float) -> tuple[np.ndarray, np.ndarray]:
+def background(surfaces: list[Surface], edge_length: float) -> tuple[Array, Array]:
     """Tetrahedra inside closed surfaces that neither touch nor cross, with faces along each. The surfaces are divided
     into faces at edges of more than 15 degrees and triangulated anew. edge_length: mm. Returns (n, 3), (m, 4).
     Throws InvalidInput, ImportError."""
@@ -74,20 +77,29 @@ def background(surfaces: list[Surface], edge_length: float) -> tuple[np.ndarray,
         script += _volumes(remeshed) + _size(edge_length, edge_length) + "Mesh.Optimize = 1;\n"
         mesh = _run(folder, script, 3, ", ".join(surface.name for surface in surfaces), "msh")
     if mesh is None or len(mesh.tetrahedra) == 0:
-        raise InvalidInput(f"gmsh made no tetrahedra of {', '.join(surface.name for surface in surfaces)}; backend='tetwild' bears bad surfaces")
+        raise InvalidInput(
+            f"gmsh made no tetrahedra of {', '.join(surface.name for surface in surfaces)}; backend='tetwild' bears bad"
+            " surfaces"
+        )
     return mesh.vertices, mesh.tetrahedra
 
 
 def _shells(surface: Surface) -> list[Surface]:
     if len(open_edges(surface)):
-        raise InvalidInput(f"{surface.name} is not closed ({len(open_edges(surface))} open edges), as gmsh needs it; backend='tetwild' bears that")
+        raise InvalidInput(
+            f"{surface.name} is not closed ({len(open_edges(surface))} open edges), as gmsh needs it; backend='tetwild'"
+            " bears that"
+        )
     shell = components(surface.triangles, len(surface.vertices))
     return [surface.with_triangles(surface.triangles[shell == number]).merged() for number in range(shell.max() + 1)]
 
 
 def _remeshed(folder: Path, shell: Surface, edge_length: float) -> Surface:
     _write_shells(folder / "one.msh", [shell])
-    script = f'Merge "one.msh";\nClassifySurfaces{{{math.radians(FEATURE_DEG)!r}, 1, 1, Pi}};\nCreateGeometry;\n' + _size(edge_length, edge_length)
+    script = (
+        f'Merge "one.msh";\nClassifySurfaces{{{math.radians(FEATURE_DEG)!r}, 1, 1, Pi}};\nCreateGeometry;\n'
+        + _size(edge_length, edge_length)
+    )
     _run(folder, script, 2, shell.name, "stl")
     surface = as_surface(folder / "out.stl", shell.name)
     if len(open_edges(surface)):
@@ -109,32 +121,62 @@ def _volumes(shells: list[Surface]) -> str:
         holds[outer, outer] = False
     lines = []
     for outer in range(len(shells)):
-        direct = [k for k in np.flatnonzero(holds[outer]) if not any(holds[outer, j] and holds[j, k] for j in range(len(shells)))]
-        lines.append(f"Volume({outer + 1}) = {{{', '.join(str(k + 1) for k in [outer, *direct])}}};\n")
+        between = holds[outer] @ holds  # shells inside another one that is inside this
+        direct = np.flatnonzero(holds[outer] & ~between) + 1
+        lines.append(f"Volume({outer + 1}) = {{{', '.join(map(str, [outer + 1, *direct.tolist()]))}}};\n")
     return "".join(lines)
 
 
 def _write_shells(path: Path, shells: list[Surface]) -> None:
     """.msh 2.2 text with each shell as one entity, so that gmsh keeps them apart."""
-    nodes, elements, offset = [], [], 1
+    nodes: list[str] = []
+    elements: list[str] = []
+    offset = 1
     for tag, shell in enumerate(shells, 1):
         nodes += [f"{offset + k} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(shell.vertices.tolist())]
-        elements += [f"{len(elements) + k} 2 2 0 {tag} {a} {b} {c}" for k, (a, b, c) in enumerate((shell.triangles + offset).tolist(), 1)]
+        elements += [
+            f"{len(elements) + k} 2 2 0 {tag} {a} {b} {c}"
+            for k, (a, b, c) in enumerate((shell.triangles + offset).tolist(), 1)
+        ]
         offset += len(shell.vertices)
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(nodes)), *nodes, "$EndNodes", "$Elements", str(len(elements)), *elements]
+    lines = [
+        "$MeshFormat",
+        "2.2 0 8",
+        "$EndMeshFormat",
+        "$Nodes",
+        str(len(nodes)),
+        *nodes,
+        "$EndNodes",
+        "$Elements",
+        str(len(elements)),
+        *elements,
+    ]
     path.write_text("\n".join([*lines, "$EndElements", ""]))
 
 
-def _run(folder: Path, script: str, dimension: int, what: str, form: str) -> Optional[VolumeMesh]:
+def _run(folder: Path, script: str, dimension: int, what: str, form: str) -> VolumeMesh | None:
     program = find_gmsh()
     if program is None:
         raise ImportError(INSTALL)
     (folder / "script.geo").write_text(script)
     out = folder / f"out.{form}"
     out.unlink(missing_ok=True)
-    arguments = ["script.geo", f"-{dimension}", "-format", "stl" if form == "stl" else "msh2", "-o", out.name, "-v", "2"]
+    arguments = [
+        "script.geo",
+        f"-{dimension}",
+        "-format",
+        "stl" if form == "stl" else "msh2",
+        "-o",
+        out.name,
+        "-v",
+        "2",
+    ]
     done = subprocess.run([*program, *arguments], cwd=folder, capture_output=True, text=True, check=False)
-    said = [line.split(":", 1)[1].strip() for line in (done.stdout + done.stderr).splitlines() if line.startswith("Error") and ":" in line]
+    said = [
+        line.split(":", 1)[1].strip()
+        for line in (done.stdout + done.stderr).splitlines()
+        if line.startswith("Error") and ":" in line
+    ]
     if done.returncode != 0 or said or not out.is_file():
         reason = said[0] if said else f"it ended with code {done.returncode} and no mesh"
         raise InvalidInput(f"{what}: gmsh: {reason}; backend='tetwild' bears bad surfaces")

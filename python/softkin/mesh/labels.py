@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arrays import Array, Flags
 from .errors import InvalidInput
 from .repair import components, open_edges
 from .surface import Surface
@@ -23,16 +24,21 @@ class Labels:
     """Flags of all tetrahedra, (m,) each. inside: by surface. regions: by region, exclusive. kept: in any region.
     volumes: of what is inside each surface and kept, mm^3."""
 
-    inside: dict[str, np.ndarray]
-    regions: dict[str, np.ndarray]
-    kept: np.ndarray
+    inside: dict[str, Flags]
+    regions: dict[str, Flags]
+    kept: Flags
     volumes: dict[str, float]
     notes: tuple[str, ...]
 
 
 def label(
-    points: np.ndarray, tetrahedra: np.ndarray, body: Surface, chambers: dict[str, Surface], parts: dict[str, Surface], tolerance: float
-) -> Labels:  # fmt: skip
+    points: Array,
+    tetrahedra: Array,
+    body: Surface,
+    chambers: dict[str, Surface],
+    parts: dict[str, Surface],
+    tolerance: float,
+) -> Labels:
     """Labels tetrahedra by the winding numbers around their middles. Throws InvalidInput."""
     middles = points[tetrahedra].mean(axis=1)
     volumes = signed_volumes(points, tetrahedra)
@@ -47,7 +53,7 @@ def label(
         if outside > tolerance * parts[name].area:
             notes.append(f"part {name}: {outside:.4g} mm^3 of it stick out of the body and add to it")
     left = np.ones(len(tetrahedra), dtype=bool)
-    regions: dict[str, np.ndarray] = {}
+    regions: dict[str, Array] = {}
     for group in (chambers, parts):
         for name in sorted(group, key=lambda each: float(volumes[inside[each]].sum())):
             regions[name] = inside[name] & left
@@ -60,9 +66,18 @@ def label(
     ordered = {name: regions[name] & kept for name in ("body", *chambers, *parts)}
     for name, flags in ordered.items():
         if not flags.any() and not (name == "body" and parts):
-            raise InvalidInput(f"{name}: no tetrahedra are left for it; other surfaces take all of its inside, or it is thinner than the tolerance")
+            raise InvalidInput(
+                f"{name}: no tetrahedra are left for it; other surfaces take all of its inside, or it is thinner than"
+                " the tolerance"
+            )
     inside_kept = {name: flags & kept for name, flags in inside.items()}
-    return Labels(inside_kept, ordered, kept, {name: float(volumes[flags].sum()) for name, flags in inside_kept.items()}, tuple(notes))
+    return Labels(
+        inside_kept,
+        ordered,
+        kept,
+        {name: float(volumes[flags].sum()) for name, flags in inside_kept.items()},
+        tuple(notes),
+    )
 
 
 def check_clear(name: str, surface: Surface) -> None:
@@ -75,11 +90,11 @@ def check_clear(name: str, surface: Surface) -> None:
     _judge(name, surface, winding, np.ones(PROBES))
 
 
-def place(point: np.ndarray) -> str:
+def place(point: Array) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in point) + ") mm"
 
 
-def _inside(name: str, surface: Surface, middles: np.ndarray, volumes: np.ndarray) -> np.ndarray:
+def _inside(name: str, surface: Surface, middles: Array, volumes: Array) -> Array:
     winding = _winding(surface, middles)
     if not (winding > 0.5).any():
         raise InvalidInput(f"{name}: {surface.name} encloses nothing; {_state(surface)}")
@@ -87,11 +102,14 @@ def _inside(name: str, surface: Surface, middles: np.ndarray, volumes: np.ndarra
     return winding > 0.5
 
 
-def _judge(name: str, surface: Surface, winding: np.ndarray, weights: np.ndarray) -> None:
+def _judge(name: str, surface: Surface, winding: Array, weights: Array) -> None:
     all_of_it = float(weights[winding > 0.25].sum())
     doubtful = float(weights[np.abs(winding - 0.5) < 0.25].sum())
     if doubtful > UNCLEAR * all_of_it:
-        raise InvalidInput(f"{name}: {surface.name} has no clear inside ({100 * doubtful / all_of_it:.0f} % of it are doubtful); {_state(surface)}")
+        raise InvalidInput(
+            f"{name}: {surface.name} has no clear inside ({100 * doubtful / all_of_it:.0f} % of it are doubtful);"
+            f" {_state(surface)}"
+        )
 
 
 def _state(surface: Surface) -> str:
@@ -99,7 +117,7 @@ def _state(surface: Surface) -> str:
     return f"it has {count} open edges after its holes were closed" if count else "its faces cross or face each other"
 
 
-def _inside_hull(body: Surface, middles: np.ndarray) -> np.ndarray:
+def _inside_hull(body: Surface, middles: Array) -> Array:
     """Inside of the shells of the body that do not turn inwards: with its cavities."""
     shell = components(body.triangles, len(body.vertices))
     shells = [body.with_triangles(body.triangles[shell == number]) for number in range(shell.max() + 1)]
@@ -109,7 +127,7 @@ def _inside_hull(body: Surface, middles: np.ndarray) -> np.ndarray:
     return _winding(body.with_triangles(np.concatenate([part.triangles for part in outward])), middles) > 0.5
 
 
-def _winding(surface: Surface, middles: np.ndarray) -> np.ndarray:
+def _winding(surface: Surface, middles: Array) -> Array:
     corners = surface.corners.reshape(-1, 3)
     near = ((middles >= corners.min(axis=0)) & (middles <= corners.max(axis=0))).all(axis=1)
     winding = np.zeros(len(middles))
@@ -118,16 +136,22 @@ def _winding(surface: Surface, middles: np.ndarray) -> np.ndarray:
 
 
 def _check_within(
-    name: str, surface: Surface, out: np.ndarray, inside: np.ndarray, middles: np.ndarray, volumes: np.ndarray, tolerance: float
-) -> None:  # fmt: skip
+    name: str, surface: Surface, out: Array, inside: Array, middles: Array, volumes: Array, tolerance: float
+) -> None:
     beyond, all_of_it = float(volumes[out].sum()), float(volumes[inside].sum())
     if beyond > 0.99 * all_of_it:
-        raise InvalidInput(f"chamber {name} ({surface.name}) lies outside of the body, around {place(np.average(middles[inside], axis=0, weights=volumes[inside]))}; are both in one unit and place?")
+        raise InvalidInput(
+            f"chamber {name} ({surface.name}) lies outside of the body, around"
+            f" {place(np.average(middles[inside], axis=0, weights=volumes[inside]))}; are both in one unit and place?"
+        )
     if beyond > max(0.5 * tolerance * surface.area * beyond / all_of_it, 1e-3 * all_of_it):
-        raise InvalidInput(f"chamber {name} ({surface.name}) sticks out of the body by {beyond:.3g} mm^3, around {place(np.average(middles[out], axis=0, weights=volumes[out]))}")
+        raise InvalidInput(
+            f"chamber {name} ({surface.name}) sticks out of the body by {beyond:.3g} mm^3, around"
+            f" {place(np.average(middles[out], axis=0, weights=volumes[out]))}"
+        )
 
 
-def _without_crumbs(tetrahedra: np.ndarray, kept: np.ndarray, volumes: np.ndarray) -> tuple[np.ndarray, int]:
+def _without_crumbs(tetrahedra: Array, kept: Array, volumes: Array) -> tuple[Array, int]:
     numbers = np.flatnonzero(kept)
     if len(numbers) == 0:
         return kept, 0

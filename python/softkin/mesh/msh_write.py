@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Union
 
 import numpy as np
 
+from .arrays import Array
 from .errors import InvalidInput
 from .volume_mesh import VolumeMesh
 
 TRIANGLE, TETRAHEDRON = 2, 4  # types of Gmsh, by their number of dimensions
 
 
-def write_msh(path: Union[str, Path], mesh: VolumeMesh) -> None:
-    """Writes .msh 4.1, binary. Elements that are in the same regions make one entity, whose physical groups these are."""
+def write_msh(path: str | Path, mesh: VolumeMesh) -> None:
+    """Writes .msh 4.1, binary. Elements of the same regions make one entity, whose physical groups these are."""
     blocks = _blocks(mesh, 2) + _blocks(mesh, 3)
     names = [(2, name) for name in mesh.face_regions] + [(3, name) for name in mesh.volume_regions]
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
@@ -22,7 +22,11 @@ def write_msh(path: Union[str, Path], mesh: VolumeMesh) -> None:
     elements, total, tag = [], sum(len(cells) for _, _, cells in blocks), 0
     for number, (dimension, groups, cells) in enumerate(blocks, 1):
         entities += [np.array([number], "<i4").tobytes(), np.concatenate([low, high]).astype("<f8").tobytes()]
-        entities += [np.array([len(groups)], "<u8").tobytes(), np.array(groups, "<i4").tobytes(), np.array([0], "<u8").tobytes()]
+        entities += [
+            np.array([len(groups)], "<u8").tobytes(),
+            np.array(groups, "<i4").tobytes(),
+            np.array([0], "<u8").tobytes(),
+        ]
         kind = TRIANGLE if dimension == 2 else TETRAHEDRON
         tags = np.arange(tag + 1, tag + 1 + len(cells))
         tag += len(cells)
@@ -30,7 +34,11 @@ def write_msh(path: Union[str, Path], mesh: VolumeMesh) -> None:
         elements.append(np.column_stack([tags, cells + 1]).astype("<u8").tobytes())
     count = len(mesh.vertices)
     nodes = [np.array([1, count, 1, count], "<u8").tobytes(), np.array([3, len(blocks), 0], "<i4").tobytes()]
-    nodes += [np.array([count], "<u8").tobytes(), np.arange(1, count + 1).astype("<u8").tobytes(), mesh.vertices.astype("<f8").tobytes()]
+    nodes += [
+        np.array([count], "<u8").tobytes(),
+        np.arange(1, count + 1).astype("<u8").tobytes(),
+        mesh.vertices.astype("<f8").tobytes(),
+    ]
     heading = [np.array([len(blocks), total, 1, total], "<u8").tobytes()]
     labels = "".join(f'{dimension} {number} "{name}"\n' for number, (dimension, name) in enumerate(names, 1))
     sections = [
@@ -47,7 +55,7 @@ def write_msh(path: Union[str, Path], mesh: VolumeMesh) -> None:
         raise InvalidInput(f"{path}: {error.strerror}") from None
 
 
-def _blocks(mesh: VolumeMesh, dimension: int) -> list[tuple[int, list[int], np.ndarray]]:
+def _blocks(mesh: VolumeMesh, dimension: int) -> list[tuple[int, list[int], Array]]:
     """Dimension, numbers of physical groups and elements, for every set of regions that elements are in."""
     faces, volumes = list(mesh.face_regions.values()), list(mesh.volume_regions.values())
     if dimension == 3:
@@ -67,4 +75,6 @@ def _blocks(mesh: VolumeMesh, dimension: int) -> list[tuple[int, list[int], np.n
         return [(dimension, [], cells)]
     others, which = np.unique(~member, axis=0, return_inverse=True)  # ~: those of the first region come first
     which = which.reshape(-1)
-    return [(dimension, (np.flatnonzero(~other) + 1 + offset).tolist(), cells[which == k]) for k, other in enumerate(others)]
+    return [
+        (dimension, (np.flatnonzero(~other) + 1 + offset).tolist(), cells[which == k]) for k, other in enumerate(others)
+    ]

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from .arrays import Array
 from .errors import InvalidInput
 from .volume_mesh import VolumeMesh, compacted, positive
 
@@ -19,7 +20,9 @@ def to_meshio(mesh: VolumeMesh) -> Any:
     faces, members = _unique_faces(mesh)
     cells, sets, numbers = [], {}, []
     names = [*mesh.face_regions, *mesh.volume_regions]
-    field_data = {name: np.array([number, 2 if name in mesh.face_regions else 3]) for number, name in enumerate(names, 1)}
+    field_data = {
+        name: np.array([number, 2 if name in mesh.face_regions else 3]) for number, name in enumerate(names, 1)
+    }
     for kind, block, regions in (("triangle", faces, members), ("tetra", mesh.tetrahedra, mesh.volume_regions)):
         if len(block):
             cells.append((kind, block))
@@ -28,7 +31,13 @@ def to_meshio(mesh: VolumeMesh) -> Any:
         empty = np.empty(0, dtype=np.int64)
         own = members[name] if name in members else mesh.volume_regions[name]
         sets[name] = [own if (kind == "triangle") == (name in members) else empty for kind, _ in cells]
-    return meshio.Mesh(mesh.vertices, cells, cell_sets=sets, cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers}, field_data=field_data)
+    return meshio.Mesh(
+        mesh.vertices,
+        cells,
+        cell_sets=sets,
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data=field_data,
+    )
 
 
 def from_meshio(mesh: Any) -> VolumeMesh:
@@ -39,8 +48,8 @@ def from_meshio(mesh: Any) -> VolumeMesh:
     tetrahedra = [block.data for block in mesh.cells if block.type == "tetra"]
     if not tetrahedra:
         raise InvalidInput(f"the mesh has no tetrahedra, but {', '.join(kinds) or 'no cells'}")
-    volumes: dict[str, list[np.ndarray]] = {}
-    faces: dict[str, list[np.ndarray]] = {}
+    volumes: dict[str, list[Array]] = {}
+    faces: dict[str, list[Array]] = {}
     for name, blocks in _meshio_sets(mesh).items():
         start = 0
         for block, chosen in zip(mesh.cells, blocks):
@@ -53,21 +62,25 @@ def from_meshio(mesh: Any) -> VolumeMesh:
     return _made(mesh.points, np.concatenate(tetrahedra), _joined(volumes), _joined(faces))
 
 
-def _meshio_sets(mesh: Any) -> dict[str, list]:
+def _meshio_sets(mesh: Any) -> dict[str, list[Any]]:
     sets = {name: blocks for name, blocks in (mesh.cell_sets or {}).items() if not name.startswith("gmsh:")}
     numbers = mesh.cell_data.get("gmsh:physical")
     if sets or numbers is None:
         return sets
     dimensions = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
-    for name, (number, dimension) in {name: tuple(int(v) for v in value[:2]) for name, value in mesh.field_data.items()}.items():
-        sets[name] = [np.flatnonzero(n == number) if dimensions[b.type] == dimension else [] for b, n in zip(mesh.cells, numbers)]
+    for name, (number, dimension) in {
+        name: tuple(int(v) for v in value[:2]) for name, value in mesh.field_data.items()
+    }.items():
+        sets[name] = [
+            np.flatnonzero(n == number) if dimensions[b.type] == dimension else [] for b, n in zip(mesh.cells, numbers)
+        ]
     return sets
 
 
 def to_pyvista(mesh: VolumeMesh) -> Any:
     """A pyvista.UnstructuredGrid of the tetrahedra and, once for every face region, its triangles. Cell array `region`:
-    the number of the region, -1: none (of several regions of an element the first); field data `region_NAME`: the number
-    of region NAME. As .vtu softkin reads that by name. Throws ImportError."""
+    the number of the region, -1: none (of several regions of an element the first); field data `region_NAME`: the
+    number of region NAME. As .vtu softkin reads that by name. Throws ImportError."""
     pyvista = _import("pyvista")
     numbers = {name: number for number, name in enumerate([*mesh.volume_regions, *mesh.face_regions])}
     of_cells = np.full(len(mesh.tetrahedra), -1)
@@ -96,8 +109,12 @@ def from_pyvista(grid: Any) -> VolumeMesh:
         raise InvalidInput("the grid has no tetrahedra")
     if "region" not in grid.cell_data:
         return _made(grid.points, cells[TETRAHEDRON], {}, {})
-    names = {int(np.ravel(grid.field_data[key])[0]): key[len("region_") :] for key in grid.field_data.keys() if key.startswith("region_")}
-    regions: list[dict[str, np.ndarray]] = []
+    names = {
+        int(np.ravel(grid.field_data[key])[0]): key[len("region_") :]
+        for key in grid.field_data.keys()
+        if key.startswith("region_")
+    }
+    regions: list[dict[str, Array]] = []
     for kind in (TETRAHEDRON, TRIANGLE):
         numbers = np.asarray(grid.cell_data["region"])[grid.celltypes == kind]
         present = [int(number) for number in np.unique(numbers) if number >= 0]
@@ -106,7 +123,7 @@ def from_pyvista(grid: Any) -> VolumeMesh:
     return _made(grid.points, cells[TETRAHEDRON], regions[0], faces)
 
 
-def _made(points: Any, tetrahedra: np.ndarray, volumes: dict[str, np.ndarray], faces: dict[str, np.ndarray]) -> VolumeMesh:
+def _made(points: Any, tetrahedra: Array, volumes: dict[str, Array], faces: dict[str, Array]) -> VolumeMesh:
     points = np.asarray(points, dtype=np.float64)
     tetrahedra = np.asarray(tetrahedra, dtype=np.int64)
     used = np.unique(tetrahedra)
@@ -118,10 +135,15 @@ def _made(points: Any, tetrahedra: np.ndarray, volumes: dict[str, np.ndarray], f
             raise InvalidInput(f"region '{name}' has faces with vertices of no tetrahedron")
     vertices, cells = compacted(points, tetrahedra)
     shared = set(volumes) & set(renumbered)
-    return VolumeMesh(vertices, positive(vertices, cells), volumes, {f"{n}_2d" if n in shared else n: t for n, t in renumbered.items()})
+    return VolumeMesh(
+        vertices,
+        positive(vertices, cells),
+        volumes,
+        {f"{n}_2d" if n in shared else n: t for n, t in renumbered.items()},
+    )
 
 
-def _unique_faces(mesh: VolumeMesh) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def _unique_faces(mesh: VolumeMesh) -> tuple[Array, dict[str, Array]]:
     if not mesh.face_regions:
         return np.empty((0, 3), dtype=np.int64), {}
     every = np.concatenate(list(mesh.face_regions.values()))
@@ -130,20 +152,23 @@ def _unique_faces(mesh: VolumeMesh) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     return every[first], dict(zip(mesh.face_regions, (np.unique(part) for part in np.split(which.reshape(-1), ends))))
 
 
-def _first_numbers(count: int, regions: Any, field_data: dict[str, np.ndarray]) -> np.ndarray:
+def _first_numbers(count: int, regions: Any, field_data: dict[str, Array]) -> Array:
     numbers = np.zeros(count, dtype=np.int64)
     for name in reversed(list(regions)):
         numbers[regions[name]] = field_data[name][0]
     return numbers
 
 
-def _joined(regions: dict[str, list[np.ndarray]]) -> dict[str, np.ndarray]:
+def _joined(regions: dict[str, list[Array]]) -> dict[str, Array]:
     return {name: np.concatenate(blocks) for name, blocks in regions.items()}
 
 
-def _check_kinds(present: set, known: set) -> None:
+def _check_kinds(present: set[Any], known: set[Any]) -> None:
     if present - known:
-        raise InvalidInput(f"cells of kind {', '.join(map(str, sorted(present - known)))}: only tetrahedra and triangles of order 1 are taken")
+        raise InvalidInput(
+            f"cells of kind {', '.join(map(str, sorted(present - known)))}: only tetrahedra and triangles of order 1"
+            " are taken"
+        )
 
 
 def _import(name: str) -> Any:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arrays import Array
 from .volume_mesh import signed_volumes
 
 EDGES = ((0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1))  # edge, the other two
@@ -29,13 +30,13 @@ class Quality:
 
     def __str__(self) -> str:
         return (
-            f"quality: least dihedral angle {self.least_angle_deg:.3g} degrees (99 % above {self.angle_1_percent_deg:.3g}), "
-            f"largest aspect {self.largest_aspect:.3g}, {self.inverted} inverted; edges {self.edge_median_mm:.3g} mm (median); "
-            f"{self.parts} part{'s' if self.parts > 1 else ''}"
+            f"quality: least dihedral angle {self.least_angle_deg:.3g} degrees (99 % above"
+            f" {self.angle_1_percent_deg:.3g}), largest aspect {self.largest_aspect:.3g}, {self.inverted} inverted;"
+            f" edges {self.edge_median_mm:.3g} mm (median); {self.parts} part{'s' if self.parts > 1 else ''}"
         )
 
 
-def quality_of(vertices: np.ndarray, tetrahedra: np.ndarray) -> Quality:
+def quality_of(vertices: Array, tetrahedra: Array) -> Quality:
     angles = dihedral_angles(vertices, tetrahedra).min(axis=1)
     corners = vertices[tetrahedra]
     lengths = np.stack([np.linalg.norm(corners[:, i] - corners[:, j], axis=1) for i, j, _, _ in EDGES], axis=1)
@@ -54,19 +55,19 @@ def quality_of(vertices: np.ndarray, tetrahedra: np.ndarray) -> Quality:
     )
 
 
-def dihedral_angles(vertices: np.ndarray, tetrahedra: np.ndarray) -> np.ndarray:
+def dihedral_angles(vertices: Array, tetrahedra: Array) -> Array:
     """(m, 6), degrees."""
     corners = vertices[tetrahedra]
     angles = np.empty((len(tetrahedra), 6))
-    for column, (i, j, k, l) in enumerate(EDGES):
+    for column, (i, j, k, other) in enumerate(EDGES):
         edge = corners[:, j] - corners[:, i]
         one = np.cross(edge, corners[:, k] - corners[:, i])
-        two = np.cross(edge, corners[:, l] - corners[:, i])
+        two = np.cross(edge, corners[:, other] - corners[:, i])
         angles[:, column] = np.degrees(np.arctan2(np.linalg.norm(np.cross(one, two), axis=1), (one * two).sum(axis=1)))
     return angles
 
 
-def count_parts(tetrahedra: np.ndarray) -> int:
+def count_parts(tetrahedra: Array) -> int:
     """Pieces that hang together by faces."""
     from .repair import components
     from .volume_mesh import face_pairs
@@ -78,5 +79,6 @@ def count_parts(tetrahedra: np.ndarray) -> int:
     return int(components(pairs, len(tetrahedra)).max()) + 1
 
 
-def _area(corners: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+def _area(corners: Array) -> Array:
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(np.linalg.norm(across, axis=1) / 2)

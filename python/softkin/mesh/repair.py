@@ -7,6 +7,7 @@ from collections import defaultdict
 
 import numpy as np
 
+from .arrays import Array
 from .errors import MeshWarning
 from .surface import Surface
 
@@ -20,14 +21,15 @@ def repaired(surface: Surface) -> Surface:
     return _shells_turned(surface)
 
 
-def open_edges(surface: Surface) -> np.ndarray:
+def open_edges(surface: Surface) -> Array:
     """Edges of one triangle only, (e, 2), in its direction."""
     edges = _directed_edges(surface.triangles)
     _, which, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
-    return edges[counts[which.reshape(-1)] == 1]
+    alone: Array = edges[counts[which.reshape(-1)] == 1]
+    return alone
 
 
-def components(triangles: np.ndarray, count: int) -> np.ndarray:
+def components(triangles: Array, count: int) -> Array:
     """Number of the connected part of each of `count` vertices' triangles, (k,)."""
     label = np.arange(count)
     while True:  # the least label of each triangle spreads, and labels point ever further down
@@ -39,7 +41,7 @@ def components(triangles: np.ndarray, count: int) -> np.ndarray:
             return np.unique(label[triangles[:, 0]], return_inverse=True)[1].reshape(-1)
 
 
-def _directed_edges(triangles: np.ndarray) -> np.ndarray:
+def _directed_edges(triangles: Array) -> Array:
     return np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
 
 
@@ -51,7 +53,9 @@ def _faces_turned(surface: Surface) -> Surface:
     order = np.argsort(which.reshape(-1), kind="stable")
     starts = np.concatenate([[0], np.cumsum(counts)[:-1]])[counts == 2]
     first, second = order[starts], order[starts + 1]
-    against = (edges[first] == edges[second]).all(axis=1)  # neighbours that agree run along their edge in opposite directions
+    against = (edges[first] == edges[second]).all(
+        axis=1
+    )  # neighbours that agree run along their edge in opposite directions
     if not against.any():
         return surface
     neighbours: dict[int, list[tuple[int, bool]]] = defaultdict(list)
@@ -67,10 +71,12 @@ def _faces_turned(surface: Surface) -> Surface:
                 turned[patch] ^= 1
     flipped = turned == 1
     triangles[flipped] = triangles[flipped][:, [0, 2, 1]]
-    return surface.with_triangles(triangles, f"{surface.name}: {int(flipped.sum())} faces turned to agree with their neighbours")
+    return surface.with_triangles(
+        triangles, f"{surface.name}: {int(flipped.sum())} faces turned to agree with their neighbours"
+    )
 
 
-def _spread(seed: int, neighbours: dict[int, list[tuple[int, bool]]], turned: np.ndarray) -> np.ndarray:
+def _spread(seed: int, neighbours: dict[int, list[tuple[int, bool]]], turned: Array) -> Array:
     turned[seed] = 0
     patch = [seed]
     for face in patch:
@@ -85,11 +91,14 @@ def _holes_closed(surface: Surface) -> Surface:
     edges = open_edges(surface)
     if len(edges) == 0:
         return surface
-    vertices, added, widest = surface.vertices, [], 0.0
+    vertices, widest = surface.vertices, 0.0
+    added: list[Array] = []
     points = [vertices]
     loops, left = _loops(edges)
     known = {tuple(corners) for corners in np.sort(surface.triangles, axis=1).tolist()}
-    bounding = [loop for loop in loops if tuple(sorted(loop.tolist())) not in known]  # others are the rim of one triangle
+    bounding = [
+        loop for loop in loops if tuple(sorted(loop.tolist())) not in known
+    ]  # others are the rim of one triangle
     left += 3 * (len(loops) - len(bounding))
     loops = bounding
     for loop in loops:
@@ -97,7 +106,7 @@ def _holes_closed(surface: Surface) -> Surface:
         widest = max(widest, float(np.linalg.norm(np.ptp(rim, axis=0))))
         following = np.roll(loop, -1)
         if len(loop) == 3:
-            added.append([[loop[1], loop[0], loop[2]]])
+            added.append(loop[None, [1, 0, 2]])
             continue
         middle = len(vertices) + sum(len(block) for block in points[1:])
         points.append(rim.mean(axis=0, keepdims=True))
@@ -111,11 +120,15 @@ def _holes_closed(surface: Surface) -> Surface:
     closed = surface.with_triangles(np.concatenate([surface.triangles, *added]), note, vertices=np.concatenate(points))
     patched = np.linalg.norm(closed.normals[len(surface.triangles) :], axis=1).sum()
     if patched > LARGE_HOLE * surface.area:
-        warnings.warn(f"{note}; they are {100 * patched / surface.area:.0f} % of its area: is a part of the surface missing?", MeshWarning, stacklevel=2)
+        warnings.warn(
+            f"{note}; they are {100 * patched / surface.area:.0f} % of its area: is a part of the surface missing?",
+            MeshWarning,
+            stacklevel=2,
+        )
     return closed
 
 
-def _loops(edges: np.ndarray) -> tuple[list[np.ndarray], int]:
+def _loops(edges: Array) -> tuple[list[Array], int]:
     """Closed ways along directed edges, and how many edges are in none."""
     following: dict[int, list[int]] = defaultdict(list)
     for start, end in edges.tolist():
@@ -146,13 +159,17 @@ def _shells_turned(surface: Surface) -> Surface:
     volumes = np.array([part.volume for part in parts])
     turn = np.full(len(parts), bool(volumes[np.argmax(np.abs(volumes))] < 0))
     for number in np.flatnonzero(np.where(turn, -volumes, volumes) < 0):
-        turn[number] ^= not any(_encloses(parts[other], parts[number]) for other in range(len(parts)) if other != number)
+        turn[number] ^= not any(
+            _encloses(parts[other], parts[number]) for other in range(len(parts)) if other != number
+        )
     if not turn.any():
         return surface
     flipped = turn[shell]
     triangles = surface.triangles.copy()
     triangles[flipped] = triangles[flipped][:, [0, 2, 1]]
-    return surface.with_triangles(triangles, f"{surface.name}: {int(turn.sum())} of {len(parts)} shells were inside out and are turned")
+    return surface.with_triangles(
+        triangles, f"{surface.name}: {int(turn.sum())} of {len(parts)} shells were inside out and are turned"
+    )
 
 
 def _encloses(outer: Surface, inner: Surface) -> bool:

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 
+from .arrays import Array
 from .errors import InvalidInput
 from .volume_mesh import VolumeMesh
 
@@ -32,23 +33,39 @@ def scene_text(mesh: VolumeMesh, mesh_file: str, chambers: list[str], fixed: str
         "formulation: physical",
         "materials:   # edit: Young's modulus in MPa, density in kg/m^3; 1 MPa is a silicone of Shore 30A or so",
     ]
-    lines += [f"  - {{region: {_quoted(name)}, youngs_modulus: {1 if name == 'body' else 100}, poisson_ratio: 0.45, density: 1100}}" for name in solids]
+    lines += [
+        f"  - {{region: {_quoted(name)}, youngs_modulus: {1 if name == 'body' else 100}, poisson_ratio: 0.45, density:"
+        " 1100}"
+        for name in solids
+    ]
     lines += ["# gravity: [0, 0, -9.81]   # m/s^2", "fixed:   # edit: where the robot is held", f"  - {held}"]
     if chambers:
-        lines.append("actuators:   # edit: range is the volume over that at rest; with control: pressure it is in kPa, such as [0, 50]")
+        lines.append(
+            "actuators:   # edit: range is the volume over that at rest; with control: pressure it is in kPa, such as"
+            " [0, 50]"
+        )
     for name in chambers:
         where = f"region: {_quoted(name)}" if name in mesh.volume_regions else f"surface: {{region: {_quoted(name)}}}"
         lines.append(f"  - {{name: {_quoted(name)}, kind: pneumatic, {where}, control: volume, range: [1.0, 1.5]}}")
     if not chambers:
-        lines.append("# actuators:   # nothing drives this robot yet; such as a cable along points inside it, range: length over that at rest")
+        lines.append(
+            "# actuators:   # nothing drives this robot yet; such as a cable along points inside it, range: length over"
+            " that at rest"
+        )
         lines.append("#   - {name: tendon, kind: cable, points: [[0, 0, 0], [10, 0, 0]], range: [0.8, 1.0]}")
-    lines += ["markers:   # edit: points to watch and to steer", f"  - {{name: tip, point: {_list(tip)}}}   # the far end", ""]
+    lines += [
+        "markers:   # edit: points to watch and to steer",
+        f"  - {{name: tip, point: {_list(tip)}}}   # the far end",
+        "",
+    ]
     return "\n".join(lines)
 
 
-def _ends(mesh: VolumeMesh, solids: list[str], fixed: str) -> tuple[str, np.ndarray]:
+def _ends(mesh: VolumeMesh, solids: list[str], fixed: str) -> tuple[str, Array]:
     """The entry of `fixed`, and a vertex of the body in the middle of the other end."""
-    cells = mesh.tetrahedra[np.concatenate([mesh.volume_regions[name] for name in solids])] if solids else mesh.tetrahedra
+    cells = (
+        mesh.tetrahedra[np.concatenate([mesh.volume_regions[name] for name in solids])] if solids else mesh.tetrahedra
+    )
     points = mesh.vertices[np.unique(cells)]
     low, high = points.min(axis=0), points.max(axis=0)
     axis = int(np.argmax(high - low))
@@ -70,10 +87,20 @@ def _ends(mesh: VolumeMesh, solids: list[str], fixed: str) -> tuple[str, np.ndar
     return held, end[int(np.argmin(((end - middle) ** 2).sum(axis=1)))]
 
 
-def _list(values: np.ndarray) -> str:
+def _list(values: Array) -> str:
     return "[" + ", ".join(f"{value:.6g}" for value in values) + "]"
 
 
 def _quoted(text: str) -> str:
-    plain = re.fullmatch(r"[A-Za-z_./][\w./-]*", text) and text.lower() not in ("true", "false", "yes", "no", "on", "off", "null", "y", "n")
+    plain = re.fullmatch(r"[A-Za-z_./][\w./-]*", text) and text.lower() not in (
+        "true",
+        "false",
+        "yes",
+        "no",
+        "on",
+        "off",
+        "null",
+        "y",
+        "n",
+    )
     return text if plain else json.dumps(text, ensure_ascii=False)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Union
+from typing import Any
 
 import numpy as np
 
+from .arrays import Array, Floats, Indices
 from .errors import InvalidInput
 
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4}
@@ -21,8 +22,8 @@ class Surface:
     Points at the same place are one vertex after `merged`; readers of files return such surfaces.
     """
 
-    vertices: np.ndarray
-    triangles: np.ndarray
+    vertices: Floats
+    triangles: Indices
     name: str = "surface"
     notes: tuple[str, ...] = field(default=())
 
@@ -32,7 +33,9 @@ class Surface:
         if vertices.ndim != 2 or vertices.shape[1] != 3:
             raise InvalidInput(f"{self.name}: vertices have shape {vertices.shape}; give (n, 3)")
         if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
-            raise InvalidInput(f"{self.name}: triangles have shape {triangles.shape} of {triangles.dtype}; give (k, 3) of integers")
+            raise InvalidInput(
+                f"{self.name}: triangles have shape {triangles.shape} of {triangles.dtype}; give (k, 3) of integers"
+            )
         if len(triangles) == 0:
             raise InvalidInput(f"{self.name}: no triangles")
         if not np.isfinite(vertices).all():
@@ -40,7 +43,10 @@ class Surface:
             raise InvalidInput(f"{self.name}: vertex {bad} is not finite: {vertices[bad].tolist()}")
         if triangles.min() < 0 or triangles.max() >= len(vertices):
             bad = int(np.flatnonzero(((triangles < 0) | (triangles >= len(vertices))).any(axis=1))[0])
-            raise InvalidInput(f"{self.name}: triangle {bad} is {triangles[bad].tolist()}, but vertices go from 0 to {len(vertices) - 1}")
+            raise InvalidInput(
+                f"{self.name}: triangle {bad} is {triangles[bad].tolist()}, but vertices go from 0 to"
+                f" {len(vertices) - 1}"
+            )
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "triangles", np.ascontiguousarray(triangles, dtype=np.int64))
 
@@ -49,15 +55,16 @@ class Surface:
         return f"Surface({self.name!r}, {len(self.triangles)} triangles, {len(self.vertices)} vertices, {size} mm)"
 
     @property
-    def corners(self) -> np.ndarray:
+    def corners(self) -> Floats:
         """Corners of the triangles, (k, 3, 3), mm."""
         return self.vertices[self.triangles]
 
     @property
-    def size(self) -> np.ndarray:
+    def size(self) -> Floats:
         """Edge lengths of the bounding box, (3,), mm."""
         used = self.vertices[np.unique(self.triangles)]
-        return used.max(axis=0) - used.min(axis=0)
+        size: Floats = used.max(axis=0) - used.min(axis=0)
+        return size
 
     @property
     def diagonal(self) -> float:
@@ -65,10 +72,11 @@ class Surface:
         return float(np.linalg.norm(self.size))
 
     @property
-    def normals(self) -> np.ndarray:
+    def normals(self) -> Floats:
         """Normals of the triangles, as long as their areas, (k, 3), mm^2."""
         a, b, c = np.moveaxis(self.corners, 1, 0)
-        return np.cross(b - a, c - a) / 2
+        normals: Floats = np.cross(b - a, c - a) / 2
+        return normals
 
     @property
     def area(self) -> float:
@@ -84,7 +92,7 @@ class Surface:
     def scaled(self, factor: float) -> Surface:
         return Surface(self.vertices * factor, self.triangles, self.name, self.notes)
 
-    def with_triangles(self, triangles: np.ndarray, *notes: str, vertices: np.ndarray | None = None) -> Surface:
+    def with_triangles(self, triangles: Array, *notes: str, vertices: Array | None = None) -> Surface:
         points = self.vertices if vertices is None else vertices
         return Surface(points, triangles, self.name, self.notes + notes)
 
@@ -106,7 +114,7 @@ class Surface:
         return Surface(points[used], renumbered.reshape(-1, 3), self.name, self.notes)
 
 
-SurfaceLike = Union[str, Path, Surface, tuple, object]
+SurfaceLike = Any  # a file, a Surface, a pair of arrays, a PyVista PolyData, a meshio Mesh
 
 
 def as_surface(given: SurfaceLike, name: str) -> Surface:
@@ -117,12 +125,19 @@ def as_surface(given: SurfaceLike, name: str) -> Surface:
     if isinstance(given, (str, Path)):
         return read_surface(given)
     if isinstance(given, Surface):
-        return Surface(given.vertices, given.triangles, given.name if given.name != "surface" else name, given.notes).merged()
+        return Surface(
+            given.vertices, given.triangles, given.name if given.name != "surface" else name, given.notes
+        ).merged()
     if isinstance(given, (tuple, list)) and len(given) == 2:
         return Surface(np.asarray(given[0]), np.asarray(given[1]), name).merged()
     if hasattr(given, "regular_faces") or hasattr(given, "is_all_triangles"):  # pyvista.PolyData
         flat = given if given.is_all_triangles else given.triangulate()
-        return Surface(np.asarray(flat.points, dtype=float), np.asarray(flat.faces).reshape(-1, 4)[:, 1:], name).merged()
+        return Surface(
+            np.asarray(flat.points, dtype=float), np.asarray(flat.faces).reshape(-1, 4)[:, 1:], name
+        ).merged()
     if hasattr(given, "cells_dict") and hasattr(given, "points"):  # meshio.Mesh
         return Surface(given.points, given.cells_dict.get("triangle", np.empty((0, 3), dtype=int)), name).merged()
-    raise InvalidInput(f"{name}: a surface is a file, a softkin.mesh.Surface, or a pair (vertices, triangles); not {type(given).__name__}")
+    raise InvalidInput(
+        f"{name}: a surface is a file, a softkin.mesh.Surface, or a pair (vertices, triangles); not"
+        f" {type(given).__name__}"
+    )

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from pathlib import Path
-from typing import Callable, Union
+from typing import Any
 
 import numpy as np
 
+from .arrays import Array
 from .errors import InvalidInput
 from .surface import Surface
 
 PLY_TYPES = {
-    "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
-    "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8",
+    "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4",
+    "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
+    "float": "f4", "double": "f8", "float32": "f4", "float64": "f8",
 }  # fmt: skip
 
+Properties = list[tuple[str, str, str | None]]  # name, type, type of the counter of a list
+Elements = list[tuple[str, int, Properties]]  # name, how many, properties
+Polygons = list[tuple[str, list[int]]]  # place in the file, vertices
 
-def read_surface(path: Union[str, Path]) -> Surface:
+
+def read_surface(path: str | Path) -> Surface:
     """Reads .stl (text, binary), .obj or .ply (text, binary); polygons become fans of triangles, points at the same
     place are merged. Lengths as they are in the file. Throws InvalidInput with file and line or byte."""
     path = Path(path)
@@ -34,7 +41,7 @@ def read_surface(path: Union[str, Path]) -> Surface:
     return reader(path, content).merged()
 
 
-def write_stl(path: Union[str, Path], surface: Surface) -> None:
+def write_stl(path: str | Path, surface: Surface) -> None:
     """Writes binary STL, in single precision, lengths in mm."""
     normals = surface.normals
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -54,8 +61,14 @@ def _stl(path: Path, content: bytes) -> Surface:
     if content[:5].lower() == b"solid" and b"facet" in content[:2000].lower():
         return _stl_text(path, content)
     if count < 0:
-        raise InvalidInput(f"{path}: {len(content)} bytes are neither a text STL, which begins with 'solid', nor a binary one, of 84 or more")
-    raise InvalidInput(f"{path}: byte 80: the header tells of {count} facets, which take {84 + 50 * count} bytes, but the file has {len(content)}")
+        raise InvalidInput(
+            f"{path}: {len(content)} bytes are neither a text STL, which begins with 'solid', nor a binary one, of 84"
+            " or more"
+        )
+    raise InvalidInput(
+        f"{path}: byte 80: the header tells of {count} facets, which take {84 + 50 * count} bytes, but the file has"
+        f" {len(content)}"
+    )
 
 
 def _stl_binary(path: Path, content: bytes, count: int) -> Surface:
@@ -87,7 +100,7 @@ def _stl_text(path: Path, content: bytes) -> Surface:
     return _soup(path, np.reshape(points, (-1, 3, 3)))
 
 
-def _soup(path: Path, corners: np.ndarray) -> Surface:
+def _soup(path: Path, corners: Array) -> Surface:
     if len(corners) == 0:
         raise InvalidInput(f"{path}: no facets")
     return Surface(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3), str(path))
@@ -125,19 +138,21 @@ def _obj_index(path: Path, line: int, word: str, count: int) -> int:
 
 def _ply(path: Path, content: bytes) -> Surface:
     form, elements, start, line = _ply_header(path, content)
-    read = _ply_text if form == "ascii" else _ply_binary
-    found = read(path, content, start, line if form == "ascii" else form, elements)
+    if form == "ascii":
+        found = _ply_text(path, content, start, line, elements)
+    else:
+        found = _ply_binary(path, content, start, form, elements)
     if "vertex" not in found or "face" not in found or not len(found["face"]):
         raise InvalidInput(f"{path}: no faces")
     return Surface(found["vertex"], np.array(found["face"]), str(path))
 
 
-def _ply_header(path: Path, content: bytes) -> tuple[str, list, int, int]:
+def _ply_header(path: Path, content: bytes) -> tuple[str, Elements, int, int]:
     end = content.find(b"end_header")
     if not content.startswith(b"ply") or end < 0:
         raise InvalidInput(f"{path}:1: no PLY header from 'ply' to 'end_header'")
     form = ""
-    elements: list[tuple[str, int, list]] = []
+    elements: Elements = []
     line = 0
     for line, text in enumerate(_lines(content[:end]), 1):
         words = text.split()
@@ -157,8 +172,8 @@ def _ply_header(path: Path, content: bytes) -> tuple[str, list, int, int]:
     return form, elements, content.index(b"\n", end) + 1, line
 
 
-def _ply_text(path: Path, content: bytes, start: int, line: int, elements: list) -> dict:
-    found: dict = {}
+def _ply_text(path: Path, content: bytes, start: int, line: int, elements: Elements) -> dict[str, Any]:
+    found: dict[str, Any] = {}
     rows = [(line + 1 + number, text.split()) for number, text in enumerate(_lines(content[start:]), 1) if text.strip()]
     at = 0
     for name, count, properties in elements:
@@ -171,11 +186,13 @@ def _ply_text(path: Path, content: bytes, start: int, line: int, elements: list)
             values = [_numbers(path, number, words, len(properties)) for number, words in block]
             found[name] = np.array(values).reshape(-1, len(properties))[:, columns]
         elif name == "face":
-            found[name] = _fans(path, [(f"line {number}", _polygon(path, number, words, properties)) for number, words in block])
+            found[name] = _fans(
+                path, [(f"line {number}", _polygon(path, number, words, properties)) for number, words in block]
+            )
     return found
 
 
-def _polygon(path: Path, line: int, words: list[str], properties: list) -> list[int]:
+def _polygon(path: Path, line: int, words: list[str], properties: Properties) -> list[int]:
     position = 0
     for name, _, counted in properties:
         if counted is None:
@@ -183,7 +200,9 @@ def _polygon(path: Path, line: int, words: list[str], properties: list) -> list[
             continue
         try:
             length = int(words[position])
-            values = [int(word) for word in words[position + 1 : position + 1 + length]] if name.startswith("vert") else []
+            values = (
+                [int(word) for word in words[position + 1 : position + 1 + length]] if name.startswith("vert") else []
+            )
         except (IndexError, ValueError):
             raise InvalidInput(f"{path}:{line}: no list of indices") from None
         if name.startswith("vert"):
@@ -194,9 +213,9 @@ def _polygon(path: Path, line: int, words: list[str], properties: list) -> list[
     raise InvalidInput(f"{path}: faces have no list vertex_indices")
 
 
-def _ply_binary(path: Path, content: bytes, start: int, form: str, elements: list) -> dict:
+def _ply_binary(path: Path, content: bytes, start: int, form: str, elements: Elements) -> dict[str, Any]:
     order = "<" if form == "binary_little_endian" else ">"
-    found: dict = {}
+    found: dict[str, Any] = {}
     at = start
     for name, count, properties in elements:
         if any(counted for _, _, counted in properties):
@@ -206,7 +225,10 @@ def _ply_binary(path: Path, content: bytes, start: int, form: str, elements: lis
             continue
         row = np.dtype([(label, order + kind) for label, kind, _ in properties])
         if at + count * row.itemsize > len(content):
-            raise InvalidInput(f"{path}: byte {at}: {count} elements '{name}' take {count * row.itemsize} bytes, {len(content) - at} are left")
+            raise InvalidInput(
+                f"{path}: byte {at}: {count} elements '{name}' take {count * row.itemsize} bytes, {len(content) - at}"
+                " are left"
+            )
         values = np.frombuffer(content, dtype=row, count=count, offset=at)
         at += count * row.itemsize
         if name == "vertex" and _has_xyz(path, properties):
@@ -214,7 +236,9 @@ def _ply_binary(path: Path, content: bytes, start: int, form: str, elements: lis
     return found
 
 
-def _binary_lists(path: Path, content: bytes, at: int, order: str, name: str, count: int, properties: list) -> tuple[list, int]:
+def _binary_lists(
+    path: Path, content: bytes, at: int, order: str, name: str, count: int, properties: Properties
+) -> tuple[Polygons, int]:
     polygons = []
     for number in range(count):
         polygon: list[int] = []
@@ -237,7 +261,7 @@ def _binary_lists(path: Path, content: bytes, at: int, order: str, name: str, co
     return polygons, at
 
 
-def _fans(path: Path, polygons: list[tuple[str, list[int]]]) -> list[tuple[int, int, int]]:
+def _fans(path: Path, polygons: Polygons) -> list[tuple[int, int, int]]:
     triangles = []
     for place, polygon in polygons:
         if len(polygon) < 3:
@@ -246,7 +270,7 @@ def _fans(path: Path, polygons: list[tuple[str, list[int]]]) -> list[tuple[int, 
     return triangles
 
 
-def _has_xyz(path: Path, properties: list) -> bool:
+def _has_xyz(path: Path, properties: Properties) -> bool:
     if not {"x", "y", "z"} <= {name for name, _, _ in properties}:
         raise InvalidInput(f"{path}: vertices have no properties x, y and z")
     return True

@@ -6,12 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from .arrays import Array
 from .errors import InvalidInput
 from .surface import Surface
 
 # Ten rounds leave the angles that eighty do, in a third of the time.
 ROUNDS = 10
-INSTALL = "softkin.mesh needs pytetwild: pip install 'softkin[mesh]' (or: pip install 'pytetwild[all]'); or take backend='gmsh'"
+INSTALL = (
+    "softkin.mesh needs pytetwild: pip install 'softkin[mesh]' (or: pip install 'pytetwild[all]'); or take"
+    " backend='gmsh'"
+)
 
 
 def import_pytetwild() -> Any:
@@ -23,7 +27,7 @@ def import_pytetwild() -> Any:
     return pytetwild
 
 
-def background(surfaces: list[Surface], edge_length: float, tolerance: float, coarsen: bool) -> tuple[np.ndarray, np.ndarray]:
+def background(surfaces: list[Surface], edge_length: float, tolerance: float, coarsen: bool) -> tuple[Array, Array]:
     """Tetrahedra of the box around all surfaces, with faces along each of them.
 
     edge_length, tolerance: mm. coarsen: as few tetrahedra as their shapes allow. Returns (n, 3), (m, 4) without order

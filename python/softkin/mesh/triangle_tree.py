@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
 
 import numpy as np
+
+from .arrays import Array
 
 LEAF = 24  # triangles; smaller ones cost more calls, larger ones more pairs
 
@@ -14,24 +15,24 @@ LEAF = 24  # triangles; smaller ones cost more calls, larger ones more pairs
 class Node:
     """Some triangles: their numbers, a ball around them, and their area-weighted normal and middle."""
 
-    triangles: np.ndarray
-    centre: np.ndarray
+    triangles: Array
+    centre: Array
     radius: float
-    normal: np.ndarray
-    children: Optional[tuple["Node", "Node"]]
+    normal: Array
+    children: tuple[Node, Node] | None
 
 
 class TriangleTree:
     """Triangles, (k, 3, 3), halved at the median of their middles along the longest axis."""
 
-    def __init__(self, corners: np.ndarray) -> None:
+    def __init__(self, corners: Array) -> None:
         self.corners = np.ascontiguousarray(corners, dtype=np.float64)
         self.middles = self.corners.mean(axis=1)
         self.normals = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0]) / 2
         self.areas = np.linalg.norm(self.normals, axis=1)
         self.root = self._node(np.arange(len(corners)))
 
-    def _node(self, triangles: np.ndarray) -> Node:
+    def _node(self, triangles: Array) -> Node:
         weights = self.areas[triangles] + 1e-300
         centre = np.average(self.middles[triangles], axis=0, weights=weights)
         radius = float(np.sqrt(((self.corners[triangles] - centre) ** 2).sum(axis=2).max()))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Mapping, Union
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .arrays import Array, Floats, Indices
 from .errors import InvalidInput
 from .surface import Surface
 
@@ -30,15 +32,15 @@ class VolumeMesh:
     """A mesh of tetrahedra with named regions, lengths in mm.
 
     vertices: (n, 3) float64. tetrahedra: (m, 4) int64, of positive volume. volume_regions: name to indices of
-    tetrahedra, (e,). face_regions: name to triangles, (k, 3) vertices each. What `from_surfaces` tells: `volumes` inside each
-    surface; `deviation_mm`, the largest distance between each surface that was given and that of the mesh, either way,
-    sampled; `tolerance_mm`, which was asked for; `notes`.
+    tetrahedra, (e,). face_regions: name to triangles, (k, 3) vertices each. What `from_surfaces` tells:
+    `volumes` inside each surface; `deviation_mm`, the largest distance between each surface that was given and that of
+    the mesh, either way, sampled; `tolerance_mm`, which was asked for; `notes`.
     """
 
-    vertices: np.ndarray
-    tetrahedra: np.ndarray
-    volume_regions: Mapping[str, np.ndarray] = field(default_factory=dict)
-    face_regions: Mapping[str, np.ndarray] = field(default_factory=dict)
+    vertices: Floats
+    tetrahedra: Indices
+    volume_regions: Mapping[str, Indices] = field(default_factory=dict)
+    face_regions: Mapping[str, Indices] = field(default_factory=dict)
     volumes: Mapping[str, Volume] = field(default_factory=dict)
     deviation_mm: Mapping[str, float] = field(default_factory=dict)
     tolerance_mm: float = 0.0
@@ -67,20 +69,22 @@ class VolumeMesh:
 
     def __repr__(self) -> str:
         names = ", ".join(self.regions)
-        return f"VolumeMesh({len(self.vertices)} vertices, {len(self.tetrahedra)} tetrahedra, regions: {names or 'none'})"
+        return (
+            f"VolumeMesh({len(self.vertices)} vertices, {len(self.tetrahedra)} tetrahedra, regions: {names or 'none'})"
+        )
 
     @property
-    def regions(self) -> dict[str, np.ndarray]:
+    def regions(self) -> dict[str, Indices]:
         """All regions: of elements (e,), of faces (k, 3)."""
         return {**self.volume_regions, **self.face_regions}
 
     @property
-    def element_volumes(self) -> np.ndarray:
+    def element_volumes(self) -> Floats:
         """Volumes of the tetrahedra, (m,), mm^3."""
         return signed_volumes(self.vertices, self.tetrahedra)
 
     @property
-    def quality(self) -> "Quality":
+    def quality(self) -> Quality:
         """Least angles, aspects and counts."""
         from .quality import quality_of
 
@@ -92,7 +96,9 @@ class VolumeMesh:
         if names:
             for name in names:
                 if name not in self.volume_regions:
-                    raise InvalidInput(f"no volume region '{name}'; there are: {', '.join(self.volume_regions) or 'none'}")
+                    raise InvalidInput(
+                        f"no volume region '{name}'; there are: {', '.join(self.volume_regions) or 'none'}"
+                    )
             chosen = self.tetrahedra[np.unique(np.concatenate([self.volume_regions[name] for name in names]))]
         return Surface(self.vertices, boundary_faces(chosen), " and ".join(names) or "mesh")
 
@@ -106,12 +112,12 @@ class VolumeMesh:
         for name, deviation in self.deviation_mm.items():
             sizes = self.volumes[name]
             lines.append(
-                f"surface {name}: within {deviation:.3g} mm of that of the mesh (tolerance {self.tolerance_mm:.3g} mm); "
-                f"inside {sizes.mesh_mm3:.6g} mm^3 of {sizes.surface_mm3:.6g}"
+                f"surface {name}: within {deviation:.3g} mm of that of the mesh (tolerance {self.tolerance_mm:.3g} mm);"
+                f" inside {sizes.mesh_mm3:.6g} mm^3 of {sizes.surface_mm3:.6g}"
             )
         return "\n".join(lines + list(self.notes))
 
-    def write(self, path: Union[str, Path]) -> None:
+    def write(self, path: str | Path) -> None:
         """Writes Gmsh .msh 4.1, binary, regions as physical groups."""
         from .msh_write import write_msh
 
@@ -128,24 +134,25 @@ class VolumeMesh:
         return to_pyvista(self)
 
     @staticmethod
-    def from_meshio(mesh: Any) -> "VolumeMesh":
+    def from_meshio(mesh: Any) -> VolumeMesh:
         from .neighbours import from_meshio
 
         return from_meshio(mesh)
 
     @staticmethod
-    def from_pyvista(grid: Any) -> "VolumeMesh":
+    def from_pyvista(grid: Any) -> VolumeMesh:
         from .neighbours import from_pyvista
 
         return from_pyvista(grid)
 
 
-def signed_volumes(vertices: np.ndarray, tetrahedra: np.ndarray) -> np.ndarray:
+def signed_volumes(vertices: Array, tetrahedra: Array) -> Floats:
     a, b, c, d = np.moveaxis(vertices[tetrahedra], 1, 0)
-    return np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6
+    volumes: Floats = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6
+    return volumes
 
 
-def positive(vertices: np.ndarray, tetrahedra: np.ndarray) -> np.ndarray:
+def positive(vertices: Array, tetrahedra: Array) -> Array:
     """The tetrahedra with the corners of those of negative volume reordered."""
     reversed_ones = signed_volumes(vertices, tetrahedra) < 0
     ordered = tetrahedra.copy()
@@ -153,7 +160,7 @@ def positive(vertices: np.ndarray, tetrahedra: np.ndarray) -> np.ndarray:
     return ordered
 
 
-def face_pairs(tetrahedra: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def face_pairs(tetrahedra: Array) -> tuple[Array, Array, Array]:
     """Every face once, (f, 3), as the first of its tetrahedra sees it from inside; the numbers of its first and its
     second tetrahedron, (f,) each, -1 where there is no second."""
     faces = tetrahedra[:, FACES].reshape(-1, 3)
@@ -165,18 +172,20 @@ def face_pairs(tetrahedra: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
     return faces[first], first // 4, second
 
 
-def boundary_faces(tetrahedra: np.ndarray) -> np.ndarray:
+def boundary_faces(tetrahedra: Array) -> Array:
     """Faces of one tetrahedron only, normals outwards, (k, 3)."""
     faces, _, second = face_pairs(tetrahedra)
     return faces[second < 0]
 
 
-def compacted(vertices: np.ndarray, tetrahedra: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def compacted(vertices: Array, tetrahedra: Array) -> tuple[Array, Array]:
     """Without the vertices that no tetrahedron has."""
     used, renumbered = np.unique(tetrahedra, return_inverse=True)
     return vertices[used], renumbered.reshape(-1, 4)
 
 
-def _check_indices(what: str, indices: np.ndarray, count: int) -> None:
+def _check_indices(what: str, indices: Array, count: int) -> None:
     if indices.size and (indices.min() < 0 or indices.max() >= count):
-        raise InvalidInput(f"{what}: index {int(indices.min() if indices.min() < 0 else indices.max())} is not in 0 to {count - 1}")
+        raise InvalidInput(
+            f"{what}: index {int(indices.min() if indices.min() < 0 else indices.max())} is not in 0 to {count - 1}"
+        )

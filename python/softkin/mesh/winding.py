@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arrays import Array
 from .surface import Surface
 from .triangle_tree import Node, TriangleTree
 
@@ -15,7 +16,7 @@ FAR = 2.5  # radii of a group; the dipole then errs by less than 0.03 in all of 
 PAIRS = 200_000  # points times triangles that are worked on at once
 
 
-def winding_numbers(surface: Surface, points: np.ndarray, far: float = FAR) -> np.ndarray:
+def winding_numbers(surface: Surface, points: Array, far: float = FAR) -> Array:
     """Winding number of the surface around each of the points.
 
     points: (q, 3), mm. far: how many radii away a group of triangles is one dipole; `numpy.inf`: never.
@@ -24,7 +25,7 @@ def winding_numbers(surface: Surface, points: np.ndarray, far: float = FAR) -> n
     points = np.ascontiguousarray(points, dtype=np.float64)
     tree = TriangleTree(surface.corners)
     angles = np.zeros(len(points))
-    waiting: list[tuple[Node, np.ndarray]] = [(tree.root, np.arange(len(points)))]
+    waiting: list[tuple[Node, Array]] = [(tree.root, np.arange(len(points)))]
     while waiting:
         node, asked = waiting.pop()
         away = points[asked] - node.centre
@@ -43,7 +44,7 @@ def winding_numbers(surface: Surface, points: np.ndarray, far: float = FAR) -> n
     return angles / (4 * np.pi)
 
 
-def _solid_angles(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+def _solid_angles(points: Array, corners: Array) -> Array:
     """Sum of the solid angles of triangles (k, 3, 3) seen from points (q, 3): Van Oosterom, Strackee 1983, eq. (8)."""
     total = np.empty(len(points))
     step = max(1, PAIRS // len(corners))
