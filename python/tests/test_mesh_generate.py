@@ -184,6 +184,33 @@ def test_chambers_outside_are_refused(chamber, told):
 def test_a_chamber_that_a_plate_closes():
     mesh = from_surfaces(BODY, {"air": box((0, 3, 3), (9, 7, 7))}, edge_length=5, open_chambers=True)
     assert volume_of(mesh, "air") == pytest.approx(144, rel=0.02)
+    mesh = from_surfaces(
+        BODY,
+        {"air": box((0, 3, 3), (9, 7, 7))},
+        edge_length=5,
+        open_chambers=True,
+        chambers_as="void",
+        regions={"base": "plane x=0"},
+    )
+    assert Surface(mesh.vertices, mesh.face_regions["base"]).area == pytest.approx(100 - 16, rel=0.01)
+
+
+def test_chambers_that_touch_are_refused():
+    with pytest.raises(InvalidInput, match=r"chambers (left|right) and (left|right) touch at \(10, .*no wall between"):
+        from_surfaces(BODY, {"left": box((3, 3, 3), (10, 7, 7)), "right": box((10, 3, 3), (17, 7, 7))}, edge_length=5)
+
+
+def test_a_mesher_that_fails_is_one_clear_error(monkeypatch):
+    from softkin.mesh import tetwild
+
+    for script, told in (
+        ("raise RuntimeError('bad day')", "bad day"),
+        ("import os; os.abort()", "ended by signal 6"),
+        ("", "code 0"),
+    ):
+        monkeypatch.setattr(tetwild, "SCRIPT", script)
+        with pytest.raises(InvalidInput, match=rf"fTetWild made no mesh of box: .*{told}; try another tolerance"):
+            from_surfaces(BODY, edge_length=5)
 
 
 def test_parts_that_stick_out_add_to_the_body():

@@ -83,6 +83,7 @@ def from_surfaces(
         points, tetrahedra = tetwild.background(surfaces, edge_length, tolerance, coarsen)
     tetrahedra = positive(points, tetrahedra)
     labels = label(points, tetrahedra, given.body, given.chambers, given.parts, tolerance)
+    _check_apart(points, tetrahedra, labels, given)
     if not open_chambers:
         _check_closed(points, tetrahedra, labels, given)
     told = {
@@ -158,6 +159,20 @@ def _check_sizes(given: Given, edge_length: float, unit: str) -> None:
             )
 
 
+def _check_apart(points: Array, tetrahedra: Array, labels: Labels, given: Given) -> None:
+    faces, first, second = face_pairs(tetrahedra)
+    chamber = np.zeros(len(tetrahedra) + 1, dtype=np.int64)
+    for number, name in enumerate(given.chambers, 1):
+        chamber[:-1][labels.regions[name]] = number
+    touching = (chamber[first] != chamber[second]) & (chamber[first] > 0) & (chamber[second] > 0)
+    if touching.any():
+        one, two = (list(given.chambers)[chamber[side[touching][0]] - 1] for side in (first, second))
+        raise InvalidInput(
+            f"chambers {one} and {two} touch at {place(points[faces[touching][0]].mean(axis=0))}: there is no wall"
+            " between them, or a thinner one than the tolerance"
+        )
+
+
 def _check_closed(points: Array, tetrahedra: Array, labels: Labels, given: Given) -> None:
     faces, first, second = face_pairs(tetrahedra)
     kept = np.append(labels.kept, False)  # -1: outside of the box
@@ -202,7 +217,7 @@ def _assemble(
     volumes = {name: np.arange(end - len(block), end) for (name, block), end in zip(blocks.items(), ends)}
     suffix = "_wall" if chambers_as == "region" else ""
     faces = {f"{name}{suffix}": new_number[wall] for name, wall in walls.items()}
-    outer = new_number[boundary_faces(tetrahedra[labels.kept])]
+    outer = new_number[_outer_faces(tetrahedra, labels.kept, labels.kept if chambers_as == "region" else solid)]
     for name, chosen_by in regions.items():
         check_name(name)
         if name in volumes or name in faces or name in given.chambers:
@@ -213,6 +228,12 @@ def _assemble(
     told_volumes = {n: Volume(sizes[n], s.volume) for n, s in given.all.items() if n != "body"}
     told_volumes["body"] = Volume(sizes["body"], given.body.volume)
     return VolumeMesh(vertices, cells, volumes, faces, told_volumes, told, tolerance, notes)
+
+
+def _outer_faces(tetrahedra: Array, kept: Array, meshed: Array) -> Array:
+    """Faces of the boundary of what is kept that tetrahedra of the mesh have."""
+    faces, first, second = face_pairs(tetrahedra[kept])
+    return faces[(second < 0) & meshed[kept][first]]
 
 
 def _walls(tetrahedra: Array, solid: Array, labels: Labels, chambers: Mapping[str, Surface]) -> dict[str, Array]:
