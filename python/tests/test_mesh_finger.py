@@ -19,8 +19,13 @@ def markers(scene):
     return {name: np.array(point) for name, point in step["markers"].items()}
 
 
+@pytest.fixture(scope="module")
+def theirs():
+    return markers(FOLDER / "pneumatic_finger.yaml")
+
+
 @pytest.mark.parametrize("backend", ["tetwild", "gmsh"])
-def test_the_remeshed_finger_bends_as_the_shipped_one(tmp_path, backend):
+def test_the_remeshed_finger_bends_as_the_shipped_one(tmp_path, theirs, backend):
     if backend == "tetwild":
         pytest.importorskip("pytetwild", reason="pytetwild, of the extra mesh, is not installed")
     else:
@@ -41,7 +46,7 @@ def test_the_remeshed_finger_bends_as_the_shipped_one(tmp_path, backend):
     check_usable(mesh, tmp_path)
     mesh.write(tmp_path / "pneumatic_finger.msh")
     (tmp_path / "finger.yaml").write_text((FOLDER / "pneumatic_finger.yaml").read_text())
-    theirs, ours = markers(FOLDER / "pneumatic_finger.yaml"), markers(tmp_path / "finger.yaml")
+    ours = markers(tmp_path / "finger.yaml")
     for name in ("tip", "end"):
         apart = np.linalg.norm(ours[name] - theirs[name])
         print(f"{backend}: {name} {apart:.3f} mm apart, {100 * apart / LENGTH_MM:.2f} % of the length; {mesh!r}")

@@ -213,6 +213,27 @@ def test_a_mesher_that_fails_is_one_clear_error(monkeypatch):
             from_surfaces(BODY, edge_length=5)
 
 
+def test_ctrl_c_ends_the_mesher(tmp_path):
+    import os
+    import signal
+    import subprocess
+    import sys
+    import time
+
+    script = "import time; print('on', flush=True); time.sleep(60)"
+    code = f"from pathlib import Path\nfrom softkin.mesh import tetwild\ntetwild.SCRIPT = {script!r}\n"
+    code += "tetwild._run(Path('.'), {})\n"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    running = subprocess.Popen(
+        [sys.executable, "-c", code], cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True
+    )
+    time.sleep(2)
+    running.send_signal(signal.SIGINT)
+    start = time.monotonic()
+    said = running.communicate(timeout=30)[1]
+    assert "KeyboardInterrupt" in said and time.monotonic() - start < 10
+
+
 def test_parts_that_stick_out_add_to_the_body():
     mesh = from_surfaces(BODY, parts={"plug": box((18, 2, 2), (24, 8, 8))}, edge_length=5)
     assert volume_of(mesh, "plug") == pytest.approx(216, rel=0.01)

@@ -155,3 +155,14 @@ def test_a_missing_side_is_a_warning():
     with pytest.warns(MeshWarning, match="20 % of its area: is a part of the surface missing"):
         mended = repaired(Surface(shape.vertices, shape.triangles[2:], "open"))
     assert mended.volume == pytest.approx(64)
+
+
+def test_gaps_of_rounding_are_joined():
+    shape = fine_box((0, 0, 0), (4, 4, 4), 6)
+    corners = shape.corners + np.random.default_rng(0).uniform(-1, 1, shape.corners.shape) * 1e-6
+    soup = Surface(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3), "gappy")
+    some = np.random.default_rng(1).random(len(corners)) < 0.3
+    mended = repaired(turned(soup, some))
+    assert len(open_edges(mended)) == 0 and len(mended.vertices) == len(shape.vertices)
+    assert mended.volume == pytest.approx(64, rel=1e-5)
+    assert "points joined to others within" in mended.notes[0]

@@ -16,8 +16,9 @@ from .errors import InvalidInput, MeshWarning
 from .face_regions import choose_faces
 from .labels import Labels, check_clear, label, place
 from .repair import repaired
+from .snap import snapped
 from .surface import MM_PER_UNIT, Surface, SurfaceLike, as_surface
-from .volume_mesh import Volume, VolumeMesh, boundary_faces, compacted, face_pairs, positive
+from .volume_mesh import Volume, VolumeMesh, boundary_faces, compacted, face_pairs, positive, signed_volumes
 
 METRES_BELOW = 2.0  # mm, diagonal of a body: no robot, but a robot in metres
 
@@ -83,6 +84,8 @@ def from_surfaces(
         points, tetrahedra = tetwild.background(surfaces, edge_length, tolerance, coarsen)
     tetrahedra = positive(points, tetrahedra)
     labels = label(points, tetrahedra, given.body, given.chambers, given.parts, tolerance)
+    if backend == "tetwild":  # gmsh puts its vertices there
+        points = snapped(points, tetrahedra, labels, given.all, tolerance)
     _check_apart(points, tetrahedra, labels, given)
     if not open_chambers:
         _check_closed(points, tetrahedra, labels, given)
@@ -224,7 +227,8 @@ def _assemble(
             raise InvalidInput(f"regions: '{name}' is a region already: give the faces another name")
         faces[name] = choose_faces(name, chosen_by, vertices, outer, tolerance)
     notes = tuple(note for surface in given.all.values() for note in surface.notes) + labels.notes
-    sizes = labels.volumes
+    all_volumes = signed_volumes(points, tetrahedra)
+    sizes = {name: float(all_volumes[flags].sum()) for name, flags in labels.inside.items()}
     told_volumes = {n: Volume(sizes[n], s.volume) for n, s in given.all.items() if n != "body"}
     told_volumes["body"] = Volume(sizes["body"], given.body.volume)
     return VolumeMesh(vertices, cells, volumes, faces, told_volumes, told, tolerance, notes)

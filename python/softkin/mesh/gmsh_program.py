@@ -27,8 +27,15 @@ FEATURE_DEG = 15  # edges of a surface that are sharper than this stay edges
 def find_gmsh() -> list[str] | None:
     """How to start gmsh: the program on PATH, or that of the pip package beside this Python; None: there is none."""
     beside = Path(sys.executable).parent / "gmsh"
-    found = shutil.which("gmsh") or (str(beside) if beside.exists() else None)
-    return [found] if found else None
+    found = Path(shutil.which("gmsh") or beside)
+    if not found.is_file():
+        return None
+    with found.open("rb") as file:
+        script = file.read(2) == b"#!"
+    if not script:
+        return [str(found)]
+    python = found.parent / "python"  # that of the pip package names just any python in its first line
+    return [str(python) if python.exists() else sys.executable, str(found)]
 
 
 def read_surface(given: SurfaceLike, name: str) -> Surface:

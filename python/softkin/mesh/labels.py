@@ -8,7 +8,7 @@ import numpy as np
 
 from .arrays import Array, Flags
 from .errors import InvalidInput
-from .repair import components, open_edges
+from .repair import components, open_edges, shell_volumes
 from .surface import Surface
 from .volume_mesh import face_pairs, signed_volumes
 from .winding import winding_numbers
@@ -21,13 +21,11 @@ CRUMB = 1e-3  # of the volume: smaller loose pieces are left out
 
 @dataclass(frozen=True)
 class Labels:
-    """Flags of all tetrahedra, (m,) each. inside: by surface. regions: by region, exclusive. kept: in any region.
-    volumes: of what is inside each surface and kept, mm^3."""
+    """Flags of all tetrahedra, (m,) each. inside: by surface. regions: by region, exclusive. kept: in any region."""
 
     inside: dict[str, Flags]
     regions: dict[str, Flags]
     kept: Flags
-    volumes: dict[str, float]
     notes: tuple[str, ...]
 
 
@@ -75,7 +73,6 @@ def label(
         inside_kept,
         ordered,
         kept,
-        {name: float(volumes[flags].sum()) for name, flags in inside_kept.items()},
         tuple(notes),
     )
 
@@ -119,12 +116,11 @@ def _state(surface: Surface) -> str:
 
 def _inside_hull(body: Surface, middles: Array) -> Array:
     """Inside of the shells of the body that do not turn inwards: with its cavities."""
-    shell = components(body.triangles, len(body.vertices))
-    shells = [body.with_triangles(body.triangles[shell == number]) for number in range(shell.max() + 1)]
-    outward = [part for part in shells if part.volume > 0]
-    if len(outward) == len(shells):
+    shell, volumes = shell_volumes(body)
+    outward = volumes[shell] > 0
+    if outward.all():
         return np.zeros(len(middles), dtype=bool)  # the body itself
-    return _winding(body.with_triangles(np.concatenate([part.triangles for part in outward])), middles) > 0.5
+    return _winding(body.with_triangles(body.triangles[outward]), middles) > 0.5
 
 
 def _winding(surface: Surface, middles: Array) -> Array:

@@ -10,14 +10,18 @@ import numpy as np
 from .arrays import Array
 from .errors import MeshWarning
 from .surface import Surface
+from .winding import winding_numbers
 
+WELD = 1e-5  # of the diagonal: about what single precision leaves of a coordinate far from the origin
+ENCLOSING = 20  # shells, the largest ones: which others lie in them is asked
 LARGE_HOLE = 0.05  # of the surface's area; more than that is rather a missing part
 
 
 def repaired(surface: Surface) -> Surface:
-    """Faces turned to agree with their neighbours, holes closed, shells turned as `_shells_turned` says; what was
-    done stands in `notes`. Overlaps and self-intersections stay: winding numbers bear them."""
-    surface = _holes_closed(_faces_turned(surface))
+    """Points at gaps joined, faces turned to agree with their neighbours, holes closed, shells turned as
+    `_shells_turned` says; what was done stands in `notes`. Overlaps and self-intersections stay: winding numbers bear
+    them."""
+    surface = _holes_closed(_faces_turned(_welded(surface)))
     return _shells_turned(surface)
 
 
@@ -29,16 +33,51 @@ def open_edges(surface: Surface) -> Array:
     return alone
 
 
-def components(triangles: Array, count: int) -> Array:
-    """Number of the connected part of each of `count` vertices' triangles, (k,)."""
+def components(cells: Array, count: int) -> Array:
+    """Number of the connected part of each of the cells, (k,), of which each names some of `count` vertices."""
+    return np.unique(_least(cells, count)[cells[:, 0]], return_inverse=True)[1].reshape(-1)
+
+
+def shell_volumes(surface: Surface) -> tuple[Array, Array]:
+    """The shell of each triangle, (k,), and the signed volumes of the shells, mm^3."""
+    shell = components(surface.triangles, len(surface.vertices))
+    corners = surface.corners
+    counts = np.bincount(shell)[:, None]
+    middles = np.stack([np.bincount(shell, weights=corners[:, :, axis].mean(axis=1)) for axis in range(3)], axis=1)
+    away = corners - (middles / counts)[shell][:, None]
+    cones = np.einsum("ij,ij->i", away[:, 0], np.cross(away[:, 1], away[:, 2])) / 6
+    return shell, np.bincount(shell, weights=cones)
+
+
+def _least(cells: Array, count: int) -> Array:
+    """The least vertex of the connected part of each vertex, (count,)."""
     label = np.arange(count)
-    while True:  # the least label of each triangle spreads, and labels point ever further down
-        least = label[triangles].min(axis=1)
+    while True:  # the least label of each cell spreads, and labels point ever further down
+        least = label[cells].min(axis=1)
         before = label.copy()
-        np.minimum.at(label, triangles.reshape(-1), np.repeat(least, triangles.shape[1]))
+        np.minimum.at(label, cells.reshape(-1), np.repeat(least, cells.shape[1]))
         label = label[label]
         if np.array_equal(label, before):
-            return np.unique(label[triangles[:, 0]], return_inverse=True)[1].reshape(-1)
+            return label
+
+
+def _welded(surface: Surface) -> Surface:
+    """Points at open edges that are nearly at the same place made one."""
+    loose = np.unique(open_edges(surface))
+    if len(loose) == 0:
+        return surface
+    cell = WELD * surface.diagonal
+    links = [np.stack([loose, loose], axis=1)]
+    for shift in np.ndindex(2, 2, 2):  # what is within half a cell shares one for some shift
+        places = np.floor(surface.vertices[loose] / cell + np.array(shift) / 2)
+        _, first, which = np.unique(places, axis=0, return_index=True, return_inverse=True)
+        links.append(np.stack([loose, loose[first[which.reshape(-1)]]], axis=1))
+    label = _least(np.concatenate(links), len(surface.vertices))
+    moved = int((label != np.arange(len(label))).sum())
+    if moved == 0:
+        return surface
+    note = f"{surface.name}: {moved} points joined to others within {cell:.2g} mm"
+    return surface.with_triangles(label[surface.triangles], note).merged()
 
 
 def _directed_edges(triangles: Array) -> Array:
@@ -154,29 +193,21 @@ def _loops(edges: Array) -> tuple[list[Array], int]:
 def _shells_turned(surface: Surface) -> Surface:
     """Shells keep the direction that they have relative to the largest, so that a cavity that turns inwards stays one;
     all are turned where the largest is inside out, and those that turn inwards without being inside another."""
-    shell = components(surface.triangles, len(surface.vertices))
-    parts = [surface.with_triangles(surface.triangles[shell == number]) for number in range(shell.max() + 1)]
-    volumes = np.array([part.volume for part in parts])
-    turn = np.full(len(parts), bool(volumes[np.argmax(np.abs(volumes))] < 0))
-    for number in np.flatnonzero(np.where(turn, -volumes, volumes) < 0):
-        turn[number] ^= not any(
-            _encloses(parts[other], parts[number]) for other in range(len(parts)) if other != number
-        )
+    shell, volumes = shell_volumes(surface)
+    by_size = np.argsort(-np.abs(volumes))
+    turn = np.full(len(volumes), bool(volumes[by_size[0]] < 0))
+    inwards = np.flatnonzero(np.where(turn, -volumes, volumes) < 0)
+    points = surface.corners[np.unique(shell, return_index=True)[1][inwards]].mean(axis=1)  # one of each of them
+    enclosed = np.zeros(len(inwards), dtype=bool)
+    for outer in by_size[:ENCLOSING]:
+        of_it = surface.with_triangles(surface.triangles[shell == outer])
+        others = inwards != outer
+        enclosed[others] |= np.abs(winding_numbers(of_it, points[others])) > 0.5
+    turn[inwards[~enclosed]] ^= True
     if not turn.any():
         return surface
     flipped = turn[shell]
     triangles = surface.triangles.copy()
     triangles[flipped] = triangles[flipped][:, [0, 2, 1]]
-    return surface.with_triangles(
-        triangles, f"{surface.name}: {int(turn.sum())} of {len(parts)} shells were inside out and are turned"
-    )
-
-
-def _encloses(outer: Surface, inner: Surface) -> bool:
-    from .winding import winding_numbers
-
-    points = outer.vertices[np.unique(outer.triangles)]
-    point = inner.corners[0].mean(axis=0, keepdims=True)
-    if (point < points.min(axis=0)).any() or (point > points.max(axis=0)).any():
-        return False
-    return bool(abs(winding_numbers(outer, point)[0]) > 0.5)
+    note = f"{surface.name}: {int(turn.sum())} of {len(volumes)} shells were inside out and are turned"
+    return surface.with_triangles(triangles, note)
