@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import shutil
@@ -13,6 +14,8 @@ import pytest
 
 from softkin.mesh import Surface
 
+WITHOUT_TETWILD = importlib.util.find_spec("pytetwild") is None
+needs_tetwild = pytest.mark.skipif(WITHOUT_TETWILD, reason="pytetwild, of the extra mesh, is not installed")
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from mesh_shapes import box, run_softkin
+from mesh_shapes import box, needs_tetwild, run_softkin
 
 from softkin.mesh import VolumeMesh, from_surfaces, scene_text, write_stl
 from softkin.mesh.command import main
@@ -25,9 +25,9 @@ def generate(*arguments):
     return main(["generate", "--body", "finger.stl", "--edge-length", "5", "-o", "finger.msh", *arguments])
 
 
+@needs_tetwild
 @pytest.mark.parametrize("chambers_as", ["region", "void"])
 def test_from_stl_files_to_a_scene_that_moves(files, capsys, chambers_as):
-    pytest.importorskip("pytetwild", reason="pytetwild, of the extra mesh, is not installed")
     assert (
         generate(
             "--chamber",
@@ -56,8 +56,8 @@ def test_from_stl_files_to_a_scene_that_moves(files, capsys, chambers_as):
     assert report["steps"][0]["status"] == "converged" and abs(tip[2] - 5) > 0.1  # the cavity is nearer to the top
 
 
+@needs_tetwild
 def test_scenes_without_chambers_hold_the_low_end_and_keep_names(files):
-    pytest.importorskip("pytetwild", reason="pytetwild, of the extra mesh, is not installed")
     mesh = from_surfaces(BODY, parts={"on": box((10, 3, 3), (20, 7, 7))}, edge_length=5)
     mesh.write("bar.msh")
     scene = scene_text(mesh, "bar.msh", [])

@@ -4,9 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from mesh_shapes import EXAMPLES, check_usable, run_softkin
+from mesh_shapes import EXAMPLES, check_usable, needs_tetwild, run_softkin
 
 from softkin.mesh import from_surfaces, read_msh, write_stl
+from softkin.mesh.gmsh_program import find_gmsh
 
 FOLDER = EXAMPLES / "pneumatic_finger"
 LENGTH_MM, EDGE_MM = 120, 4.4  # its length, and the edges of its .geo
@@ -24,15 +25,10 @@ def theirs():
     return markers(FOLDER / "pneumatic_finger.yaml")
 
 
-@pytest.mark.parametrize("backend", ["tetwild", "gmsh"])
+@pytest.mark.parametrize("backend", [pytest.param("tetwild", marks=needs_tetwild), "gmsh"])
 def test_the_remeshed_finger_bends_as_the_shipped_one(tmp_path, theirs, backend):
-    if backend == "tetwild":
-        pytest.importorskip("pytetwild", reason="pytetwild, of the extra mesh, is not installed")
-    else:
-        from softkin.mesh.gmsh_program import find_gmsh
-
-        if find_gmsh() is None:
-            pytest.skip("the program gmsh is not installed")
+    if backend == "gmsh" and find_gmsh() is None:
+        pytest.skip("the program gmsh is not installed")
     shipped = read_msh(FOLDER / "pneumatic_finger.msh")
     write_stl(tmp_path / "skin.stl", shipped.boundary("body", "chamber"))
     write_stl(tmp_path / "cavity.stl", shipped.boundary("chamber"))

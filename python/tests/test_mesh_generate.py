@@ -4,11 +4,11 @@ import warnings
 
 import numpy as np
 import pytest
-from mesh_shapes import box, check_usable, fine_box, joined, sphere, turned
+from mesh_shapes import box, check_usable, fine_box, joined, needs_tetwild, sphere, turned
 
 from softkin.mesh import InvalidInput, MeshWarning, Surface, from_surfaces, write_stl
 
-pytest.importorskip("pytetwild", reason="pytetwild, of the extra mesh, is not installed")
+pytestmark = needs_tetwild
 
 BODY = box((0, 0, 0), (20, 10, 10))
 CAVITY = box((3, 3, 3), (12, 7, 7))

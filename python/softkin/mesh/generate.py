@@ -228,10 +228,8 @@ def _assemble(
         faces[name] = choose_faces(name, chosen_by, vertices, outer, tolerance)
     notes = tuple(note for surface in given.all.values() for note in surface.notes) + labels.notes
     all_volumes = signed_volumes(points, tetrahedra)
-    sizes = {name: float(all_volumes[flags].sum()) for name, flags in labels.inside.items()}
-    told_volumes = {n: Volume(sizes[n], s.volume) for n, s in given.all.items() if n != "body"}
-    told_volumes["body"] = Volume(sizes["body"], given.body.volume)
-    return VolumeMesh(vertices, cells, volumes, faces, told_volumes, told, tolerance, notes)
+    sizes = {n: Volume(float(all_volumes[labels.inside[n]].sum()), s.volume) for n, s in given.all.items()}
+    return VolumeMesh(vertices, cells, volumes, faces, sizes, told, tolerance, notes)
 
 
 def _outer_faces(tetrahedra: Array, kept: Array, meshed: Array) -> Array:
