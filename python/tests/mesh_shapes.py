@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -78,11 +79,10 @@ def turned(surface, which=slice(None)):
 
 
 def softkin_command():
-    """The command softkin: that of the environment variable SOFTKIN_COMMAND, or on PATH."""
-    command = os.environ.get("SOFTKIN_COMMAND") or shutil.which("softkin")
-    if not command:
-        pytest.skip("no command softkin: set SOFTKIN_COMMAND")
-    return command
+    """The program of the same build: of the environment, or named by SOFTKIN_COMMAND."""
+    found = os.environ.get("SOFTKIN_COMMAND") or shutil.which("softkin", path=str(Path(sys.executable).parent))
+    assert found, "no softkin beside this Python, and SOFTKIN_COMMAND is not set"
+    return found
 
 
 def run_softkin(*arguments, cwd=None):

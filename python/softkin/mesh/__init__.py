@@ -1,4 +1,4 @@
-"""From surfaces (STL, OBJ, PLY) to volume meshes with named regions. docs/python.md tells more."""
+"""From surfaces (STL, OBJ, PLY) to volume meshes with named regions. docs/python_mesh.md tells more."""
 
 from .errors import InvalidInput, MeshWarning
 from .generate import from_surfaces

@@ -1,8 +1,10 @@
 """What can be wrong with what was given."""
 
+from .. import _core
 
-class InvalidInput(ValueError):
-    """Bad input; the message names it, its place and the cure."""
+__all__ = ["InvalidInput", "MeshWarning"]
+
+InvalidInput = _core.InvalidInput
 
 
 class MeshWarning(UserWarning):
