@@ -24,10 +24,9 @@ else()
     add_compile_options(-fno-sanitize=pointer-overflow)
   endif()
 endif()
-if(SOFTKIN_PYTHON)
-  # for every target alike, programs too: they share precompiled headers, and command and module give the same bits
-  add_compile_options(-fPIC -fno-semantic-interposition)
-endif()
+# For every target alike, programs too: they share precompiled headers, the Python package can be built where they were,
+# and command and package give the same bits.
+add_compile_options(-fPIC -fno-semantic-interposition)
 
 # What users get too. Eigen chooses by -march how it aligns, and with it how it allocates and frees: a matrix of a room
 # built for AVX-512 would crash a user's program built for any x86-64. So both are told one alignment. Of those that

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what softkin needs to build (with --tests: also what its tests need), and only what is missing.
+# Installs what softkin needs to build (with --tests: also what its tests need; with --python: what its Python package
+# needs of PYTHON, python3 if not said), and only what is missing.
 # Exit codes: 0 everything is there, 2 it is not and could not be installed.
 set -euo pipefail
 
@@ -8,7 +9,12 @@ packages=(g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev
 case "${1:-}" in
   "") ;;
   --tests) packages+=(libgtest-dev clang-format-14 libopencv-dev clang libclang-rt-dev) ;;
-  *) echo "usage: scripts/setup.sh [--tests]" >&2; exit 2 ;;
+  --python)
+    python=${PYTHON:-python3}
+    "$python" -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
+    "$python" -c 'import os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null || packages+=(python3-dev)
+    ;;
+  *) echo "usage: scripts/setup.sh [--tests | --python]" >&2; exit 2 ;;
 esac
 
 fail() {

@@ -97,6 +97,7 @@ TEST(CalibrateDea, RefusesBadRowsUnitsAndOptions) {
   refuse("voltage_mv,area_ratio\n0,1\n", {"bad.csv:1", "kV or V"});
   refuse("voltage_kv,stretch_percent\n0,1\n", {"bad.csv:1", "ratios of lengths"});
   refuse("voltage_kv,area_ratio\n0,1\n1,0\n", {"bad.csv:3", "above 0"});
+  refuse("voltage_kv,stretch\n0,1\n1,1e200\n", {"bad.csv:3", "stretch", "1e+200"});
   refuse("voltage_kv,area_ratio\n0,1\n-1,1.1\n", {"bad.csv:3", "below 0"});
   refuse("voltage_kv,area_ratio\n1,1\n2,1.1\n", {"bad.csv", "no row without voltage"});
   expect_bad(run_program({"calibrate", "dea"}), {"TESTS"});

@@ -148,6 +148,7 @@ TEST(CalibratePressure, RefusesBadRowsByLineAndUnitsByName) {
   refuse("p_abs_kpa,p_gauge_kpa,dv_sy_ml\n100,0,0\n", {"bad.csv:1", "which one counts"});
   refuse("p_abs_kpa,dv_sy_mm3\n100,0\n120,abc\n", {"bad.csv:3", "dv_sy_mm3", "abc"});
   refuse("p_abs_kpa,dv_sy_mm3\n100,0\n120,nan\n", {"bad.csv:3", "finite"});
+  refuse("p_abs_kpa,dv_sy_ml\n100,0\n120,1e308\n", {"bad.csv:3", "dv_sy_ml", "1e+308"});
   refuse("p_abs_kpa,dv_sy_mm3,run\n100,0,1\n120,100,1.5\n", {"bad.csv:3", "run"});
   refuse("p_abs_kpa,dv_sy_mm3,t_s\n100,0,1\n120,100,1\n", {"bad.csv:3", "t_s", "ascend"});
   refuse("p_abs_kpa,dv_sy_mm3\n100,0\n120,700\n", {"bad.csv:3", "cannot give"});
@@ -155,6 +156,7 @@ TEST(CalibratePressure, RefusesBadRowsByLineAndUnitsByName) {
   const std::string good = folder.write("good.csv", cycle("p_abs_kpa,dv_sy_mm3", 100));
   expect_bad(folder, calibrate({good}, {"-o", folder / "air.yaml"}), {"--scene", "--chamber-volume"});
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "192"}), {"--chamber-volume", "with its unit"});
+  expect_bad(folder, calibrate({good}, {"--chamber-volume", "1e308mL"}), {"--chamber-volume", "with its unit"});
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "192mm3", "--predict"}), {"--predict", "--scene"});
   expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--actuator", "ari"}), {"no such", "air"});
   expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--atmosphere", "-3"}), {"--atmosphere"});

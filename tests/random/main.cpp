@@ -7,9 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
 
 #include "random/runs.hpp"
@@ -44,23 +42,8 @@ struct Options {
   std::uint64_t first = 0;
   std::uint64_t count = 300;
   int threads = 1;
-  std::filesystem::path folder, known;
+  std::filesystem::path folder;
 };
-
-/// Seeds whose failures are known, a line "SEED CAUSE" each; lines that begin with # say something else.
-std::map<std::uint64_t, std::string> known_failures(const std::filesystem::path& file) {
-  std::map<std::uint64_t, std::string> known;
-  if (file.empty()) return known;
-  std::ifstream stream(file);
-  if (!stream) throw std::runtime_error("cannot read " + file.string());
-  for (std::string text; std::getline(stream, text);) {
-    if (text.empty() || text.front() == '#') continue;
-    std::size_t used = 0;
-    const std::uint64_t seed = std::stoull(text, &used);
-    known[seed] = text.substr(std::min(text.size(), used + 1));
-  }
-  return known;
-}
 
 Summary run_all(const Options& options) {
   Summary summary;
@@ -88,26 +71,6 @@ Summary run_all(const Options& options) {
   return summary;
 }
 
-/// How many failures are new; those that are known are told, and which of them are no more.
-std::size_t new_failures(const Summary& summary, const Options& options) {
-  std::map<std::uint64_t, std::string> known = known_failures(options.known);
-  std::size_t fresh = 0;
-  for (const RunResult& failure : summary.failures()) {
-    const auto found = known.find(failure.seed);
-    if (found == known.end()) {
-      ++fresh;
-      continue;
-    }
-    std::printf("known:  seed %llu: %s\n", static_cast<unsigned long long>(failure.seed), found->second.c_str());
-    known.erase(found);
-  }
-  for (const auto& [seed, cause] : known)
-    if (seed >= options.first && seed - options.first < options.count)
-      std::printf("mended: seed %llu is no longer a failure: take it off the list\n",
-                  static_cast<unsigned long long>(seed));
-  return fresh;
-}
-
 int run(const Options& options) {
   const Summary summary = run_all(options);
   std::fputs(summary.text().c_str(), stdout);
@@ -116,7 +79,7 @@ int run(const Options& options) {
     std::ofstream(options.folder / "summary.txt") << summary.text();
     std::ofstream(options.folder / "failures.csv") << summary.failure_table();
   }
-  return new_failures(summary, options) == 0 ? 0 : 1;
+  return summary.failures().empty() ? 0 : 1;
 }
 
 }  // namespace
@@ -133,7 +96,6 @@ int main(int argc, char** argv) {
   app.add_option("--count", options.count, "how many seeds");
   app.add_option("--threads", options.threads, "runs at once")->check(CLI::PositiveNumber);
   app.add_option("--out", options.folder, "folder for summary.txt and failures.csv");
-  app.add_option("--known", options.known, "file of failures that are known: a seed and its cause a line");
   const CLI::Option* one = app.add_option("--seed", seed, "one seed, told at length");
   bool falsify = false;
   app.add_flag("--falsify", falsify, "falsify answers: every false one must be noticed");

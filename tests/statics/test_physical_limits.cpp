@@ -99,6 +99,24 @@ TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
   }
 }
 
+/// Where several loads change the way ends at the maximum too, and what to command instead is said.
+TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
+  RobotSpec spec = balloon(0.03, false);
+  spec.actuators = {by_load(spec.actuators[0]), by_load(cable("tendon", {{0, 0, 12.5}, {12.5, 0, 0}}))};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium beyond = statics.solve(values({100, 1e-4}), statics.rest());
+  EXPECT_EQ(beyond.report.status, Status::limit);
+  EXPECT_EQ(beyond.report.remark,
+            "beyond this point no equilibrium follows; where a pressure has its maximum, command volumes (control: "
+            "volume) and lengths (control: length) to go on beyond it");
+  spec.actuators.pop_back();
+  const Model alone = compile(spec);
+  const Statics one(alone);
+  const double most = one.solve(values({100}), one.rest()).state.actuation[0];
+  EXPECT_NEAR(beyond.state.actuation[0], most, 0.02 * most);
+}
+
 /// A shallow arch under a weight at its top snaps through: just short of it the weight is carried, just beyond the last
 /// good shape is told, with how much it carries, and the arch still stands.
 TEST(PhysicalLimits, AnArchSnaps) {

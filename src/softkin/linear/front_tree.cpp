@@ -53,10 +53,18 @@ class Symbolic {
       mark_[node] = j;
       rows.push_back(node);
     };
+    // the longest of the sorted lists is most of the rows
+    const auto longest = std::max_element(children.begin(), children.end(), [&](Index a, Index b) {
+      return groups_[a].below.size() < groups_[b].below.size();
+    });
+    if (longest != children.end())
+      for (const Index node : groups_[*longest].below) add(node);
+    const auto sorted = static_cast<std::ptrdiff_t>(rows.size());
     for (Index e = pattern_.starts[j]; e < pattern_.starts[j + 1]; ++e) add(pattern_.rows[e]);
     for (const Index child : children)
       for (const Index node : groups_[child].below) add(node);
-    std::sort(rows.begin(), rows.end());
+    std::sort(rows.begin() + sorted, rows.end());
+    std::inplace_merge(rows.begin(), rows.begin() + sorted, rows.end());
     return rows;
   }
 

@@ -120,6 +120,14 @@ struct Strains {
   }
 };
 
+/// A cell in softkin's unit; finite, as the cell itself.
+double converted(const RunTable& table, std::size_t row, const std::string& column, double value) {
+  if (!std::isfinite(value))
+    table.fail(row,
+               "column '" + column + "' holds " + number(table.cell(row, column)) + ", which is beyond all measure");
+  return value;
+}
+
 PressureScale scale_of(const RunTable& table, const std::string& column, std::optional<PressureScale> asked) {
   if (column == "p_kpa") {
     if (!asked)
@@ -212,7 +220,8 @@ std::vector<SyringeRun> read_syringe_runs(const std::filesystem::path& path, std
   for (const RunTable::Run& each : table.runs) {
     runs.push_back({table.file, each.name, given, {}});
     for (const std::size_t row : each.rows)
-      runs.back().rows.push_back({table.cell(row, pressure), factor * table.cell(row, volume), table.lines[row]});
+      runs.back().rows.push_back({table.cell(row, pressure),
+                                  converted(table, row, volume, factor * table.cell(row, volume)), table.lines[row]});
   }
   return runs;
 }
@@ -233,8 +242,9 @@ std::vector<VoltageRun> read_voltage_runs(const std::filesystem::path& path) {
       const double kV = factor * table.cell(row, voltage), value = table.cell(row, ratio);
       if (kV < 0)
         table.fail(row, "column '" + voltage + "' must not be below 0: the stretch has no sign of the voltage");
-      if (!(value > 0)) table.fail(row, "column '" + ratio + "' must be above 0");
-      runs.back().rows.push_back({kV, ratio == "stretch" ? value * value : value, table.lines[row]});
+      const double areas = ratio == "stretch" ? value * value : value;
+      if (!(value > 0 && areas > 0)) table.fail(row, "column '" + ratio + "' must be above 0");
+      runs.back().rows.push_back({kV, converted(table, row, ratio, areas), table.lines[row]});
     }
   }
   return runs;
@@ -247,7 +257,9 @@ double read_volume(const std::string& option, const std::string& text) {
     std::string digits = text.substr(0, text.size() - unit.size());
     if (digits.ends_with(' ')) digits.pop_back();
     double value = 0;
-    if (parse_real(digits, value) && value >= 0) return unit == "mm3" ? value : mm3_per_ml * value;
+    if (!parse_real(digits, value) || value < 0) break;
+    if (unit != "mm3") value *= mm3_per_ml;
+    if (std::isfinite(value)) return value;
   }
   throw InvalidInput(option + " " + excerpt(text) + ": must be a volume with its unit, mm3, mL or cm3, such as 12.5mL");
 }

@@ -165,7 +165,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     return std::nullopt;
   }
   if (way_.advance < least_advance || move_mm_ < least_move * tolerance_mm_)
-    return limit(way_.done, "beyond this point no equilibrium follows");
+    return limit(way_.done, "beyond this point no equilibrium follows" + instead_of_loads());
   return std::nullopt;
 }
 
@@ -228,6 +228,20 @@ bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   for (Index a = 0; a < system_.actuators(); ++a)
     if (system_.measures().measures(a) && !system_.constrains(a) && from.actuation[a] != to.actuation[a]) return true;
   return false;
+}
+
+/// What to command instead of loads that change, which may have come to a maximum; "" where none does.
+std::string Continuation::instead_of_loads() const {
+  bool pressures = false, tensions = false;
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    const Actuator& actuator = system_.model().actuators[a];
+    if (actuator.control != Control::load || way_.from.actuation[a] == way_.to.actuation[a]) continue;
+    (actuator.kind == ActuatorKind::cable ? tensions : pressures) = true;
+  }
+  if (!pressures && !tensions) return "";
+  return std::string("; where a ") + (pressures ? "pressure" : "tension") + " has its maximum, command " +
+         (pressures ? "volumes (control: volume)" : "") + (pressures && tensions ? " and " : "") +
+         (tensions ? "lengths (control: length)" : "") + " to go on beyond it";
 }
 
 void Continuation::tell_balance() {

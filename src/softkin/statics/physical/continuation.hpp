@@ -74,6 +74,7 @@ class Continuation {
   [[nodiscard]] bool snapped(double predicted_mm, double correction_mm) const;
   [[nodiscard]] double longest_step(bool snap, bool unstable) const;
   [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
+  [[nodiscard]] std::string instead_of_loads() const;
   void tell_balance();
   Status limit(double done, const std::string& why);
   std::optional<Status> go_on(Iterate& at);

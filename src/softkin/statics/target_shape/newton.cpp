@@ -132,6 +132,14 @@ bool NewtonSearch::negligible(int halvings, const Points& positions) const {
   return halvings == 0 && exact_ && largest_move(before_, positions) < report_.tolerance_mm;
 }
 
+/// Does Algorithm 1 agree? Where best rotations are about to turn over it moves on by many small steps of Newton's.
+bool NewtonSearch::at_fixed_point(const Points& positions) {
+  Points next = positions;
+  std::vector<supports::Pose> poses = poses_;
+  global_.step(local_.residual, next, poses, team_);
+  return largest_move(positions, next) < report_.tolerance_mm;
+}
+
 /// The step that the last factor asks for from here on, taken if it ends the search.
 bool NewtonSearch::close(const Actuation& actuation, Points& positions, double& step_mm) {
   constexpr double safely = 0.1;
@@ -264,7 +272,7 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points
     record.step_mm = largest_move(before_, positions);
     const End end = enter(record);
     const bool whole = step == Step::full && exact_;
-    if (whole && record.step_mm < report_.tolerance_mm) return End::converged;
+    if (whole && record.step_mm < report_.tolerance_mm && at_fixed_point(positions)) return End::converged;
     if (end != End::stuck) return end;
     idle = record.step_mm < report_.tolerance_mm ? idle + 1 : 0;
     record = here();

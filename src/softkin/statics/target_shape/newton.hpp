@@ -44,6 +44,7 @@ class NewtonSearch {
   void take_back(const Actuation& actuation, Points& positions);
   [[nodiscard]] Step search_energy(const Actuation& actuation, Points& positions);
   [[nodiscard]] Step search_residual(const Actuation& actuation, Points& positions);
+  [[nodiscard]] bool at_fixed_point(const Points& positions);
   [[nodiscard]] bool close(const Actuation& actuation, Points& positions, double& step_mm);
   [[nodiscard]] bool negligible(int halvings, const Points& positions) const;
   [[nodiscard]] double natural_norm(const Points& positions);

@@ -1,0 +1,26 @@
+"""From surfaces (STL, OBJ, PLY) to volume meshes with named regions. docs/python_mesh.md tells more."""
+
+from .errors import InvalidInput, MeshWarning
+from .generate import from_surfaces
+from .gmsh_program import mesh_geo
+from .msh_read import read_msh
+from .quality import Quality
+from .scene import scene_text
+from .surface import Surface
+from .surface_files import read_surface, write_stl
+from .volume_mesh import Volume, VolumeMesh
+
+__all__ = [
+    "InvalidInput",
+    "MeshWarning",
+    "Quality",
+    "Surface",
+    "Volume",
+    "VolumeMesh",
+    "from_surfaces",
+    "mesh_geo",
+    "read_msh",
+    "read_surface",
+    "scene_text",
+    "write_stl",
+]
