@@ -10,7 +10,8 @@ from softkin.mesh import from_surfaces, read_msh, write_stl
 from softkin.mesh.gmsh_program import find_gmsh
 
 FOLDER = EXAMPLES / "pneumatic_finger"
-LENGTH_MM, EDGE_MM = 120, 4.4  # its length, and the edges of its .geo
+LENGTH_MM = 120
+MEDIAN_MM, GREATEST_MM = 3.5, 4.4  # edges of the shipped mesh; fTetWild comes near to what it is asked for, gmsh below
 
 
 def markers(scene):
@@ -25,15 +26,17 @@ def theirs():
     return markers(FOLDER / "pneumatic_finger.yaml")
 
 
-@pytest.mark.parametrize("backend", [pytest.param("tetwild", marks=needs_tetwild), "gmsh"])
-def test_the_remeshed_finger_bends_as_the_shipped_one(tmp_path, theirs, backend):
+@pytest.mark.parametrize(
+    ("backend", "edge_length"), [pytest.param("tetwild", MEDIAN_MM, marks=needs_tetwild), ("gmsh", GREATEST_MM)]
+)
+def test_the_remeshed_finger_bends_as_the_shipped_one(tmp_path, theirs, backend, edge_length):
     if backend == "gmsh" and find_gmsh() is None:
         pytest.skip("the program gmsh is not installed")
     shipped = read_msh(FOLDER / "pneumatic_finger.msh")
     write_stl(tmp_path / "skin.stl", shipped.boundary("body", "chamber"))
     write_stl(tmp_path / "cavity.stl", shipped.boundary("chamber"))
     mesh = from_surfaces(
-        tmp_path / "skin.stl", {"chamber": tmp_path / "cavity.stl"}, edge_length=EDGE_MM,
+        tmp_path / "skin.stl", {"chamber": tmp_path / "cavity.stl"}, edge_length=edge_length,
         regions={"base": "plane x=0", "tip": f"plane x={LENGTH_MM}"}, backend=backend,
     )  # fmt: skip
     assert max(mesh.deviation_mm.values()) <= 1.5 * mesh.tolerance_mm
