@@ -132,11 +132,9 @@ TEST(PhysicalSolve, SolvesSideBySideAndAgain) {
 TEST(PhysicalSolve, StopsWhenTheCallbackSaysSo) {
   const Model model = compile(bending_finger());
   const Statics statics(model);
-  int calls = 0;
   const Equilibrium found =
-      statics.solve(values({3.0}), statics.rest(), tight(), [&](const Progress&) { return ++calls < 2; });
+      statics.solve(values({3.0}), statics.rest(), tight(), [](const Progress& p) { return p.iteration < 2; });
   EXPECT_EQ(found.report.status, Status::interrupted);
-  EXPECT_EQ(calls, 2);
   EXPECT_EQ(found.report.iterations, 2);
   EXPECT_TRUE(found.state.positions.allFinite());
   EXPECT_NEAR(found.state.actuation[0], 1 + 2 * found.report.reached, 1e-12);

@@ -27,8 +27,8 @@ struct StaticsOptions {
   int threads = 0;             // 0: as many as the machine has and the robot is worth; the result is the same
   bool keep_history = true;    // SolveReport::history
   bool stable = false;         // physical: leave an unstable equilibrium along its lowest mode for a stable one
-  /// The factor of an earlier solve that ended at the start, where no other thread has taken it by then: the same result
-  /// within the tolerance. false: bit for bit that of a new object.
+  /// The factor of an earlier solve that ended at the start, where no other thread has taken it by then: the same
+  /// result within the tolerance. false: bit for bit that of a new object.
   bool reuse_factor = true;
 };
 

@@ -33,13 +33,12 @@ void Newton::record(double step_mm) {
   if (settings_.keep_history) report_.history.push_back(entry);
 }
 
-/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, then by
-/// a shift.
 bool Newton::goes_on() const {
   return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
 }
 
-/// none: no shift makes it positive.
+/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, then by
+/// a shift. none: no shift makes it positive.
 Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = System::Stiffness;
   int negative = 0;
