@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -57,5 +58,13 @@ def indices(name: str, values: ArrayLike, shape: tuple[int | None, ...], below: 
 
 def vector(name: str, values: ArrayLike) -> tuple[float, float, float]:
     """Three finite numbers."""
+    if isinstance(values, (list, tuple)) and len(values) == 3:  # of a control loop: no arrays are made of it
+        try:
+            x, y, z = (float(value) for value in values)
+        except (TypeError, ValueError):
+            pass  # told below
+        else:
+            if math.isfinite(x) and math.isfinite(y) and math.isfinite(z):
+                return x, y, z
     x, y, z = floats(name, values, (3,)).tolist()
     return x, y, z
