@@ -1,11 +1,9 @@
 """What can be wrong with what was given."""
 
-from .. import _core
+from ..errors import InvalidInput, SoftkinWarning
 
 __all__ = ["InvalidInput", "MeshWarning"]
 
-InvalidInput = _core.InvalidInput
 
-
-class MeshWarning(UserWarning):
+class MeshWarning(SoftkinWarning):
     """What is probably not meant: units, large holes, a boundary farther from its surface than asked for."""
