@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples" / "python").glob("*.py"))
-NEEDS = {"plots": "matplotlib", "from_surfaces": "pytetwild"}
+NEEDS = {"plots": "matplotlib", "finger_from_stl": "pytetwild"}
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: str(path.stem))
