@@ -173,17 +173,6 @@ class Solving:
         goals.check()
         return goals
 
-    def _inverse_options(
-        self,
-        method: str,
-        tolerance_mm: float | None,
-        max_equilibria: int,
-        descents: int,
-        other_starts: int,
-        statics: _core.SolveOptions,
-    ) -> _core.InverseOptions:
-        return _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
-
     def _solve_inverse(
         self,
         goals: _core.Goals,
@@ -271,5 +260,5 @@ class Solving:
         """
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
-        options = self._inverse_options(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
+        options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         return self._solve_inverse(goals, start, None, prefer, fix, options, progress)

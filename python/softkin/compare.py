@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -24,11 +24,27 @@ def _files(name: str, files: Sequence[PathLike], least: int = 2) -> list[str]:
     return [os.fspath(file) for file in files]
 
 
-class ReportComparison:
-    """Reports of the same steps; the first is the one to compare with."""
+Core = TypeVar("Core", _core.ReportComparison, _core.PathReport)
 
-    def __init__(self, core: _core.ReportComparison) -> None:
-        self._core = core
+
+class _Comparison(Generic[Core]):
+    """What both kinds have."""
+
+    def __init__(self, core: Core) -> None:
+        self._core: Core = core
+
+    @property
+    def report(self) -> Any:
+        """What `softkin compare --json` prints."""
+        return json.loads(self._core.json())
+
+    def save_plot(self, path: PathLike) -> None:
+        """An .svg: of reports turns, distances and loads over the steps, and the marker's ways; of paths these."""
+        self._core.save_plot(os.fspath(path))
+
+
+class ReportComparison(_Comparison[_core.ReportComparison]):
+    """Reports of the same steps; the first is the one to compare with."""
 
     @property
     def marker(self) -> str:
@@ -54,15 +70,6 @@ class ReportComparison:
         """How long each took, until the poses and in all."""
         return Table(self._core.times())
 
-    @property
-    def report(self) -> Any:
-        """What `softkin compare --json` prints."""
-        return json.loads(self._core.json())
-
-    def save_plot(self, path: PathLike) -> None:
-        """Turns, distances and loads over the steps, and the marker's ways: an .svg."""
-        self._core.save_plot(os.fspath(path))
-
     def __repr__(self) -> str:
         return repr(self.steps)
 
@@ -70,11 +77,8 @@ class ReportComparison:
         return self.steps._repr_html_() + self.times._repr_html_()
 
 
-class PathComparison:
+class PathComparison(_Comparison[_core.PathReport]):
     """Paths of a marker beside a reference, the first."""
-
-    def __init__(self, core: _core.PathReport) -> None:
-        self._core = core
 
     @property
     def heads(self) -> list[str]:
@@ -95,15 +99,6 @@ class PathComparison:
     def errors(self) -> Table:
         """Every waypoint with its error."""
         return Table(self._core.errors())
-
-    @property
-    def report(self) -> Any:
-        """What `softkin compare --json` prints."""
-        return json.loads(self._core.json())
-
-    def save_plot(self, path: PathLike) -> None:
-        """An .svg."""
-        self._core.save_plot(os.fspath(path))
 
     def __repr__(self) -> str:
         return repr(self.summary)

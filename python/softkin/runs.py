@@ -7,7 +7,7 @@ import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,42 +27,53 @@ __all__ = ["FollowRun", "PathRun", "Waypoint"]
 PathLike = str | os.PathLike[str]
 
 
-class PathRun(Iterator[Shape]):
-    """Equilibria along a path of commands, each from the last. Stop when you like."""
+Record = TypeVar("Record")
 
-    def __init__(self, robot: Robot, core: _core.PathRun) -> None:
+
+class _Run(Iterator[Record]):
+    """What both kinds have."""
+
+    _core: _core.PathRun | _core.FollowRun
+
+    def __init__(self, robot: Robot, core: Any) -> None:
         self._robot = robot
         self._core = core
         _tell(core.remark)
 
     def __len__(self) -> int:
-        """Steps in all."""
+        """Records in all: steps or waypoints."""
         return self._core.size
 
     @property
     def done(self) -> int:
-        """Steps so far."""
+        """Records so far."""
         return self._core.done
 
-    def __next__(self) -> Shape:
+    def _next_shape(self) -> Shape:
         found = self._core.next()
         if found is None:
             self._core.finish()
             raise StopIteration
         return Shape(self._robot, found)
 
-    def __iter__(self) -> PathRun:
-        return self
-
     @property
     def report(self) -> dict[str, Any]:
-        """What `softkin fk --report` writes, of the steps so far."""
+        """What `softkin fk --report` or `softkin follow` writes, of the records so far."""
         report: dict[str, Any] = json.loads(self._core.report())
         return report
 
     def finish(self) -> None:
         """Writes report and series of the store, of what there is; at the end of the path that is done by itself."""
         self._core.finish()
+
+
+class PathRun(_Run[Shape]):
+    """Equilibria along a path of commands, each from the last. Stop when you like."""
+
+    _core: _core.PathRun
+
+    def __next__(self) -> Shape:
+        return self._next_shape()
 
     def __repr__(self) -> str:
         return f"<softkin.PathRun of {self._robot.name}: {self.done} of {len(self)} steps>"
@@ -100,34 +111,15 @@ class Waypoint:
         return dict(zip(self.shape.robot.actuators, self.shape.actuation.tolist()))
 
 
-class FollowRun(Iterator[Waypoint]):
+class FollowRun(_Run[Waypoint]):
     """Inverse kinematics along a path of markers, waypoint by waypoint. Stop when you like."""
 
-    def __init__(self, robot: Robot, core: _core.FollowRun) -> None:
-        self._robot = robot
-        self._core = core
-        _tell(core.remark)
-
-    def __len__(self) -> int:
-        """Waypoints in all."""
-        return self._core.size
-
-    @property
-    def done(self) -> int:
-        """Waypoints so far."""
-        return self._core.done
+    _core: _core.FollowRun
 
     def __next__(self) -> Waypoint:
-        found = self._core.next()
-        if found is None:
-            self._core.finish()
-            raise StopIteration
+        shape = self._next_shape()
         step: dict[str, Any] = json.loads(self._core.step())
-        asked = self._core.asked()
-        return Waypoint(self.done - 1, Shape(self._robot, found), *asked, step)
-
-    def __iter__(self) -> FollowRun:
-        return self
+        return Waypoint(self.done - 1, shape, *self._core.asked(), step)
 
     @property
     def commands(self) -> Table:
@@ -138,16 +130,6 @@ class FollowRun(Iterator[Waypoint]):
     def errors(self) -> Table:
         """Where markers were to go, where they came to, and how far off that is."""
         return Table(self._core.errors())
-
-    @property
-    def report(self) -> dict[str, Any]:
-        """What `softkin follow` writes as report.json, of the waypoints so far."""
-        report: dict[str, Any] = json.loads(self._core.report())
-        return report
-
-    def finish(self) -> None:
-        """Writes report and series of the store, of what there is; at the end of the path that is done by itself."""
-        self._core.finish()
 
     def __repr__(self) -> str:
         return f"<softkin.FollowRun of {self._robot.name}: {self.done} of {len(self)} waypoints>"
@@ -245,7 +227,7 @@ class _Runs(Solving):
         """
         robot = self._owner
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
-        inverse = self._inverse_options(method, tolerance_mm, 200, descents, 3, statics)
+        inverse = _core.InverseOptions(method, tolerance_mm, 200, descents, 3, statics)
         name = "the path"
         if isinstance(path, (str, os.PathLike)):
             if times is not None:

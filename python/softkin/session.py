@@ -92,7 +92,7 @@ class Session(Solving):
         """As Robot.inverse, from the last equilibrium, with its derivatives, where no start is given."""
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
-        options = self._inverse_options(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
+        options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         last = self._answer if start is None else None
         found = self._solve_inverse(goals, self._last if start is None else start, last, prefer, fix, options, progress)
         if found.shape.converged:
