@@ -31,25 +31,56 @@ SparseLdlt::SparseLdlt(std::shared_ptr<const FrontTree> tree)
       diagonal_(static_cast<std::size_t>(tree_->pattern.size())),
       pieces_(tree_->arena_sizes.size()) {}
 
+/// A bench for the time of a piece.
+class SparseLdlt::Seat {
+ public:
+  Seat(SparseLdlt& owner, std::int64_t arena_size) : owner_(owner) {
+    {
+      const std::lock_guard lock(owner_.benches_mutex_);
+      if (!owner_.benches_.empty()) {
+        bench_ = std::move(owner_.benches_.back());  // the one that was used last
+        owner_.benches_.pop_back();
+      }
+    }
+    if (!bench_) bench_ = std::make_unique<Bench>();
+    const std::size_t needed = static_cast<std::size_t>(arena_size) + front_slack;
+    if (bench_->arena.size() < needed) bench_->arena.resize(needed);
+  }
+  ~Seat() {
+    const std::lock_guard lock(owner_.benches_mutex_);
+    owner_.benches_.push_back(std::move(bench_));
+  }
+  Seat(const Seat&) = delete;
+  Seat& operator=(const Seat&) = delete;
+  [[nodiscard]] Bench& bench() { return *bench_; }
+
+ private:
+  SparseLdlt& owner_;
+  std::unique_ptr<Bench> bench_;
+};
+
 void SparseLdlt::take_memory() {
   lower_.resize(static_cast<std::size_t>(tree_->values));
+  top_.arena.resize(static_cast<std::size_t>(tree_->arena_sizes.back()) + front_slack);
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     Index below = 0;
     for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f) below = std::max(below, tree_->fronts[f].below);
-    pieces_[p].arena.resize(static_cast<std::size_t>(tree_->arena_sizes[p]) + front_slack);
     pieces_[p].rows.resize(below);
   }
 }
 
 double SparseLdlt::bytes() const {
   double values = static_cast<double>(lower_.size() + diagonal_.size());
-  for (const Piece& piece : pieces_)
-    values += static_cast<double>(piece.arena.size() + piece.work.plain.size() + piece.work.scaled.size());
+  const auto add = [&](const Bench& bench) {
+    values += static_cast<double>(bench.arena.size() + bench.work.plain.size() + bench.work.scaled.size());
+  };
+  add(top_);
+  for (const auto& bench : benches_) add(*bench);
   return 8 * values + 4.0 * static_cast<double>(tree_->rows.size() + 3 * tree_->runs.size() +
                                                 tree_->pattern.rows.size() + tree_->entry_places.size());
 }
 
-void SparseLdlt::assemble(Index index, const LargeVector<double>& values, double* front, const Piece& piece,
+void SparseLdlt::assemble(Index index, const LargeVector<double>& values, double* front, const Bench& bench,
                           Team& team) const {
   const Front& own = tree_->fronts[index];
   const Index stride = front_stride(own.size());
@@ -72,7 +103,7 @@ void SparseLdlt::assemble(Index index, const LargeVector<double>& values, double
     const Front& child = tree_->fronts[i];
     const Index child_stride = front_stride(child.size()), pivots = child.pivots();
     const double* update =
-        piece.arena.data() + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
+        bench.arena.data() + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
     const RowRun* first = tree_->runs.data() + tree_->first_run[i];
     const RowRun* last = tree_->runs.data() + tree_->first_run[i + 1];
     each_column(static_cast<Index>(last - first), child.below, team, [&](Index k) {
@@ -88,30 +119,35 @@ void SparseLdlt::assemble(Index index, const LargeVector<double>& values, double
   }
 }
 
-void SparseLdlt::factor(Index index, const LargeVector<double>& values, double least, Piece& piece, Team& team) {
+/// Returns how many pivots are negative.
+Index SparseLdlt::factor(Index index, const LargeVector<double>& values, double least, Bench& bench, Team& team) {
   const Front& own = tree_->fronts[index];
   const Index size = own.size(), pivots = own.pivots(), stride = front_stride(size);
-  Piece& home = own.parent >= top_front() ? pieces_.back() : piece;
-  double* front = home.arena.data() + own.offset;
-  assemble(index, values, front, piece, team);
-  piece.negative += factor_front(front, size, pivots, least, diagonal_.data() + own.begin, piece.work, team);
+  double* front = (own.parent >= top_front() ? top_ : bench).arena.data() + own.offset;
+  assemble(index, values, front, bench, team);
+  const Index negative = factor_front(front, size, pivots, least, diagonal_.data() + own.begin, bench.work, team);
   const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
   each_column(pivots, size, team, [&](Index c) {
     std::copy(column(c) + c, column(c) + size,
               lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size + c);
   });
+  return negative;
 }
 
 SparseLdlt::Pivots SparseLdlt::factorise(const LargeVector<double>& values, double least, Team& team) {
   if (lower_.empty()) take_memory();
   const Index count = static_cast<Index>(pieces_.size()) - 1;
   Team alone(1);
-  const auto run = [&](Index p, Team& helpers) {
+  const auto run = [&](Index p, Bench& bench, Team& helpers) {
     pieces_[p].negative = 0;
-    for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f) factor(f, values, least, pieces_[p], helpers);
+    for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f)
+      pieces_[p].negative += factor(f, values, least, bench, helpers);
   };
-  team.each(count, [&](Index p) { run(p, alone); });
-  run(count, team);
+  team.each(count, [&](Index p) {
+    Seat seat(*this, tree_->arena_sizes[p]);
+    run(p, seat.bench(), alone);
+  });
+  run(count, top_, team);
   Pivots pivots;
   for (const Piece& piece : pieces_) pivots.negative += piece.negative;
   pivots.replaced = static_cast<Index>(std::count(diagonal_.begin(), diagonal_.end(), -least));

@@ -124,7 +124,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   ask(at, demand);
   bool solved = false;
   if (work_.home.rows() > 0) {
-    if (work_.active != held_) (void)system_.couple(at, active_, work_, team_);
+    if (work_.active != held_) system_.couple(at, active_, work_, team_);
     system_.assemble(at, demand, System::Stiffness::exact, work_, team_);
     system_.gather(work_, team_);
     solved = solve(at, false);
