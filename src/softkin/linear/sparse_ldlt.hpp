@@ -41,8 +41,7 @@ class SparseLdlt {
     LargeVector<double> arena;  // fronts that wait for their parents
   };
   struct Piece {
-    Eigen::MatrixXd above;
-    Eigen::VectorXd rows;  // of a solve: what goes to the top, what a front has below
+    Eigen::MatrixXd above, rows;  // of a solve: what goes to the top, and columns of one front
     Index negative = 0;
   };
   class Seat;
@@ -51,10 +50,8 @@ class SparseLdlt {
   Index factor(Index front, const LargeVector<double>& values, double least, Bench& bench, Team& team);
   void assemble(Index index, const LargeVector<double>& values, double* front, const Bench& bench, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_->pieces[tree_->pieces.size() - 2]; }
-  using Vector = Eigen::VectorXd;
-  using Columns = Eigen::MatrixXd;
-  void forward(const Front& front, Columns& x, Columns& above, Vector& work, Index top) const;
-  void backward(const Front& front, Columns& x, Vector& work) const;
+  void forward(const Front& front, Index begin, Index columns, Piece& piece, Index top);
+  void backward(const Front& front, Index begin, Index columns, Piece& piece);
 
   std::shared_ptr<const FrontTree> tree_;
   LargeVector<double> lower_;
@@ -63,7 +60,7 @@ class SparseLdlt {
   Bench top_;
   std::vector<std::unique_ptr<Bench>> benches_;  // of the other pieces; those that no thread sits at
   std::mutex benches_mutex_;
-  Columns solution_;
+  Eigen::MatrixXd solution_;
 };
 
 }  // namespace softkin::linear

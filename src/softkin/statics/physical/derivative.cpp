@@ -7,8 +7,8 @@ namespace softkin::physical {
 
 namespace {
 
-/// Of the residual, seen through the factor.
-constexpr double accuracy = 1e-10;
+/// Of the residual, seen through the factor: as well as the equilibrium itself is known.
+constexpr double accuracy = 1e-8;
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with that.
 constexpr int most_rounds = 8, exact_rounds = 3;
 /// What rounding may add to a solution with the factor of the stiffness itself: more, and that is singular.
