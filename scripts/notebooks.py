@@ -23,7 +23,7 @@ def notebook(script: Path) -> str | None:
         {"cell_type": "markdown", "id": "about", "metadata": {}, "source": lines(f"# {title}\n\n{told}")}
     ]
     for number, body in enumerate(bodies, start=1):
-        cell = {"cell_type": "code", "execution_count": None, "id": f"cell-{number}", "metadata": {}, "outputs": []}
+        cell: dict[str, object] = {"cell_type": "code", "execution_count": None, "id": f"cell-{number}", "metadata": {}, "outputs": []}
         cells.append({**cell, "source": lines(body.strip())})
     metadata = {
         "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
