@@ -168,17 +168,22 @@ class Robot(_Runs, _Workspaces):
 
         description  as of Robot(...)
         """
-        found = neighbours.from_meshio(mesh)
-        return cls(**{**found, "regions": {**found["regions"], **(regions or {})}}, **description)
+        return cls._of_elements(neighbours.from_meshio(mesh), regions, description)
 
     @classmethod
     def from_pyvista(cls, grid: Any, *, regions: Mapping[str, Any] | None = None, **description: Any) -> Robot:
-        """A robot of a pyvista.UnstructuredGrid; values of its cell array "region" are regions "region_0", ...
+        """A robot of a pyvista.UnstructuredGrid; the values of its cell array `region` are regions, named by
+        the field data `region_NAME`, else region_0, ...
 
         description  as of Robot(...)
         """
-        found = neighbours.from_pyvista(grid)
-        return cls(**{**found, "regions": {**found["regions"], **(regions or {})}}, **description)
+        return cls._of_elements(neighbours.from_pyvista(grid), regions, description)
+
+    @classmethod
+    def _of_elements(
+        cls, read: neighbours.Elements, regions: Mapping[str, Any] | None, description: dict[str, Any]
+    ) -> Robot:
+        return cls(**{**read.arguments(), "regions": {**read.regions, **(regions or {})}}, **description)
 
     @classmethod
     def _of(cls, core: _core.Robot) -> Robot:
