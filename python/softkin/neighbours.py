@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 from .errors import InvalidInput
 
 if TYPE_CHECKING:
+    import meshio
+    import pyvista
+
     from .robot import Robot
     from .shape import Shape
 
@@ -84,7 +87,7 @@ def fields_of(shape: Shape) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[
     return points, elements
 
 
-def to_meshio(shape: Shape) -> Any:
+def to_meshio(shape: Shape) -> meshio.Mesh:
     points, elements = fields_of(shape)
     blocks = cells_of(shape.robot)
     ends = np.cumsum([len(cells) for _, cells in blocks])[:-1]
@@ -92,7 +95,7 @@ def to_meshio(shape: Shape) -> Any:
     return package("meshio").Mesh(np.array(shape.positions), blocks, point_data=points, cell_data=data)
 
 
-def to_pyvista(shape: Shape) -> Any:
+def to_pyvista(shape: Shape) -> pyvista.UnstructuredGrid:
     """Field data region_NAME: the number of region NAME, as in the .vtu that `save` writes."""
     blocks = {VTK_NUMBERS[name]: cells for name, cells in cells_of(shape.robot)}
     grid = package("pyvista").UnstructuredGrid(blocks, np.array(shape.positions))
@@ -106,7 +109,7 @@ def to_pyvista(shape: Shape) -> Any:
     return grid
 
 
-def from_meshio(mesh: Any) -> Elements:
+def from_meshio(mesh: meshio.Mesh) -> Elements:
     """Regions: cell sets, point sets, and physical groups (`gmsh:physical`) that no cell set has the name of; such
     without a name are physical_DIMENSION_NUMBER, as the command reads them. Throws InvalidInput."""
     blocks = [(str(block.type), np.asarray(block.data, dtype=np.int64)) for block in mesh.cells]
@@ -123,7 +126,7 @@ def from_meshio(mesh: Any) -> Elements:
     return _elements(np.asarray(mesh.points, dtype=np.float64)[:, :3], blocks, {**sets, **groups}, points)
 
 
-def from_pyvista(grid: Any) -> Elements:
+def from_pyvista(grid: pyvista.UnstructuredGrid) -> Elements:
     """Regions: values of the cell array `region`, named by the field data `region_NAME`, else region_NUMBER. Throws
     InvalidInput."""
     if not hasattr(grid, "cells_dict") or not hasattr(grid, "celltypes"):

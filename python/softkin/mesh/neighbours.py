@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,13 +12,16 @@ from .arrays import Array
 from .errors import InvalidInput
 from .volume_mesh import VolumeMesh, compacted, positive
 
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
+
 TETRAHEDRON, TRIANGLE = 10, 5  # cell types of VTK
 
 
-def to_meshio(mesh: VolumeMesh) -> Any:
+def to_meshio(mesh: VolumeMesh) -> meshio.Mesh:
     """A meshio.Mesh: a block of triangles (those of face regions) and one of tetrahedra, regions as cell_sets, and as
     gmsh:physical and field_data, of which an element that is in several regions keeps the first. Throws ImportError."""
-    meshio = neighbours.package("meshio")
     faces, members = _unique_faces(mesh)
     cells, sets, numbers = [], {}, []
     names = [*mesh.face_regions, *mesh.volume_regions]
@@ -32,7 +36,7 @@ def to_meshio(mesh: VolumeMesh) -> Any:
         empty = np.empty(0, dtype=np.int64)
         own = members[name] if name in members else mesh.volume_regions[name]
         sets[name] = [own if (kind == "triangle") == (name in members) else empty for kind, _ in cells]
-    return meshio.Mesh(
+    return neighbours.package("meshio").Mesh(
         mesh.vertices,
         cells,
         cell_sets=sets,
@@ -41,17 +45,16 @@ def to_meshio(mesh: VolumeMesh) -> Any:
     )
 
 
-def from_meshio(mesh: Any) -> VolumeMesh:
+def from_meshio(mesh: meshio.Mesh) -> VolumeMesh:
     """Tetrahedra of order 1 of a meshio.Mesh; regions of elements and faces from cell_sets and gmsh:physical. Lengths as
     they are, taken for mm. Throws InvalidInput."""
     return _made(neighbours.from_meshio(mesh))
 
 
-def to_pyvista(mesh: VolumeMesh) -> Any:
+def to_pyvista(mesh: VolumeMesh) -> pyvista.UnstructuredGrid:
     """A pyvista.UnstructuredGrid of the tetrahedra and, once for every face region, its triangles. Cell array `region`:
     the number of the region, -1: none (of several regions of an element the first); field data `region_NAME`: the
     number of region NAME. As .vtu softkin reads that by name. Throws ImportError."""
-    pyvista = neighbours.package("pyvista")
     numbers = {name: number for number, name in enumerate([*mesh.volume_regions, *mesh.face_regions])}
     of_cells = np.full(len(mesh.tetrahedra), -1)
     for name in reversed(list(mesh.volume_regions)):
@@ -61,14 +64,14 @@ def to_pyvista(mesh: VolumeMesh) -> Any:
         cells[TRIANGLE] = np.concatenate(list(mesh.face_regions.values()))
         of_faces = np.concatenate([np.full(len(faces), numbers[name]) for name, faces in mesh.face_regions.items()])
         of_cells = np.concatenate([of_cells, of_faces])
-    grid = pyvista.UnstructuredGrid(cells, mesh.vertices)
+    grid = neighbours.package("pyvista").UnstructuredGrid(cells, mesh.vertices)
     grid.cell_data["region"] = of_cells.astype(np.int32)
     for name, number in numbers.items():
         grid.field_data[f"region_{name}"] = np.array([number], dtype=np.int32)
     return grid
 
 
-def from_pyvista(grid: Any) -> VolumeMesh:
+def from_pyvista(grid: pyvista.UnstructuredGrid) -> VolumeMesh:
     """Tetrahedra of order 1 of a pyvista.UnstructuredGrid; regions of elements and faces from the cell array `region`,
     named by the field data `region_NAME`, else region_NUMBER. Lengths as they are, taken for mm. Throws InvalidInput."""
     return _made(neighbours.from_pyvista(grid))
@@ -99,7 +102,7 @@ def _unique_faces(mesh: VolumeMesh) -> tuple[Array, dict[str, Array]]:
     return every[first], dict(zip(mesh.face_regions, (np.unique(part) for part in np.split(which.reshape(-1), ends))))
 
 
-def _first_numbers(count: int, regions: Any, field_data: dict[str, Array]) -> Array:
+def _first_numbers(count: int, regions: Mapping[str, Array], field_data: dict[str, Array]) -> Array:
     numbers = np.zeros(count, dtype=np.int64)
     for name in reversed(list(regions)):
         numbers[regions[name]] = field_data[name][0]
