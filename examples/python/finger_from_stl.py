@@ -27,9 +27,11 @@ mesh = from_surfaces(
     OUT / "skin.stl",
     {"chamber": OUT / "cavity.stl"},
     edge_length=4.4,
+    tolerance=0.25,  # how far from the surfaces; smaller takes longer
     regions={"base": "plane x=0", "tip": f"plane x={LENGTH}"},
 )
 print(mesh.summary())
+mesh.write(OUT / "finger.msh")  # no two runs give the same
 
 # %%
 robot = softkin.Robot(

@@ -15,7 +15,7 @@ def bend(youngs_modulus: float) -> tuple[float, float]:
     low, high = 1.0, 2.0  # of the chamber's volume: the one that takes the pressure, by bisection
     shape = robot.solve()
     rest = shape["tip"]
-    while high - low > 1e-6:
+    while high - low > 1e-4:
         middle = (low + high) / 2
         shape = robot.solve(air1=middle, start=shape, threads=1).require()
         low, high = (middle, high) if shape.actuators["air1"].pressure_kPa < PRESSURE_KPA else (low, middle)
