@@ -81,9 +81,7 @@ std::vector<WorkspaceSample> solve_all(const Robot& robot, const WorkspacePlan& 
     solve_groups(robot.model(), robot.statics(), plan, options, threads, desk,
                  [&](const Progress&) { return watch.go_on(); });
   };
-  watch.watch(work, [&] {
-    kept(desk.done());
-  });
+  watch.watch(work, [&] { kept(desk.done()); });
   return desk.finish();
 }
 
@@ -100,9 +98,7 @@ std::vector<WorkspaceSample> solve_into(const Robot& robot, const SamplingOption
     solve_groups(robot.model(), robot.statics(), plan, options, threads, desk,
                  [&](const Progress&) { return watch.go_on(); });
   };
-  watch.watch(work, [&] {
-    kept(done.load());
-  });
+  watch.watch(work, [&] { kept(done.load()); });
   return file.finish();
 }
 

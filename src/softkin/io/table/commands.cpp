@@ -198,8 +198,8 @@ class Reader {
       chambers.push_back(a);
     }
     if (chambers.empty())
-      throw InvalidInput({file}, "its pressures are of no use: " + commands_.file +
-                                     " commands no chamber by its volume");
+      throw InvalidInput({file},
+                         "its pressures are of no use: " + commands_.file + " commands no chamber by its volume");
     try {
       const Json steps = parse_json(read_file(file)).at("steps");
       if (steps.size() != commands_.rows.size())

@@ -139,7 +139,8 @@ PressureScale scale_of(const RunTable& table, const std::string& column, std::op
   const PressureScale named = column == "p_abs_kpa" ? PressureScale::absolute : PressureScale::gauge;
   if (asked && *asked != named)
     table.fail_header("column '" + column + "' is not of " +
-                      (*asked == PressureScale::absolute ? "absolute" : "gauge") + " pressures, as is said of the file");
+                      (*asked == PressureScale::absolute ? "absolute" : "gauge") +
+                      " pressures, as is said of the file");
   return named;
 }
 
