@@ -103,7 +103,7 @@ test-python:
 	  -C cmake.define.SOFTKIN_TESTS=ON -C cmake.define.SOFTKIN_BENCH=ON .
 	cmake --preset release
 	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[all,test]"
-	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin
+	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin examples/python scripts/notebooks.py
 	build-wheel/venv/bin/pytest -q python/tests
 
 fuzz:

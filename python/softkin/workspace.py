@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
@@ -22,10 +23,16 @@ if TYPE_CHECKING:
 __all__ = ["Hull", "ProgressBar", "Workspace"]
 
 
+class _Bar(Protocol):
+    def update(self, n: int, /) -> object: ...
+
+    def close(self) -> object: ...
+
+
 class ProgressBar(Protocol):
     """What tqdm is."""
 
-    def __call__(self, *, total: int) -> Any: ...
+    def __call__(self, *, total: int) -> _Bar: ...
 
 
 @dataclass(frozen=True)
@@ -115,7 +122,7 @@ class Workspace:
         kind, vertices, triangles, volume, area, (long, wide, thin) = self._core.hull(marker or "")
         return Hull(kind, vertices, triangles, volume, area, (long, wide, thin))
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Workspace], tuple[Robot, bytes]]:
         return _unpickled, (self._robot, self._core.pickled())
 
     def __repr__(self) -> str:
@@ -169,7 +176,7 @@ class _Workspaces(Solving):
         """
         robot = self._owner
         options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        bar: Any = None
+        bar: _Bar | None = None
         done = 0
 
         def begin(total: int) -> None:

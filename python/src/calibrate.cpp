@@ -115,9 +115,10 @@ calibration::SpecimenTask task_of(const Specimens& given) {
   return task;
 }
 
-Calibration specimens(const Specimens& given, const nb::object& progress) {
+Calibration specimens(const Specimens& given,
+                      const std::optional<nb::typed<nb::callable, nb::object(double)>>& progress) {
   calibration::SpecimenTask task = task_of(given);
-  Watch watch{nb::none()};
+  Watch watch{std::nullopt};
   std::atomic<double> share = 0;
   task.options.go_on = [&watch] { return watch.go_on(); };
   calibration::SpecimenResults results;
@@ -128,7 +129,7 @@ Calibration specimens(const Specimens& given, const nb::object& progress) {
                                     [&](const std::string&, double done) { share = done; });
   };
   watch.watch(work, [&] {
-    if (!progress.is_none()) progress(share.load());
+    if (progress) (*progress)(share.load());
   });
   Calibration calibrated{
       specimens_text(task, results), specimens_json(task, results), "", calibration::failure(task, results), {}, {}};

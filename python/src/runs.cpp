@@ -50,7 +50,7 @@ class Runner {
   [[nodiscard]] ShapePtr next() {
     if (lost_ || run_->is_complete()) return nullptr;
     const runs::Advance end =
-        watched(nb::none(), [&](const ProgressCallback& callback) { return run_->advance(callback); });
+        watched(std::nullopt, [&](const ProgressCallback& callback) { return run_->advance(callback); });
     lost_ = end == runs::Advance::lost;
     return shape_of(run_->last(), lost_ ? session_.robot->model().rest : run_->last_positions());
   }

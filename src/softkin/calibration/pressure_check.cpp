@@ -94,7 +94,7 @@ PressureComparison compare_with_physics(RobotSpec spec, std::size_t chamber, con
                                         const ProgressCallback& progress) {
   constexpr int compared = 8;  // ratios
   const double low = std::max(1.0, curve.loading.ratio.y().front()), high = curve.loading.ratio.y().back();
-  if (!(high > 1)) throw InvalidInput("--predict compares ratios above 1, and the loading branch has none");
+  if (!(high > 1)) throw InvalidInput("ratios above 1 are compared, and the loading branch has none");
   prepare(spec, chamber, high);
   PressureComparison result{spec.actuators[chamber].name, {}, {}, {}};
   for (int i = 1; i <= compared; ++i) result.ratios.push_back(i == compared ? high : low + (high - low) * i / compared);
