@@ -1,31 +1,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/file.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/io/json_text.hpp>
 #include <softkin/io/plain_text.hpp>
-#include <softkin/io/table/table.hpp>
-#include <softkin/vision/pictures.hpp>
+#include <softkin/vision/measurements.hpp>
 
-#include "cli/command.hpp"
-#include "cli/terminal.hpp"
-#include "measurer.hpp"
-
-namespace softkin::cli {
+namespace softkin::vision {
 
 namespace {
 
-constexpr std::size_t most_losses = 5;
-
-/// What is written, checked against what is read.
-std::vector<Output> checked_outputs(const MeasureOptions& options) {
-  std::vector<Output> outputs;
-  if (!options.output.empty()) outputs.push_back({"-o", options.output});
-  std::vector<std::filesystem::path> inputs{options.pictures.begin(), options.pictures.end()};
-  if (!options.camera.empty()) inputs.emplace_back(options.camera);
-  check_outputs(outputs, inputs);
-  return outputs;
-}
+constexpr int photo_decimals = 4, film_decimals = 5;  // of mm and degrees in files
 
 Column words(const std::string& title) {
   return {.key = title, .left = true};
@@ -44,116 +29,71 @@ std::string with_error(double value, double error, int decimals) {
   return decimal(value, decimals) + " +- " + decimal(error, decimals);
 }
 
-/// A table of numbers for a file, with comments above.
-struct NumberTable {
-  std::vector<std::string> comments{};
-  Table table{};
-
-  void add_columns(const std::vector<std::string>& keys) {
-    for (const std::string& key : keys) table.columns.push_back({.key = key});
-  }
-  /// decimals: of what is not whole
-  void add_row(const std::vector<double>& values, int decimals) {
-    Row& row = table.rows.emplace_back();
-    for (const double value : values)
-      row.emplace_back(value == std::floor(value) ? number(value, 9) : decimal(value, decimals));
-  }
-  void write(const std::string& file, const std::vector<std::string>& notes) const {
-    std::string text;
-    for (const auto* lines : {&comments, &notes})
-      for (const std::string& line : *lines) text += "# " + printable(line) + "\n";
-    write_file(file, text + table.csv());
-  }
-};
-
-// ---- pictures ----
-
-struct Photo {
-  std::string file;
-  Measurer::Seen seen;
-};
-
-NumberTable marker_table(const std::vector<Photo>& photos) {
-  NumberTable result;
-  result.add_columns({"picture"});
-  for (const NamedMarker& marker : photos[0].seen.markers)
-    result.add_columns({marker.name + "_x_mm", marker.name + "_y_mm", marker.name + "_error_mm"});
-  for (const Angle& angle : photos[0].seen.angles) result.add_columns({angle.name + "_deg"});
-  for (std::size_t i = 0; i < photos.size(); ++i) {
-    result.comments.push_back("picture " + std::to_string(i + 1) + ": " + photos[i].file);
-    std::vector<double> row{static_cast<double>(i + 1)};
-    for (const NamedMarker& marker : photos[i].seen.markers)
-      row.insert(row.end(), {marker.at.place.x(), marker.at.place.y(), marker.at.error});
-    for (const Angle& angle : photos[i].seen.angles) row.push_back(angle.degrees);
-    result.add_row(row, 4);
-  }
-  return result;
+void add_columns(Table& table, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) table.columns.push_back({.key = key});
 }
 
-std::string marker_text(const std::vector<Photo>& photos) {
-  Table places{{words("picture"), words("marker"), length("x"), length("y"), length("error", 4)}};
-  Table angles{{words("picture"), words("angle"), column("[degrees]"), column("error"), column("since the first")}};
-  for (const Photo& photo : photos) {
-    for (const auto& [name, at] : photo.seen.markers)
-      places.rows.push_back({printable(photo.file), name, at.place.x(), at.place.y(), at.error});
-    for (std::size_t i = 0; i < photo.seen.angles.size(); ++i) {
-      const Angle& angle = photo.seen.angles[i];
-      angles.rows.push_back({printable(photo.file), angle.name, angle.degrees, angle.error,
-                             angle.degrees - photos[0].seen.angles[i].degrees});
+/// Comments, then the table with so many decimals of what is not whole.
+std::string file_text(const Table& table, const std::vector<std::string>& comments, int decimals) {
+  std::string text;
+  for (const std::string& line : comments) text += "# " + printable(line) + "\n";
+  Table rounded{table.columns};
+  for (const Row& row : table.rows) {
+    Row& cells = rounded.rows.emplace_back();
+    for (const Cell& cell : row) {
+      const double value = std::get<double>(cell);
+      cells.emplace_back(value == std::floor(value) ? number(value, 9) : decimal(value, decimals));
     }
   }
-  return table_text(places) + (angles.rows.empty() ? "" : table_text(angles));
+  return text + rounded.csv();
 }
 
-/// The pictures after the first against the first.
-std::vector<Stretch> stretches_of(const std::vector<Photo>& photos) {
-  std::vector<Stretch> stretches;
-  for (std::size_t i = 1; i < photos.size(); ++i)
-    stretches.push_back({*photos[0].seen.specimen, *photos[i].seen.specimen});
-  return stretches;
+using Photos = std::vector<PhotoSeries::Photo>;
+
+Table marker_table(const Photos& photos) {
+  Table table;
+  add_columns(table, {"picture"});
+  for (const NamedMarker& marker : photos[0].seen.markers)
+    add_columns(table, {marker.name + "_x_mm", marker.name + "_y_mm", marker.name + "_error_mm"});
+  for (const Angle& angle : photos[0].seen.angles) add_columns(table, {angle.name + "_deg"});
+  for (std::size_t i = 0; i < photos.size(); ++i) {
+    Row& row = table.rows.emplace_back();
+    row.emplace_back(static_cast<double>(i + 1));
+    for (const NamedMarker& marker : photos[i].seen.markers)
+      row.insert(row.end(), {marker.at.place.x(), marker.at.place.y(), marker.at.error});
+    for (const Angle& angle : photos[i].seen.angles) row.emplace_back(angle.degrees);
+  }
+  return table;
 }
 
-NumberTable specimen_table(const std::vector<Photo>& photos) {
-  NumberTable result;
-  result.comments.push_back("at rest: " + photos[0].file);
-  result.add_columns({"l_mm", "l1_mm"});
+Table specimen_table(const Photos& photos, const std::vector<Stretch>& stretches) {
+  Table table;
+  add_columns(table, {"l_mm", "l1_mm"});
   const double length = photos[0].seen.specimen->length(), interface = photos[0].seen.specimen->interface_length();
-  const std::vector<Stretch> stretches = stretches_of(photos);
-  if (stretches.empty()) {
-    result.add_row({length, interface}, 4);
-    return result;
-  }
-  result.add_columns({"dl_mm", "dl1_mm"});
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    result.comments.push_back("row " + std::to_string(i + 1) + ": " + photos[i + 1].file);
-    result.add_row({length, interface, stretches[i].elongation(), stretches[i].shift()}, 4);
-  }
-  return result;
+  if (stretches.empty()) table.rows.push_back({length, interface});
+  if (!stretches.empty()) add_columns(table, {"dl_mm", "dl1_mm"});
+  for (const Stretch& stretch : stretches)
+    table.rows.push_back({length, interface, stretch.elongation(), stretch.shift()});
+  return table;
+}
+
+std::vector<std::string> sources(const Photos& photos, bool specimen) {
+  std::vector<std::string> lines;
+  if (specimen) lines.push_back("at rest: " + photos[0].file);
+  for (std::size_t i = specimen ? 1 : 0; i < photos.size(); ++i)
+    lines.push_back((specimen ? "row " + std::to_string(i) : "picture " + std::to_string(i + 1)) + ": " +
+                    photos[i].file);
+  return lines;
+}
+
+std::vector<std::string> joined(std::vector<std::string> lines, const std::vector<std::string>& more) {
+  lines.insert(lines.end(), more.begin(), more.end());
+  return lines;
 }
 
 /// E_A / E_B means something only where A has been stretched by more than the error.
 bool has_ratio(const Stretch& stretch) {
   return stretch.shift() > 3 * stretch.shift_error() && stretch.elongation() - stretch.shift() > 0;
-}
-
-std::string specimen_text(const std::vector<Photo>& photos) {
-  Table parts{{words("picture"), length("L"), length("L_1"), {.key = "interface", .unit = "degrees"}}};
-  for (const Photo& photo : photos) {
-    const SpecimenView& view = *photo.seen.specimen;
-    parts.rows.push_back({printable(photo.file), with_error(view.length(), view.length_error(), 3),
-                          with_error(view.interface_length(), view.interface_error(), 3),
-                          with_error(view.interface.slant, view.interface.slant_error, 2)});
-  }
-  Table moves{{words("stretched"), length("Delta L"), length("Delta L_1"), column("E_A / E_B by Eq. (16)")}};
-  const std::vector<Stretch> stretches = stretches_of(photos);
-  for (std::size_t i = 0; i < stretches.size(); ++i) {
-    const Stretch& s = stretches[i];
-    moves.rows.push_back(
-        {printable(photos[i + 1].file), with_error(s.elongation(), s.elongation_error(), 3),
-         with_error(s.shift(), s.shift_error(), 3),
-         has_ratio(s) ? with_error(s.elasticity_ratio(), s.elasticity_ratio_error(), 3) : "not stretched"});
-  }
-  return table_text(parts) + (stretches.empty() ? "" : table_text(moves));
 }
 
 Json specimen_json(const SpecimenView& view) {
@@ -166,7 +106,7 @@ Json specimen_json(const SpecimenView& view) {
           {"axis_deg", view.axis}};
 }
 
-Json photo_json(const Photo& photo) {
+Json photo_json(const PhotoSeries::Photo& photo) {
   Json json{{"picture", photo.file}};
   for (const NamedMarker& marker : photo.seen.markers)
     json["markers"][marker.name] = {{"x_mm", marker.at.place.x()},
@@ -180,12 +120,30 @@ Json photo_json(const Photo& photo) {
   return json;
 }
 
-Json report(const std::vector<Photo>& photos, const Measurer& measurer) {
-  Json json{{"mm_per_pixel", measurer.mm_per_pixel()}, {"notes", measurer.notes()}, {"pictures", Json::array()}};
-  for (const Photo& photo : photos) json["pictures"].push_back(photo_json(photo));
-  if (!photos[0].seen.specimen) return json;
+}  // namespace
+
+std::vector<Stretch> PhotoSeries::stretches() const {
+  std::vector<Stretch> stretches;
+  if (!has_specimen()) return stretches;
+  for (std::size_t i = 1; i < photos_.size(); ++i)
+    stretches.push_back({*photos_[0].seen.specimen, *photos_[i].seen.specimen});
+  return stretches;
+}
+
+Table PhotoSeries::table() const {
+  return has_specimen() ? specimen_table(photos_, stretches()) : marker_table(photos_);
+}
+
+std::string PhotoSeries::csv() const {
+  return file_text(table(), joined(sources(photos_, has_specimen()), measurer_.notes()), photo_decimals);
+}
+
+std::string PhotoSeries::json() const {
+  Json json{{"mm_per_pixel", measurer_.mm_per_pixel()}, {"notes", measurer_.notes()}, {"pictures", Json::array()}};
+  for (const Photo& photo : photos_) json["pictures"].push_back(photo_json(photo));
+  if (!has_specimen()) return json_text(json);
   json["stretches"] = Json::array();
-  for (const Stretch& s : stretches_of(photos)) {
+  for (const Stretch& s : stretches()) {
     Json each{{"dl_mm", s.elongation()},
               {"dL_error_mm", s.elongation_error()},
               {"dl1_mm", s.shift()},
@@ -194,99 +152,107 @@ Json report(const std::vector<Photo>& photos, const Measurer& measurer) {
     each["E_A_by_E_B_error"] = has_ratio(s) ? Json(s.elasticity_ratio_error()) : Json();
     json["stretches"].push_back(std::move(each));
   }
-  return json;
+  return json_text(json);
 }
 
-// ---- films ----
+Table PhotoSeries::shown_markers() const {
+  Table table{{words("picture"), words("marker"), length("x"), length("y"), length("error", 4)}};
+  for (const Photo& photo : photos_)
+    for (const auto& [name, at] : photo.seen.markers)
+      table.rows.push_back({printable(photo.file), name, at.place.x(), at.place.y(), at.error});
+  return table;
+}
 
-struct Track {
-  NumberTable numbers;
-  std::vector<std::string> lost;  // why a frame is left out
-  std::size_t frames = 0;
-};
-
-/// The first frame must show all; a later one that does not is left out, and said to be.
-Track follow(Film& film, Measurer& measurer) {
-  Track track;
-  ProgressLine progress;
-  while (const std::optional<Frame> frame = film.next()) {
-    ++track.frames;
-    const double share = film.frames() > 0 ? double(track.frames) / double(film.frames()) : -1;
-    progress.show(share, "frame " + std::to_string(track.frames));
-    try {
-      const Measurer::Seen seen = measurer.measure(frame->picture, frame->name);
-      std::vector<double> row{frame->time};
-      for (const NamedMarker& marker : seen.markers) row.insert(row.end(), {marker.at.place.x(), marker.at.place.y()});
-      for (const Angle& angle : seen.angles) row.push_back(angle.degrees);
-      if (track.frames == 1) {
-        track.numbers.add_columns({"t_s"});
-        for (const NamedMarker& marker : seen.markers) {
-          const std::string prefix = seen.markers.size() == 1 ? "" : marker.name + "_";
-          track.numbers.add_columns({prefix + "x_mm", prefix + "y_mm"});
-        }
-        for (const Angle& angle : seen.angles) track.numbers.add_columns({angle.name + "_deg"});
-      }
-      track.numbers.add_row(row, 5);
-    } catch (const InvalidInput& error) {
-      if (track.frames == 1) throw;
-      track.lost.emplace_back(error.what());
+Table PhotoSeries::shown_angles() const {
+  Table table{{words("picture"), words("angle"), column("[degrees]"), column("error"), column("since the first")}};
+  for (const Photo& photo : photos_)
+    for (std::size_t i = 0; i < photo.seen.angles.size(); ++i) {
+      const Angle& angle = photo.seen.angles[i];
+      table.rows.push_back({printable(photo.file), angle.name, angle.degrees, angle.error,
+                            angle.degrees - photos_[0].seen.angles[i].degrees});
     }
-  }
-  if (film.frames() > track.frames + 1)
-    track.lost.push_back("the film says that it has " + std::to_string(film.frames()) + " frames; it ends early");
-  return track;
+  return table;
 }
 
-}  // namespace
-
-int measure_photos(const MeasureOptions& options) {
-  const std::vector<Output> outputs = checked_outputs(options);
-  Measurer measurer(understood(options), false);
-  std::vector<Photo> photos;
-  for (const std::string& file : options.pictures) photos.push_back({file, measurer.measure(read_picture(file), file)});
-  const bool specimen = photos[0].seen.specimen.has_value(), markers = !photos[0].seen.markers.empty();
-  const OutputFolders folders(outputs);
-  if (!options.output.empty())
-    (specimen ? specimen_table(photos) : marker_table(photos)).write(options.output, measurer.notes());
-  if (options.json) {
-    print(json_text(report(photos, measurer)) + "\n");
-    return done;
+Table PhotoSeries::shown_specimens() const {
+  Table table{{words("picture"), length("L"), length("L_1"), {.key = "interface", .unit = "degrees"}}};
+  for (const Photo& photo : photos_) {
+    const SpecimenView& view = *photo.seen.specimen;
+    table.rows.push_back({printable(photo.file), with_error(view.length(), view.length_error(), 3),
+                          with_error(view.interface_length(), view.interface_error(), 3),
+                          with_error(view.interface.slant, view.interface.slant_error, 2)});
   }
-  std::string text;
-  if (markers) text += marker_text(photos);
-  if (specimen) text += specimen_text(photos);
-  text += joined(measurer.notes(), "");
-  print(text + (options.output.empty() ? "" : "wrote " + options.output + "\n"));
-  return done;
+  return table;
 }
 
-int measure_film(const MeasureOptions& options) {
-  const std::vector<Output> outputs = checked_outputs(options);
-  Measurer measurer(understood(options), true);
-  Film film({options.pictures.begin(), options.pictures.end()},
-            options.fps > 0 ? std::optional(options.fps) : std::nullopt);
-  const Track track = follow(film, measurer);
-  const std::size_t measured = track.numbers.table.rows.size();
-  const OutputFolders folders(outputs);
-  track.numbers.write(options.output, measurer.notes());
-  const std::string rate =
-      number(film.rate(), 6) + " frames per second" + (options.fps > 0 ? "" : ", as the video says");
-  if (options.json) {
-    const Json json{{"output", options.output},
-                    {"frames", track.frames},
-                    {"measured", measured},
-                    {"frames_per_second", film.rate()},
-                    {"mm_per_pixel", measurer.mm_per_pixel()},
-                    {"notes", measurer.notes()},
-                    {"left_out", track.lost}};
-    print(json_text(json) + "\n");
-  } else {
-    std::string text = "wrote " + options.output + ": " + counted(measured, "frame") + " of " +
-                       std::to_string(track.frames) + ", " + rate + "\n" + joined(measurer.notes(), "");
-    if (!track.lost.empty()) text += "left out:\n" + joined(cut(track.lost, most_losses), "    ");
-    print(text);
+Table PhotoSeries::shown_stretches() const {
+  Table table{{words("stretched"), length("Delta L"), length("Delta L_1"), column("E_A / E_B by Eq. (16)")}};
+  const std::vector<Stretch> all = stretches();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Stretch& s = all[i];
+    table.rows.push_back(
+        {printable(photos_[i + 1].file), with_error(s.elongation(), s.elongation_error(), 3),
+         with_error(s.shift(), s.shift_error(), 3),
+         has_ratio(s) ? with_error(s.elasticity_ratio(), s.elasticity_ratio_error(), 3) : "not stretched"});
   }
-  return track.lost.empty() ? done : not_converged;
+  return table;
 }
 
-}  // namespace softkin::cli
+FilmTrack::FilmTrack(const MeasureOptions& options, std::vector<std::filesystem::path> files,
+                     std::optional<double> rate)
+    : measurer_(understood(options), true), film_(std::move(files), rate) {
+  if (!options.interface.empty()) throw InvalidInput("--interface is measured in pictures, not in a film");
+}
+
+bool FilmTrack::advance() {
+  const std::optional<Frame> frame = film_.next();
+  if (!frame) {
+    if (film_.frames() > frames_ + 1)
+      left_out_.push_back("the film says that it has " + std::to_string(film_.frames()) + " frames; it ends early");
+    return false;
+  }
+  ++frames_;
+  try {
+    take(measurer_.measure(frame->picture, frame->name), frame->time);
+  } catch (const InvalidInput& error) {
+    if (frames_ == 1) throw;
+    left_out_.emplace_back(error.what());
+  }
+  return true;
+}
+
+double FilmTrack::share() const {
+  return film_.frames() > 0 ? double(frames_) / double(film_.frames()) : -1;
+}
+
+void FilmTrack::take(const Measurer::Seen& seen, double time) {
+  if (frames_ == 1) {
+    add_columns(table_, {"t_s"});
+    for (const NamedMarker& marker : seen.markers) {
+      markers_.push_back(marker.name);
+      const std::string prefix = seen.markers.size() == 1 ? "" : marker.name + "_";
+      add_columns(table_, {prefix + "x_mm", prefix + "y_mm"});
+    }
+    for (const Angle& angle : seen.angles) add_columns(table_, {angle.name + "_deg"});
+  }
+  Row& row = table_.rows.emplace_back();
+  row.emplace_back(time);
+  for (const NamedMarker& marker : seen.markers) row.insert(row.end(), {marker.at.place.x(), marker.at.place.y()});
+  for (const Angle& angle : seen.angles) row.emplace_back(angle.degrees);
+}
+
+std::string FilmTrack::csv() const {
+  return file_text(table_, measurer_.notes(), film_decimals);
+}
+
+std::string FilmTrack::json(const std::string& output) const {
+  return json_text(Json{{"output", output},
+                        {"frames", frames_},
+                        {"measured", table_.rows.size()},
+                        {"frames_per_second", rate()},
+                        {"mm_per_pixel", measurer_.mm_per_pixel()},
+                        {"notes", measurer_.notes()},
+                        {"left_out", left_out_}});
+}
+
+}  // namespace softkin::vision
