@@ -5,6 +5,7 @@ Needs a softkin that was built where OpenCV is; `available()` tells.
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,7 +22,7 @@ from ._arrays import Floats, floats
 from .table import Table
 
 if TYPE_CHECKING:
-    from . import _vision
+    import softkin._vision as _vision
 
 __all__ = [
     "Angle",
@@ -63,10 +64,9 @@ def available() -> bool:
 def _loaded() -> Any:
     """The part on OpenCV, which takes a third of a second to load: not before it is needed."""
     try:
-        from . import _vision
+        return importlib.import_module("softkin._vision")
     except ImportError as error:
         raise ImportError(f"{INSTALL} ({error})") from None
-    return _vision
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,6 @@ def told(command: str, *arguments: object) -> Any:
 
 def test_without_opencv_one_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "softkin._vision", None)
-    monkeypatch.delattr(softkin, "_vision", raising=False)
     assert not measure.available()
     for call in (
         lambda: measure.pictures([PICTURES / "rest.png"], dots=["red"], scale=SCALE),
@@ -143,7 +142,7 @@ def test_a_camera(command: str, tmp_path: Path) -> None:
     found = measure.camera(views, CHECKER)
     assert (found.width, found.height, found.pictures) == (640, 480, 6)
     assert found.matrix[0, 0] == pytest.approx(900, rel=0.01) and found.focal_error_px < 5
-    assert found.matrix[0, 2] == pytest.approx(320, abs=5) and abs(found.distortion).max() < 0.1
+    assert found.matrix[0, 2] == pytest.approx(320, abs=5) and abs(found.distortion[[0, 2, 3]]).max() < 0.05
     assert found.reprojection_error_px < 0.2 and found.picture_errors_px.shape == (6,)
     files = [tmp_path / f"view{i}.ppm" for i in range(6)]
     for file, view in zip(files, views):
