@@ -210,8 +210,8 @@ def material(
     modulus_b_MPa        Young's modulus of B, where no force was measured
     tried                R_omega A / R_omega B to look at too
     regions              names of A and B in the scene
-    store                file of the simulated tests: a calibration that was stopped goes on where it was; removed at the
-                         end
+    store                file of the simulated tests: a calibration that was stopped goes on where it was; it is removed
+                         at the end
     progress             called with the share that is done, now and then
     """
     if formulation not in (None, "physical", "target-shape"):

@@ -110,7 +110,7 @@ class _Walks(_Runs):
     ) -> WalkRun:
         """Walks on two feet that slide one way better than the other: an iterator of steps. docs/walking.md
 
-        gait    one cycle of commands as path takes them, (k, m), by name, or a CSV file; the last row is the first again
+        gait    one cycle of commands as path takes them, (k, m), by name, or a CSV file; its last row is its first
         cycles  how often it is walked, 1 to 100000
         times   (k,) [s], ascending; they go on from cycle to cycle
         store   folder of report.json, walk.csv, walk.svg and walk.pvd with the shapes: a walk that was stopped goes on
