@@ -99,8 +99,8 @@ test-python:
 	@PYTHON=$(PYTHON) $(SETUP) --python
 	rm -rf build-wheel/test
 	$(PYTHON) -m venv --clear build-wheel/venv
-	CXX=$${CXX:-c++} build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test -C build-dir=build \
-	  -C cmake.define.SOFTKIN_TESTS=ON -C cmake.define.SOFTKIN_BENCH=ON .
+	CXX=$${CXX:-c++} build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test --config-settings=build-dir=build \
+	  --config-settings=cmake.define.SOFTKIN_TESTS=ON --config-settings=cmake.define.SOFTKIN_BENCH=ON .
 	cmake --preset release
 	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[all,test]"
 	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin examples/python scripts/notebooks.py

@@ -45,7 +45,8 @@ for python in "${pythons[@]}"; do
   "$python" -m venv --clear "$work/builder"
   # the library is the same for every one
   CXX=${CXX:-c++} run "$work/builder/bin/pip" wheel --no-deps --wheel-dir "$work/raw" "$(dirname "$0")/.." \
-    -C build-dir="$work/build" -C cmake.define.SOFTKIN_NATIVE=OFF -C cmake.define.SOFTKIN_OPENCV=OFF
+    --config-settings=build-dir="$work/build" --config-settings=cmake.define.SOFTKIN_NATIVE=OFF \
+    --config-settings=cmake.define.SOFTKIN_OPENCV=OFF
 done
 mkdir -p "$out"
 for wheel in "$work"/raw/*.whl; do

@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <softkin/calibration/actuator_report.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/measurements.hpp>
@@ -38,25 +36,6 @@ struct PressureOptions {
   bool predict = false, json = false;
   int threads = 0;
 };
-
-/// The chamber that was tested.
-std::size_t chamber_of(const RobotSpec& spec, const std::string& asked) {
-  std::vector<std::string> names;
-  std::size_t chamber = 0;
-  for (std::size_t a = 0; a < spec.actuators.size(); ++a) {
-    if (spec.actuators[a].kind != ActuatorKind::pneumatic) continue;
-    names.push_back(spec.actuators[a].name);
-    if (names.back() == asked || asked.empty()) chamber = a;
-  }
-  if (names.empty()) throw InvalidInput({spec.name}, "the scene has no pneumatic actuator");
-  if (asked.empty() && names.size() > 1)
-    throw InvalidInput(
-        {spec.name},
-        "the scene has several pneumatic actuators: say by --actuator which one was tested" + suggest_name("", names));
-  if (!asked.empty() && std::find(names.begin(), names.end(), asked) == names.end())
-    throw InvalidInput("--actuator " + excerpt(asked) + ": no such pneumatic actuator" + suggest_name(asked, names));
-  return chamber;
-}
 
 /// The curve and its plot, where they are asked for.
 void write_curve(const std::string& file, const std::string& plot, const calibration::FittedCurve& fitted,
@@ -99,7 +78,7 @@ int calibrate_pressure(const PressureOptions& options) {
   if (!options.robot.scene.empty()) {
     inputs.emplace_back(options.robot.scene);
     spec = asked_spec(options.robot, inputs);
-    chamber = chamber_of(*spec, options.actuator);
+    chamber = calibration::tested_chamber(*spec, options.actuator);
     actuator = spec->actuators[chamber].name;
     mesh_mm3 = compile(*spec).actuators[chamber].rest_measure;
   }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <set>
@@ -185,26 +184,10 @@ void take(MaterialOptions& options) {
 void check_forces(const MaterialOptions& options, const std::vector<StretchedSpecimen>& specimens) {
   const bool any_force =
       std::any_of(specimens.begin(), specimens.end(), [](const auto& s) { return s.force_n.has_value(); });
-  if (any_force && options.task.modulus_b)
-    throw InvalidInput("--modulus-b is for specimens without a force, but " + options.task.file +
-                       " has a column of it: leave out one of the two");
+  calibration::check_modulus_b(options.task, specimens);
   if (!options.task.target_shape && !options.fragment.empty() && !any_force && !options.task.modulus_b)
     throw InvalidInput("--output " + options.fragment + ": materials of the physical formulation need a modulus; " +
                        options.task.file + " has no column force_n: add it, or give --modulus-b");
-}
-
-/// A force belongs to an area; that of the file and that of the simulation should be one.
-void remark_on_area(const calibration::SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens) {
-  constexpr double most = 0.05;
-  const double simulated = task.options.width_mm * task.options.height_mm;
-  for (const StretchedSpecimen& s : specimens)
-    if (s.area_mm2 && std::abs(*s.area_mm2 / simulated - 1) > most) {
-      std::fprintf(stderr,
-                   "softkin: %s:%zu: note: the area is %s mm^2, but the simulated cross-section has %s; --width and "
-                   "--height set it\n",
-                   task.file.c_str(), s.line, number(*s.area_mm2).c_str(), number(simulated).c_str());
-      return;
-    }
 }
 
 void write(const MaterialOptions& options, const std::string& fragment, const Plot& plot, const Table& residuals) {
@@ -229,7 +212,8 @@ int calibrate_specimens(const MaterialOptions& options) {
   check_forces(options, specimens);
   check_outputs(options.outputs(), inputs);
   const OutputFolders folders(options.outputs());
-  remark_on_area(task, specimens);
+  if (const std::string doubt = calibration::doubt_about_areas(task, specimens); !doubt.empty())
+    std::fprintf(stderr, "softkin: %s\n", doubt.c_str());
   const std::string journal = options.fragment.empty() ? "" : options.fragment + ".run";
   calibration::TestLog log(journal, tests_set_up(task, specimens, twists), options.resume);
   const std::size_t all = number_of_tests(task, specimens.size(), twists.size());

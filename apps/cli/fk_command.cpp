@@ -127,8 +127,7 @@ class FkRun {
       step.strain = {};
       steps.push_back(std::move(step));
     });
-    const std::string title = fs::path(options_.scene).filename().string() + ": " +
-                              formulation_name(model_.formulation) + ", " + options_.solver_name;
+    const std::string title = runs::plot_title(model_, options_.scene) + ", " + options_.solver_name;
     write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
   }
 

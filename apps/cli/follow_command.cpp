@@ -179,9 +179,7 @@ class FollowRun {
     if (!done.empty()) {
       write_file(options_.file("commands.csv"), runs::commands_table(model_, path_, done).csv());
       write_file(options_.file("errors.csv"), runs::errors_table(model_, path_, done).csv());
-      const auto name = [](const std::string& file) { return fs::path(file).filename().string(); };
-      const std::string title =
-          name(options_.path) + " by " + name(options_.scene) + ": " + formulation_name(model_.formulation);
+      const std::string title = runs::plot_title(model_, options_.scene, options_.path);
       write_svg(options_.plot(), runs::plot_of_path(model_, path_, done, reach_mm_, title));
     }
     if (options_.json) show_report(run_);

@@ -7,6 +7,7 @@
 
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
 #include <softkin/runs/workspace_file.hpp>
@@ -91,7 +92,7 @@ class IkRun {
     if (!options_.show.image.empty())
       runs::write_image(options_.show.image, model_, positions, options_.show.view, title, search_.goals);
     if (!options_.show.plot.empty())
-      write_svg(options_.show.plot, ik_plot(found_, search_.inverse.tolerance_mm, title));
+      write_svg(options_.show.plot, runs::plot_of_search(found_, search_.inverse.tolerance_mm, options_.scene));
     if (!options_.json) {
       const std::string found = findings_text(model_, record);
       print(ik_table(model_, search_.asked, found_, record));

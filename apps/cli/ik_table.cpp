@@ -113,36 +113,4 @@ std::string ik_shortfall(const Model& model, const InverseResult& found) {
   return "not converged: " + found.remark + "; the best is " + off + ends_text(model, found);
 }
 
-Plot ik_plot(const InverseResult& found, double tolerance_mm, const std::string& title) {
-  constexpr double least = 1e-9;  // [mm], as small as a logarithmic axis is to show
-  PlotSeries each{"each equilibrium", {}, {}, false}, best{"least so far", {}, {}, true, false};
-  PlotSeries limit{"tolerance", {}, {tolerance_mm, tolerance_mm}, true, false};
-  double lowest = HUGE_VAL;
-  for (std::size_t i = 0; i < found.history.size(); ++i) {
-    const double error = found.history[i].error_mm;
-    if (!std::isfinite(error)) continue;
-    lowest = std::min(lowest, error);
-    for (PlotSeries* series : {&each, &best}) series->x.push_back(static_cast<double>(i + 1));
-    each.y.push_back(std::max(error, least));
-    best.y.push_back(std::max(lowest, least));
-  }
-  if (each.x.empty()) {  // reached at the start
-    each.x = {1};
-    each.y = {std::max(found.errors_mm.maxCoeff(), least)};
-    best = {};
-  }
-  limit.x = {1, each.x.back()};
-  PlotPanel panel;
-  panel.x.label = "equilibria";
-  panel.x.whole = true;
-  panel.y.label = "largest error [mm]";
-  panel.y.logarithmic = true;
-  panel.series = {each, limit};
-  if (!best.x.empty()) panel.series.insert(panel.series.begin() + 1, best);
-  Plot plot;
-  plot.title = title;
-  plot.rows = {{panel}};
-  return plot;
-}
-
 }  // namespace softkin::cli

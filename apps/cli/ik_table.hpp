@@ -1,6 +1,5 @@
 #pragma once
 
-#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/kinematics/inverse.hpp>
 #include <string>
 #include <vector>
@@ -19,8 +18,5 @@ namespace softkin::cli {
 /// Why the goals are not reached: "not reached: 4.2 mm off at the nearest point; tendon1 is at the low end of its
 /// range, 0.5 [-]".
 [[nodiscard]] std::string ik_shortfall(const Model& model, const InverseResult& found);
-
-/// The least error so far over the equilibria.
-[[nodiscard]] Plot ik_plot(const InverseResult& found, double tolerance_mm, const std::string& title);
 
 }  // namespace softkin::cli

@@ -3,10 +3,8 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/model/names.hpp>
-#include <softkin/runs/jobs.hpp>
-#include <softkin/runs/plots.hpp>
-#include <softkin/runs/reports.hpp>
 #include <softkin/runs/run_tables.hpp>
+#include <softkin/runs/walk_run.hpp>
 
 #include "command.hpp"
 #include "run_text.hpp"
@@ -28,12 +26,12 @@ struct WalkOptions : SolveOptions, RunOptions {
   std::string gait, folder;
   std::size_t cycles = 3;
 
-  // In the folder:
-  [[nodiscard]] fs::path file(const char* name) const { return fs::path(folder) / name; }
+  [[nodiscard]] runs::WalkFolder files() const { return runs::WalkFolder(folder); }
   [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const {
     std::vector<Output> outputs;
-    for (const char* name : {"walk.csv", "walk.svg", "report.json"}) outputs.push_back({"--output", file(name)});
-    outputs.push_back({"--output", file("walk.pvd"), steps});
+    for (const fs::path& file : {files().table(), files().plot(), files().run().report})
+      outputs.push_back({"--output", file});
+    outputs.push_back({"--output", files().run().shapes, steps});
     return outputs;
   }
 };
@@ -79,16 +77,11 @@ std::string stride_text(const std::vector<double>& strides) {
   return text;
 }
 
-class WalkRun {
+/// The walk on the terminal.
+class ShownWalk {
  public:
-  WalkRun(const Model& model, Walker& walker, const WalkOptions& options, const std::vector<runs::GaitStep>& steps)
-      : model_(model),
-        options_(options),
-        job_(model, walker, steps, options.gait),
-        run_(model, job_, {options.file("report.json"), options.file("walk.pvd")},
-             runs::walk_head(model, options.scene, options.statics(), options.gait, options.cycles, walker.direction()),
-             {"feet"}),
-        table_(runs::table_of_walk(model)) {}
+  ShownWalk(const Model& model, const WalkOptions& options, runs::WalkRun& walk)
+      : model_(model), options_(options), walk_(walk), run_(walk.run()), table_(runs::table_of_walk(model)) {}
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
@@ -96,40 +89,24 @@ class WalkRun {
         run_, table_, "step", options_.json,
         [](RunProgress& line, const Progress& p) { line.show("iteration " + std::to_string(p.iteration)); },
         [&] { return runs::row_of(model_, run_.last()); });
-    const std::vector<double> strides = finish();
+    walk_.finish();
+    if (options_.json) show_report(run_);
     if (end == runs::Advance::interrupted) return tell_stopped(run_.done(), run_.size(), "step", options_.folder, true);
     if (end == runs::Advance::lost) return lost();
-    say(stride_text(strides));
-    if (const std::string text = overlaps_.text("step"); !text.empty()) say(text);
-    say("steps: " + options_.file("walk.csv").string() + "; plot: " + options_.file("walk.svg").string() +
-        "; shapes: " + options_.file("walk.pvd").string() + " (open it in ParaView)");
+    if (!options_.json) tell();
     return done;
   }
 
  private:
-  void say(const std::string& line) const {
-    if (!options_.json) print(line + "\n");
-  }
-
-  /// Returns the strides.
-  std::vector<double> finish() {
-    std::vector<WalkRecord> steps;
-    run_.log().each([&](std::size_t, const WalkRecord& record) {
-      steps.push_back(record);
-      overlaps_.add(steps.size() - 1, record);
-    });
-    const std::vector<double> strides = runs::strides(steps, options_.cycles);
-    if (!steps.empty()) {
-      run_.log().note("stride_mm", strides);
-      run_.finish();
-      write_file(options_.file("walk.csv"), runs::walk_table(model_, steps).csv());
-      const auto name = [](const std::string& file) { return fs::path(file).filename().string(); };
-      const std::string title =
-          name(options_.gait) + " by " + name(options_.scene) + ": " + formulation_name(model_.formulation);
-      write_svg(options_.file("walk.svg"), runs::plot_of_walk(model_, steps, title));
-    }
-    if (options_.json) show_report(run_);
-    return strides;
+  void tell() {
+    OverlapTally overlaps;
+    std::size_t number = 0;
+    for (const WalkRecord& record : walk_.records()) overlaps.add(number++, record);
+    print(stride_text(walk_.note_strides()) + "\n");
+    if (const std::string text = overlaps.text("step"); !text.empty()) print(text + "\n");
+    const runs::WalkFolder files = options_.files();
+    print("steps: " + files.table().string() + "; plot: " + files.plot().string() +
+          "; shapes: " + files.run().shapes.string() + " (open it in ParaView)\n");
   }
 
   [[nodiscard]] int lost() const {
@@ -140,10 +117,9 @@ class WalkRun {
 
   const Model& model_;
   const WalkOptions& options_;
-  runs::WalkJob job_;
-  runs::Run<WalkRecord> run_;
+  runs::WalkRun& walk_;
+  runs::Run<WalkRecord>& run_;
   Table table_;
-  OverlapTally overlaps_;
 };
 
 int run_walk(const WalkOptions& options) {
@@ -152,17 +128,18 @@ int run_walk(const WalkOptions& options) {
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
-  const std::vector<runs::GaitStep> steps = runs::repeated(
+  std::vector<runs::GaitStep> steps = runs::repeated(
       model, options.gait, read_actuation_path(model, options.gait, Settings(model.actuators.size())), options.cycles);
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
   line.show(-1, "assembling");
-  Walker walker(model, options.statics());
+  runs::WalkRun walk(model, {options.scene, options.gait, std::move(steps), options.cycles}, options.statics(),
+                     options.files());
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
   if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
-  return WalkRun(model, walker, options, steps).run();
+  return ShownWalk(model, options, walk).run();
 }
 
 }  // namespace

@@ -1,21 +1,18 @@
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/json_text.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/picture/rgb_image.hpp>
-#include <softkin/io/plain_text.hpp>
-#include <softkin/io/table/table.hpp>
+#include <softkin/vision/board_print.hpp>
+#include <softkin/vision/camera_survey.hpp>
 #include <softkin/vision/pictures.hpp>
 
 #include "cli/command.hpp"
 #include "cli/terminal.hpp"
 #include "cli/usage.hpp"
-#include "measurer.hpp"
+#include "measure.hpp"
 
 namespace {
 
@@ -35,90 +32,12 @@ struct BoardOptions {
   double dpi = 300;
 };
 
-/// White around the board, without which its outer tags are not found [mm].
-double margin_of(const BoardSpec& board) {
-  return board.kind == BoardSpec::Kind::grid ? board.tag / 4 : board.square / 2;
-}
-
-std::string svg_of(const BoardSpec& board) {
-  const double margin = margin_of(board), width = board.width() + 2 * margin, height = board.height() + 2 * margin;
-  const auto mm = [](double value) { return number(value, 9); };
-  std::string text = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + mm(width) + "mm\" height=\"" + mm(height) +
-                     "mm\" viewBox=\"0 0 " + mm(width) + " " + mm(height) +
-                     "\" shape-rendering=\"crispEdges\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
-  for (const auto& [x, y, w, h] : board_squares(board))
-    text += "<rect x=\"" + mm(margin + x) + "\" y=\"" + mm(margin + board.height() - y - h) + "\" width=\"" + mm(w) +
-            "\" height=\"" + mm(h) + "\"/>\n";
-  return text + "</svg>\n";
-}
-
-RgbImage picture_of(const BoardSpec& board, double pixels) {
-  const double margin = margin_of(board);
-  const double columns = std::ceil((board.width() + 2 * margin) * pixels);
-  const double rows = std::ceil((board.height() + 2 * margin) * pixels);
-  if (!(columns * rows <= 1e8 && columns >= 16 && rows >= 16))
-    throw InvalidInput("--dpi: the picture would have " + number(columns) + " x " + number(rows) + " pixels");
-  RgbImage picture(static_cast<int>(columns), static_cast<int>(rows));
-  // edges between pixels are shades, so that the picture is true to scale at any resolution
-  std::vector<double> dark(static_cast<std::size_t>(columns * rows), 0);
-  for (const auto& [x, y, w, h] : board_squares(board)) {
-    const double left = (margin + x) * pixels, right = left + w * pixels;
-    const double top = (margin + board.height() - y - h) * pixels, bottom = top + h * pixels;
-    for (int row = static_cast<int>(top); row < std::min(bottom, rows); ++row)
-      for (int column = static_cast<int>(left); column < std::min(right, columns); ++column)
-        dark[std::size_t(row) * std::size_t(picture.width) + std::size_t(column)] +=
-            (std::min(bottom, row + 1.0) - std::max(top, double(row))) *
-            (std::min(right, column + 1.0) - std::max(left, double(column)));
-  }
-  for (std::size_t i = 0; i < dark.size(); ++i)
-    std::fill_n(picture.bytes.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, to_byte(std::max(0.0, 1 - dark[i])));
-  return picture;
-}
-
-struct Sights {
-  std::vector<BoardSight> boards;
-  int width = 0, height = 0;
-};
-
-Sights look(const CameraOptions& options, const BoardSpec& board) {
-  Sights sights;
-  ProgressLine progress;
-  for (const std::string& file : options.pictures) {
-    progress.show(static_cast<double>(sights.boards.size()) / static_cast<double>(options.pictures.size()), file);
-    const RgbImage picture = read_picture(file);
-    if (sights.boards.empty()) {
-      sights.width = picture.width;
-      sights.height = picture.height;
-    }
-    if (picture.width != sights.width || picture.height != sights.height)
-      throw InvalidInput({file}, "the picture is not of the size of the first; all must be from one camera");
-    try {
-      sights.boards.push_back({file, find_board(picture, board, std::nullopt)});
-    } catch (const InvalidInput& error) {
-      throw InvalidInput({file}, error.what());
-    }
-  }
-  return sights;
-}
-
-std::string text_of(const Camera& camera, const std::vector<BoardSight>& boards, const std::vector<double>& errors) {
-  Table table{{{.key = "picture", .left = true}, {.key = "corners"}, {.key = "reprojection error", .unit = "px"}}};
-  for (std::size_t i = 0; i < boards.size(); ++i)
-    table.rows.push_back(
-        {printable(boards[i].file), static_cast<std::int64_t>(boards[i].points.size()), decimal(errors[i], 3)});
-  return table_text(table) + "reprojection error: " + decimal(camera.reprojection_error, 3) +
-         " pixels (root of the mean square)\nfocal length: " + decimal(camera.fx, 2) + ", " + decimal(camera.fy, 2) +
-         " +- " + decimal(camera.focal_error, 2) + " pixels; centre: " + decimal(camera.cx, 2) + ", " +
-         decimal(camera.cy, 2) + " pixels\ndistortion: k1 " + number(camera.k1, 5) + ", k2 " + number(camera.k2, 5) +
-         ", p1 " + number(camera.p1, 5) + ", p2 " + number(camera.p2, 5) + " (k3 is kept at 0)\n";
-}
-
 int measure_board(const BoardOptions& options) {
   const BoardSpec board = parse_board(options.board);
   const std::vector<Output> outputs{{"-o", options.output}};
   check_outputs(outputs, {});
   const bool svg = lower_extension(options.output) == ".svg";
-  const std::string content = svg ? svg_of(board) : encode_png(picture_of(board, options.dpi / 25.4));
+  const std::string content = svg ? board_svg(board) : encode_png(board_picture(board, options.dpi));
   const OutputFolders folders(outputs);
   write_file(options.output, content);
   print("wrote " + options.output + ": " + decimal(board.width(), 1) + " x " + decimal(board.height(), 1) +
@@ -128,28 +47,21 @@ int measure_board(const BoardOptions& options) {
 }
 
 int measure_camera(const CameraOptions& options) {
-  const BoardSpec board = parse_board(options.board);
+  CameraSurvey survey(parse_board(options.board));
   const std::vector<Output> outputs{{"-o", options.output}};
   check_outputs(outputs, {options.pictures.begin(), options.pictures.end()});
-  const Sights sights = look(options, board);
-  std::vector<double> errors;
-  const Camera camera = fit_camera(sights.boards, sights.width, sights.height, errors);
-  const OutputFolders folders(outputs);
-  write_file(options.output, camera_text(camera));
-  if (options.json) {
-    const Json json{{"output", options.output},
-                    {"reprojection_error_px", camera.reprojection_error},
-                    {"picture_errors_px", errors},
-                    {"fx_px", camera.fx},
-                    {"fy_px", camera.fy},
-                    {"cx_px", camera.cx},
-                    {"cy_px", camera.cy},
-                    {"focal_error_px", camera.focal_error},
-                    {"distortion", {{"k1", camera.k1}, {"k2", camera.k2}, {"p1", camera.p1}, {"p2", camera.p2}}}};
-    print(json_text(json) + "\n");
-  } else {
-    print(text_of(camera, sights.boards, errors) + "wrote " + options.output + "\n");
+  {
+    ProgressLine progress;
+    for (const std::string& file : options.pictures) {
+      progress.show(static_cast<double>(survey.size()) / static_cast<double>(options.pictures.size()), file);
+      survey.add(read_picture(file), file);
+    }
   }
+  survey.fit();
+  const OutputFolders folders(outputs);
+  write_file(options.output, camera_text(survey.camera()));
+  print(options.json ? survey.json(options.output) + "\n"
+                     : table_text(survey.shown()) + survey.text() + "wrote " + options.output + "\n");
   return done;
 }
 
@@ -159,7 +71,7 @@ void add_common(CLI::App& command, bool& json, int& threads) {
             CLI::Range(1, 1024).description(""));
 }
 
-void add_what(CLI::App& app, MeasureOptions& options) {
+void add_what(CLI::App& app, PicturesOptions& options) {
   add_value(app, "--dots", options.dots, "COLOURS",
             "Round coloured dots, one of each colour: red,tip=blue; colours: red, orange, yellow, green, cyan, blue, "
             "magenta, black, white, #rrggbb");
@@ -176,7 +88,7 @@ void add_what(CLI::App& app, MeasureOptions& options) {
             "Angle of the line from marker A to B against x, or against that from C to D [degrees]");
 }
 
-void add_frame(CLI::App& app, MeasureOptions& options) {
+void add_frame(CLI::App& app, PicturesOptions& options) {
   add_value(app, "--scale-board", options.board, "BOARD",
             "A printed board: 5x4,tag=12mm,gap=3mm or charuco,7x5,square=10mm,tag=7mm; also dictionary=5x5_100, "
             "first=10 (its first tag)");
@@ -193,7 +105,7 @@ void add_frame(CLI::App& app, MeasureOptions& options) {
                "Find the board in each frame of a film, not in the first alone");
 }
 
-bool film_of(const MeasureOptions& options) {
+bool film_of(const PicturesOptions& options) {
   const bool film = options.fps > 0 || is_film(options.pictures.at(0));
   if (film && !options.interface.empty())
     throw CLI::ValidationError("--interface", "is measured in pictures, not in a film");
@@ -207,7 +119,7 @@ bool film_of(const MeasureOptions& options) {
 }
 
 void add_photos(CLI::App& app, Run& run) {
-  const auto options = std::make_shared<MeasureOptions>();
+  const auto options = std::make_shared<PicturesOptions>();
   add_value(app, "PICTURES", options->pictures, "",
             "Pictures (PNG, JPEG, TIFF, ...); or a film: a video, a folder of numbered pictures, pictures with --fps");
   add_what(app, *options);

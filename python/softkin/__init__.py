@@ -3,7 +3,7 @@
 Lengths are in mm, pressures in kPa (gauge), forces in N, ratios without unit. docs/python.md
 """
 
-from . import calibrate, compare, drive
+from . import calibrate, compare, drive, measure
 from ._core import ActuatorInfo
 from ._core import version as __version__
 from ._solving import Progress
@@ -14,6 +14,7 @@ from .runs import FollowRun, PathRun, Waypoint
 from .session import Session
 from .shape import ActuatorState, Deformation, Reaction, SelfOverlap, Shape
 from .table import Table
+from .walk import WalkRun, WalkStep
 from .workspace import Hull, Workspace
 
 __all__ = [
@@ -34,6 +35,8 @@ __all__ = [
     "Shape",
     "SoftkinWarning",
     "Table",
+    "WalkRun",
+    "WalkStep",
     "Waypoint",
     "Workspace",
     "__version__",
@@ -41,4 +44,5 @@ __all__ = [
     "compare",
     "drive",
     "load",
+    "measure",
 ]

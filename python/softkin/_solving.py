@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -52,6 +53,16 @@ def _telling(progress: ProgressFunction) -> Callable[[int, float, float, float],
         return progress(Progress(iteration, step_mm, tolerance_mm, share)) is not False
 
     return told
+
+
+def _chosen_start(
+    goals: _core.Goals, start: Shape | Commands | None, workspace: str | os.PathLike[str] | None
+) -> Shape | Commands | None:
+    if workspace is None:
+        return start
+    if start is not None:
+        raise ValueError("workspace chooses the start: it does not go with start")
+    return goals.nearest_sample(os.fspath(workspace))
 
 
 class Solving:
@@ -223,6 +234,7 @@ class Solving:
         lever_mm: float | None = None,
         weights: Mapping[str | tuple[str, str], float] | None = None,
         start: Shape | Commands | None = None,
+        workspace: str | os.PathLike[str] | None = None,
         prefer: Mapping[str, Command] | None = None,
         fix: Mapping[str, Command] | Sequence[str] | None = None,
         method: str = "newton",
@@ -248,6 +260,7 @@ class Solving:
         lever_mm        how far away a wrong direction counts [mm]; None: as far as its markers are apart at rest
         weights         in the sum of squares, by marker or (from, to); 1 where none is given
         start           an equilibrium, or commands as `solve` takes them; None: rest
+        workspace       CSV of a workspace, in place of start: its sample nearest to the goals
         prefer          where several actuations reach the goals, the one nearest to these commands; None: to the start
         fix             actuators that do not change: names, or commands by name
         method          'newton', or 'gradient': Algorithm 2 of Fang et al. 2020
@@ -261,4 +274,5 @@ class Solving:
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
+        start = _chosen_start(goals, start, workspace)
         return self._solve_inverse(goals, start, None, prefer, fix, options, progress)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,10 +14,21 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats
+from .errors import SoftkinWarning
 from .robot import Robot
 from .table import Table
 
-__all__ = ["Branch", "Calibration", "Curve", "dea", "material", "pressure", "tensile"]
+__all__ = [
+    "Branch",
+    "Calibration",
+    "Curve",
+    "ModulusCheck",
+    "Prediction",
+    "dea",
+    "material",
+    "pressure",
+    "tensile",
+]
 
 PathLike = str | os.PathLike[str]
 
@@ -76,6 +88,35 @@ class Branch:
     """(k,) standard deviation of the ratio between repeated runs [-]; empty: not known"""
 
 
+@dataclass(frozen=True)
+class ModulusCheck:
+    """What measured pressures say of the moduli behind predicted ones."""
+
+    factor: float
+    """least squares: measured = factor * predicted; by it all moduli would have to be multiplied [-]"""
+    misfit_before: float
+    """rms of measured - predicted over the rms of the measured [-]"""
+    misfit_after: float
+    """the same with the factor [-]"""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Gauge pressures that the physical formulation needs for ratios of the curve, the other chambers open."""
+
+    ratio: Floats
+    """(k,) volume over that at rest [-]"""
+    pressure_kPa: Floats
+    """(k,) NaN: no equilibrium was found"""
+    checks: dict[str, ModulusCheck]
+    """by branch, 'loading' and 'unloading'"""
+
+    @property
+    def complete(self) -> bool:
+        """Is there an equilibrium at every ratio?"""
+        return bool(np.isfinite(self.pressure_kPa).all())
+
+
 class Curve:
     """An actuator's ratio by gauge pressure [kPa] or voltage [kV]."""
 
@@ -96,6 +137,22 @@ class Curve:
     def samples(self) -> Floats:
         """(s, 4) measured: input, ratio, 1 where it falls, number of the sweep; (0, 4) of a computed curve."""
         return np.array(self._core.samples, dtype=float).reshape(-1, 4)
+
+    @property
+    def rows(self) -> Table | None:
+        """Of syringe tests every row with its volume ratio; None: of a dielectric elastomer."""
+        return None if self._core.rows is None else Table(self._core.rows)
+
+    @property
+    def prediction(self) -> Prediction | None:
+        """None: not asked for."""
+        told = self._core.prediction
+        if told is None:
+            return None
+        ratios, pressures, checks = told
+        known = [np.nan if pressure is None else pressure for pressure in pressures]
+        by_branch = {branch: ModulusCheck(*check) for branch, check in checks.items()}
+        return Prediction(np.array(ratios), np.array(known), by_branch)
 
     def ratio(self, input: float, *, unloading: bool = False) -> float:
         """Volume or area over that without input [-].
@@ -138,6 +195,7 @@ def material(
     modulus_b_MPa: float | None = None,
     tried: Sequence[float] = (),
     regions: tuple[str, str] = ("A", "B"),
+    store: PathLike | None = None,
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
 ) -> Calibration:
@@ -154,6 +212,8 @@ def material(
     modulus_b_MPa        Young's modulus of B, where no force was measured
     tried                R_omega A / R_omega B to look at too
     regions              names of A and B in the scene
+    store                file of the simulated tests: a calibration that was stopped goes on where it was; it is removed
+                         at the end
     progress             called with the share that is done, now and then
     """
     if formulation not in (None, "physical", "target-shape"):
@@ -177,7 +237,11 @@ def material(
     given.poisson_ratio, given.stiffer_shape_ratio = poisson_ratio, stiffer_shape_ratio
     given.cells, given.threads, given.modulus_b_MPa = cells, threads, modulus_b_MPa
     given.tried, given.regions = list(tried), list(regions)
-    return Calibration(_core.calibrate_specimens(given, progress))
+    given.journal = "" if store is None else os.fspath(store)
+    core = _core.calibrate_specimens(given, progress)
+    if core.doubt:
+        warnings.warn(core.doubt, SoftkinWarning, stacklevel=2)
+    return Calibration(core)
 
 
 def tensile(
@@ -225,6 +289,8 @@ def pressure(
     actuator: str | None = None,
     atmosphere_kPa: float = 100,
     scale: str | None = None,
+    predict: bool = False,
+    threads: int = 0,
 ) -> Curve:
     """Volume ratio of a chamber by its pressure, from syringe tests (Fang et al. 2020, Eq. (19)).
 
@@ -235,23 +301,28 @@ def pressure(
     robot, actuator  whose chamber it is
     atmosphere_kPa   absolute; 100 as in the paper
     scale            of column p_kpa: 'absolute' or 'gauge'
+    predict          with robot: the pressures of the physical formulation beside the measured ones, and the factor of
+                     Young's modulus between them
+    threads          of predict's solves; 0: as many as the machine has
     """
     if scale not in (None, "absolute", "gauge"):
         raise ValueError(f"scale must be 'absolute' or 'gauge', not {scale!r}")
-    if chamber_volume is None:
-        if robot is None:
+    if robot is None:
+        for name, wants in (("predict", predict), ("actuator", actuator is not None)):
+            if wants:
+                raise ValueError(f"{name} needs robot=, whose chamber it is")
+        if chamber_volume is None:
             raise ValueError("chamber_volume at rest is not known: give it, or robot=, whose mesh has it")
-        chambers = [info for info in robot.actuator_infos if info.kind == "pneumatic" and actuator in (None, info.name)]
-        if len(chambers) != 1:
-            raise ValueError(f"actuator must name the chamber that was tested, not {actuator!r}")
-        chamber = chambers[0].rest_measure
-    else:
-        chamber = _volume("chamber_volume", chamber_volume)
-    tube = 0.0 if tube_volume == 0 else _volume("tube_volume", tube_volume)
-    core = _core.calibrate_pressure(
-        _files(tests), scale or "", chamber, tube, _volume("syringe_volume", syringe_volume), atmosphere_kPa
-    )
-    return Curve(core)
+    given = _core.SyringeTests()
+    given.files, given.scale, given.actuator = _files(tests), scale or "", actuator or ""
+    if robot is not None:
+        given.robot = robot._core
+    if chamber_volume is not None:
+        given.chamber_mm3 = _volume("chamber_volume", chamber_volume)
+    given.tube_mm3 = 0.0 if tube_volume == 0 else _volume("tube_volume", tube_volume)
+    given.syringe_mm3 = _volume("syringe_volume", syringe_volume)
+    given.atmosphere_kPa, given.predict, given.threads = atmosphere_kPa, predict, threads
+    return Curve(_core.calibrate_pressure(given))
 
 
 def dea(

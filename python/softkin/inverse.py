@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -86,6 +87,12 @@ class Answer:
         """What `softkin ik --report` writes: docs/formats.md."""
         report: dict[str, Any] = json.loads(self._core.report())
         return report
+
+    def save_plot(self, path: str | os.PathLike[str]) -> None:
+        """The error over the equilibria of the search: an .svg."""
+        if not self._core.has_shape:
+            raise ValueError(f"there is nothing to plot: {self.reason}")
+        self._core.save_plot(os.fspath(path))
 
     def require(self) -> Answer:
         """Itself; raises NotConverged where not every goal is met."""

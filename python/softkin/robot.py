@@ -16,7 +16,8 @@ from . import _core, neighbours
 from ._arrays import Floats, Indices, floats, indices, vector
 from ._solving import Command
 from .errors import SoftkinWarning
-from .runs import FollowRun, PathRun, _Runs
+from .runs import FollowRun, PathRun
+from .walk import WalkRun, _Walks
 from .workspace import _Workspaces
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def _add_region(mesh: _core.Mesh, sizes: list[int], name: str, value: Any) -> di
     return None
 
 
-class Robot(_Runs, _Workspaces):
+class Robot(_Walks, _Workspaces):
     """A compiled robot; immutable. Every solve stands for itself, so that threads may share it."""
 
     def __init__(
@@ -374,4 +375,4 @@ def _unpickled(state: bytes) -> Robot:
 
 
 # what annotations of the mixins name
-_ = (Command, FollowRun, PathRun)
+_ = (Command, FollowRun, PathRun, WalkRun)

@@ -22,18 +22,19 @@ from .table import Table
 if TYPE_CHECKING:
     from .robot import Robot
 
-    AnyRun = _core.PathRun | _core.FollowRun
+    AnyRun = _core.PathRun | _core.FollowRun | _core.WalkRun
 
 __all__ = ["FollowRun", "PathRun", "Waypoint"]
 
 PathLike = str | os.PathLike[str]
+Steps = PathLike | ArrayLike | Sequence[Mapping[str, Command]]
 
 
 Record = TypeVar("Record")
 
 
 class _Run(Iterator[Record]):
-    """What both kinds have."""
+    """What all kinds have."""
 
     _core: AnyRun
 
@@ -60,13 +61,19 @@ class _Run(Iterator[Record]):
 
     @property
     def report(self) -> dict[str, Any]:
-        """What `softkin fk --report` or `softkin follow` writes, of the records so far."""
+        """What `softkin fk --report`, `softkin follow` or `softkin walk` writes, of the records so far."""
         report: dict[str, Any] = json.loads(self._core.report())
         return report
 
     def finish(self) -> None:
         """Writes report and series of the store, of what there is; at the end of the path that is done by itself."""
         self._core.finish()
+
+    def save_plot(self, path: PathLike) -> None:
+        """What the command's --plot draws, of the records so far: an .svg."""
+        if self.done == 0:
+            raise ValueError("there is nothing to plot: no record is made yet")
+        self._core.save_plot(os.fspath(path))
 
 
 class PathRun(_Run[Shape]):
@@ -142,6 +149,10 @@ def _tell(remark: str) -> None:
         warnings.warn(remark, SoftkinWarning, stacklevel=5)
 
 
+def _folder(store: PathLike | None) -> str:
+    return "" if store is None else os.fspath(store)
+
+
 def _times(times: ArrayLike | None, rows: int) -> Floats | None:
     if times is None:
         return None
@@ -156,7 +167,7 @@ class _Runs(Solving):
 
     def path(
         self,
-        steps: PathLike | ArrayLike | Sequence[Mapping[str, Command]],
+        steps: Steps,
         *,
         times: ArrayLike | None = None,
         store: PathLike | None = None,
@@ -176,22 +187,25 @@ class _Runs(Solving):
         commands  of actuators that the steps do not name
         others    as solve's
         """
-        robot = self._owner
         options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        folder = "" if store is None else os.fspath(store)
+        core = self._steps("steps", steps, times, commands)
+        return PathRun(self._owner, _core.PathRun(self._owner._core, core, options, _folder(store)))
+
+    def _steps(self, name: str, steps: Steps, times: ArrayLike | None, others: Mapping[str, Command]) -> _core.Steps:
+        """others: commands of actuators that the steps do not name"""
+        robot = self._owner
         if isinstance(steps, (str, os.PathLike)):
             if times is not None:
-                raise ValueError("times: a file of steps has its own, in column t_s")
-            settings = [f"{name}={value}" for name, value in commands.items()]
-            core = _core.PathRun.of_file(robot._core, os.fspath(steps), settings, options, folder)
-            return PathRun(robot, core)
+                raise ValueError("times: a file has its own, in column t_s")
+            return _core.Steps.of_file(robot._core, os.fspath(steps), [f"{key}={v}" for key, v in others.items()])
         rows: ArrayLike = steps  # type: ignore[assignment]
         if isinstance(steps, Sequence) and steps and isinstance(steps[0], Mapping):
-            rows = [self._actuation({**commands, **step}, {}) for step in steps]  # type: ignore[dict-item]
-        elif commands:
+            rows = [self._actuation({**others, **step}, {}) for step in steps]  # type: ignore[dict-item]
+        elif others:
             raise ValueError("commands: rows of an array name every actuator")
-        table = floats("steps", rows, (None, len(robot.actuators)))
-        return PathRun(robot, _core.PathRun.of_rows(robot._core, table, _times(times, len(table)), options, folder))
+        table = floats(name, rows, (None, len(robot.actuators)))
+        called = "the path" if name == "steps" else "the gait"
+        return _core.Steps.of_rows(robot._core, table, _times(times, len(table)), called)
 
     def follow(
         self,
@@ -251,7 +265,7 @@ class _Runs(Solving):
             predict,
             begin,
             "" if workspace is None else os.fspath(workspace),
-            "" if store is None else os.fspath(store),
+            _folder(store),
         )
         return FollowRun(robot, core)
 

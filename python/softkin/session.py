@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._solving import DEFAULT_ITERATIONS, Command, Commands, ProgressFunction, Solving, Target, _options
+from ._solving import (
+    DEFAULT_ITERATIONS,
+    Command,
+    Commands,
+    ProgressFunction,
+    Solving,
+    Target,
+    _chosen_start,
+    _options,
+)
 from .inverse import Answer
 from .shape import Shape
 
@@ -73,6 +83,7 @@ class Session(Solving):
         lever_mm: float | None = None,
         weights: Mapping[str | tuple[str, str], float] | None = None,
         start: Shape | Commands | None = None,
+        workspace: str | os.PathLike[str] | None = None,
         prefer: Mapping[str, Command] | None = None,
         fix: Mapping[str, Command] | Sequence[str] | None = None,
         method: str = "newton",
@@ -93,6 +104,7 @@ class Session(Solving):
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
+        start = _chosen_start(goals, start, workspace)
         last = self._answer if start is None else None
         found = self._solve_inverse(goals, self._last if start is None else start, last, prefer, fix, options, progress)
         if found.shape.converged:

@@ -122,6 +122,18 @@ class Workspace:
         kind, vertices, triangles, volume, area, (long, wide, thin) = self._core.hull(marker or "")
         return Hull(kind, vertices, triangles, volume, area, (long, wide, thin))
 
+    def save(self, path: str | os.PathLike[str], marker: str | None = None) -> None:
+        """The places of a marker for ParaView, with commands and loads: a .vtu. None: the robot's first marker."""
+        self._core.save_cloud(_file("path", path, ".vtu"), marker or "")
+
+    def save_hull(self, path: str | os.PathLike[str], marker: str | None = None) -> None:
+        """The convex hull of a marker's places: a .stl or .vtu."""
+        self._core.save_hull(_file("path", path, ".stl", ".vtu"), marker or "")
+
+    def save_plot(self, path: str | os.PathLike[str], marker: str | None = None) -> None:
+        """The places of a marker, seen along the axes: an .svg."""
+        self._core.save_plot(_file("path", path, ".svg"), marker or "")
+
     def __reduce__(self) -> tuple[Callable[[Robot, bytes], Workspace], tuple[Robot, bytes]]:
         return _unpickled, (self._robot, self._core.pickled())
 
@@ -140,6 +152,13 @@ class Workspace:
             for row in self.samples[:most].tolist()
         )
         return f"<p>{escape(repr(self)[1:-1])}</p><table><tr>{head}</tr>{rows}</table>"
+
+
+def _file(name: str, path: str | os.PathLike[str], *endings: str) -> str:
+    file = os.fspath(path)
+    if not file.lower().endswith(endings):
+        raise ValueError(f"{name} must end in {' or '.join(endings)}, not {os.path.basename(file)!r}")
+    return file
 
 
 def _unpickled(robot: Robot, state: bytes) -> Workspace:

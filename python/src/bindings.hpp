@@ -12,6 +12,7 @@ void bind_robot(nanobind::module_& module);
 void bind_shape(nanobind::module_& module);
 void bind_solve(nanobind::module_& module);
 void bind_inverse(nanobind::module_& module);
+void bind_mesh_files(nanobind::module_& module);
 void bind_runs(nanobind::module_& module);
 void bind_workspace(nanobind::module_& module);
 void bind_compare(nanobind::module_& module);

@@ -1,6 +1,8 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/function.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -14,6 +16,7 @@
 #include <softkin/io/table/measurements.hpp>
 #include <softkin/model/names.hpp>
 
+#include "arguments.hpp"
 #include "bindings.hpp"
 #include "robot.hpp"
 #include "watch.hpp"
@@ -31,12 +34,15 @@ struct Calibration {
   std::string failure;               // why; empty: none
   Table residuals;
   Plot plot;
+  std::string doubt{};  // what is probably not meant; empty: nothing
 };
 
 /// An actuator's curve with what is told of it.
 struct CurveCalibration {
   FittedCurve fitted;
   std::string text, json, file, title;
+  std::optional<Table> rows{};                                 // of syringe tests
+  std::optional<calibration::PressureComparison> predicted{};  // where it was asked for
 };
 
 using BranchOut = std::tuple<std::vector<double>, std::vector<double>, std::vector<double>>;
@@ -53,13 +59,56 @@ CurveCalibration told(FittedCurve fitted, const std::string& head, std::string j
   return {std::move(fitted), std::move(text), std::move(json), std::move(file), title};
 }
 
-CurveCalibration pressure(const Files& tests, const std::string& scale, double chamber_mm3, double tube_mm3,
-                          double syringe_mm3, double atmosphere_kPa) {
-  calibration::SyringeTask task{tests, {}, {chamber_mm3, tube_mm3, syringe_mm3, atmosphere_kPa}};
-  if (!scale.empty()) task.scale = scale == "absolute" ? PressureScale::absolute : PressureScale::gauge;
-  calibration::SyringeResults results = calibration::evaluate(task, "of the test");
-  std::string json = calibration::pressure_json(tests, task.setup, results.fitted, nullptr);
-  return told(std::move(results.fitted), results.head, std::move(json), "pressure", "volume ratio by Eq. (19)", true);
+/// Syringe tests as the Python layer has them.
+struct SyringeTests {
+  Files files;
+  std::string scale, actuator;        // empty: not given
+  RobotPtr robot;                     // null: not given
+  std::optional<double> chamber_mm3;  // none: of the robot's mesh
+  double tube_mm3 = 0, syringe_mm3 = 0, atmosphere_kPa = 100;
+  bool predict = false;
+  int threads = 0;
+};
+
+CurveCalibration pressure(const SyringeTests& given) {
+  calibration::SyringeTask task{
+      given.files, {}, {given.chamber_mm3.value_or(0), given.tube_mm3, given.syringe_mm3, given.atmosphere_kPa}};
+  if (!given.scale.empty()) task.scale = given.scale == "absolute" ? PressureScale::absolute : PressureScale::gauge;
+  std::optional<RobotSpec> spec;
+  std::size_t chamber = 0;
+  if (given.robot) {
+    Source source = given.robot->source();
+    spec = source.spec(false);
+    chamber = calibration::tested_chamber(*spec, given.actuator);
+    if (!given.chamber_mm3) task.setup.chamber_mm3 = given.robot->model().actuators[chamber].rest_measure;
+  }
+  return watched(nb::none(), [&](const ProgressCallback& progress) {
+    calibration::SyringeResults results = calibration::evaluate(task, "of the test");
+    std::optional<calibration::PressureComparison> physics;
+    if (given.predict)
+      physics = calibration::compare_with_physics(*spec, chamber, results.fitted.curve, given.threads, progress);
+    const calibration::PressureComparison* comparison = physics ? &*physics : nullptr;
+    std::string json = calibration::pressure_json(given.files, task.setup, results.fitted, comparison);
+    Table rows = calibration::syringe_table(task.setup, results.samples);
+    CurveCalibration curve =
+        told(std::move(results.fitted), results.head, std::move(json), "pressure", "volume ratio by Eq. (19)", true);
+    curve.rows = std::move(rows);
+    if (physics) curve.text += "\n" + calibration::comparison_text(*physics, curve.fitted.curve, *spec);
+    curve.predicted = std::move(physics);
+    return curve;
+  });
+}
+
+/// Ratios [-], pressures [kPa], and by branch the factor and the misfits before and after it [-].
+using Prediction = std::tuple<std::vector<double>, std::vector<std::optional<double>>,
+                              std::map<std::string, std::tuple<double, double, double>>>;
+
+std::optional<Prediction> prediction_of(const CurveCalibration& curve) {
+  if (!curve.predicted) return std::nullopt;
+  Prediction all{curve.predicted->ratios, curve.predicted->predicted, {}};
+  for (const auto& [branch, check] : curve.predicted->branches)
+    std::get<2>(all)[branch_name(branch)] = {check.factor, check.misfit_before, check.misfit_after};
+  return all;
 }
 
 CurveCalibration dea(const Files& tests, const std::string& law, std::optional<double> shear_modulus_MPa,
@@ -90,6 +139,7 @@ struct Specimens {
   std::optional<double> modulus_b_MPa;
   std::vector<double> tried;
   std::array<std::string, 2> regions{"A", "B"};
+  std::string journal;  // empty: none
 };
 
 calibration::SpecimenTask task_of(const Specimens& given) {
@@ -122,17 +172,30 @@ Calibration specimens(const Specimens& given,
   std::atomic<double> share = 0;
   task.options.go_on = [&watch] { return watch.go_on(); };
   calibration::SpecimenResults results;
+  std::string doubt;
   const auto work = [&] {
+    std::vector<StretchedSpecimen> stretched = read_stretched_specimens(task.file);
     std::vector<TwistedSpecimen> twists;
     if (!task.twist_file.empty()) twists = read_twisted_specimens(task.twist_file);
-    results = calibration::evaluate(task, read_stretched_specimens(task.file), std::move(twists),
+    check_modulus_b(task, stretched);
+    doubt = doubt_about_areas(task, stretched);
+    calibration::TestLog log(given.journal, tests_set_up(task, stretched, twists), true);
+    task.options.log = &log;
+    results = calibration::evaluate(task, std::move(stretched), std::move(twists),
                                     [&](const std::string&, double done) { share = done; });
+    task.options.log = nullptr;
+    if (!results.interrupted) log.remove();
   };
   watch.watch(work, [&] {
     if (progress) (*progress)(share.load());
   });
-  Calibration calibrated{
-      specimens_text(task, results), specimens_json(task, results), "", calibration::failure(task, results), {}, {}};
+  Calibration calibrated{specimens_text(task, results),
+                         specimens_json(task, results),
+                         "",
+                         calibration::failure(task, results),
+                         {},
+                         {},
+                         doubt};
   if (!calibrated.failure.empty()) return calibrated;
   calibrated.fragment = specimens_fragment(task, results);
   calibrated.residuals = residual_table(results);
@@ -145,6 +208,8 @@ void bind_curve(nb::module_& module) {
       .def_ro("text", &CurveCalibration::text)
       .def_ro("json", &CurveCalibration::json)
       .def_ro("file", &CurveCalibration::file)
+      .def_ro("rows", &CurveCalibration::rows)
+      .def_prop_ro("prediction", &prediction_of)
       .def_prop_ro("loading", [](const CurveCalibration& c) { return branch_out(c.fitted.curve.loading); })
       .def_prop_ro("unloading",
                    [](const CurveCalibration& c) {
@@ -181,6 +246,7 @@ void bind_calibrate(nb::module_& module) {
       .def_ro("json", &Calibration::json)
       .def_ro("fragment", &Calibration::fragment)
       .def_ro("failure", &Calibration::failure)
+      .def_prop_ro("doubt", [](const Calibration& c) { return with_arguments(c.doubt); })
       .def_ro("residuals", &Calibration::residuals)
       .def(
           "save_plot", [](const Calibration& c, const std::string& path) { write_svg(path, c.plot); }, nb::arg("path"));
@@ -200,13 +266,24 @@ void bind_calibrate(nb::module_& module) {
       .def_rw("threads", &Specimens::threads)
       .def_rw("modulus_b_MPa", &Specimens::modulus_b_MPa)
       .def_rw("tried", &Specimens::tried)
-      .def_rw("regions", &Specimens::regions);
+      .def_rw("regions", &Specimens::regions)
+      .def_rw("journal", &Specimens::journal);
   module.def("calibrate_specimens", &specimens, nb::arg("specimens"), nb::arg("progress").none());
   module.def("calibrate_tensile", &tensile, nb::arg("file"), nb::arg("poisson_ratio"), nb::arg("tolerance_percent"),
              nb::arg("most_strain"), nb::arg("law"), nb::arg("region"), nb::call_guard<nb::gil_scoped_release>());
-  module.def("calibrate_pressure", &pressure, nb::arg("tests"), nb::arg("scale"), nb::arg("chamber_mm3"),
-             nb::arg("tube_mm3"), nb::arg("syringe_mm3"), nb::arg("atmosphere_kPa"),
-             nb::call_guard<nb::gil_scoped_release>());
+  nb::class_<SyringeTests>(module, "SyringeTests", "Syringe tests of a chamber.")
+      .def(nb::init<>())
+      .def_rw("files", &SyringeTests::files)
+      .def_rw("scale", &SyringeTests::scale)
+      .def_rw("actuator", &SyringeTests::actuator)
+      .def_rw("robot", &SyringeTests::robot)
+      .def_rw("chamber_mm3", &SyringeTests::chamber_mm3)
+      .def_rw("tube_mm3", &SyringeTests::tube_mm3)
+      .def_rw("syringe_mm3", &SyringeTests::syringe_mm3)
+      .def_rw("atmosphere_kPa", &SyringeTests::atmosphere_kPa)
+      .def_rw("predict", &SyringeTests::predict)
+      .def_rw("threads", &SyringeTests::threads);
+  module.def("calibrate_pressure", &pressure, nb::arg("tests"));
   module.def("calibrate_dea", &dea, nb::arg("tests"), nb::arg("law"), nb::arg("shear_modulus_MPa").none(),
              nb::arg("permittivity").none(), nb::arg("thickness_mm").none(), nb::arg("prestretch").none(),
              nb::arg("stretch_limit").none(), nb::arg("breakdown_kV_mm").none(),

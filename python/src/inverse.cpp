@@ -6,6 +6,7 @@
 
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/jacobian.hpp>
+#include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/workspace_file.hpp>
 
@@ -190,6 +191,12 @@ void bind_inverse(nb::module_& module) {
             return answer;
           },
           nb::arg("robot"), nb::arg("bytes"))
+      .def(
+          "save_plot",
+          [](const Answer& a, const std::string& path) {
+            write_svg(path, runs::plot_of_search(a.found, a.options.tolerance_mm, a.robot->model().name));
+          },
+          nb::arg("path"))
       .def("report", [](const Answer& a) {
         const nb::gil_scoped_release released;
         return report_of(a);

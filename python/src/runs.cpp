@@ -12,8 +12,10 @@
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/jobs.hpp>
+#include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/run_tables.hpp>
+#include <softkin/runs/walk_run.hpp>
 #include <softkin/runs/workspace_file.hpp>
 
 #include "bindings.hpp"
@@ -28,93 +30,124 @@ namespace {
 namespace fs = std::filesystem;
 using Steps = std::vector<ActuationStep>;
 
-/// Files of a run that goes on where it was; an empty folder: none.
-runs::RunFiles files_in(const std::string& folder) {
-  if (folder.empty()) return {};
-  fs::create_directories(folder);
-  return {fs::path(folder) / "report.json", fs::path(folder) / "path.pvd"};
+/// A folder that is there from now on, or none where its name is empty.
+fs::path made(const std::string& folder) {
+  if (!folder.empty()) fs::create_directories(folder);
+  return folder;
 }
 
-/// A job and its run, record by record, by statics of its own.
-template <class Record, class JobOf>
+/// Files of a run that goes on where it was; an empty folder: none.
+runs::RunFiles files_in(const std::string& store) {
+  const fs::path folder = made(store);
+  return folder.empty() ? runs::RunFiles() : runs::RunFiles{folder / "report.json", folder / "path.pvd"};
+}
+
+/// A run, record by record.
+template <class Record>
 class Runner {
  public:
   virtual ~Runner() = default;
 
-  [[nodiscard]] std::size_t size() const { return run_->size(); }
-  [[nodiscard]] std::size_t done() const { return run_->done(); }
+  [[nodiscard]] std::size_t size() { return run().size(); }
+  [[nodiscard]] std::size_t done() { return run().done(); }
   [[nodiscard]] const std::string& remark() const { return remark_; }
-  [[nodiscard]] const Record& last() const { return run_->last(); }
 
   /// The next shape; none at the end.
   [[nodiscard]] ShapePtr next() {
-    if (lost_ || run_->is_complete()) return nullptr;
+    if (lost_ || run().is_complete()) return nullptr;
     const runs::Advance end =
-        watched(std::nullopt, [&](const ProgressCallback& callback) { return run_->advance(callback); });
+        watched(std::nullopt, [&](const ProgressCallback& callback) { return run().advance(callback); });
     lost_ = end == runs::Advance::lost;
-    return shape_of(run_->last(), lost_ ? session_.robot->model().rest : run_->last_positions());
+    return shape_of(run().last(), run().last_positions());
   }
-  void finish() { run_->finish(); }
-  [[nodiscard]] std::string report() {
+  virtual void finish() { run().finish(); }
+  [[nodiscard]] virtual std::string report() {
     std::string text;
-    run_->log().report([&](std::string_view piece) { text += piece; });
+    run().log().report([&](std::string_view piece) { text += piece; });
     return text;
   }
+
+ protected:
+  Runner(RobotPtr robot, StaticsOptions options) : robot_(std::move(robot)), options_(options) {}
+
+  [[nodiscard]] virtual runs::Run<Record>& run() = 0;
+  [[nodiscard]] const Model& model() const { return robot_->model(); }
+  [[nodiscard]] const StaticsOptions& options() const { return options_; }
+  void resume(const std::string& store) {
+    if (!store.empty()) run().resume(remark_);
+  }
+
+ private:
+  [[nodiscard]] ShapePtr shape_of(const runs::StepRecord& record, const Points& positions) const {
+    Equilibrium found{runs::state_of(model(), record, positions), record.actuation, record};
+    return std::make_shared<Shape>(robot_, std::move(found), options_);
+  }
+
+  RobotPtr robot_;
+  StaticsOptions options_;
+  std::string remark_;
+  bool lost_ = false;
+};
+
+/// A job and its run, by statics of its own.
+template <class Record, class JobOf>
+class JobRunner : public Runner<Record> {
+ protected:
+  JobRunner(RobotPtr robot, StaticsOptions options)
+      : Runner<Record>(std::move(robot), options), statics_(Runner<Record>::model()) {}
+
+  template <class... Arguments>
+  void begin(const std::string& store, const std::string& head, const std::vector<std::string>& same,
+             Arguments&&... arguments) {
+    job_.emplace(std::forward<Arguments>(arguments)...);
+    run_.emplace(this->model(), *job_, files_in(store), head, same);
+    this->resume(store);
+  }
+  [[nodiscard]] runs::Run<Record>& run() override { return *run_; }
+  [[nodiscard]] const JobOf& job() const { return *job_; }
+  [[nodiscard]] const Statics& statics() const { return statics_; }
   [[nodiscard]] std::vector<Record> records() {
     std::vector<Record> all;
     run_->log().each([&](std::size_t, const Record& record) { all.push_back(record); });
     return all;
   }
 
- protected:
-  Runner(RobotPtr robot, StaticsOptions options) : session_(std::move(robot)), options_(options) {}
-
-  template <class... Arguments>
-  void begin(const std::string& store, const std::string& head, const std::vector<std::string>& same,
-             Arguments&&... arguments) {
-    job_.emplace(std::forward<Arguments>(arguments)...);
-    const runs::RunFiles files = files_in(store);
-    run_.emplace(session_.robot->model(), *job_, files, head, same);
-    if (!store.empty()) run_->resume(remark_);
-  }
-  [[nodiscard]] const JobOf& job() const { return *job_; }
-  [[nodiscard]] const Model& model() const { return session_.robot->model(); }
-  [[nodiscard]] const Statics& statics() const { return session_.statics; }
-  [[nodiscard]] const StaticsOptions& options() const { return options_; }
-
  private:
-  [[nodiscard]] ShapePtr shape_of(const runs::StepRecord& record, const Points& positions) const {
-    Equilibrium found{runs::state_of(model(), record, positions), record.actuation, record};
-    return std::make_shared<Shape>(session_.robot, std::move(found), options_);
-  }
-
-  Session session_;
-  StaticsOptions options_;
+  Statics statics_;
   std::optional<JobOf> job_;
   std::optional<runs::Run<Record>> run_;
-  std::string remark_;
-  bool lost_ = false;
 };
 
-class PathRun : public Runner<runs::StepRecord, runs::PathJob> {
+class PathRun : public JobRunner<runs::StepRecord, runs::PathJob> {
  public:
   PathRun(const RobotPtr& robot, Steps steps, const std::string& name, const StaticsOptions& options,
           const std::string& store)
-      : Runner(robot, options), steps_(std::move(steps)) {
+      : JobRunner(robot, options), steps_(std::move(steps)) {
     begin(store, runs::report_head(model(), model().name, options), {}, model(), statics(), steps_, name, options);
+  }
+  void save_plot(const std::string& path) {
+    const std::string title = runs::plot_title(model(), model().name) + ", " + name_of(options().solver);
+    write_svg(path, runs::plot_of_steps(model(), records(), title));
   }
 
  private:
   Steps steps_;
 };
 
-class FollowRun : public Runner<runs::WaypointRecord, runs::FollowJob> {
+class FollowRun : public JobRunner<runs::WaypointRecord, runs::FollowJob> {
  public:
   FollowRun(const RobotPtr& robot, MarkerPath path, const std::string& name, const TrajectoryOptions& options,
             const std::string& store)
-      : Runner(robot, options.inverse.statics), path_(std::move(path)) {
+      : JobRunner(robot, options.inverse.statics),
+        path_(std::move(path)),
+        name_(name),
+        tolerance_mm_(options.inverse.tolerance_mm) {
     begin(store, runs::follow_head(model(), model().name, options), {"follow"}, model(), statics(), path_, name,
           options);
+  }
+  void save_plot(const std::string& path) {
+    const std::string title = runs::plot_title(model(), model().name, name_);
+    write_svg(path, runs::plot_of_path(model(), path_, records(), tolerance_mm_, title));
   }
   [[nodiscard]] const MarkerPath& path() const { return path_; }
   [[nodiscard]] Table commands() { return runs::commands_table(model(), path_, records()); }
@@ -122,8 +155,8 @@ class FollowRun : public Runner<runs::WaypointRecord, runs::FollowJob> {
   /// Status, error [mm], targets by marker, equilibria, why the search stopped, time [s], inserted.
   using Asked = std::tuple<std::string, double, std::map<std::string, std::vector<std::optional<double>>>, int,
                            std::string, std::optional<double>, bool>;
-  [[nodiscard]] Asked asked() const {
-    const runs::WaypointRecord& record = last();
+  [[nodiscard]] Asked asked() {
+    const runs::WaypointRecord& record = run().last();
     Asked all{name_of(record.end), record.error_mm,      {}, record.equilibria, record.search_remark,
               record.asked.time,   record.asked.inserted};
     for (std::size_t p = 0; p < path_.markers.size(); ++p) {
@@ -134,10 +167,38 @@ class FollowRun : public Runner<runs::WaypointRecord, runs::FollowJob> {
     }
     return all;
   }
-  [[nodiscard]] std::string step() const { return job().codec().write(last()); }
+  [[nodiscard]] std::string step() { return job().codec().write(run().last()); }
 
  private:
   MarkerPath path_;
+  std::string name_;
+  double tolerance_mm_;
+};
+
+class WalkRun : public Runner<runs::WalkRecord> {
+ public:
+  WalkRun(const RobotPtr& robot, const Steps& gait, const std::string& name, std::size_t cycles,
+          const StaticsOptions& options, const std::string& store)
+      : Runner(robot, options),
+        walk_(model(), {model().name, name, runs::repeated(model(), name, gait, cycles), cycles}, options,
+              runs::WalkFolder(made(store))) {
+    resume(store);
+  }
+  void finish() override { walk_.finish(); }
+  [[nodiscard]] std::string report() override {
+    (void)walk_.note_strides();
+    return Runner::report();
+  }
+  [[nodiscard]] std::string step() { return walk_.step_text(run().last()); }
+  [[nodiscard]] Table table() { return runs::walk_table(model(), walk_.records()); }
+  [[nodiscard]] std::vector<double> strides() { return walk_.note_strides(); }
+  [[nodiscard]] std::array<double, 3> direction() const { return array_of(walk_.direction()); }
+  void save_plot(const std::string& path) { write_svg(path, walk_.plot()); }
+
+ private:
+  [[nodiscard]] runs::Run<runs::WalkRecord>& run() override { return walk_.run(); }
+
+  runs::WalkRun walk_;
 };
 
 Steps steps_of(const Robot& robot, const TableIn& rows, const std::optional<VectorIn>& times) {
@@ -175,6 +236,15 @@ MarkerPath path_of(const Robot& robot, const std::vector<std::string>& markers, 
 
 void bind_table(nb::module_& module) {
   nb::class_<Table>(module, "Table", "Columns and rows, as the command prints and writes them.")
+      .def_static(
+          "of_numbers",
+          [](const std::vector<std::string>& keys, const std::vector<std::vector<double>>& rows) {
+            Table table;
+            for (const std::string& key : keys) table.columns.push_back({.key = key});
+            for (const std::vector<double>& row : rows) table.rows.emplace_back(row.begin(), row.end());
+            return table;
+          },
+          nb::arg("keys"), nb::arg("rows"))
       .def_prop_ro("keys",
                    [](const Table& table) {
                      std::vector<std::string> keys;
@@ -198,6 +268,12 @@ void bind_table(nb::module_& module) {
       });
 }
 
+/// Steps that a run goes through, of an array or a file, and what they are called.
+struct NamedSteps {
+  Steps steps;
+  std::string name;
+};
+
 template <class Run>
 nb::class_<Run> bind_runner(nb::module_& module, const char* name, const char* what) {
   return nb::class_<Run>(module, name, what)
@@ -206,7 +282,42 @@ nb::class_<Run> bind_runner(nb::module_& module, const char* name, const char* w
       .def_prop_ro("remark", &Run::remark, "What was not there as it was written, of a run that goes on; else ''.")
       .def("next", &Run::next)
       .def("finish", &Run::finish)
+      .def("save_plot", &Run::save_plot, nb::arg("path"))
       .def("report", &Run::report);
+}
+
+void bind_paths(nb::module_& module) {
+  nb::class_<NamedSteps>(module, "Steps", "Commands of a path or a gait, step by step.")
+      .def_static(
+          "of_rows",
+          [](const Robot& robot, const TableIn& rows, const std::optional<VectorIn>& times, const std::string& name) {
+            return NamedSteps{steps_of(robot, rows, times), name};
+          },
+          nb::arg("robot"), nb::arg("rows"), nb::arg("times").none(), nb::arg("name"))
+      .def_static(
+          "of_file",
+          [](const Robot& robot, const std::string& file, const std::vector<std::string>& settings) {
+            const Settings others = read_settings(robot.model(), "path", settings);
+            return NamedSteps{read_actuation_path(robot.model(), file, others), file};
+          },
+          nb::arg("robot"), nb::arg("file"), nb::arg("settings"));
+  bind_runner<PathRun>(module, "PathRun", "Equilibria along a path of actuations, each from the last.")
+      .def(
+          "__init__",
+          [](PathRun* self, const RobotPtr& robot, const NamedSteps& path, const StaticsOptions& options,
+             const std::string& store) { new (self) PathRun(robot, path.steps, path.name, options, store); },
+          nb::arg("robot"), nb::arg("path"), nb::arg("options"), nb::arg("store"));
+  bind_runner<WalkRun>(module, "WalkRun", "A gait that is walked, each equilibrium from the last.")
+      .def(
+          "__init__",
+          [](WalkRun* self, const RobotPtr& robot, const NamedSteps& gait, std::size_t cycles,
+             const StaticsOptions& options,
+             const std::string& store) { new (self) WalkRun(robot, gait.steps, gait.name, cycles, options, store); },
+          nb::arg("robot"), nb::arg("gait"), nb::arg("cycles"), nb::arg("options"), nb::arg("store"))
+      .def("step", &WalkRun::step, "The last record as a step of the report, JSON.")
+      .def("table", &WalkRun::table)
+      .def("strides", &WalkRun::strides, "[mm]")
+      .def("direction", &WalkRun::direction);
 }
 
 }  // namespace
@@ -227,24 +338,7 @@ void bind_runs(nb::module_& module) {
           nb::arg("max_step_mm"))
       .def("doubts", [](const MarkerPath& path, const Robot& robot) { return doubts_about(robot.model(), path); })
       .def_prop_ro("size", [](const MarkerPath& path) { return path.waypoints.size(); });
-  bind_runner<PathRun>(module, "PathRun", "Equilibria along a path of actuations, each from the last.")
-      .def_static(
-          "of_rows",
-          [](const RobotPtr& robot, const TableIn& rows, const std::optional<VectorIn>& times,
-             const StaticsOptions& options, const std::string& store) {
-            return new PathRun(robot, steps_of(*robot, rows, times), "the path", options, store);
-          },
-          nb::arg("robot"), nb::arg("rows"), nb::arg("times").none(), nb::arg("options"), nb::arg("store"),
-          nb::rv_policy::take_ownership)
-      .def_static(
-          "of_file",
-          [](const RobotPtr& robot, const std::string& file, const std::vector<std::string>& settings,
-             const StaticsOptions& options, const std::string& store) {
-            const Settings others = read_settings(robot->model(), "path", settings);
-            return new PathRun(robot, read_actuation_path(robot->model(), file, others), file, options, store);
-          },
-          nb::arg("robot"), nb::arg("file"), nb::arg("settings"), nb::arg("options"), nb::arg("store"),
-          nb::rv_policy::take_ownership);
+  bind_paths(module);
   bind_runner<FollowRun>(module, "FollowRun", "Inverse kinematics along a path of markers.")
       .def(
           "__init__",

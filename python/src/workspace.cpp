@@ -132,9 +132,22 @@ TableOut rows_of(const Workspace& workspace, std::size_t columns, const Rows& ro
 
 using HullOut = std::tuple<std::string, TableOut, CellsOut, double, double, std::array<double, 3>>;
 
+/// Of samples that have an equilibrium, at least one.
+runs::Reach reach_of(const Workspace& workspace, const std::string& marker) {
+  runs::Reach reach = runs::reach_of(workspace.robot->model(), workspace.samples, marker, true);
+  if (!reach.hull) throw InvalidInput("no sample of the workspace has an equilibrium: there is nothing to show");
+  return reach;
+}
+
+void save_hull(const Workspace& workspace, const std::string& path, const std::string& marker) {
+  const runs::Reach reach = reach_of(workspace, marker);
+  if (reach.hull->triangles.empty())
+    throw InvalidInput("the positions of " + reach.marker + " are on a line: their hull has no triangles");
+  runs::write_hull(path, *reach.hull);
+}
+
 HullOut hull_of(const Workspace& workspace, const std::string& marker) {
-  const runs::Reach reach = runs::reach_of(workspace.robot->model(), workspace.samples, marker, true);
-  if (!reach.hull) throw InvalidInput("no sample of the workspace has an equilibrium: it has no hull");
+  const runs::Reach reach = reach_of(workspace, marker);
   const Hull& hull = *reach.hull;
   static constexpr const char* names[] = {"solid", "flat", "line", "point"};
   return {names[static_cast<int>(hull.shape)],
@@ -216,7 +229,20 @@ void bind_workspace(nb::module_& module) {
             return read;
           },
           nb::arg("robot"), nb::arg("bytes"))
-      .def("hull", &hull_of, nb::arg("marker"));
+      .def("hull", &hull_of, nb::arg("marker"))
+      .def("save_hull", &save_hull, nb::arg("path"), nb::arg("marker"))
+      .def(
+          "save_cloud",
+          [](const Workspace& w, const std::string& path, const std::string& marker) {
+            runs::write_cloud(path, w.robot->model(), reach_of(w, marker));
+          },
+          nb::arg("path"), nb::arg("marker"))
+      .def(
+          "save_plot",
+          [](const Workspace& w, const std::string& path, const std::string& marker) {
+            write_svg(path, runs::plot_of_reach(reach_of(w, marker)));
+          },
+          nb::arg("path"), nb::arg("marker"));
   module.def("workspace", &workspace, nb::arg("robot"), nb::arg("samples"), nb::arg("sampling"), nb::arg("seed"),
              nb::arg("options"), nb::arg("threads"), nb::arg("store"), nb::arg("begin"), nb::arg("kept"));
 }

@@ -61,6 +61,9 @@ def test_pressure(examples: Path, command: str, tmp_path: Path) -> None:
     assert loading.spread.size in (0, loading.ratio.size)
     assert found.unloading is None or found.unloading.input.size > 1
     assert found.samples.shape[1] == 4 and len(found.samples) > 10
+    assert found.prediction is None and found.rows is not None
+    subprocess.run([command, "calibrate", "pressure", test, *volumes, "--table", tmp_path / "rows.csv"], check=True)
+    assert found.rows.csv() == (tmp_path / "rows.csv").read_text()
     found.save(tmp_path / "air.yaml")
     found.save_plot(tmp_path / "air.svg")
     assert "loading" in repr(found) and "made by softkin" in (tmp_path / "air.yaml").read_text()
@@ -76,10 +79,54 @@ def test_pressure(examples: Path, command: str, tmp_path: Path) -> None:
 
 def test_pressure_of_a_robot(robot: softkin.Robot, examples: Path) -> None:
     test = examples / "three_chamber_actuator/measured/syringe.csv"
-    with pytest.raises(ValueError, match="actuator must name the chamber"):
+    with pytest.raises(softkin.InvalidInput, match="several pneumatic actuators: say by actuator which one"):
         calibrate.pressure(test, syringe_volume="60mL", robot=robot)
+    with pytest.raises(softkin.InvalidInput, match="actuator 'air9': no such pneumatic actuator"):
+        calibrate.pressure(test, syringe_volume="60mL", robot=robot, actuator="air9")
     with pytest.raises(softkin.InvalidInput):  # a chamber of 0.5 mL does not hold what the syringe gave
         calibrate.pressure(test, syringe_volume="60mL", robot=robot, actuator="air1")
+    with pytest.raises(ValueError, match="predict needs robot="):
+        calibrate.pressure(test, syringe_volume="60mL", chamber_volume="21mL", predict=True)
+
+
+def test_predicted_pressures(examples: Path, command: str) -> None:
+    folder = examples / "three_chamber_actuator"
+    test, scene = folder / "measured/syringe.csv", folder / "three_chamber_actuator.yaml"
+    options = ["--syringe-volume", "60mL", "--tube-volume", "1.5mL", "--scene", scene, "--actuator", "air1"]
+    found = calibrate.pressure(
+        test, syringe_volume="60mL", tube_volume="1.5mL", robot=softkin.load(scene), actuator="air1", predict=True
+    )
+    assert found.report == told(command, "pressure", test, *options, "--predict")
+    prediction = found.prediction
+    assert prediction is not None and prediction.complete and set(prediction.checks) == {"loading", "unloading"}
+    assert prediction.ratio.shape == prediction.pressure_kPa.shape == (8,)
+    check = prediction.checks["loading"]
+    assert check.factor == pytest.approx(0.8, abs=0.01) and check.misfit_after < check.misfit_before
+    assert "suggestion: material" in repr(found)
+
+
+def test_material_goes_on_where_it_was(examples: Path, tmp_path: Path) -> None:
+    file, store = examples / "two_material_bar/specimens.csv", tmp_path / "tests.run"
+    whole = calibrate.material(file, formulation="physical", cells=1)
+
+    def stop(share: float) -> None:
+        if store.exists() and share > 0:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        calibrate.material(file, formulation="physical", cells=1, store=store, progress=stop)
+    assert store.exists()
+    again = calibrate.material(file, formulation="physical", cells=1, store=store)
+    assert again.report == whole.report and not store.exists()
+
+
+def test_material_warnings_and_refusals(examples: Path, tmp_path: Path) -> None:
+    file = tmp_path / "forces.csv"
+    file.write_text("l_mm,l1_mm,dl_mm,dl1_mm,force_n,area_mm2\n52,20,8.88,1.2,10,100\n")
+    with pytest.raises(softkin.InvalidInput, match="^modulus_b_MPa is for specimens without a force"):
+        calibrate.material(file, modulus_b_MPa=1)
+    with pytest.warns(softkin.SoftkinWarning, match="the area is 100 mm.2, .*; width_mm and height_mm set it"):
+        calibrate.material(file, formulation="physical", cells=1)
 
 
 def test_dea(examples: Path, command: str) -> None:

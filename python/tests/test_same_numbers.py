@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import softkin
+import softkin.mesh
 
 SCENES = {
     "cable_gripper/cable_gripper.yaml": {"cable": [0.95]},
@@ -91,6 +92,86 @@ def test_follow(examples: Path, command: str, tmp_path: Path) -> None:
     assert [w.shape.fingerprint for w in waypoints] == [step["shape_fingerprint"] for step in told["steps"]]
     assert run.commands.csv() == (out / "commands.csv").read_text()
     assert run.errors.csv() == (out / "errors.csv").read_text()
+
+
+def test_walk(examples: Path, command: str, tmp_path: Path) -> None:
+    folder = examples / "dea_crawler"
+    scene, gait, out = folder / "dea_crawler.yaml", folder / "gait.csv", tmp_path / "theirs"
+    arguments = [str(scene), str(gait), "--cycles", "1", "-o", str(out)]
+    subprocess.run([command, "walk", *arguments], check=True, capture_output=True)
+    run = softkin.load(scene).walk(gait, cycles=1, store=tmp_path / "ours")
+    steps = list(run)
+    told = json.loads((out / "report.json").read_text())
+    assert without_times(run.report) == without_times(told) and run.strides_mm.tolist() == told["stride_mm"]
+    assert [step.shape.fingerprint for step in steps] == [step["shape_fingerprint"] for step in told["steps"]]
+    assert run.steps.csv() == (out / "walk.csv").read_text()
+    for name in ("walk.csv", "walk.svg", "walk.pvd"):
+        assert (tmp_path / "ours" / name).read_text() == (out / name).read_text()
+
+
+def test_plots(examples: Path, command: str, tmp_path: Path) -> None:
+    scene = examples / "three_chamber_actuator/three_chamber_actuator.yaml"
+    robot = softkin.load(scene)
+    steps, path = tmp_path / "steps.csv", tmp_path / "path.csv"
+    steps.write_text("air1\n1.1\n1.15\n")
+    run = robot.path(steps)
+    tips = [shape["tip"].tolist() for shape in run]
+    path.write_text("x_mm,y_mm,z_mm\n" + "".join(",".join(map(repr, tip)) + "\n" for tip in tips))
+    theirs, ours = tmp_path / "theirs.svg", tmp_path / "ours.svg"
+
+    def told(*arguments: object) -> str:
+        subprocess.run([command, *map(str, arguments), "--plot", str(theirs)], check=True, capture_output=True)
+        return theirs.read_text()
+
+    run.save_plot(ours)
+    assert ours.read_text() == told("fk", scene, "--path", steps)
+    followed = robot.follow(path)
+    list(followed)
+    followed.save_plot(ours)
+    assert ours.read_text() == told("follow", scene, path, "-o", tmp_path / "out")
+    answer = robot.inverse(tip=tips[0])
+    answer.save_plot(ours)
+    assert ours.read_text() == told("ik", scene, "--target", "tip=" + ",".join(map(repr, tips[0])))
+    cloud = robot.workspace(8, store=tmp_path / "w.csv")
+    cloud.save_plot(ours)
+    files = ["--cloud", tmp_path / "cloud.vtu", "--hull", tmp_path / "hull.stl"]
+    assert ours.read_text() == told("workspace", scene, "--samples", 8, "-o", tmp_path / "v.csv", *files)
+    cloud.save(tmp_path / "ours.vtu")
+    cloud.save_hull(tmp_path / "ours.stl", marker="tip")
+    assert (tmp_path / "ours.vtu").read_bytes() == (tmp_path / "cloud.vtu").read_bytes()
+    assert (tmp_path / "ours.stl").read_bytes() == (tmp_path / "hull.stl").read_bytes()
+    from_sample = robot.inverse(tip=tips[0], workspace=tmp_path / "w.csv")
+    report = tmp_path / "ik.json"
+    target = ["--target", "tip=" + ",".join(map(repr, tips[0]))]
+    told("ik", scene, *target, "--workspace", tmp_path / "w.csv", "--report", report)
+    assert without_times(from_sample.report) == without_times(json.loads(report.read_text()))
+    with pytest.raises(ValueError, match="workspace chooses the start"):
+        robot.inverse(tip=tips[0], workspace=tmp_path / "w.csv", start={"air1": 1})
+    with pytest.raises(ValueError, match="path must end in .svg, not 'x.png'"):
+        cloud.save_plot(tmp_path / "x.png")
+
+
+def test_meshes(examples: Path, command: str, tmp_path: Path) -> None:
+    scene = examples / "three_chamber_actuator/three_chamber_actuator.yaml"
+    (mesh,) = [file for file in scene.parent.iterdir() if file.suffix == ".msh"]
+
+    def told(*arguments: object) -> Any:
+        arguments = ("mesh", *arguments, "--json")
+        return json.loads(subprocess.run([command, *map(str, arguments)], check=True, capture_output=True).stdout)
+
+    assert softkin.mesh.info(mesh) == told("info", mesh)
+    assert softkin.mesh.info(mesh, "cm") == told("info", mesh, "--unit", "cm")
+    assert softkin.mesh.check(scene) == (True, told("check", scene))
+    ours, theirs = tmp_path / "ours.msh", tmp_path / "theirs.msh"
+    found = softkin.mesh.convert(mesh, ours, ascii=True)
+    assert {**found, "output": str(theirs)} == told("convert", mesh, theirs, "--ascii")
+    assert ours.read_text() == theirs.read_text()
+    with pytest.raises(ValueError, match="unit must be one of mm, cm, m, um, in, not 'ft'"):
+        softkin.mesh.info(mesh, "ft")
+    with pytest.raises(ValueError, match="a scene names its own unit"):
+        softkin.mesh.check(scene, "mm")
+    with pytest.raises(ValueError, match="only a .msh can be written as text"):
+        softkin.mesh.convert(mesh, tmp_path / "x.stl", ascii=True)
 
 
 def test_workspace(examples: Path, command: str, tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """From surfaces (STL, OBJ, PLY) to volume meshes with named regions. docs/python_mesh.md tells more."""
 
 from .errors import InvalidInput, MeshWarning
+from .files import check, convert, info
 from .generate import from_surfaces
 from .gmsh_program import mesh_geo
 from .msh_read import read_msh
@@ -17,7 +18,10 @@ __all__ = [
     "Surface",
     "Volume",
     "VolumeMesh",
+    "check",
+    "convert",
     "from_surfaces",
+    "info",
     "mesh_geo",
     "read_msh",
     "read_surface",

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <softkin/calibration/pressure_check.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/io/plain_text.hpp>
 #include <softkin/statics/statics.hpp>
 
 namespace softkin::calibration {
@@ -84,6 +85,24 @@ ModulusCheck check_modulus(const std::vector<double>& measured, const std::vecto
   if (!(square > 0)) throw InvalidInput("no pressure is predicted that could be compared");
   const double factor = product / square;
   return {factor, misfit(measured, predicted, 1), misfit(measured, predicted, factor)};
+}
+
+std::size_t tested_chamber(const RobotSpec& spec, const std::string& asked) {
+  std::vector<std::string> names;
+  std::size_t chamber = 0;
+  for (std::size_t a = 0; a < spec.actuators.size(); ++a) {
+    if (spec.actuators[a].kind != ActuatorKind::pneumatic) continue;
+    names.push_back(spec.actuators[a].name);
+    if (names.back() == asked || asked.empty()) chamber = a;
+  }
+  if (names.empty()) throw InvalidInput({spec.name}, "the scene has no pneumatic actuator");
+  if (asked.empty() && names.size() > 1)
+    throw InvalidInput(
+        {spec.name},
+        "the scene has several pneumatic actuators: say by --actuator which one was tested" + suggest_name("", names));
+  if (!asked.empty() && std::find(names.begin(), names.end(), asked) == names.end())
+    throw InvalidInput("--actuator " + excerpt(asked) + ": no such pneumatic actuator" + suggest_name(asked, names));
+  return chamber;
 }
 
 bool PressureComparison::is_complete() const {

@@ -34,6 +34,10 @@ struct ModulusCheck {
 /// throws               InvalidInput where nothing is predicted to resist
 [[nodiscard]] ModulusCheck check_modulus(const std::vector<double>& measured, const std::vector<double>& predicted);
 
+/// The chamber that was tested, its place among the actuators. asked: its name; empty: the only one
+/// throws  InvalidInput: no chamber, several, none of that name
+[[nodiscard]] std::size_t tested_chamber(const RobotSpec& spec, const std::string& asked);
+
 /// Pressures of a measured curve beside those that a scene's physical formulation predicts.
 struct PressureComparison {
   std::string actuator;

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <softkin/calibration/report_parts.hpp>
 #include <softkin/calibration/specimen_report.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/core/version.hpp>
 #include <softkin/io/plain_text.hpp>
@@ -284,6 +286,24 @@ std::vector<std::string> set_up_lines(const SpecimenTask& task,
     lines.push_back("target-shape: R_omega " + number(s.stiffer_shape_ratio, 4) + " of the stiffer material" +
                     remark("--stiffer") + ", " + cells(Formulation::target_shape));
   return lines;
+}
+
+void check_modulus_b(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens) {
+  const bool forces =
+      std::any_of(specimens.begin(), specimens.end(), [](const auto& s) { return s.force_n.has_value(); });
+  if (task.modulus_b && forces)
+    throw InvalidInput("--modulus-b is for specimens without a force, but " + task.file +
+                       " has a column of it: leave out one of the two");
+}
+
+std::string doubt_about_areas(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens) {
+  constexpr double most = 0.05;
+  const double simulated = task.options.width_mm * task.options.height_mm;
+  for (const StretchedSpecimen& s : specimens)
+    if (s.area_mm2 && std::abs(*s.area_mm2 / simulated - 1) > most)
+      return Origin{.file = task.file, .line = s.line}.text() + ": note: the area is " + number(*s.area_mm2) +
+             " mm^2, but the simulated cross-section has " + number(simulated) + "; --width and --height set it";
+  return "";
 }
 
 std::string tests_set_up(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens,

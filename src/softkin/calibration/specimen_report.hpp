@@ -49,6 +49,11 @@ struct SpecimenResults {
   [[nodiscard]] const RatioFit* fit(Formulation formulation) const;
 };
 
+/// throws  InvalidInput where a modulus is given beside measured forces
+void check_modulus_b(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens);
+/// What is probably not meant: areas of the file that are not the simulated one; empty: nothing.
+[[nodiscard]] std::string doubt_about_areas(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens);
+
 /// One line that says what the tests of a task depend on, for TestLog.
 [[nodiscard]] std::string tests_set_up(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens,
                                        const std::vector<TwistedSpecimen>& twists);

@@ -83,9 +83,8 @@ class Run {
     const bool keeps = job_.keeps(made->record);
     if (keeps) log_.add(made->record, made->positions, made->deformation);
     last_ = std::move(made->record);
-    if (!keeps) return Advance::lost;
     positions_ = std::move(made->positions);
-    return Advance::made;
+    return keeps ? Advance::made : Advance::lost;
   }
 
   /// The report and the series' collection, of what is done.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <softkin/core/text.hpp>
 #include <softkin/io/plot/curves.hpp>
@@ -209,6 +210,18 @@ PlotSeries series_of(const StepAxis& along, const std::string& label, const std:
 
 }  // namespace
 
+namespace {
+
+std::string file_name(const std::string& file) {
+  return std::filesystem::path(file).filename().string();
+}
+
+}  // namespace
+
+std::string plot_title(const Model& model, const std::string& scene, const std::string& by) {
+  return (by.empty() ? "" : file_name(by) + " by ") + file_name(scene) + ": " + formulation_name(model.formulation);
+}
+
 Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, const std::string& title) {
   const Steps path(model, steps);
   Plot plot;
@@ -251,6 +264,39 @@ Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<
     plot.rows = {std::move(views), {parts.error_panel()}, std::move(commands)};
   }
   plot.panel_height = 260;
+  return plot;
+}
+
+Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::string& scene) {
+  constexpr double least = 1e-9;  // [mm], as small as a logarithmic axis is to show
+  PlotSeries each{"each equilibrium", {}, {}, false}, best{"least so far", {}, {}, true, false};
+  PlotSeries limit{"tolerance", {}, {tolerance_mm, tolerance_mm}, true, false};
+  double lowest = HUGE_VAL;
+  for (std::size_t i = 0; i < found.history.size(); ++i) {
+    const double error = found.history[i].error_mm;
+    if (!std::isfinite(error)) continue;
+    lowest = std::min(lowest, error);
+    for (PlotSeries* series : {&each, &best}) series->x.push_back(static_cast<double>(i + 1));
+    each.y.push_back(std::max(error, least));
+    best.y.push_back(std::max(lowest, least));
+  }
+  if (each.x.empty()) {  // reached at the start
+    each.x = {1};
+    each.y = {std::max(found.errors_mm.maxCoeff(), least)};
+    best = {};
+  }
+  limit.x = {1, each.x.back()};
+  PlotPanel panel;
+  panel.x.label = "equilibria";
+  panel.x.whole = true;
+  panel.y.label = "largest error [mm]";
+  panel.y.logarithmic = true;
+  panel.series = {each, limit};
+  if (!best.x.empty()) panel.series.insert(panel.series.begin() + 1, best);
+  Plot plot;
+  plot.title =
+      file_name(scene) + ": " + name_of(found.status) + ", " + number(found.errors_mm.maxCoeff(), 2) + " mm off";
+  plot.rows = {{panel}};
   return plot;
 }
 

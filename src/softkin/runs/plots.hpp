@@ -1,11 +1,15 @@
 #pragma once
 
 #include <softkin/io/plot/svg_plot.hpp>
+#include <softkin/kinematics/inverse.hpp>
 #include <softkin/runs/records.hpp>
 #include <string>
 #include <vector>
 
 namespace softkin::runs {
+
+/// "gait.csv by finger.yaml: physical", with the names of the files alone. by: what was done; empty: not told
+[[nodiscard]] std::string plot_title(const Model& model, const std::string& scene, const std::string& by = "");
 
 /// Commands, markers, pressures and tensions of a path, and the markers' ways through space. Steps whose numbers are
 /// not known are left out; those that did not converge are marked.
@@ -15,6 +19,9 @@ namespace softkin::runs {
 /// done: at least one.
 [[nodiscard]] Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<WaypointRecord>& done,
                                 double tolerance_mm, const std::string& title);
+
+/// The error of each equilibrium that a search solved for, at least one, and the least so far. scene: its file
+[[nodiscard]] Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::string& scene);
 
 /// Places of the feet, commands and friction over the steps of a walk.
 [[nodiscard]] Plot plot_of_walk(const Model& model, const std::vector<WalkRecord>& steps, const std::string& title);
