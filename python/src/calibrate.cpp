@@ -82,7 +82,7 @@ CurveCalibration pressure(const SyringeTests& given) {
     chamber = calibration::tested_chamber(*spec, given.actuator);
     if (!given.chamber_mm3) task.setup.chamber_mm3 = given.robot->model().actuators[chamber].rest_measure;
   }
-  return watched(nb::none(), [&](const ProgressCallback& progress) {
+  return watched(std::nullopt, [&](const ProgressCallback& progress) {
     calibration::SyringeResults results = calibration::evaluate(task, "of the test");
     std::optional<calibration::PressureComparison> physics;
     if (given.predict)
