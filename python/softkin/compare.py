@@ -34,9 +34,10 @@ class _Comparison(Generic[Core]):
         self._core: Core = core
 
     @property
-    def report(self) -> Any:
+    def report(self) -> dict[str, Any]:
         """What `softkin compare --json` prints."""
-        return json.loads(self._core.json())
+        report: dict[str, Any] = json.loads(self._core.json())
+        return report
 
     def save_plot(self, path: PathLike) -> None:
         """An .svg: of reports turns, distances and loads over the steps, and the marker's ways; of paths these."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -99,7 +100,7 @@ class Answer:
             return self
         raise NotConverged(f"{self.status}, {self.error_mm:.3g} mm off: {self.reason}", self.shape)
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Answer], tuple[Robot, bytes]]:
         return _unpickled, (self._robot, self._core.pickled())
 
     def __repr__(self) -> str:

@@ -2,16 +2,61 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import InvalidInput
+
 if TYPE_CHECKING:
+    import meshio
+    import pyvista
+
     from .robot import Robot
     from .shape import Shape
 
-TETRAHEDRON, WEDGE, TETRAHEDRON_2 = 10, 13, 24  # of VTK
+VTK_KINDS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra", 13: "wedge", 21: "line3", 22: "triangle6",
+             23: "quad8", 24: "tetra10"}  # as meshio names them  # fmt: skip
+VTK_NUMBERS = {kind: number for number, kind in VTK_KINDS.items()}
+PLACES = {"tetra": "tetrahedra", "tetra10": "tetrahedra", "wedge": "prisms", "triangle": "triangles",
+          "triangle6": "triangles"}  # fmt: skip
+PASSED_OVER = ("vertex", "line", "quad")
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Elements:
+    """What a mesh of meshio or PyVista has."""
+
+    points: NDArray[np.float64]
+    """(n, 3)"""
+    tetrahedra: Ints
+    """(k, 4), or (k, 10) of order 2"""
+    prisms: Ints
+    """(k, 6)"""
+    regions: dict[str, dict[str, Ints]]
+    """by name: numbers of "tetrahedra" and "prisms"; or "triangles", (f, 3) vertices; or "vertices" """
+
+    def arguments(self) -> dict[str, Any]:
+        """Of a Robot."""
+        return {
+            "vertices": self.points,
+            "tetrahedra": self.tetrahedra,
+            "prisms": self.prisms,
+            "regions": self.regions,
+        }
+
+
+def package(name: str) -> Any:
+    """meshio or pyvista. Throws ImportError that says how to get it."""
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise ImportError(f"this needs {name}: pip install {name} ({error})") from None
 
 
 def cells_of(robot: Robot) -> list[tuple[str, NDArray[np.int32]]]:
@@ -42,104 +87,103 @@ def fields_of(shape: Shape) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[
     return points, elements
 
 
-def to_meshio(shape: Shape) -> Any:
-    import meshio
-
+def to_meshio(shape: Shape) -> meshio.Mesh:
     points, elements = fields_of(shape)
     blocks = cells_of(shape.robot)
     ends = np.cumsum([len(cells) for _, cells in blocks])[:-1]
     data = {name: np.split(values, ends) for name, values in elements.items()}
-    return meshio.Mesh(np.array(shape.positions), blocks, point_data=points, cell_data=data)
+    return package("meshio").Mesh(np.array(shape.positions), blocks, point_data=points, cell_data=data)
 
 
-def to_pyvista(shape: Shape) -> Any:
-    import pyvista
-
-    kinds = {"tetra": TETRAHEDRON, "tetra10": TETRAHEDRON_2, "wedge": WEDGE}
-    blocks = {kinds[name]: cells for name, cells in cells_of(shape.robot)}
-    grid = pyvista.UnstructuredGrid(blocks, np.array(shape.positions))
+def to_pyvista(shape: Shape) -> pyvista.UnstructuredGrid:
+    """Field data region_NAME: the number of region NAME, as in the .vtu that `save` writes."""
+    blocks = {VTK_NUMBERS[name]: cells for name, cells in cells_of(shape.robot)}
+    grid = package("pyvista").UnstructuredGrid(blocks, np.array(shape.positions))
     points, elements = fields_of(shape)
     for name, values in points.items():
         grid.point_data[name] = values
     for name, values in elements.items():
         grid.cell_data[name] = values
+    for number, name in enumerate(shape.robot.region_names):
+        grid.field_data[f"region_{name}"] = np.array([number], dtype=np.int32)
     return grid
 
 
-def from_meshio(mesh: Any) -> dict[str, Any]:
-    """Vertices, elements and regions, as arguments of a Robot."""
-    found = _Collected(np.asarray(mesh.points)[:, :3])
-    names = {(int(tag), int(dimension)): name for name, (tag, dimension) in (mesh.field_data or {}).items()}
-    tags = (mesh.cell_data or {}).get("gmsh:physical")
-    for block, cells in enumerate(mesh.cells):
-        first = found.add(cells.type, np.asarray(cells.data))
-        if first is None:
-            continue
-        dimension = 2 if cells.type.startswith("triangle") else 3
-        if tags is not None:
-            for tag in np.unique(tags[block]):
-                name = names.get((int(tag), dimension), f"physical_{dimension}_{int(tag)}")
-                found.region(name, cells.type, first + np.flatnonzero(tags[block] == tag))
-        for name, sets in (mesh.cell_sets or {}).items():
-            if not name.startswith("gmsh:") and sets[block] is not None and len(sets[block]):
-                found.region(name, cells.type, first + np.asarray(sets[block], dtype=np.int64))
-    for name, vertices in (getattr(mesh, "point_sets", None) or {}).items():
-        found.regions.setdefault(name, {"vertices": np.asarray(vertices)})
-    return found.arguments()
+def from_meshio(mesh: meshio.Mesh) -> Elements:
+    """Regions: cell sets, point sets, and physical groups (`gmsh:physical`) that no cell set has the name of; such
+    without a name are physical_DIMENSION_NUMBER, as the command reads them. Throws InvalidInput."""
+    blocks = [(str(block.type), np.asarray(block.data, dtype=np.int64)) for block in mesh.cells]
+    sets = {name: parts for name, parts in (mesh.cell_sets or {}).items() if not name.startswith("gmsh:")}
+    names = {tuple(int(x) for x in value[:2]): name for name, value in (mesh.field_data or {}).items()}
+    groups: dict[str, list[Any]] = {}
+    for place, numbers in enumerate((mesh.cell_data or {}).get("gmsh:physical") or ()):
+        dimension = 2 if blocks[place][0].startswith("triangle") else 3
+        for number in np.unique(numbers).tolist():
+            name = names.get((number, dimension), f"physical_{dimension}_{number}")
+            if number != 0 and name not in sets:  # 0: in no group
+                groups.setdefault(name, [None] * len(blocks))[place] = np.flatnonzero(np.asarray(numbers) == number)
+    points = getattr(mesh, "point_sets", None) or {}
+    return _elements(np.asarray(mesh.points, dtype=np.float64)[:, :3], blocks, {**sets, **groups}, points)
 
 
-def from_pyvista(grid: Any) -> dict[str, Any]:
-    """The same; values of the cell array "region" are regions "region_0", ..."""
-    found = _Collected(np.asarray(grid.points, dtype=np.float64))
-    names = {TETRAHEDRON: "tetra", TETRAHEDRON_2: "tetra10", WEDGE: "wedge"}
-    values = np.asarray(grid.cell_data["region"]) if "region" in grid.cell_data else None
-    for kind, cells in grid.cells_dict.items():
-        name = names.get(int(kind), f"VTK cell {kind}")
-        first = found.add(name, np.asarray(cells))
-        if values is None or first is None:
-            continue
-        of = values[np.asarray(grid.celltypes) == kind]
-        for value in np.unique(of[of >= 0]):
-            found.region(f"region_{int(value)}", name, first + np.flatnonzero(of == value))
-    return found.arguments()
+def from_pyvista(grid: pyvista.UnstructuredGrid) -> Elements:
+    """Regions: values of the cell array `region`, named by the field data `region_NAME`, else region_NUMBER. Throws
+    InvalidInput."""
+    if not hasattr(grid, "cells_dict") or not hasattr(grid, "celltypes"):
+        raise InvalidInput(f"{type(grid).__name__} is no pyvista.UnstructuredGrid; for a surface take from_surfaces")
+    kinds = {int(kind): np.asarray(cells, dtype=np.int64) for kind, cells in grid.cells_dict.items()}
+    blocks = [(VTK_KINDS.get(kind, f"VTK cell {kind}"), cells) for kind, cells in kinds.items()]
+    sets: dict[str, list[Any]] = {}
+    if "region" in grid.cell_data:
+        values = np.asarray(grid.cell_data["region"])
+        own = [key for key in grid.field_data.keys() if key.startswith("region_")]
+        names = {int(np.ravel(grid.field_data[key])[0]): key[len("region_") :] for key in own}
+        parts = [values[np.asarray(grid.celltypes) == kind] for kind in kinds]
+        for number in np.unique(values[values >= 0]).tolist():
+            sets[names.get(number, f"region_{number}")] = [np.flatnonzero(part == number) for part in parts]
+    return _elements(np.asarray(grid.points, dtype=np.float64), blocks, sets, {})
 
 
-class _Collected:
-    """Elements of several blocks."""
-
-    def __init__(self, points: NDArray[Any]) -> None:
-        self.points = points
-        self.regions: dict[str, Any] = {}
-        self._cells: dict[str, list[NDArray[Any]]] = {"tetrahedra": [], "prisms": [], "triangles": []}
-
-    def add(self, kind: str, cells: NDArray[Any]) -> int | None:
-        """Number of the first of them; None: elements that are not looked at."""
-        keys = {"tetra": "tetrahedra", "tetra10": "tetrahedra", "wedge": "prisms", "triangle": "triangles"}
-        key = keys.get(kind, "triangles" if kind == "triangle6" else None)
-        if key is None:
-            if kind.startswith(("vertex", "line", "quad")):
-                return None
-            raise ValueError(f"mesh has elements {kind}; a robot is of tetrahedra of order 1 or 2 and wedges")
-        first = sum(len(block) for block in self._cells[key])
-        self._cells[key].append(cells[:, :3] if key == "triangles" else cells)
-        return first
-
-    def region(self, name: str, kind: str, numbers: NDArray[Any]) -> None:
-        if kind.startswith("triangle"):
-            entry = {"triangles": np.concatenate(self._cells["triangles"])[numbers]}
-            name = name if name not in self.regions else f"{name}_2d"
-            self.regions[name] = entry
-            return
-        key = "prisms" if kind == "wedge" else "tetrahedra"
-        entry = self.regions.setdefault(name, {})
-        entry[key] = np.concatenate([entry[key], numbers]) if key in entry else numbers
-
-    def arguments(self) -> dict[str, Any]:
-        arguments: dict[str, Any] = {"vertices": self.points, "regions": self.regions}
-        for key in ("tetrahedra", "prisms"):
-            blocks = self._cells[key]
-            if len({block.shape[1] for block in blocks}) > 1:
-                raise ValueError("mesh has tetrahedra of order 1 and of order 2")
-            if blocks:
-                arguments[key] = np.concatenate(blocks)
-        return arguments
+def _elements(
+    points: NDArray[np.float64],
+    blocks: Sequence[tuple[str, Ints]],
+    sets: Mapping[str, Sequence[Any]],
+    point_sets: Mapping[str, Any],
+) -> Elements:
+    """sets: by name, members of each block or None. Of a set of elements and faces the faces are NAME_2d."""
+    unknown = sorted({kind for kind, _ in blocks if kind not in PLACES and not kind.startswith(PASSED_OVER)})
+    if unknown:
+        told = ", ".join(unknown)
+        raise InvalidInput(f"cells of kind {told}: only tetrahedra, wedges, and triangles as faces are taken")
+    cells: dict[str, list[Ints]] = {"tetrahedra": [], "prisms": [], "triangles": []}
+    firsts = []  # of each block among those of its place
+    for kind, block in blocks:
+        place = PLACES.get(kind, "")
+        firsts.append(sum(len(other) for other in cells.get(place, ())))
+        if place:
+            cells[place].append(block[:, :3] if place == "triangles" else block)
+    if len({block.shape[1] for block in cells["tetrahedra"]}) > 1:
+        raise InvalidInput("the mesh has tetrahedra of order 1 and of order 2")
+    if not cells["tetrahedra"] and not cells["prisms"]:
+        has = ", ".join(sorted({kind for kind, _ in blocks})) or "no cells"
+        raise InvalidInput(f"the mesh has no tetrahedra and no wedges, but {has}")
+    width = {"tetrahedra": 4, "prisms": 6, "triangles": 3}
+    joined = {
+        place: np.concatenate(parts) if parts else np.zeros((0, width[place]), np.int64)
+        for place, parts in cells.items()
+    }
+    regions: dict[str, dict[str, Ints]] = {}
+    for name, parts in sets.items():
+        found: dict[str, list[Ints]] = {}
+        for (kind, _), first, part in zip(blocks, firsts, parts):
+            if kind in PLACES and part is not None and len(part):
+                found.setdefault(PLACES[kind], []).append(first + np.asarray(part, dtype=np.int64))
+        members = {place: np.concatenate(numbers) for place, numbers in found.items()}
+        faces = members.pop("triangles", None)
+        if members:
+            regions[name] = members
+        if faces is not None:
+            regions[f"{name}_2d" if members else name] = {"triangles": joined["triangles"][faces]}
+    for name, vertices in point_sets.items():
+        regions.setdefault(name, {"vertices": np.asarray(vertices, dtype=np.int64)})
+    return Elements(points, joined["tetrahedra"], joined["prisms"], regions)

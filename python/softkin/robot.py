@@ -6,7 +6,7 @@ import hashlib
 import os
 import warnings
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +21,9 @@ from .walk import WalkRun, _Walks
 from .workspace import _Workspaces
 
 if TYPE_CHECKING:
+    import meshio
+    import pyvista
+
     from .session import Session
 
 __all__ = ["Robot", "load"]
@@ -164,22 +167,29 @@ class Robot(_Walks, _Workspaces):
         self._take(_core.Robot(source, True))
 
     @classmethod
-    def from_meshio(cls, mesh: Any, *, regions: Mapping[str, Any] | None = None, **description: Any) -> Robot:
+    def from_meshio(cls, mesh: meshio.Mesh, *, regions: Mapping[str, Any] | None = None, **description: Any) -> Robot:
         """A robot of a meshio.Mesh; its cell sets, point sets and physical groups are regions.
 
         description  as of Robot(...)
         """
-        found = neighbours.from_meshio(mesh)
-        return cls(**{**found, "regions": {**found["regions"], **(regions or {})}}, **description)
+        return cls._of_elements(neighbours.from_meshio(mesh), regions, description)
 
     @classmethod
-    def from_pyvista(cls, grid: Any, *, regions: Mapping[str, Any] | None = None, **description: Any) -> Robot:
-        """A robot of a pyvista.UnstructuredGrid; values of its cell array "region" are regions "region_0", ...
+    def from_pyvista(
+        cls, grid: pyvista.UnstructuredGrid, *, regions: Mapping[str, Any] | None = None, **description: Any
+    ) -> Robot:
+        """A robot of a pyvista.UnstructuredGrid; the values of its cell array `region` are regions, named by
+        the field data `region_NAME`, else region_0, ...
 
         description  as of Robot(...)
         """
-        found = neighbours.from_pyvista(grid)
-        return cls(**{**found, "regions": {**found["regions"], **(regions or {})}}, **description)
+        return cls._of_elements(neighbours.from_pyvista(grid), regions, description)
+
+    @classmethod
+    def _of_elements(
+        cls, read: neighbours.Elements, regions: Mapping[str, Any] | None, description: dict[str, Any]
+    ) -> Robot:
+        return cls(**{**read.arguments(), "regions": {**read.regions, **(regions or {})}}, **description)
 
     @classmethod
     def _of(cls, core: _core.Robot) -> Robot:
@@ -307,7 +317,7 @@ class Robot(_Walks, _Workspaces):
 
         return Session(self)
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[[bytes], Robot], tuple[bytes]]:
         return _unpickled, (self._core.pickled(),)
 
     def __repr__(self) -> str:

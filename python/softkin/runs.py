@@ -22,6 +22,8 @@ from .table import Table
 if TYPE_CHECKING:
     from .robot import Robot
 
+    AnyRun = _core.PathRun | _core.FollowRun | _core.WalkRun
+
 __all__ = ["FollowRun", "PathRun", "Waypoint"]
 
 PathLike = str | os.PathLike[str]
@@ -34,9 +36,9 @@ Record = TypeVar("Record")
 class _Run(Iterator[Record]):
     """What all kinds have."""
 
-    _core: _core.PathRun | _core.FollowRun | _core.WalkRun
+    _core: AnyRun
 
-    def __init__(self, robot: Robot, core: Any) -> None:
+    def __init__(self, robot: Robot, core: AnyRun) -> None:
         self._robot = robot
         self._core = core
         _tell(core.remark)

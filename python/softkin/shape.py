@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -19,6 +19,9 @@ from ._arrays import Floats, vector
 from .errors import NotConverged
 
 if TYPE_CHECKING:
+    import meshio
+    import pyvista
+
     from .robot import Robot
 
 __all__ = ["ActuatorState", "Deformation", "Reaction", "SelfOverlap", "Shape", "Views"]
@@ -301,11 +304,11 @@ class Shape:
             raise ValueError("view must be a direction, so not zero")
         return self._core.png(direction, self._title())
 
-    def to_meshio(self) -> Any:
+    def to_meshio(self) -> meshio.Mesh:
         """A meshio.Mesh of it, with displacements, strains and stresses; needs meshio."""
         return neighbours.to_meshio(self)
 
-    def to_pyvista(self) -> Any:
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
         """A pyvista.UnstructuredGrid of it, with displacements, strains and stresses; needs PyVista."""
         return neighbours.to_pyvista(self)
 
@@ -332,7 +335,7 @@ class Shape:
         places = ", ".join(f"{name} at {_point(place)} mm" for name, place in self.markers.items())
         return f"<softkin.Shape {asked or 'at rest'}: {self.status}{'; ' + places if places else ''}>"
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Shape], tuple[Robot, bytes]]:
         return _unpickled, (self._robot, self._core.pickled())
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
@@ -22,10 +23,16 @@ if TYPE_CHECKING:
 __all__ = ["Hull", "ProgressBar", "Workspace"]
 
 
+class _Bar(Protocol):
+    def update(self, n: int, /) -> object: ...
+
+    def close(self) -> object: ...
+
+
 class ProgressBar(Protocol):
     """What tqdm is."""
 
-    def __call__(self, *, total: int) -> Any: ...
+    def __call__(self, *, total: int) -> _Bar: ...
 
 
 @dataclass(frozen=True)
@@ -127,7 +134,7 @@ class Workspace:
         """The places of a marker, seen along the axes: an .svg."""
         self._core.save_plot(_file("path", path, ".svg"), marker or "")
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Workspace], tuple[Robot, bytes]]:
         return _unpickled, (self._robot, self._core.pickled())
 
     def __repr__(self) -> str:
@@ -188,7 +195,7 @@ class _Workspaces(Solving):
         """
         robot = self._owner
         options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        bar: Any = None
+        bar: _Bar | None = None
         done = 0
 
         def begin(total: int) -> None:

@@ -113,7 +113,7 @@ void bind_source(nb::module_& module) {
           nb::arg("path"), nb::arg("formulation"), nb::arg("forces"))
       .def_static(
           "of_mesh",
-          [](const std::string& name, const Mesh& mesh, nb::typed<nb::dict, nb::str, nb::any> description,
+          [](const std::string& name, const Mesh& mesh, nb::typed<nb::dict, nb::str, nb::object> description,
              const std::string& formulation, const std::vector<std::string>& forces) {
             nb::dict mesh_entry = nb::borrow<nb::dict>(description["mesh"]);
             mesh_entry["file"] = mesh_in_memory;

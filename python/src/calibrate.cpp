@@ -16,7 +16,6 @@
 #include <softkin/io/table/measurements.hpp>
 #include <softkin/model/names.hpp>
 
-#include "arguments.hpp"
 #include "bindings.hpp"
 #include "robot.hpp"
 #include "watch.hpp"
@@ -82,7 +81,7 @@ CurveCalibration pressure(const SyringeTests& given) {
     chamber = calibration::tested_chamber(*spec, given.actuator);
     if (!given.chamber_mm3) task.setup.chamber_mm3 = given.robot->model().actuators[chamber].rest_measure;
   }
-  return watched(nb::none(), [&](const ProgressCallback& progress) {
+  return watched(std::nullopt, [&](const ProgressCallback& progress) {
     calibration::SyringeResults results = calibration::evaluate(task, "of the test");
     std::optional<calibration::PressureComparison> physics;
     if (given.predict)
@@ -165,9 +164,10 @@ calibration::SpecimenTask task_of(const Specimens& given) {
   return task;
 }
 
-Calibration specimens(const Specimens& given, const nb::object& progress) {
+Calibration specimens(const Specimens& given,
+                      const std::optional<nb::typed<nb::callable, nb::object(double)>>& progress) {
   calibration::SpecimenTask task = task_of(given);
-  Watch watch{nb::none()};
+  Watch watch{std::nullopt};
   std::atomic<double> share = 0;
   task.options.go_on = [&watch] { return watch.go_on(); };
   calibration::SpecimenResults results;
@@ -186,7 +186,7 @@ Calibration specimens(const Specimens& given, const nb::object& progress) {
     if (!results.interrupted) log.remove();
   };
   watch.watch(work, [&] {
-    if (!progress.is_none()) progress(share.load());
+    if (progress) (*progress)(share.load());
   });
   Calibration calibrated{specimens_text(task, results),
                          specimens_json(task, results),
@@ -245,7 +245,7 @@ void bind_calibrate(nb::module_& module) {
       .def_ro("json", &Calibration::json)
       .def_ro("fragment", &Calibration::fragment)
       .def_ro("failure", &Calibration::failure)
-      .def_prop_ro("doubt", [](const Calibration& c) { return with_arguments(c.doubt); })
+      .def_ro("doubt", &Calibration::doubt)
       .def_ro("residuals", &Calibration::residuals)
       .def(
           "save_plot", [](const Calibration& c, const std::string& path) { write_svg(path, c.plot); }, nb::arg("path"));

@@ -46,7 +46,8 @@ class Link {
   void close() { port_.reset(); }
 
   /// Ctrl-C stops after the moves that the board has, a second one at once; then KeyboardInterrupt is raised.
-  Sent send(const PlanOf& of, const std::string& log_file, const nb::object& progress) {
+  Sent send(const PlanOf& of, const std::string& log_file,
+            const std::optional<nb::typed<nb::callable, nb::object(std::size_t)>>& progress) {
     if (!port_) throw InvalidInput("the link is closed");
     order_ = Order::go;
     std::optional<nb::python_error> raised;
@@ -59,11 +60,11 @@ class Link {
       if (PyErr_CheckSignals() != 0) stop(raised);
       return order_.load();
     };
-    if (!progress.is_none())
+    if (progress)
       hooks.progress = [&](std::size_t lines) {
         const nb::gil_scoped_acquire gil;
         try {
-          progress(lines);
+          (*progress)(lines);
         } catch (nb::python_error& error) {
           keep(raised, error);
         }

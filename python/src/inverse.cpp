@@ -62,7 +62,7 @@ InverseOptions options_of(const std::string& method, std::optional<double> toler
 std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, const std::optional<VectorIn>& from,
                                 const ShapePtr& start, const std::shared_ptr<Answer>& last,
                                 const std::optional<VectorIn>& preferred, std::vector<bool> free,
-                                InverseOptions options, nb::object progress) {
+                                InverseOptions options, const Tell& progress) {
   const RobotPtr& robot = goals.robot;
   if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
   options.free = std::move(free);
@@ -77,7 +77,7 @@ std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, c
                  : solve_inverse_from(robot->model(), with->statics, plain, begin, known, callback);
   };
   auto answer = std::make_shared<Answer>();
-  answer->found = watched_solve(*robot, std::move(progress), work);
+  answer->found = watched_solve(*robot, progress, work);
   answer->robot = robot;
   answer->goals = goals;
   answer->shape = std::make_shared<Shape>(robot, answer->found.equilibrium, options.statics);

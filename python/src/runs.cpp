@@ -56,7 +56,7 @@ class Runner {
   [[nodiscard]] ShapePtr next() {
     if (lost_ || run().is_complete()) return nullptr;
     const runs::Advance end =
-        watched(nb::none(), [&](const ProgressCallback& callback) { return run().advance(callback); });
+        watched(std::nullopt, [&](const ProgressCallback& callback) { return run().advance(callback); });
     lost_ = end == runs::Advance::lost;
     return shape_of(run().last(), run().last_positions());
   }

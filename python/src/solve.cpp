@@ -16,7 +16,7 @@ namespace softkin::python {
 namespace {
 
 ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn& actuation, const ShapePtr& start,
-               const std::optional<PointsIn>& positions, StaticsOptions options, nb::object progress) {
+               const std::optional<PointsIn>& positions, StaticsOptions options, const Tell& progress) {
   if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
   State from = positions ? State{points_of(*positions)} : start ? State() : robot->statics().rest();
   options.reuse_factor = session != nullptr;
@@ -25,7 +25,7 @@ ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn&
     const State& begin = start ? start->found().state : from;
     return statics_of(*robot, session.get()).solve(asked, begin, options, callback);
   };
-  Equilibrium found = watched_solve(*robot, std::move(progress), work);
+  Equilibrium found = watched_solve(*robot, progress, work);
   // what the report tells of options is what the user can set
   options.reuse_factor = true;
   return std::make_shared<Shape>(robot, std::move(found), options);

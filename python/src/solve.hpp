@@ -11,8 +11,8 @@ namespace nb = nanobind;
 
 /// A solve, watched as the size of the robot asks for. work owns all that it touches.
 template <class Work>
-auto watched_solve(const Robot& robot, nb::object tell, Work work) {
-  return robot.is_large() ? watched_apart(std::move(tell), std::move(work)) : watched(std::move(tell), work);
+auto watched_solve(const Robot& robot, const Tell& tell, Work work) {
+  return robot.is_large() ? watched_apart(tell, std::move(work)) : watched(tell, work);
 }
 
 /// Session's statics, else the robot's, of which every solve stands for itself.

@@ -18,11 +18,14 @@ namespace softkin::python {
 
 namespace nb = nanobind;
 
+/// What Python gives to be told of progress: iteration, step [mm], tolerance [mm], share; or None.
+using Tell = std::optional<nb::typed<nb::callable, nb::object(int, double, double, double)>>;
+
 /// Lets Python have its say while C++ works without the GIL: signals such as Ctrl-C, and a function of the user's.
 class Watch {
  public:
   /// tell: called with (iteration, step_mm, tolerance_mm, share) at most 20 times a second; False stops the work; or None
-  explicit Watch(nb::object tell);
+  explicit Watch(const Tell& tell);
 
   /// For work that is done on the calling thread. The watch must outlive it.
   [[nodiscard]] ProgressCallback callback();
@@ -40,7 +43,7 @@ class Watch {
   [[nodiscard]] bool has_raised() const { return raised_.has_value(); }
 
  private:
-  nb::object tell_;
+  Tell tell_;
   std::atomic<bool> stopped_ = false;
   std::atomic<std::chrono::steady_clock::rep> next_;
   std::mutex mutex_;
@@ -56,8 +59,8 @@ class Abandoned {
 
 /// Calls work without the GIL, then throws what was raised meanwhile.
 template <class Work>
-auto watched(nb::object tell, const Work& work) {
-  Watch watch(std::move(tell));
+auto watched(const Tell& tell, const Work& work) {
+  Watch watch(tell);
   auto result = [&] {
     nb::gil_scoped_release released;
     return work(watch.callback());
@@ -69,7 +72,7 @@ auto watched(nb::object tell, const Work& work) {
 /// The same on a thread of its own, for work that takes long from one look to the next: what is raised does not wait
 /// for it. work is told to stop then, and owns all that it touches; none of it is Python's.
 template <class Work>
-auto watched_apart(nb::object tell, Work work) -> decltype(work(ProgressCallback())) {
+auto watched_apart(const Tell& tell, Work work) -> decltype(work(ProgressCallback())) {
   using Result = decltype(work(ProgressCallback()));
   struct Shared {
     std::mutex mutex;
@@ -82,7 +85,7 @@ auto watched_apart(nb::object tell, Work work) -> decltype(work(ProgressCallback
   };
   const auto shared = std::make_shared<Shared>();
   const auto ended = std::make_shared<std::atomic<bool>>(false);
-  Watch watch(std::move(tell));
+  Watch watch(tell);
   std::thread thread([shared, ended, work = std::optional<Work>(std::move(work))]() mutable {
     try {
       Result result = (*work)([&shared](const Progress& progress) {

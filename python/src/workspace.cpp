@@ -63,6 +63,9 @@ SamplingOptions sampling_of(const Model& model, Index samples, const std::string
   return options;
 }
 
+/// Told of a number of samples.
+using Counter = nb::typed<nb::callable, nb::object(Index)>;
+
 /// Samples that were solved, in their order.
 struct Workspace {
   RobotPtr robot;
@@ -72,21 +75,19 @@ struct Workspace {
 
 /// kept: called with the number of samples that are done
 std::vector<WorkspaceSample> solve_all(const Robot& robot, const WorkspacePlan& plan, const StaticsOptions& options,
-                                       int threads, Watch& watch, const nb::object& kept) {
+                                       int threads, Watch& watch, const Counter& kept) {
   MemoryDesk desk(plan, watch);
   const auto work = [&] {
     solve_groups(robot.model(), robot.statics(), plan, options, threads, desk,
                  [&](const Progress&) { return watch.go_on(); });
   };
-  watch.watch(work, [&] {
-    if (!kept.is_none()) kept(desk.done());
-  });
+  watch.watch(work, [&] { kept(desk.done()); });
   return desk.finish();
 }
 
 std::vector<WorkspaceSample> solve_into(const Robot& robot, const SamplingOptions& sampling, const WorkspacePlan& plan,
                                         const StaticsOptions& options, int threads, const std::string& store,
-                                        Watch& watch, const nb::object& kept) {
+                                        Watch& watch, const Counter& kept) {
   const WorkspaceColumns columns = runs::workspace_columns(robot.model());
   runs::WorkspaceFile file(store, runs::workspace_head(robot.model(), sampling, options), columns, plan, true);
   std::atomic<Index> done = file.done();
@@ -97,19 +98,17 @@ std::vector<WorkspaceSample> solve_into(const Robot& robot, const SamplingOption
     solve_groups(robot.model(), robot.statics(), plan, options, threads, desk,
                  [&](const Progress&) { return watch.go_on(); });
   };
-  watch.watch(work, [&] {
-    if (!kept.is_none()) kept(done.load());
-  });
+  watch.watch(work, [&] { kept(done.load()); });
   return file.finish();
 }
 
 std::shared_ptr<Workspace> workspace(const RobotPtr& robot, Index samples, const std::string& kind, std::uint64_t seed,
                                      const StaticsOptions& options, int threads, const std::string& store,
-                                     const nb::object& begin, const nb::object& kept) {
+                                     const Counter& begin, const Counter& kept) {
   const SamplingOptions sampling = sampling_of(robot->model(), samples, kind, seed);
   const WorkspacePlan plan = plan_workspace(robot->model(), sampling);
-  if (!begin.is_none()) begin(plan.samples());
-  Watch watch{nb::none()};
+  begin(plan.samples());
+  Watch watch{std::nullopt};
   const int many = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   auto result = std::make_shared<Workspace>(Workspace{robot, runs::sampling_text(robot->model(), sampling), {}});
   result->samples = store.empty() ? solve_all(*robot, plan, options, many, watch, kept)
@@ -245,7 +244,7 @@ void bind_workspace(nb::module_& module) {
           },
           nb::arg("path"), nb::arg("marker"));
   module.def("workspace", &workspace, nb::arg("robot"), nb::arg("samples"), nb::arg("sampling"), nb::arg("seed"),
-             nb::arg("options"), nb::arg("threads"), nb::arg("store"), nb::arg("begin").none(), nb::arg("kept").none());
+             nb::arg("options"), nb::arg("threads"), nb::arg("store"), nb::arg("begin"), nb::arg("kept"));
 }
 
 }  // namespace softkin::python

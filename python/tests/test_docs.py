@@ -9,8 +9,14 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+from beams import block
+
+import softkin
+from softkin.mesh.volume_mesh import boundary_faces
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -25,6 +31,67 @@ def test_the_tour_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     exec(compile(tour, "docs/python.md", "exec"), {})
     assert (tmp_path / "bent.vtu").exists() and (tmp_path / "bent.png").exists()
+
+
+def hose(file: Path) -> None:
+    """A tube of 60 x 20 x 20 mm with a closed hollow, as Abaqus writes it."""
+    vertices, tetrahedra = block((6, 4, 4), (60, 20, 20))
+    middle = vertices[tetrahedra].mean(axis=1)
+    hollow = (np.abs(middle - (30, 10, 10)) < (20, 5, 5)).all(axis=1)
+    inner = set(map(frozenset, boundary_faces(tetrahedra[hollow])))
+    tetrahedra = tetrahedra[~hollow]
+    walls, cap = [], []
+    for number, corners in enumerate(tetrahedra, start=1):
+        for side, face in enumerate(((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)), start=1):
+            if frozenset(corners[list(face)]) in inner:
+                walls.append(f"{number}, S{side}")
+            elif (vertices[corners[list(face)], 0] == 60).all():
+                cap.append(f"{number}, S{side}")
+    clamp = np.flatnonzero(vertices[:, 0] == 0) + 1
+    lines = ["*NODE", *(f"{i}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(vertices, start=1))]
+    lines += ["*ELEMENT, TYPE=C3D4, ELSET=ALL"]
+    lines += [f"{i}, {', '.join(map(str, corners + 1))}" for i, corners in enumerate(tetrahedra, start=1)]
+    lines += ["*NSET, NSET=CLAMP", *map(str, clamp)]
+    lines += ["*SURFACE, NAME=CAVITY", *walls, "*SURFACE, NAME=CAP", *cap]
+    file.write_text("\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize("place", [0, 1], ids=["SOFA", "Abaqus"])
+def test_coming_from(place: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = blocks("coming_from.md", "python")
+    assert len(shown) == 2
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    hose(tmp_path / "hose.inp")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec(compile(shown[place], "docs/coming_from.md", "exec"), names)
+    assert names["shape"].converged
+    if place == 0:
+        assert names["answer"].reached and names["growth"] > 100
+    else:
+        assert names["shape"]["cap"][0] > 60.1  # [mm]
+
+
+def test_a_neo_hooke_of_abaqus() -> None:
+    """The conversion of docs/coming_from.md, against U = C10 (bar I1 - 3) + (J - 1)^2 / D1 of a bar that is stretched."""
+    c10, d1, stretch = 0.2, 0.1, 1.5  # [MPa], [1/MPa]
+    vertices, tetrahedra = block((1, 1, 1), (10, 10, 10))
+    held = [
+        {"vertices": np.flatnonzero(vertices[:, axis] == 0).tolist(), "axes": name} for axis, name in enumerate("xyz")
+    ]
+    end = {"vertices": np.flatnonzero(vertices[:, 0] == 10).tolist(), "axes": "x", "displacement": (5, 0, 0)}
+    material = {"law": "mooney-rivlin", "c10": c10, "bulk_modulus": 2 / d1}
+    shape = softkin.Robot(vertices, tetrahedra, materials=[material], fixed=[*held, end]).solve().require()
+
+    def energy(along: float, across: float) -> float:  # per volume at rest [MPa]
+        j = along * across**2
+        return float(c10 * ((along**2 + 2 * across**2) / j ** (2 / 3) - 3) + (j - 1) ** 2 / d1)
+
+    across = float(shape.positions[:, 1].max() / 10)
+    h = 1e-6
+    assert (energy(stretch, across + h) - energy(stretch, across - h)) / (2 * h) == pytest.approx(0, abs=1e-8)
+    stress = (energy(stretch + h, across) - energy(stretch - h, across)) / (2 * h)  # over the area at rest [MPa]
+    assert shape.reactions["fixed_4"].force_N[0] == pytest.approx(100 * stress, rel=1e-7)
 
 
 @pytest.mark.skipif(importlib.util.find_spec("pytetwild") is None, reason="pytetwild is not installed")

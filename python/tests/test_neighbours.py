@@ -9,6 +9,7 @@ import pytest
 from beams import block
 
 import softkin
+from softkin.mesh import VolumeMesh, read_msh
 
 DESCRIPTION = {
     "materials": [{"youngs_modulus": 1, "poisson_ratio": 0.4}],
@@ -39,12 +40,65 @@ def test_there_and_back(name: str, order: int) -> None:
     np.testing.assert_array_equal(data, shape.displacements)
 
 
-def test_regions_of_meshio(examples: Path) -> None:
-    meshio = pytest.importorskip("meshio", reason="meshio is not installed")
-    mesh = meshio.read(examples / "two_material_bar/two_material_bar.msh")
+@pytest.mark.parametrize("name", BOTH_WAYS)
+def test_regions_there_and_back(name: str, examples: Path) -> None:
+    pytest.importorskip(name, reason=f"{name} is not installed")
+    mesh = read_msh(examples / "two_material_bar/two_material_bar.msh")
     file = softkin.load(examples / "two_material_bar/two_material_bar.yaml")
-    robot = softkin.Robot.from_meshio(mesh, **DESCRIPTION)
-    assert set(file.region_names) <= set(robot.region_names)
+    robot = BOTH_WAYS[name][1](getattr(mesh, f"to_{name}")(), **DESCRIPTION)
+    assert sorted(robot.region_names) == sorted(file.region_names)
+    for one in (robot, file):
+        assert [one.region_names[i] for i in one.element_regions[[0, -1]]] == ["A", "B"]
+
+
+def test_regions_of_a_shape_keep_their_names(robot: softkin.Robot) -> None:
+    pyvista = pytest.importorskip("pyvista", reason="PyVista is not installed")
+    grid = robot.solve().to_pyvista()
+    assert set(grid.field_data.keys()) == {f"region_{name}" for name in robot.region_names}
+    middle = {"regions": {"middle": np.arange(40)}, **DESCRIPTION}
+    shape = softkin.Robot(*block((6, 2, 2), (60, 20, 20)), **middle).solve()
+    again = softkin.Robot.from_pyvista(shape.to_pyvista(), **DESCRIPTION)
+    assert again.region_names == ["middle"] and (again.element_regions[:40] == 0).all()
+    with pytest.raises(softkin.InvalidInput, match="PolyData is no pyvista.UnstructuredGrid"):
+        softkin.Robot.from_pyvista(pyvista.Sphere(), **DESCRIPTION)
+
+
+def test_groups_of_gmsh_without_names() -> None:
+    meshio = pytest.importorskip("meshio", reason="meshio is not installed")
+    vertices, tetrahedra = block((6, 2, 2), (60, 20, 20))
+    numbers = np.zeros(len(tetrahedra), dtype=int)
+    numbers[10:20], numbers[20:30] = 7, 8
+    mesh = meshio.Mesh(
+        vertices,
+        [("tetra", tetrahedra), ("line", np.array([[0, 1]])), ("triangle", tetrahedra[:4, :3])],
+        cell_data={"gmsh:physical": [numbers, np.array([7]), np.array([7, 7, 0, 0])]},
+        cell_sets={"all_of_it": [np.arange(len(tetrahedra)), None, np.array([3])], "gmsh:bounding_entities": [[]] * 3},
+        field_data={"stiff": np.array([8, 3])},
+        point_sets={"pins": np.array([0, 1, 3])},
+    )
+    faces, pins = {"all_of_it_2d": "all_of_it_2d", "physical_2_7": "physical_2_7"}, {"fixed": [{"region": "pins"}]}
+    robot = softkin.Robot.from_meshio(mesh, **{**DESCRIPTION, **pins, "markers": faces})
+    assert set(robot.region_names) == {"all_of_it", "physical_3_7", "stiff"} and robot.supports == ["pins"]
+    volume = VolumeMesh.from_meshio(mesh)
+    assert set(volume.regions) == set(robot.region_names) | set(faces)
+    np.testing.assert_array_equal(volume.volume_regions["stiff"], np.arange(20, 30))
+    assert volume.face_regions["physical_2_7"].shape == (2, 3)
+
+
+def test_what_is_no_robot() -> None:
+    meshio = pytest.importorskip("meshio", reason="meshio is not installed")
+    vertices, tetrahedra = block((1, 1, 1), (10, 10, 10))
+    quadratic = np.hstack([tetrahedra, tetrahedra, tetrahedra[:, :2]])
+    for readers, cells, message in (
+        ((softkin.Robot, VolumeMesh), [("hexahedron", np.arange(8)[None])], "hexahedron: only tetrahedra, wedges"),
+        ((softkin.Robot, VolumeMesh), [("triangle", tetrahedra[:, :3])], "no tetrahedra and no wedges, but triangle"),
+        ((softkin.Robot, VolumeMesh), [("tetra", tetrahedra), ("tetra10", quadratic)], "of order 1 and of order 2"),
+        ((VolumeMesh,), [("tetra10", quadratic)], "has tetrahedra of order 2: a VolumeMesh has tetrahedra of order 1"),
+        ((VolumeMesh,), [("wedge", np.arange(6)[None])], "has wedges: a VolumeMesh"),
+    ):
+        for reader in readers:
+            with pytest.raises(softkin.InvalidInput, match=message):
+                reader.from_meshio(meshio.Mesh(vertices, cells), **(DESCRIPTION if reader is softkin.Robot else {}))
 
 
 def test_pyvista_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch, robot: softkin.Robot) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from beams import beam
 
 import softkin
 
@@ -34,7 +35,7 @@ def test_path_goes_on_where_it_was(robot: softkin.Robot, tmp_path: Path) -> None
     report = json.loads((tmp_path / "run/report.json").read_text())
     assert [step["shape_fingerprint"] for step in report["steps"]] == whole
     assert (tmp_path / "run/path.pvd").exists() and not (tmp_path / "run/report.json.run").exists()
-    with pytest.raises(softkin.InvalidInput, match="the path has changed"):
+    with pytest.raises(softkin.InvalidInput, match="report.json: cannot go on from this report: .*the path has changed"):
         robot.path([[1.3, 1, 1], *STEPS[1:]], store=tmp_path / "run")
 
 
@@ -86,6 +87,8 @@ def test_follow_with_waypoints_between_and_free_coordinates(robot: softkin.Robot
 def test_follow_from_a_workspace(robot: softkin.Robot, tmp_path: Path) -> None:
     robot.workspace(8, store=tmp_path / "w.csv")
     assert next(robot.follow(targets(robot), workspace=tmp_path / "w.csv")).reached
+    with pytest.raises(softkin.InvalidInput, match="w.csv: is of another robot"):
+        beam(materials=[{"youngs_modulus": 2, "poisson_ratio": 0.4}]).follow(targets(robot), workspace=tmp_path / "w.csv")
 
 
 def test_wrong_paths(robot: softkin.Robot, tmp_path: Path) -> None:

@@ -64,6 +64,8 @@ def test_goes_on_where_it_was(robot: softkin.Robot, tmp_path: Path) -> None:
     again = robot.workspace(12, sampling="random", seed=5, store=tmp_path / "w.csv", progress=Bar)
     assert (tmp_path / "w.csv").read_text() == text and Bar.last.done == 12
     assert again.samples.tobytes() == whole.samples.tobytes()
+    with pytest.raises(softkin.InvalidInput, match="w.csv: cannot go on with this workspace: its sampling is"):
+        robot.workspace(12, sampling="random", seed=6, store=tmp_path / "w.csv")
 
 
 def test_wrong_workspaces(robot: softkin.Robot, tmp_path: Path) -> None:

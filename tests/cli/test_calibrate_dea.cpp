@@ -33,7 +33,7 @@ TEST(CalibrateDea, EquationOfStateEndsAtTheAnalyticPullIn) {
   EXPECT_NEAR(curve["loading"]["voltage_kV"].back().get<double>(), curve["pull_in"]["voltage_kV"].get<double>(), 1e-9);
   EXPECT_EQ(curve["end"], "pull-in");
   const ProgramResult text = with({});
-  expect_words(text.output, {"pull-in at", "prestretch 1 (default)", "no --breakdown-field given"});
+  expect_words(text.output, {"pull-in at", "prestretch 1 (default)", "no breakdown field given"});
   expect_words(with({"--breakdown-field", "20"}).output, {"breakdown field of 20 kV/mm reached at", "before pull-in"});
 }
 
@@ -101,7 +101,7 @@ TEST(CalibrateDea, RefusesBadRowsUnitsAndOptions) {
   refuse("voltage_kv,area_ratio\n0,1\n-1,1.1\n", {"bad.csv:3", "below 0"});
   refuse("voltage_kv,area_ratio\n1,1\n2,1.1\n", {"bad.csv", "no row without voltage"});
   expect_bad(run_program({"calibrate", "dea"}), {"TESTS"});
-  expect_bad(run_program({"calibrate", "dea", "--law", "gent"}), {"needs --shear-modulus"});
+  expect_bad(run_program({"calibrate", "dea", "--law", "gent"}), {"needs the elastomer's shear modulus"});
   expect_bad(with({"--stretch-limit", "10"}), {"--stretch-limit", "gent"});
   expect_bad(with({"--prestretch", "0.5"}), {"prestretch"});
   expect_bad(with({"--thickness", "-1"}), {"--thickness"});

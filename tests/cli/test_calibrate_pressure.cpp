@@ -127,7 +127,7 @@ TEST(CalibratePressure, RunsOfBothScalesAreJoinedAndTheWrongOneIsNamed) {
   const std::string wrong = folder.write("w.csv", cycle("p_abs_kpa,dv_sy_mm3", 0));
   const std::vector<std::string> scene{"--scene", folder.scene, "-o", folder / "air.yaml"};
   expect_bad(folder, calibrate({absolute, wrong}, scene),
-             {"w.csv", "gauge pressures, given as absolute", "--pressure gauge"});
+             {"w.csv", "gauge pressures, given as absolute", "said to be of gauge pressures"});
   const std::string turned = folder.write("t.csv", cycle("p_gauge_kpa,dv_sy_mm3", 100));
   expect_bad(folder, calibrate({turned}, scene), {"t.csv", "absolute pressures, given as gauge"});
 }
@@ -144,7 +144,7 @@ TEST(CalibratePressure, RefusesBadRowsByLineAndUnitsByName) {
   refuse("p_abs_bar,dv_sy_ml\n1,0\n", {"bad.csv:1", "p_abs_bar", "kPa"});
   refuse("p_abs_kpa,dv_sy_l\n100,0\n", {"bad.csv:1", "dv_sy_l", "dv_sy_mm3 or dv_sy_ml"});
   refuse("p_kpa,dv_sy_ml\n100,0\n", {"bad.csv:1", "p_abs_kpa", "--pressure"});
-  refuse("p_gauge_kpa,dv_sy_ml\n0,0\n", {"bad.csv:1", "contradict"}, {"--pressure", "absolute"});
+  refuse("p_gauge_kpa,dv_sy_ml\n0,0\n", {"bad.csv:1", "is not of absolute pressures"}, {"--pressure", "absolute"});
   refuse("p_abs_kpa,p_gauge_kpa,dv_sy_ml\n100,0,0\n", {"bad.csv:1", "which one counts"});
   refuse("p_abs_kpa,dv_sy_mm3\n100,0\n120,abc\n", {"bad.csv:3", "dv_sy_mm3", "abc"});
   refuse("p_abs_kpa,dv_sy_mm3\n100,0\n120,nan\n", {"bad.csv:3", "finite"});
@@ -158,7 +158,7 @@ TEST(CalibratePressure, RefusesBadRowsByLineAndUnitsByName) {
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "192"}), {"--chamber-volume", "with its unit"});
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "1e308mL"}), {"--chamber-volume", "with its unit"});
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "192mm3", "--predict"}), {"--predict", "--scene"});
-  expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--actuator", "ari"}), {"no such", "air"});
+  expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--actuator", "ari"}), {"no pneumatic actuator 'ari'", "air"});
   expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--atmosphere", "-3"}), {"--atmosphere"});
   expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "-o", folder / "air.txt"}), {".yaml"});
   expect_bad(folder, run_program({"calibrate", "pressure", good, "--scene", folder.scene}), {"--syringe-volume"});

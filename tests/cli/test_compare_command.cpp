@@ -178,12 +178,12 @@ TEST_F(Compare, AClockThatBeganEarlierIsSetBack) {
   EXPECT_NEAR(track({"--start", "3.15"})["largest_mm"].get<double>(), 1, 1e-9) << "0.1 s at 10 mm/s";
   EXPECT_EQ(track({"--start", "3.75"})["left_out"], 1) << "the film ends before";
   const std::string timeless = folder_.write("timeless.csv", "x_mm,y_mm\n0,0\n10,0\n10,10\n");
-  expect_refused({"compare", robot, timeless, "--start", "1"}, {"timeless.csv", "no times", "--start"});
-  expect_refused({"compare", timeless, film, "--start", "1"}, {"timeless.csv", "no times", "--start"});
+  expect_refused({"compare", robot, timeless, "--start", "1"}, {"timeless.csv", "no times", "a start"});
+  expect_refused({"compare", timeless, film, "--start", "1"}, {"timeless.csv", "no times", "a start"});
   expect_refused({"compare", robot, film, "--start", "1", "--by", "arc"}, {"--start", "arc"});
   expect_refused({"compare", robot, film, "--start", "nan"}, {"--start"});
   const std::string report = write("robot.json", linear(both_move));
-  expect_refused({"compare", report, report, "--start", "1"}, {"--start", "measured track"});
+  expect_refused({"compare", report, report, "--start", "1"}, {"the start", "measured track"});
 }
 
 TEST_F(Compare, ALongTableSaysThatItIsCut) {
@@ -208,10 +208,10 @@ TEST_F(Compare, PlanesMarkersAndParametersAreThoseAskedFor) {
   const json track = json::parse(result.output)["tracks"][0];
   EXPECT_EQ(track["axes"], "xz");
   EXPECT_NEAR(track["largest_mm"].get<double>(), 0, 1e-12);
-  expect_refused({"compare", solid, flat}, {"solid.csv:1", "several markers", "--marker"});
+  expect_refused({"compare", solid, flat}, {"solid.csv:1", "several markers", "which one is meant"});
   expect_refused({"compare", solid + "@tpi", flat}, {"no marker 'tpi'", "tip"});
   expect_refused({"compare", solid + "@tip", flat, "--by", "beta"}, {"no column 'beta'"});
-  expect_refused({"compare", solid + "@tip", flat, "--plane", "xx"}, {"--plane"});
+  expect_refused({"compare", solid + "@tip", flat, "--plane", "xx"}, {"the plane 'xx'"});
 }
 
 TEST_F(Compare, TheSumOfSingleActuatorsIsExactForALinearRobot) {
@@ -231,7 +231,7 @@ TEST_F(Compare, TheSumOfSingleActuatorsIsExactForALinearRobot) {
   const std::string narrow = write("narrow.json", linear({{1, 1}, {1.3, 1}}));
   expect_refused({"compare", robot, "--sum", narrow, second}, {"narrow.json", "1.5", "outside this sweep"});
   const std::string track_only = folder_.write("t.csv", "x_mm,y_mm\n0,0\n1,1\n");
-  expect_refused({"compare", track_only, "--sum", first, second}, {"--sum needs a report"});
+  expect_refused({"compare", track_only, "--sum", first, second}, {"a sum needs a report"});
 }
 
 TEST_F(Compare, RefusesTracksByLineAndUnit) {

@@ -232,7 +232,7 @@ TEST(FkResume, RefusesAnotherTask) {
 
   folder.write("path.csv", path_text(3, 1.001));
   expect_refused(folder,
-                 {"report.json: --resume cannot", "step 0 was solved for air = 1, but ", "path.csv:2 asks for 1.001"});
+                 {"report.json: cannot go on", "step 0 was solved for air = 1, but ", "path.csv:2 asks for 1.001"});
   folder.write("path.csv", path_text(2));
   expect_refused(folder, {"it has step 2, but ", "path has changed"});
   folder.write("path.csv", "t_s,air\n0,1\n0.6,1.013\n1,1.026\n");
@@ -258,7 +258,7 @@ TEST(FkResume, RefusesAReportThatItDidNotWrite) {
   const json good = folder.last_run();
   const auto refused = [&](const std::string& text, const std::string& why) {
     folder.write("out/report.json", text);
-    expect_refused(folder, {"report.json: --resume cannot go on from this report: " + why});
+    expect_refused(folder, {"report.json: cannot go on from this report: " + why});
   };
   for (const std::string text : {"", "{", "[]", "3", "null", "{}", "{\"softkin\": 1}"})
     refused(text, "it is not a report");

@@ -212,7 +212,7 @@ TEST(Follow, RefusesBadPathsWithLineAndColumn) {
   refuse("tip_x_mm,tip_z_mm\n20,6\n20,nan\n", "path.csv:3: column 'tip_z_mm'");
   refuse("tip_x_m,tip_z_m\n0.02,0.006\n", "path.csv:1: column 'tip_x_m': lengths are in mm");
   refuse("tpi_x_mm\n20\n", "did you mean 'tip'?");
-  refuse("x_mm\n20\n", "--marker");
+  refuse("x_mm\n20\n", "say whose all are");
   refuse("", "has no header");
   refuse("tip_x_mm\n", "no row");
   folder.write("path.csv", "x_mm\n20\n");

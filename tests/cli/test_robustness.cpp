@@ -41,7 +41,7 @@ TEST(Robustness, ThreadsThatCannotBeStartedAreToldOrDoneWithout) {
   const TemporaryFolder folder;
   const std::string scene = shell_quoted(block_scene(folder));
   expect_refused(run_with_memory(400000, "fk " + scene + " --set air=1.1 --threads 200"),
-                 "threads could be started (Resource temporarily unavailable): ask for fewer with --threads");
+                 "threads could be started (Resource temporarily unavailable): ask for fewer threads");
   expect_refused(
       run_with_memory(400000, "workspace " + scene + " --samples 9 --threads 200 -o " + shell_quoted(folder / "w.csv")),
       "threads could be started");

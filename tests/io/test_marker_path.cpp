@@ -83,7 +83,7 @@ TEST_F(MarkerPathFile, RefusalsNameLineAndColumn) {
   expect_refused(one, "w_mm\n1\n", {"'w_mm'", "expected t_s"});
   expect_refused(one, "air\n1\n", {"'air'", "expected t_s"});
   expect_refused(two, "tpi_x_mm\n1\n", {name + ":1", "no marker 'tpi'", "did you mean 'tip'"});
-  expect_refused(two, "x_mm\n1\n", {"several markers", "'tip_x_mm'", "--marker"});
+  expect_refused(two, "x_mm\n1\n", {"several markers", "'tip_x_mm'", "say whose all are"});
   expect_refused(two, "x_mm\n1\n", {"no marker 'tap'", "tip"}, "tap");
   expect_refused(one, "x_mm,tip_x_mm\n1,2\n", {"two columns are the x of marker 'tip'"});
   expect_refused(one, "t_s\n1\n", {"no column is a coordinate"});

@@ -196,7 +196,7 @@ TEST_F(PathRun, RefusesRecordsThatAreNotItsOwn) {
     return why;
   };
   const auto expect_told = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find("--resume cannot go on from this report: " + part), std::string::npos) << text;
+    EXPECT_NE(text.find("cannot go on from this report: " + part), std::string::npos) << text;
   };
   expect_told(damaged("\"status\"", "\"state\""), "it is not a report that this command wrote");
   expect_told(damaged("{\"softkin\"", "\"softkin\""), "it is not a report that this command wrote");

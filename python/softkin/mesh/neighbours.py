@@ -1,22 +1,27 @@
-"""Meshes of meshio and PyVista, out and in. Both are imported only here, when asked for."""
+"""Meshes of tetrahedra as meshes of meshio and PyVista, and back."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import neighbours
 from .arrays import Array
 from .errors import InvalidInput
 from .volume_mesh import VolumeMesh, compacted, positive
 
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
+
 TETRAHEDRON, TRIANGLE = 10, 5  # cell types of VTK
 
 
-def to_meshio(mesh: VolumeMesh) -> Any:
+def to_meshio(mesh: VolumeMesh) -> meshio.Mesh:
     """A meshio.Mesh: a block of triangles (those of face regions) and one of tetrahedra, regions as cell_sets, and as
     gmsh:physical and field_data, of which an element that is in several regions keeps the first. Throws ImportError."""
-    meshio = _import("meshio")
     faces, members = _unique_faces(mesh)
     cells, sets, numbers = [], {}, []
     names = [*mesh.face_regions, *mesh.volume_regions]
@@ -31,7 +36,7 @@ def to_meshio(mesh: VolumeMesh) -> Any:
         empty = np.empty(0, dtype=np.int64)
         own = members[name] if name in members else mesh.volume_regions[name]
         sets[name] = [own if (kind == "triangle") == (name in members) else empty for kind, _ in cells]
-    return meshio.Mesh(
+    return neighbours.package("meshio").Mesh(
         mesh.vertices,
         cells,
         cell_sets=sets,
@@ -40,48 +45,16 @@ def to_meshio(mesh: VolumeMesh) -> Any:
     )
 
 
-def from_meshio(mesh: Any) -> VolumeMesh:
-    """Tetrahedra and triangles of a meshio.Mesh of order 1; regions from cell_sets, or from gmsh:physical. Lengths as
+def from_meshio(mesh: meshio.Mesh) -> VolumeMesh:
+    """Tetrahedra of order 1 of a meshio.Mesh; regions of elements and faces from cell_sets and gmsh:physical. Lengths as
     they are, taken for mm. Throws InvalidInput."""
-    kinds = [block.type for block in mesh.cells]
-    _check_kinds(set(kinds), {"tetra", "triangle", "line", "vertex"})
-    tetrahedra = [block.data for block in mesh.cells if block.type == "tetra"]
-    if not tetrahedra:
-        raise InvalidInput(f"the mesh has no tetrahedra, but {', '.join(kinds) or 'no cells'}")
-    volumes: dict[str, list[Array]] = {}
-    faces: dict[str, list[Array]] = {}
-    for name, blocks in _meshio_sets(mesh).items():
-        start = 0
-        for block, chosen in zip(mesh.cells, blocks):
-            chosen = np.asarray([] if chosen is None else chosen, dtype=np.int64)
-            if block.type == "tetra" and len(chosen):
-                volumes.setdefault(name, []).append(chosen + start)
-            elif block.type == "triangle" and len(chosen):
-                faces.setdefault(name, []).append(block.data[chosen])
-            start += len(block.data) if block.type == "tetra" else 0
-    return _made(mesh.points, np.concatenate(tetrahedra), _joined(volumes), _joined(faces))
+    return _made(neighbours.from_meshio(mesh))
 
 
-def _meshio_sets(mesh: Any) -> dict[str, list[Any]]:
-    sets = {name: blocks for name, blocks in (mesh.cell_sets or {}).items() if not name.startswith("gmsh:")}
-    numbers = mesh.cell_data.get("gmsh:physical")
-    if sets or numbers is None:
-        return sets
-    dimensions = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
-    for name, (number, dimension) in {
-        name: tuple(int(v) for v in value[:2]) for name, value in mesh.field_data.items()
-    }.items():
-        sets[name] = [
-            np.flatnonzero(n == number) if dimensions[b.type] == dimension else [] for b, n in zip(mesh.cells, numbers)
-        ]
-    return sets
-
-
-def to_pyvista(mesh: VolumeMesh) -> Any:
+def to_pyvista(mesh: VolumeMesh) -> pyvista.UnstructuredGrid:
     """A pyvista.UnstructuredGrid of the tetrahedra and, once for every face region, its triangles. Cell array `region`:
     the number of the region, -1: none (of several regions of an element the first); field data `region_NAME`: the
     number of region NAME. As .vtu softkin reads that by name. Throws ImportError."""
-    pyvista = _import("pyvista")
     numbers = {name: number for number, name in enumerate([*mesh.volume_regions, *mesh.face_regions])}
     of_cells = np.full(len(mesh.tetrahedra), -1)
     for name in reversed(list(mesh.volume_regions)):
@@ -91,56 +64,33 @@ def to_pyvista(mesh: VolumeMesh) -> Any:
         cells[TRIANGLE] = np.concatenate(list(mesh.face_regions.values()))
         of_faces = np.concatenate([np.full(len(faces), numbers[name]) for name, faces in mesh.face_regions.items()])
         of_cells = np.concatenate([of_cells, of_faces])
-    grid = pyvista.UnstructuredGrid(cells, mesh.vertices)
+    grid = neighbours.package("pyvista").UnstructuredGrid(cells, mesh.vertices)
     grid.cell_data["region"] = of_cells.astype(np.int32)
     for name, number in numbers.items():
         grid.field_data[f"region_{name}"] = np.array([number], dtype=np.int32)
     return grid
 
 
-def from_pyvista(grid: Any) -> VolumeMesh:
-    """Tetrahedra and triangles of a pyvista.UnstructuredGrid of order 1; regions from the cell array `region`, named by
-    the field data `region_NAME`, else region_NUMBER. Lengths as they are, taken for mm. Throws InvalidInput."""
-    if not hasattr(grid, "cells_dict") or not hasattr(grid, "celltypes"):
-        raise InvalidInput(f"{type(grid).__name__} is no pyvista.UnstructuredGrid; for a surface take from_surfaces")
-    _check_kinds(set(np.unique(grid.celltypes).tolist()), {TETRAHEDRON, TRIANGLE, 3, 1})
-    cells = grid.cells_dict
-    if TETRAHEDRON not in cells:
-        raise InvalidInput("the grid has no tetrahedra")
-    if "region" not in grid.cell_data:
-        return _made(grid.points, cells[TETRAHEDRON], {}, {})
-    names = {
-        int(np.ravel(grid.field_data[key])[0]): key[len("region_") :]
-        for key in grid.field_data.keys()
-        if key.startswith("region_")
-    }
-    regions: list[dict[str, Array]] = []
-    for kind in (TETRAHEDRON, TRIANGLE):
-        numbers = np.asarray(grid.cell_data["region"])[grid.celltypes == kind]
-        present = [int(number) for number in np.unique(numbers) if number >= 0]
-        regions.append({names.get(number, f"region_{number}"): np.flatnonzero(numbers == number) for number in present})
-    faces = {name: cells[TRIANGLE][chosen] for name, chosen in regions[1].items()}
-    return _made(grid.points, cells[TETRAHEDRON], regions[0], faces)
+def from_pyvista(grid: pyvista.UnstructuredGrid) -> VolumeMesh:
+    """Tetrahedra of order 1 of a pyvista.UnstructuredGrid; regions of elements and faces from the cell array `region`,
+    named by the field data `region_NAME`, else region_NUMBER. Lengths as they are, taken for mm. Throws InvalidInput."""
+    return _made(neighbours.from_pyvista(grid))
 
 
-def _made(points: Any, tetrahedra: Array, volumes: dict[str, Array], faces: dict[str, Array]) -> VolumeMesh:
-    points = np.asarray(points, dtype=np.float64)
-    tetrahedra = np.asarray(tetrahedra, dtype=np.int64)
-    used = np.unique(tetrahedra)
-    number = np.full(len(points), -1)
+def _made(read: neighbours.Elements) -> VolumeMesh:
+    if len(read.prisms) or read.tetrahedra.shape[1] != 4:
+        kind = "wedges" if len(read.prisms) else "tetrahedra of order 2"
+        raise InvalidInput(f"the mesh has {kind}: a VolumeMesh has tetrahedra of order 1; softkin.Robot takes others")
+    used = np.unique(read.tetrahedra)
+    number = np.full(len(read.points), -1)
     number[used] = np.arange(len(used))
-    renumbered = {name: number[np.asarray(triangles, dtype=np.int64)] for name, triangles in faces.items()}
-    for name, triangles in renumbered.items():
+    faces = {name: number[region["triangles"]] for name, region in read.regions.items() if "triangles" in region}
+    for name, triangles in faces.items():
         if (triangles < 0).any():
             raise InvalidInput(f"region '{name}' has faces with vertices of no tetrahedron")
-    vertices, cells = compacted(points, tetrahedra)
-    shared = set(volumes) & set(renumbered)
-    return VolumeMesh(
-        vertices,
-        positive(vertices, cells),
-        volumes,
-        {f"{n}_2d" if n in shared else n: t for n, t in renumbered.items()},
-    )
+    vertices, cells = compacted(read.points, read.tetrahedra)
+    volumes = {name: region["tetrahedra"] for name, region in read.regions.items() if "tetrahedra" in region}
+    return VolumeMesh(vertices, positive(vertices, cells), volumes, faces)
 
 
 def _unique_faces(mesh: VolumeMesh) -> tuple[Array, dict[str, Array]]:
@@ -152,29 +102,8 @@ def _unique_faces(mesh: VolumeMesh) -> tuple[Array, dict[str, Array]]:
     return every[first], dict(zip(mesh.face_regions, (np.unique(part) for part in np.split(which.reshape(-1), ends))))
 
 
-def _first_numbers(count: int, regions: Any, field_data: dict[str, Array]) -> Array:
+def _first_numbers(count: int, regions: Mapping[str, Array], field_data: dict[str, Array]) -> Array:
     numbers = np.zeros(count, dtype=np.int64)
     for name in reversed(list(regions)):
         numbers[regions[name]] = field_data[name][0]
     return numbers
-
-
-def _joined(regions: dict[str, list[Array]]) -> dict[str, Array]:
-    return {name: np.concatenate(blocks) for name, blocks in regions.items()}
-
-
-def _check_kinds(present: set[Any], known: set[Any]) -> None:
-    if present - known:
-        raise InvalidInput(
-            f"cells of kind {', '.join(map(str, sorted(present - known)))}: only tetrahedra and triangles of order 1"
-            " are taken"
-        )
-
-
-def _import(name: str) -> Any:
-    import importlib
-
-    try:
-        return importlib.import_module(name)
-    except ImportError as error:
-        raise ImportError(f"this needs {name}: pip install {name} ({error})") from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from .errors import InvalidInput
 from .surface import Surface
 
 if TYPE_CHECKING:
+    import meshio
+    import pyvista
+
     from .quality import Quality
 
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])  # normals outwards where the volume is positive
@@ -123,24 +126,24 @@ class VolumeMesh:
 
         write_msh(path, self)
 
-    def to_meshio(self) -> Any:
+    def to_meshio(self) -> meshio.Mesh:
         from .neighbours import to_meshio
 
         return to_meshio(self)
 
-    def to_pyvista(self) -> Any:
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
         from .neighbours import to_pyvista
 
         return to_pyvista(self)
 
     @staticmethod
-    def from_meshio(mesh: Any) -> VolumeMesh:
+    def from_meshio(mesh: meshio.Mesh) -> VolumeMesh:
         from .neighbours import from_meshio
 
         return from_meshio(mesh)
 
     @staticmethod
-    def from_pyvista(grid: Any) -> VolumeMesh:
+    def from_pyvista(grid: pyvista.UnstructuredGrid) -> VolumeMesh:
         from .neighbours import from_pyvista
 
         return from_pyvista(grid)

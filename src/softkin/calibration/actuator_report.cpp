@@ -175,15 +175,15 @@ DeaResults measured(const DeaTask& task, const std::string& name) {
 Dielectric elastomer_of(const DeaTask& task) {
   Dielectric d;
   d.law = task.law == "gent" ? DielectricLaw::gent : DielectricLaw::neo_hookean;
-  const auto need = [&](const std::optional<double>& value, const char* option) {
-    if (!value) throw InvalidInput("--law " + task.law + " needs " + option);
+  const auto need = [&](const std::optional<double>& value, const char* what) {
+    if (!value) throw InvalidInput("the law " + task.law + " needs the elastomer's " + what);
     return *value;
   };
-  d.shear_modulus_MPa = need(task.shear_modulus_MPa, "--shear-modulus");
-  d.relative_permittivity = need(task.permittivity, "--permittivity");
-  d.thickness_mm = need(task.thickness_mm, "--thickness");
+  d.shear_modulus_MPa = need(task.shear_modulus_MPa, "shear modulus [MPa]");
+  d.relative_permittivity = need(task.permittivity, "permittivity, relative to vacuum");
+  d.thickness_mm = need(task.thickness_mm, "thickness before any stretch [mm]");
   d.prestretch = task.prestretch.value_or(1);
-  if (d.law == DielectricLaw::gent) d.stretch_limit = need(task.stretch_limit, "--stretch-limit");
+  if (d.law == DielectricLaw::gent) d.stretch_limit = need(task.stretch_limit, "stretch limit J_lim");
   return d;
 }
 
@@ -215,7 +215,7 @@ DeaResults computed(const DeaTask& task, const std::string& name) {
             ": the curve ends there\n";
   else
     head += "true field at the end of the curve: " + number(curve.end_field_kV_mm, 4) + " kV/mm" +
-            (task.breakdown_kV_mm ? "" : " (no --breakdown-field given: not checked)") + "\n";
+            (task.breakdown_kV_mm ? "" : " (no breakdown field given: not checked)") + "\n";
   const std::string end = curve.broken_down ? "breakdown" : curve.pull_in ? "pull-in" : "the limit of the chains";
   const CurveBranch branch{MonotoneCurve(curve.voltages, curve.area_ratios), {}};
   return {{{name, CurveInput::voltage, 100, end, branch, std::nullopt}}, head, curve};
@@ -227,7 +227,7 @@ std::string remark_on_rest(const SyringeSetup& setup, const SyringeRun& run) {
   if (!rest || std::abs(*rest - setup.atmosphere_kPa) <= rest_tolerance * setup.atmosphere_kPa) return "";
   return "note: " + run.file + ", " + run.name + ": the sensor reads " + number(*rest, 5) +
          " kPa absolute with the syringe at rest, and the atmosphere counts as " + number(setup.atmosphere_kPa, 5) +
-         " kPa: if the sensor is right, give --atmosphere " + number(*rest, 5) + "\n";
+         " kPa: if the sensor is right, the atmosphere is " + number(*rest, 5) + " kPa\n";
 }
 
 /// Ratios of the branches at even inputs, with their spread, and the width of the hysteresis.

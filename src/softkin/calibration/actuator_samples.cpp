@@ -86,7 +86,7 @@ bool makes_sense(const SyringeSetup& setup, const SyringeRun& run, const Reading
   throw InvalidInput({run.file}, run.name + ": " + why + ": these are " + scale_name(right) + " pressures, given as " +
                                      scale_name(run.scale) + " ones (column " +
                                      (right == PressureScale::gauge ? "p_gauge_kpa" : "p_abs_kpa") +
-                                     ", or --pressure " + scale_name(right) + ")");
+                                     ", or p_kpa, said to be of " + scale_name(right) + " pressures)");
 }
 
 /// Mean value of the first `count` rows at rest, where what drives the test is nearly 0; none where no row is.

@@ -76,12 +76,12 @@ void set_clocks(std::vector<Track>& tracks, double start) {
   bool any = false;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     Track& track = tracks[t];
-    if (track.parameter.empty()) throw InvalidInput({track.name}, "it has no times, so --start means nothing to it");
+    if (track.parameter.empty()) throw InvalidInput({track.name}, "it has no times, so a start means nothing to it");
     if (t == 0 || track.robot_frame) continue;
     for (double& time : track.parameter) time -= start;
     any = true;
   }
-  if (!any) throw InvalidInput("--start is of the clock of a measured track: give one (.csv) after the first file");
+  if (!any) throw InvalidInput("the start is of the clock of a measured track: give one (.csv) after the first file");
 }
 
 /// A report in which one actuator moves, as a sweep of it.
@@ -161,7 +161,7 @@ TrackPlane parse_plane(const std::string& text) {
     ++at;
   }
   if (found < 2 || at != text.size() || plane.axes[0] == plane.axes[1])
-    throw InvalidInput("--plane " + excerpt(text) +
+    throw InvalidInput("the plane " + excerpt(text) +
                        ": must name two different axes, such as xz or x-z (z turned round)");
   return plane;
 }
@@ -183,7 +183,7 @@ std::vector<Track> read_tracks(const PathRequest& request) {
   if (request.start) set_clocks(tracks, *request.start);
   if (request.sum.empty()) return tracks;
   if (!commanded)
-    throw InvalidInput("--sum needs a report among the files, whose commands it adds up single predictions for");
+    throw InvalidInput("a sum needs a report among the files, whose commands it adds up single predictions for");
   tracks.push_back(sum_track(request, *commanded));
   return tracks;
 }

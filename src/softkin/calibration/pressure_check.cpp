@@ -97,11 +97,10 @@ std::size_t tested_chamber(const RobotSpec& spec, const std::string& asked) {
   }
   if (names.empty()) throw InvalidInput({spec.name}, "the scene has no pneumatic actuator");
   if (asked.empty() && names.size() > 1)
-    throw InvalidInput(
-        {spec.name},
-        "the scene has several pneumatic actuators: say by --actuator which one was tested" + suggest_name("", names));
+    throw InvalidInput({spec.name},
+                       "the scene has several pneumatic actuators: say which one was tested" + suggest_name("", names));
   if (!asked.empty() && std::find(names.begin(), names.end(), asked) == names.end())
-    throw InvalidInput("--actuator " + excerpt(asked) + ": no such pneumatic actuator" + suggest_name(asked, names));
+    throw InvalidInput("there is no pneumatic actuator " + excerpt(asked) + suggest_name(asked, names));
   return chamber;
 }
 
@@ -113,7 +112,7 @@ PressureComparison compare_with_physics(RobotSpec spec, std::size_t chamber, con
                                         const ProgressCallback& progress) {
   constexpr int compared = 8;  // ratios
   const double low = std::max(1.0, curve.loading.ratio.y().front()), high = curve.loading.ratio.y().back();
-  if (!(high > 1)) throw InvalidInput("--predict compares ratios above 1, and the loading branch has none");
+  if (!(high > 1)) throw InvalidInput("ratios above 1 are compared, and the loading branch has none");
   prepare(spec, chamber, high);
   PressureComparison result{spec.actuators[chamber].name, {}, {}, {}};
   for (int i = 1; i <= compared; ++i) result.ratios.push_back(i == compared ? high : low + (high - low) * i / compared);

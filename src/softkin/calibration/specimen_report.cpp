@@ -74,7 +74,7 @@ std::string shear_note(const SpecimenTask& task) {
   std::string text = "note: R_omega " + number(s.stiffer_shape_ratio, 4) +
                      " of the stiffer material stands for a Poisson's ratio of " + decimal(nu, 2) + ", not " +
                      number(s.poisson_ratio) + ": tension agrees, twist does not";
-  if (right > 0 && right <= 1) text += "; --stiffer " + number(right, 3) + " has that Poisson's ratio";
+  if (right > 0 && right <= 1) text += "; a stiffer one of " + number(right, 3) + " has that Poisson's ratio";
   return text + "\n";
 }
 
@@ -292,7 +292,7 @@ void check_modulus_b(const SpecimenTask& task, const std::vector<StretchedSpecim
   const bool forces =
       std::any_of(specimens.begin(), specimens.end(), [](const auto& s) { return s.force_n.has_value(); });
   if (task.modulus_b && forces)
-    throw InvalidInput("--modulus-b is for specimens without a force, but " + task.file +
+    throw InvalidInput("a modulus of B is for specimens without a force, but " + task.file +
                        " has a column of it: leave out one of the two");
 }
 
@@ -302,7 +302,7 @@ std::string doubt_about_areas(const SpecimenTask& task, const std::vector<Stretc
   for (const StretchedSpecimen& s : specimens)
     if (s.area_mm2 && std::abs(*s.area_mm2 / simulated - 1) > most)
       return Origin{.file = task.file, .line = s.line}.text() + ": note: the area is " + number(*s.area_mm2) +
-             " mm^2, but the simulated cross-section has " + number(simulated) + "; --width and --height set it";
+             " mm^2, but the simulated cross-section has " + number(simulated) + "; its width and height set it";
   return "";
 }
 
@@ -375,7 +375,7 @@ std::string failure(const SpecimenTask& task, const SpecimenResults& results) {
            (remark.empty() ? "" : ": " + remark);
   };
   for (const SimulatedTests& tests : results.simulated) {
-    const std::string name = tests.fit ? tests.name : "--try";
+    const std::string name = tests.fit ? tests.name : "tried";
     for (std::size_t i = 0; i < results.specimens.size(); ++i)
       if (const auto [status, remark] = end_of(tests, i); status != Status::converged)
         return words(task.file, results.specimens[i].line, name + " tensile", status, remark);
@@ -408,7 +408,7 @@ std::string specimens_fragment(const SpecimenTask& task, const SpecimenResults& 
       b += ", youngs_modulus: " + number(moduli->b_mpa, 5) + rest;
     } else {
       remark = "  # physical: youngs_modulus of " + task.regions[0] + " = " + number(ratio, 5) + " x that of " +
-               task.regions[1] + "; a column force_n or --modulus-b gives both\n";
+               task.regions[1] + "; a column force_n or the modulus of B gives both\n";
     }
   }
   if (target == nullptr && !remark.empty()) return "# no materials without a modulus\n" + remark;

@@ -45,15 +45,14 @@ SpecimenFit fit_of(const Json& json) {
 TestLog::TestLog(const std::filesystem::path& path, const std::string& set_up, bool resume)
     : store_(std::make_unique<runs::Store>(path, set_up + "\n", resume)) {
   if (store_->head() != set_up + "\n")
-    throw InvalidInput({path.string()},
-                       "--resume cannot go on from this journal: it is of other specimens, options or softkin");
+    throw InvalidInput({path.string()}, "cannot go on from this journal: it is of other specimens, options or softkin");
   store_->each([&](std::size_t number, std::string_view line) {
     try {
       const Json json = parse_json(line);
       done_[json.at("test")] = fit_of(json);
     } catch (const std::exception& error) {
       throw InvalidInput({.file = path.string(), .line = number + 2},
-                         std::string("--resume cannot go on from this journal: ") + error.what());
+                         std::string("cannot go on from this journal: ") + error.what());
     }
     return true;
   });

@@ -37,7 +37,7 @@ std::vector<std::thread> start_threads(int count, const std::function<void()>& w
     stop();
     for (std::thread& thread : threads) thread.join();
     throw InvalidInput("only " + std::to_string(threads.size()) + " of " + std::to_string(count) +
-                       " more threads could be started (" + why + "): ask for fewer with --threads");
+                       " more threads could be started (" + why + "): ask for fewer threads");
   };
   try {
     threads.reserve(static_cast<std::size_t>(count));

@@ -8,7 +8,7 @@ namespace softkin {
 
 StreamLog::StreamLog(const std::string& path, std::function<void(const std::string&)> failed)
     : file_(std::fopen(path.c_str(), "w"), std::fclose), failed_(std::move(failed)) {
-  if (!file_) throw InvalidInput("--log " + path + ": " + std::strerror(errno));
+  if (!file_) throw InvalidInput({path}, std::strerror(errno));
 }
 
 void StreamLog::add(char kind, std::string text) {

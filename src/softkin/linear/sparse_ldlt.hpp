@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <mutex>
 #include <softkin/core/large_vector.hpp>
 #include <softkin/linear/front_kernel.hpp>
 #include <softkin/linear/front_tree.hpp>
@@ -34,28 +35,32 @@ class SparseLdlt {
   [[nodiscard]] double bytes() const;
 
  private:
-  struct Piece {
+  /// What one thread writes while it factorises pieces, one after the other: small enough for its cache.
+  struct Bench {
     FrontWork work;
     LargeVector<double> arena;  // fronts that wait for their parents
-    Eigen::MatrixXd above;
-    Eigen::VectorXd rows;  // of a solve: what goes to the top, what a front has below
+  };
+  struct Piece {
+    Eigen::MatrixXd above, rows;  // of a solve: what goes to the top, and columns of one front
     Index negative = 0;
   };
+  class Seat;
 
   void take_memory();
-  void factor(Index front, const LargeVector<double>& values, double least, Piece& piece, Team& team);
-  void assemble(Index index, const LargeVector<double>& values, double* front, const Piece& piece, Team& team) const;
+  Index factor(Index front, const LargeVector<double>& values, double least, Bench& bench, Team& team);
+  void assemble(Index index, const LargeVector<double>& values, double* front, const Bench& bench, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_->pieces[tree_->pieces.size() - 2]; }
-  using Vector = Eigen::VectorXd;
-  using Columns = Eigen::MatrixXd;
-  void forward(const Front& front, Columns& x, Columns& above, Vector& work, Index top) const;
-  void backward(const Front& front, Columns& x, Vector& work) const;
+  void forward(const Front& front, Index begin, Index columns, Piece& piece, Index top);
+  void backward(const Front& front, Index begin, Index columns, Piece& piece);
 
   std::shared_ptr<const FrontTree> tree_;
   LargeVector<double> lower_;
   std::vector<double> diagonal_;
   std::vector<Piece> pieces_;  // the top's is the last
-  Columns solution_;
+  Bench top_;
+  std::vector<std::unique_ptr<Bench>> benches_;  // of the other pieces; those that no thread sits at
+  std::mutex benches_mutex_;
+  Eigen::MatrixXd solution_;
 };
 
 }  // namespace softkin::linear

@@ -37,7 +37,7 @@ RecordLog::~RecordLog() {
 RecordLog::RecordLog(RecordLog&&) noexcept = default;
 
 void RecordLog::refuse(const std::string& why) const {
-  throw InvalidInput({parts_->files.report.string()}, "--resume cannot go on from this report: " + why);
+  throw InvalidInput({parts_->files.report.string()}, "cannot go on from this report: " + why);
 }
 
 namespace {

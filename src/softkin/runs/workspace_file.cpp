@@ -131,7 +131,7 @@ WorkspaceFile::WorkspaceFile(fs::path path, const WorkspaceHead& head, const Wor
 
 void WorkspaceFile::take(const WorkspaceTable& table, const WorkspaceHead& head, const WorkspacePlan& plan) {
   const auto cannot = [&](const std::string& why) {
-    throw InvalidInput({path_.string()}, "--resume cannot go on with this workspace: " + why);
+    throw InvalidInput({path_.string()}, "cannot go on with this workspace: " + why);
   };
   for (std::size_t i = 0; i < head.size(); ++i) {
     const auto& [key, value] = head[i];
@@ -182,8 +182,8 @@ Actuation nearest_actuation(const Model& model, const std::string& workspace, co
   const auto robot =
       std::find_if(table.head.begin(), table.head.end(), [](const auto& entry) { return entry.first == "robot"; });
   if (robot == table.head.end() || robot->second != fingerprint_of(model))
-    throw InvalidInput("--workspace " + workspace +
-                       ": is of another robot, or of another formulation, or the scene or its mesh has changed");
+    throw InvalidInput({workspace},
+                       "is of another robot, or of another formulation, or the scene or its mesh has changed");
   NearestSamples samples(model, std::move(table.samples));
   const Actuation actuation = samples.samples()[static_cast<std::size_t>(samples.find(goals).front())].actuation;
   check_actuation(model, actuation);  // the ranges may have changed
@@ -199,7 +199,7 @@ Index shown_marker(const Model& model, const std::string& name) {
     if (model.markers[p].name == name) return static_cast<Index>(p);
     names.push_back(model.markers[p].name);
   }
-  throw InvalidInput("--marker " + excerpt(name) + ": there is no such marker" + suggest_name(name, names));
+  throw InvalidInput("there is no marker " + excerpt(name) + suggest_name(name, names));
 }
 
 Reach reach_of(const Model& model, std::vector<WorkspaceSample> samples, const std::string& marker, bool with_hull) {

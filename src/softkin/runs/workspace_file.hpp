@@ -68,7 +68,7 @@ class WorkspaceFile {
 
 /// The actuation of the sample of a workspace at which the goals are nearest to being met.
 ///
-/// throws  InvalidInput naming --workspace, or file and line: no workspace of this robot, no sample with an equilibrium
+/// throws  InvalidInput naming file and line: no workspace of this robot, no sample with an equilibrium
 [[nodiscard]] Actuation nearest_actuation(const Model& model, const std::string& workspace,
                                           const std::vector<Goal>& goals);
 

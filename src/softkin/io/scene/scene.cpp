@@ -177,7 +177,7 @@ void change_forces(RobotSpec& spec, const std::vector<std::string>& forces, cons
   for (const std::string& force : forces) {
     const auto refuse = [&](const std::string& why) { throw InvalidInput(option + " " + excerpt(force) + ": " + why); };
     if (spec.formulation != Formulation::physical)
-      refuse("the target-shape formulation knows no forces; the physical one does (--formulation physical)");
+      refuse("the target-shape formulation knows no forces; the physical one does");
     const std::size_t equals = force.find('=');
     if (equals == std::string::npos) refuse("expected NAME=FX,FY,FZ in N, for example " + option + " payload=0,0,-0.5");
     const std::string name = force.substr(0, equals), text = force.substr(equals + 1);

@@ -65,8 +65,9 @@ std::vector<Index> column_targets(const Model& model, const CsvTable& table, con
     if (!a && column != time_column)
       throw InvalidInput({file}, "column " + excerpt(column) + ": " + unknown_column(model, column));
     if (a && settings[static_cast<std::size_t>(*a)])
-      throw InvalidInput("--set " + model.actuators[static_cast<std::size_t>(*a)].name + ": the path " + file +
-                         " has a column for this actuator");
+      throw InvalidInput({file}, "column " + excerpt(column) + ": '" +
+                                     model.actuators[static_cast<std::size_t>(*a)].name +
+                                     "' is set for the whole path, too; leave out one of them");
     if (a && std::find(targets.begin(), targets.end(), *a) != targets.end())
       throw InvalidInput({file}, "column " + excerpt(column) + ": another column is of the same actuator");
     targets.push_back(a.value_or(time_target));
@@ -192,12 +193,13 @@ class Reader {
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
       if (!is_commanded_by_volume(model_.actuators[a]) || !commands_.commanded[a]) continue;
       if (commands_.pressure_known[a])
-        throw InvalidInput("--pressures " + file + ": " + commands_.file + " has the column '" +
-                           model_.actuators[a].name + pressure_end + "' already");
+        throw InvalidInput({file}, "its pressures are of no use: " + commands_.file + " has the column '" +
+                                       model_.actuators[a].name + pressure_end + "' already");
       chambers.push_back(a);
     }
     if (chambers.empty())
-      throw InvalidInput("--pressures " + file + ": " + commands_.file + " commands no chamber by its volume");
+      throw InvalidInput({file},
+                         "its pressures are of no use: " + commands_.file + " commands no chamber by its volume");
     try {
       const Json steps = parse_json(read_file(file)).at("steps");
       if (steps.size() != commands_.rows.size())

@@ -133,13 +133,14 @@ PressureScale scale_of(const RunTable& table, const std::string& column, std::op
     if (!asked)
       table.fail_header(
           "column 'p_kpa' does not say above what: name it p_abs_kpa (above vacuum) or p_gauge_kpa (above the air "
-          "around), or add --pressure absolute or gauge");
+          "around), or say beside the file which of the two it is");
     return *asked;
   }
   const PressureScale named = column == "p_abs_kpa" ? PressureScale::absolute : PressureScale::gauge;
   if (asked && *asked != named)
-    table.fail_header("column '" + column + "' and --pressure " +
-                      (*asked == PressureScale::absolute ? "absolute" : "gauge") + " contradict each other");
+    table.fail_header("column '" + column + "' is not of " +
+                      (*asked == PressureScale::absolute ? "absolute" : "gauge") +
+                      " pressures, as is said of the file");
   return named;
 }
 

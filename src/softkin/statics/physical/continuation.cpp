@@ -20,6 +20,8 @@ constexpr double least_move = 1000;
 /// A way on which so many iterations bring less than this share of it leads nowhere either.
 constexpr int patience = 500;
 constexpr double least_progress = 0.01;
+/// A shape is judged, and steps are tried, with the stiffness of one that is nearer than this share of the diagonal.
+constexpr double nearby = 1e-3;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
 /// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one
@@ -57,7 +59,8 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
                                    Iterate& trial) {
   move_mm_ = predict(system_, here, there, active_, work_, team_, trial);
   predicted_ = trial.positions;
-  auto outcome = settle(there, Newton::Policy::descend, trial);
+  const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
+  auto outcome = settle(there, Newton::Policy::descend, trial, whole && factorised_nearby(trial.positions));
   if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
     (void)predict(system_, here, there, active_, work_, team_, trial);
@@ -203,6 +206,12 @@ std::optional<Status> Continuation::out_of_patience() {
   return Status::not_converged;
 }
 
+/// Does the workspace hold a stable stiffness so near that it shows no other way to move?
+bool Continuation::factorised_nearby(const Points& shape) const {
+  return work_.exact && work_.unstable == 0 && work_.factorised.rows() == shape.rows() &&
+         largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;
+}
+
 Continuation::Judgement Continuation::judged() const {
   return {newton_.imbalance(), newton_.balanced(), newton_.inverted(), newton_.unstable_modes()};
 }
@@ -323,10 +332,10 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
 }
 
 /// Newton, with cables released where they would push and taken up where they are too long.
-Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at) {
+Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   const std::vector<bool> before = active_;
   for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
-    const auto outcome = newton_.solve(demand, active_, policy, at);
+    const auto outcome = newton_.solve(demand, active_, policy, factorised && change == 0, at);
     if (outcome == Newton::Outcome::unmet) {
       if (release(demand, at, true)) continue;
       break;

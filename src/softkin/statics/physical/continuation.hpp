@@ -93,7 +93,8 @@ class Continuation {
   std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
   int prepare(const Demand& here, const Iterate& at);
   Newton::Outcome settle_here(const Demand& demand, Iterate& at);
-  Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at);
+  Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised = false);
+  [[nodiscard]] bool factorised_nearby(const Points& shape) const;
   bool change_active(const Demand& demand, Iterate& at);
 
   const System& system_;

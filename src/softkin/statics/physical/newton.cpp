@@ -12,6 +12,8 @@ constexpr double least_damping = 1e-3;
 /// factorisation.
 constexpr double worthwhile_contraction = 0.6;
 constexpr int most_updates = 8;
+/// The first step with a factor from nearby must be followed by one so much shorter.
+constexpr double nearby_contraction = 0.1;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
 constexpr double worthwhile_balance = 0.7;
 
@@ -148,6 +150,21 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
   return Advance::made;
 }
 
+/// Steps with the factor of a shape close by, as long as they shrink as fast as they would with that of the iterate.
+Newton::Advance Newton::steps_from_nearby(Iterate& at) {
+  find(balance_, at.positions, step_);
+  if (!std::isfinite(step_.size.mean) || !attempt(step_, 1, at)) return reject(at);
+  const bool last = step_.size.largest < settings_.tolerance_mm;
+  if (!last) {
+    find(trial_balance_, trial_.positions, next_);
+    if (!(next_.size.mean < nearby_contraction * step_.size.mean)) return reject(at);
+  }
+  if (!accept(step_.size.largest, at)) return Advance::interrupted;
+  if (last) return Advance::arrived;
+  made_.assign(1, step_);
+  return quasi_newton_steps(at);
+}
+
 /// Does no constraint miss its demand by more than steps that are small enough can close?
 bool Newton::meets_constraints() const {
   for (Index a = 0; a < system_.actuators(); ++a) {
@@ -177,7 +194,8 @@ bool Newton::improve_constraints() {
   return missed > promised && missed < worthwhile_balance * std::exchange(missed_, missed);
 }
 
-Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at) {
+Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised,
+                              Iterate& at) {
   demand_ = &demand;
   active_ = &active;
   system_.evaluate(at, demand, active, work_, balance_, team_);
@@ -186,16 +204,21 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   double damping = 1;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
-    const Advance ready = factorise(at, policy);
-    if (ready == Advance::interrupted) return Outcome::interrupted;
-    if (ready == Advance::none) return Outcome::stuck;
-    advance = damped_step(at, damping);
-    if (advance != Advance::made || damping < 1) continue;
-    if (step_.size.largest < settings_.tolerance_mm) {
-      advance = Advance::arrived;
+    if (factorised && iteration == 0) {
+      negative_ = 0;
+      advance = steps_from_nearby(at);
     } else {
-      made_.assign(1, step_);
-      advance = quasi_newton_steps(at);
+      const Advance ready = factorise(at, policy);
+      if (ready == Advance::interrupted) return Outcome::interrupted;
+      if (ready == Advance::none) return Outcome::stuck;
+      advance = damped_step(at, damping);
+      if (advance != Advance::made || damping < 1) continue;
+      if (step_.size.largest < settings_.tolerance_mm) {
+        advance = Advance::arrived;
+      } else {
+        made_.assign(1, step_);
+        advance = quasi_newton_steps(at);
+      }
     }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
       advance = Advance::made;

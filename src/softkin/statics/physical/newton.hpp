@@ -30,7 +30,9 @@ class Newton {
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation.
-  Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, Iterate& at);
+  ///
+  /// factorised  the workspace holds a stable, exact stiffness of a shape close to `at`: steps are tried with it first
+  Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised, Iterate& at);
 
   /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
   [[nodiscard]] int unstable_modes() const { return negative_; }
@@ -57,6 +59,7 @@ class Newton {
   Advance damped_step(Iterate& at, double& damping);
   bool update_next();
   Advance quasi_newton_steps(Iterate& at);
+  Advance steps_from_nearby(Iterate& at);
   [[nodiscard]] bool meets_constraints() const;
   bool improve_balance();
   bool improve_constraints();

@@ -12,7 +12,7 @@ namespace {
 constexpr double dependent = 1e-9;
 
 /// Moves shorter than this share of the robot's diagonal turn nothing that matters.
-constexpr double least_turning = 1e-7;
+constexpr double least_turning = 1e-5;
 
 }  // namespace
 
@@ -96,12 +96,15 @@ int System::factorise(const Iterate& at, const Demand& demand, const std::vector
   });
   const double mean = work.mean = trace / std::max<Index>(1, columns.size());
   if (shift > 0) each_diagonal([&](double& value) { value += shift * mean; });
-  const int negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
-  return negative - couple(at, active, work, team, balance);
+  work.negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
+  work.exact = kind == Stiffness::exact && shift == 0;
+  work.factorised = at.positions;
+  couple(at, active, work, team, balance);
+  return work.unstable;
 }
 
-int System::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
-                   const Balance* balance) const {
+void System::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
+                    const Balance* balance) const {
   work.active.clear();
   for (Index a = 0; a < actuators(); ++a)
     if (active[a]) work.active.push_back(a);
@@ -115,7 +118,8 @@ int System::couple(const Iterate& at, const std::vector<bool>& active, Workspace
   work.solutions.leftCols(count) = work.constraint_slopes;
   if (balance) work.solutions.col(count) = -balance->force;
   work.factor.solve(work.solutions, team);
-  if (count == 0) return 0;
+  work.unstable = work.negative;
+  if (count == 0) return;
   work.responses = work.solutions.leftCols(count);
   Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;
   work.scale.resize(count);
@@ -123,7 +127,7 @@ int System::couple(const Iterate& at, const std::vector<bool>& active, Workspace
   schur = work.scale.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * work.scale.asDiagonal();
   work.schur.setThreshold(dependent);
   work.schur.compute(schur);
-  return static_cast<int>((symmetric_eigenvalues(schur).array() < -dependent).count());
+  work.unstable -= static_cast<int>((symmetric_eigenvalues(schur).array() < -dependent).count());
 }
 
 void System::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,

@@ -48,6 +48,10 @@ class System {
     std::vector<Index> active;                                      // constraints of the factorisation
     double stiffest = 0;  // the largest of the diagonal [N/mm] of the last factorisation
     double mean = 0;      // and their mean
+    bool exact = false;   // the last factorisation: the stiffness neither made positive nor shifted
+    int negative = 0;     // its negative eigenvalues,
+    int unstable = 0;     // and those that the constraints leave
+    Points factorised;    // its shape
     Points home;          // equilibrium at which the last solve ended, and near which it factorised
   };
 
@@ -80,9 +84,8 @@ class System {
                 Workspace& work, Team& team, const Balance* balance = nullptr) const;
 
   /// What the last factorisation holds of the active measures, from their slopes at an iterate that was just evaluated.
-  /// Returns how many negative eigenvalues of the stiffness they take away.
-  int couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
-             const Balance* balance = nullptr) const;
+  void couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
+              const Balance* balance = nullptr) const;
 
   /// Stiffness of the elements and measures at an iterate, as factorise() makes it itself.
   void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
