@@ -16,7 +16,6 @@
 #include <softkin/io/table/measurements.hpp>
 #include <softkin/model/names.hpp>
 
-#include "arguments.hpp"
 #include "bindings.hpp"
 #include "robot.hpp"
 #include "watch.hpp"
@@ -246,7 +245,7 @@ void bind_calibrate(nb::module_& module) {
       .def_ro("json", &Calibration::json)
       .def_ro("fragment", &Calibration::fragment)
       .def_ro("failure", &Calibration::failure)
-      .def_prop_ro("doubt", [](const Calibration& c) { return with_arguments(c.doubt); })
+      .def_ro("doubt", &Calibration::doubt)
       .def_ro("residuals", &Calibration::residuals)
       .def(
           "save_plot", [](const Calibration& c, const std::string& path) { write_svg(path, c.plot); }, nb::arg("path"));

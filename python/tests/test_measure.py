@@ -166,10 +166,10 @@ def test_what_is_refused(tmp_path: Path) -> None:
     rest = PICTURES / "rest.png"
     for keywords, message in (
         ({"dots": ["magenta"], "scale": ((0, 0), (100, 0), 20)}, "rest.png: no dot 'magenta' found"),
-        ({"dots": ["red"]}, "give one of scale_board and scale: without a scale there are no mm"),
+        ({"dots": ["red"]}, "give one of the two, a board of known size or a scale"),
         ({"scale": SCALE}, "scale: no marker 'green'"),
-        ({"dots": ["green", "yellow"], "scale": SCALE, "x_axis": ("green", "blue")}, "x_axis: no marker 'blue'"),
-        ({"dots": ["green"], "scale_board": CHECKER}, "scale_board: a checker board looks the same upside down"),
+        ({"dots": ["green", "yellow"], "scale": SCALE, "x_axis": ("green", "blue")}, "x axis: no marker 'blue'"),
+        ({"dots": ["green"], "scale_board": CHECKER}, "scale board: a checker board looks the same upside down"),
         ({"dots": ["red"], "scale": "a"}, "scale 'a': write two markers"),
         ({"dots": [], "scale": SCALE}, "dots is empty"),
         ({"dots": ["red"], "scale": ("a", "b")}, "scale must be two markers or two pixels"),
@@ -185,11 +185,11 @@ def test_what_is_refused(tmp_path: Path) -> None:
         measure.pictures([np.zeros((480, 640))], **dots)  # type: ignore[list-item]
     with pytest.raises(softkin.InvalidInput, match=r"pictures\[0\]: the picture has 8 x 8 pixels"):
         measure.pictures([np.zeros((8, 8, 3), np.uint8)], **dots)
-    with pytest.raises(softkin.InvalidInput, match="pictures have no clock: give fps"):
+    with pytest.raises(softkin.InvalidInput, match="pictures have no clock: give the frames per second"):
         measure.film([rest, rest], **dots)
     with pytest.raises(ValueError, match="fps must be frames per second > 0"):
         measure.film(PICTURES / "track", fps=0, **dots)
-    with pytest.raises(softkin.InvalidInput, match="moving_camera needs scale_board"):
+    with pytest.raises(softkin.InvalidInput, match="a moving camera needs a scale board"):
         measure.film(PICTURES / "track", fps=20, moving_camera=True, **dots)
     with pytest.raises(ValueError, match="path must end in .svg or .png"):
         measure.Board(GRID).save(tmp_path / "board.jpg")

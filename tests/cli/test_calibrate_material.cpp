@@ -206,7 +206,7 @@ TEST(CalibrateMaterial, RefusesBadUsage) {
   expect_refused({specimens, "--plot", "fit.png"}, {"--plot", ".svg"});
   expect_refused({specimens, "--regions", "A", "A"}, {"--regions"});
   expect_refused({specimens, "--regions", "A: 1", "B"}, {"--regions"});
-  expect_refused({specimens, "--modulus-b", "12"}, {"--modulus-b", "force"});
+  expect_refused({specimens, "--modulus-b", "12"}, {"modulus of B", "force"});
   expect_refused({specimens, "--formulation", "physical", "--try", "5"}, {"--try"});
   expect_refused({bar + "table_2_tpu.csv", "--formulation", "physical", "-o", "m.yaml"}, {"m.yaml", "--modulus-b"});
   const ProgramResult group = run_program({"calibrate"});

@@ -158,7 +158,8 @@ TEST(CalibratePressure, RefusesBadRowsByLineAndUnitsByName) {
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "192"}), {"--chamber-volume", "with its unit"});
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "1e308mL"}), {"--chamber-volume", "with its unit"});
   expect_bad(folder, calibrate({good}, {"--chamber-volume", "192mm3", "--predict"}), {"--predict", "--scene"});
-  expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--actuator", "ari"}), {"no such", "air"});
+  expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--actuator", "ari"}),
+             {"no pneumatic actuator 'ari'", "air"});
   expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "--atmosphere", "-3"}), {"--atmosphere"});
   expect_bad(folder, calibrate({good}, {"--scene", folder.scene, "-o", folder / "air.txt"}), {".yaml"});
   expect_bad(folder, run_program({"calibrate", "pressure", good, "--scene", folder.scene}), {"--syringe-volume"});

@@ -69,7 +69,7 @@ TEST_F(Measure, DotsInMillimetresFromTwoOfThem) {
   const ProgramResult result = measure(
       {picture, "--dots", "green,blue,tip=red", "--scale", "green,blue=5cm", "--angle", "green,tip", "-o", table});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  for (const char* part : {"tip", "x [mm]", "error [mm]", "mm per pixel in the middle", "no --camera given",
+  for (const char* part : {"tip", "x [mm]", "error [mm]", "mm per pixel in the middle", "no camera given",
                            "origin at the first point of the scale"})
     EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
   const CsvTable read = read_csv(table);
@@ -238,24 +238,24 @@ TEST_F(Measure, RefusesOptionsByName) {
     options.insert(options.end(), {"-o", table});
     expect_refused(options, words);
   };
-  refused({"--dots", "red"}, {"--scale"});
+  refused({"--dots", "red"}, {"scale"});
   refused({"--scale", "0,0,100,0=20mm"}, {"nothing to measure"});
-  refused({"--dots", "red", "--scale", "0,0,100,0=20"}, {"--scale", "no unit"});
-  refused({"--dots", "red", "--scale", "0,0,100,0=20kPa"}, {"--scale", "20kPa"});
-  refused({"--dots", "red", "--scale", "0,0,1=20mm"}, {"--scale"});
-  refused({"--dots", "red", "--scale", "a,b=20mm"}, {"--scale", "no marker 'a'"});
-  refused({"--dots", "rde", "--scale", "0,0,100,0=20mm"}, {"--dots", "did you mean 'red'"});
-  refused({"--dots", "red,red", "--scale", "0,0,100,0=20mm"}, {"--dots", "'red'"});
-  refused({"--dots", "red", "--scale", "0,0,100,0=20mm", "--angle", "red,blue"}, {"--angle", "'blue'"});
-  refused({"--dots", "red", "--scale", "0,0,100,0=20mm", "--origin", "tip"}, {"--origin", "'tip'"});
+  refused({"--dots", "red", "--scale", "0,0,100,0=20"}, {"scale", "no unit"});
+  refused({"--dots", "red", "--scale", "0,0,100,0=20kPa"}, {"scale", "20kPa"});
+  refused({"--dots", "red", "--scale", "0,0,1=20mm"}, {"scale"});
+  refused({"--dots", "red", "--scale", "a,b=20mm"}, {"scale", "no marker 'a'"});
+  refused({"--dots", "rde", "--scale", "0,0,100,0=20mm"}, {"dots", "did you mean 'red'"});
+  refused({"--dots", "red,red", "--scale", "0,0,100,0=20mm"}, {"dots", "'red'"});
+  refused({"--dots", "red", "--scale", "0,0,100,0=20mm", "--angle", "red,blue"}, {"angle", "'blue'"});
+  refused({"--dots", "red", "--scale", "0,0,100,0=20mm", "--origin", "tip"}, {"origin", "'tip'"});
   refused({"--dots", "red", "--scale-board", "5x4,tag=12,gap=3mm"}, {"tag", "no unit"});
   refused({"--dots", "red", "--scale-board", "checker,9x6,square=10mm"}, {"upside down"});
-  refused({"--tags=99", "--scale", "0,0,100,0=20mm"}, {"--tags", "no tag 99"});
+  refused({"--tags=99", "--scale", "0,0,100,0=20mm"}, {"tags", "no tag 99"});
   refused({"--tags=250", "--scale-board", "5x4,tag=12mm,gap=3mm,dictionary=6x6_250"},
-          {"--tags", "dictionary 6x6_250 has no tag 250"});
+          {"tags", "dictionary 6x6_250 has no tag 250"});
   refused({"--tags", "--dictionary", "4x4", "--scale", "0,0,100,0=20mm"}, {"dictionary", "4x4"});
   refused({"--dots", "red", "--scale", "0,0,100,0=20mm", "--fps", "-1"}, {"--fps"});
-  refused({"--interface", "red", "--scale", "0,0,100,0=20mm"}, {"--interface"});
+  refused({"--interface", "red", "--scale", "0,0,100,0=20mm"}, {"interface"});
   refused({"--interface", "red,blue", "--scale", "0,0,100,0=20mm", "--fps", "5"}, {"--interface"});
   expect_refused({good, "--dots", "red", "--scale", "0,0,100,0=20mm", "-o", good}, {"-o", ".csv"});
   expect_refused({}, {"PICTURES"});

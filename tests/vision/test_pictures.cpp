@@ -110,7 +110,7 @@ TEST(Film, FolderIsReadInTheOrderOfItsNumbers) {
   const auto refused = [&](std::optional<double> rate) {
     return message_of([&] { (void)Film({std::filesystem::path(folder / "")}, rate); });
   };
-  EXPECT_NE(refused({}).find("--fps"), std::string::npos);
+  EXPECT_NE(refused({}).find("frames per second"), std::string::npos);
   EXPECT_NE(refused(-1).find("above 0"), std::string::npos);
   folder.write("shot14.png", encode_png(frame_at(0)));
   EXPECT_NE(refused(2).find("the frame before it is shot11.png"), std::string::npos) << refused(2);

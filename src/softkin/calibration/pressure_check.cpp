@@ -97,11 +97,10 @@ std::size_t tested_chamber(const RobotSpec& spec, const std::string& asked) {
   }
   if (names.empty()) throw InvalidInput({spec.name}, "the scene has no pneumatic actuator");
   if (asked.empty() && names.size() > 1)
-    throw InvalidInput(
-        {spec.name},
-        "the scene has several pneumatic actuators: say by --actuator which one was tested" + suggest_name("", names));
+    throw InvalidInput({spec.name},
+                       "the scene has several pneumatic actuators: say which one was tested" + suggest_name("", names));
   if (!asked.empty() && std::find(names.begin(), names.end(), asked) == names.end())
-    throw InvalidInput("--actuator " + excerpt(asked) + ": no such pneumatic actuator" + suggest_name(asked, names));
+    throw InvalidInput("there is no pneumatic actuator " + excerpt(asked) + suggest_name(asked, names));
   return chamber;
 }
 

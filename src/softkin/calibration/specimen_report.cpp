@@ -292,7 +292,7 @@ void check_modulus_b(const SpecimenTask& task, const std::vector<StretchedSpecim
   const bool forces =
       std::any_of(specimens.begin(), specimens.end(), [](const auto& s) { return s.force_n.has_value(); });
   if (task.modulus_b && forces)
-    throw InvalidInput("--modulus-b is for specimens without a force, but " + task.file +
+    throw InvalidInput("a modulus of B is for specimens without a force, but " + task.file +
                        " has a column of it: leave out one of the two");
 }
 
@@ -302,7 +302,7 @@ std::string doubt_about_areas(const SpecimenTask& task, const std::vector<Stretc
   for (const StretchedSpecimen& s : specimens)
     if (s.area_mm2 && std::abs(*s.area_mm2 / simulated - 1) > most)
       return Origin{.file = task.file, .line = s.line}.text() + ": note: the area is " + number(*s.area_mm2) +
-             " mm^2, but the simulated cross-section has " + number(simulated) + "; --width and --height set it";
+             " mm^2, but the simulated cross-section has " + number(simulated) + "; its width and height set it";
   return "";
 }
 

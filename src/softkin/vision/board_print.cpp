@@ -35,7 +35,7 @@ RgbImage board_picture(const BoardSpec& board, double dpi) {
   const double columns = std::ceil((board.width() + 2 * margin) * pixels);
   const double rows = std::ceil((board.height() + 2 * margin) * pixels);
   if (!(columns * rows <= 1e8 && columns >= 16 && rows >= 16))
-    throw InvalidInput("--dpi: the picture would have " + number(columns) + " x " + number(rows) + " pixels");
+    throw InvalidInput("dots per inch: the picture would have " + number(columns) + " x " + number(rows) + " pixels");
   RgbImage picture(static_cast<int>(columns), static_cast<int>(rows));
   // edges between pixels are shades, so that the picture is true to scale at any resolution
   std::vector<double> dark(static_cast<std::size_t>(columns * rows), 0);

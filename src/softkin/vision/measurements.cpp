@@ -201,7 +201,7 @@ Table PhotoSeries::shown_stretches() const {
 FilmTrack::FilmTrack(const MeasureOptions& options, std::vector<std::filesystem::path> files,
                      std::optional<double> rate)
     : measurer_(understood(options), true), film_(std::move(files), rate) {
-  if (!options.interface.empty()) throw InvalidInput("--interface is measured in pictures, not in a film");
+  if (!options.interface.empty()) throw InvalidInput("an interface is measured in pictures, not in a film");
 }
 
 bool FilmTrack::advance() {

@@ -100,7 +100,7 @@ PlaneView Measurer::scaled(const RgbImage& picture) {
     error = std::hypot(from.error, to.error);
   }
   const double distance = (b - a).norm();
-  if (!(distance > 2)) throw InvalidInput("--scale: the two markers are less than 2 pixels apart");
+  if (!(distance > 2)) throw InvalidInput("scale: the two markers are less than 2 pixels apart");
   const double mm = request_.scale->length / distance;
   scale_error_ = error / distance;
   return PlaneView(request_.camera, mm).moved(mm * a, 0);
@@ -181,7 +181,7 @@ std::vector<std::string> Measurer::notes() const {
              " %; it holds for all pictures, and for a camera that looks straight at the plane";
   notes.push_back(scale);
   notes.push_back(request_.camera ? "lens: distortion taken out by " + request_.given.camera
-                                  : "lens: no --camera given, distortion not taken out");
+                                  : "lens: no camera given, distortion not taken out");
   const std::string origin = !request_.given.origin.empty()
                                  ? "marker '" + request_.given.origin + "' in the first picture"
                              : request_.board ? "the lower left corner of the board"
