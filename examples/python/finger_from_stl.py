@@ -26,8 +26,7 @@ write_stl(OUT / "cavity.stl", shipped.boundary("chamber"))
 mesh = from_surfaces(
     OUT / "skin.stl",
     {"chamber": OUT / "cavity.stl"},
-    edge_length=4.4,
-    tolerance=0.25,  # how far from the surfaces; smaller takes longer
+    edge_length=3.5,
     regions={"base": "plane x=0", "tip": f"plane x={LENGTH}"},
 )
 print(mesh.summary())
