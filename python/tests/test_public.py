@@ -55,3 +55,17 @@ def test_typed() -> None:
     assert re.findall(r"\bAny\b", stub) == []
     given = re.findall(r"(?:begin|kept|progress): ([^,)]*)", stub)  # functions of the user's
     assert len(given) >= 6 and all("Callable[[" in each for each in given)
+
+
+def test_the_library_names_no_options_of_the_command() -> None:
+    """What it refuses, users of Python read, too."""
+    source = Path(__file__).parents[2] / "src/softkin"
+    named = [
+        (str(file.relative_to(source)), text)
+        for file in sorted(source.rglob("*.cpp"))
+        for text in re.findall(r'"(?:[^"\\\n]|\\.)*"', file.read_text())
+        if re.search(r"(?<![\w-])--[a-z]", text)
+    ]
+    passed_on = r'"--(width|grip|cells|law|poisson-ratio|stiffer)"'  # to be told of by who gave them
+    only_the_command = r"--fps|add --resume|softkin calibrate material --tensile|softkin fk --report"
+    assert [each for each in named if not re.fullmatch(passed_on, each[1]) and not re.search(only_the_command, each[1])] == []
