@@ -143,7 +143,7 @@ TEST(CalibratePressure, RefusesBadRowsByLineAndUnitsByName) {
   };
   refuse("p_abs_bar,dv_sy_ml\n1,0\n", {"bad.csv:1", "p_abs_bar", "kPa"});
   refuse("p_abs_kpa,dv_sy_l\n100,0\n", {"bad.csv:1", "dv_sy_l", "dv_sy_mm3 or dv_sy_ml"});
-  refuse("p_kpa,dv_sy_ml\n100,0\n", {"bad.csv:1", "p_abs_kpa", "--pressure"});
+  refuse("p_kpa,dv_sy_ml\n100,0\n", {"bad.csv:1", "p_abs_kpa", "pressure: absolute or gauge"});
   refuse("p_gauge_kpa,dv_sy_ml\n0,0\n", {"bad.csv:1", "is not of absolute pressures"}, {"--pressure", "absolute"});
   refuse("p_abs_kpa,p_gauge_kpa,dv_sy_ml\n100,0,0\n", {"bad.csv:1", "which one counts"});
   refuse("p_abs_kpa,dv_sy_mm3\n100,0\n120,abc\n", {"bad.csv:3", "dv_sy_mm3", "abc"});

@@ -55,7 +55,8 @@ TEST(FkCommand, RefusesPaths) {
   fs::remove(path);
   expect_refused(folder, {"--path", path}, path + ": no such file");
   folder.write("path.csv", "air\n1\n");
-  expect_refused(folder, {"--path", path, "--set", "air=1.5"}, "--set air: the path " + path + " has a column for");
+  expect_refused(folder, {"--path", path, "--set", "air=1.5"},
+                 "'air' is set for the whole path, too; leave out one of them");
 }
 
 TEST(FkCommand, RefusesFiles) {

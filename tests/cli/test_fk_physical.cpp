@@ -274,7 +274,8 @@ TEST(FkPhysical, ColumnsMayNameTheUnitOfTheirLoad) {
   refused(loads, "air_kPa\n10\n3001\n", ":3: column 'air_kPa': 3001 is outside its range, -100 to 3000 kPa");
   refused(loads, "air_kPa\n10kPa\n", ":2: column 'air_kPa' must hold a finite number, not '10kPa'");
   const std::string path = loads.write("path.csv", "air_kPa\n1\n");
-  expect_refused(loads, {"--path", path, "--set", "air=1"}, "--set air: the path " + path + " has a column for");
+  expect_refused(loads, {"--path", path, "--set", "air=1"},
+                 "'air' is set for the whole path, too; leave out one of them");
 }
 
 TEST(FkPhysical, TableHasPressuresTensionsAndTheirUnits) {

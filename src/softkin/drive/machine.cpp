@@ -102,10 +102,10 @@ void check_drivable(const Actuator& actuator, bool pressure_known, const std::st
                            "' is commanded by its tension, and a stepper sets lengths: give it 'control: length' in "
                            "the scene and command ratios, such as those that fk reports as achieved");
   if (actuator.kind == ActuatorKind::pneumatic && actuator.control == Control::ratio && !pressure_known)
-    throw InvalidInput(
-        {file}, "chamber '" + actuator.name +
-                    "' is commanded by its volume, and a regulator sets pressures: add a column '" + actuator.name +
-                    "_pressure_kPa', or name the report of the run that made the commands, which has the pressures");
+    throw InvalidInput({file}, "chamber '" + actuator.name +
+                                   "' is commanded by its volume, and a regulator sets pressures: add a column '" +
+                                   actuator.name +
+                                   "_pressure_kPa', or name the report of the run that made the commands (pressures)");
 }
 
 void check_described(const Actuator& actuator, const Machine& machine, const std::string& commands) {

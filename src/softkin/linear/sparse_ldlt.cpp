@@ -155,7 +155,8 @@ SparseLdlt::Pivots SparseLdlt::factorise(const LargeVector<double>& values, doub
   return pivots;
 }
 
-/// `columns` columns of x from `begin` on, through a front. above: what is to be subtracted from unknowns from `top` on.
+/// `columns` columns of the solution from `begin` on, through a front. What unknowns from `top` on lose stands in the
+/// piece's `above`.
 void SparseLdlt::forward(const Front& front, Index begin, Index columns, Piece& piece, Index top) {
   const Index* rows = tree_->rows.data() + front.first_row;
   const Index stride = static_cast<Index>(piece.rows.rows());

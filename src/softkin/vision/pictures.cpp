@@ -157,8 +157,9 @@ Film::Film(std::vector<fs::path> files, std::optional<double> rate) : name_(file
   if (files.size() > 1 || folder) {
     pictures_ = files.size() > 1 ? std::move(files) : pictures_in(files[0]);
     frames_ = pictures_.size();
-    if (!rate && folder) throw InvalidInput({name_}, "a folder of pictures has no clock: give the frames per second");
-    if (!rate) throw InvalidInput("pictures have no clock: give the frames per second");
+    if (!rate && folder)
+      throw InvalidInput({name_}, "a folder of pictures has no clock: give the frames per second (fps)");
+    if (!rate) throw InvalidInput("pictures have no clock: give the frames per second (fps)");
     rate_ = *rate;
   } else {
     (void)fs::file_size(files[0]);  // names what is wrong with the file
@@ -170,7 +171,8 @@ Film::Film(std::vector<fs::path> files, std::optional<double> rate) : name_(file
     }
     if (!video_->capture.isOpened()) throw InvalidInput({name_}, "not a video that can be read");
     rate_ = rate ? *rate : video_->capture.get(cv::CAP_PROP_FPS);
-    if (!rate && !(rate_ > 0)) throw InvalidInput({name_}, "the video does not say its frames per second: give them");
+    if (!rate && !(rate_ > 0))
+      throw InvalidInput({name_}, "the video does not say its frames per second: give them (fps)");
     frames_ = static_cast<std::size_t>(std::max(0.0, video_->capture.get(cv::CAP_PROP_FRAME_COUNT)));
   }
   if (!(rate_ > 0 && rate_ <= 1e6)) throw InvalidInput({name_}, "frames per second must be above 0, at most 1e6");

@@ -97,7 +97,7 @@ class PathColumns {
                          (names_.empty()
                               ? "the scene has no markers"
                               : "the scene has several markers; which one is meant? Name it in the column, as '" +
-                                    names_.front() + "_" + column + "', or say whose all are"));
+                                    names_.front() + "_" + column + "', or say whose all are (marker)"));
     const std::string& wanted = !named.empty() ? named : !default_.empty() ? default_ : names_.front();
     const auto found = std::find(names_.begin(), names_.end(), wanted);
     if (found == names_.end())
@@ -169,7 +169,7 @@ class TrackColumns {
     std::string marker = asked;
     if (asked.empty() && !markers_.contains("")) {
       if (markers_.size() > 1)
-        table_.fail_header("it has several markers; say which one is meant" + suggest_name("", names));
+        table_.fail_header("it has several markers; say which one is meant (marker)" + suggest_name("", names));
       marker = names.front();
     }
     // a file of x_mm, y_mm, z_mm alone is that of whatever marker is asked for

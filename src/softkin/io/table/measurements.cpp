@@ -133,7 +133,7 @@ PressureScale scale_of(const RunTable& table, const std::string& column, std::op
     if (!asked)
       table.fail_header(
           "column 'p_kpa' does not say above what: name it p_abs_kpa (above vacuum) or p_gauge_kpa (above the air "
-          "around), or say beside the file which of the two it is");
+          "around), or say which of the two it is (pressure: absolute or gauge)");
     return *asked;
   }
   const PressureScale named = column == "p_abs_kpa" ? PressureScale::absolute : PressureScale::gauge;
