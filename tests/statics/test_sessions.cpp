@@ -70,6 +70,28 @@ TEST(Sessions, SeveralThreadsAtOnceGetWhatOneAfterAnotherGets) {
       }
 }
 
+/// A small move from an equilibrium is solved with the factor that is there, to what a new object finds.
+TEST(Sessions, SmallMovesNeedNoFactorisation) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  Actuation command = model.rest_actuation();
+  State state = statics.rest();
+  for (const double ratio : {1.3, 1.3002, 1.3005, 1.3004}) {
+    command[0] = ratio;
+    const Equilibrium found = statics.solve(command, state);
+    ASSERT_EQ(found.report.status, Status::converged);
+    if (ratio == 1.3) {
+      EXPECT_GT(found.report.factorisations, 0);
+    } else {
+      EXPECT_EQ(found.report.factorisations, 0) << ratio;
+    }
+    const Equilibrium alone = Statics(model).solve(command, Statics(model).rest());
+    EXPECT_LT(largest_move(found.state.positions, alone.state.positions), 10 * found.report.tolerance_mm);
+    EXPECT_NEAR(found.state.multipliers[0], alone.state.multipliers[0], 1e-5 * std::abs(alone.state.multipliers[0]));
+    state = found.state;
+  }
+}
+
 TEST(Sessions, ThreadsAreStartedOnceAndEndWithTheStatics) {
   const std::ptrdiff_t before = threads_now();
   for (const RobotSpec& robot : both_formulations()) {

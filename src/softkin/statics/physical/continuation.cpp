@@ -20,7 +20,7 @@ constexpr double least_move = 1000;
 /// A way on which so many iterations bring less than this share of it leads nowhere either.
 constexpr int patience = 500;
 constexpr double least_progress = 0.01;
-/// A shape is judged, and steps are tried, with the stiffness of one that is nearer than this share of the diagonal.
+/// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
 constexpr double nearby = 1e-3;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
@@ -206,7 +206,7 @@ std::optional<Status> Continuation::out_of_patience() {
   return Status::not_converged;
 }
 
-/// Does the workspace hold a stable stiffness so near that it shows no other way to move?
+/// Does the workspace hold the stable stiffness of a shape close by?
 bool Continuation::factorised_nearby(const Points& shape) const {
   return work_.exact && work_.unstable == 0 && work_.factorised.rows() == shape.rows() &&
          largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/statics/physical/newton.hpp>
+#include <softkin/statics/physical/stability.hpp>
 #include <utility>
 
 namespace softkin::physical {
@@ -152,6 +153,7 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
 
 /// Steps with the factor of a shape close by, as long as they shrink as fast as they would with that of the iterate.
 Newton::Advance Newton::steps_from_nearby(Iterate& at) {
+  if (!as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_)) return reject(at);
   find(balance_, at.positions, step_);
   if (!std::isfinite(step_.size.mean) || !attempt(step_, 1, at)) return reject(at);
   const bool last = step_.size.largest < settings_.tolerance_mm;

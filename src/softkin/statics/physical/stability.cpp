@@ -12,6 +12,11 @@ constexpr double close_shift = 1.1;  // over the one that is not enough
 constexpr int most_inverse_iterations = 60;
 constexpr double settled = 1e-6;  // relative change of the curvature
 
+// Inverse iterations to what is nearly the softest change of shape, the share of the diagonal by which it is tried, and
+// of its curvature by which that may have changed.
+constexpr int soft_iterations = 3;
+constexpr double difference = 1e-6, as_stiff = 0.25;
+
 /// A start that no symmetry of a robot shares, the same each time.
 Eigen::VectorXd lopsided(Index size) {
   Eigen::VectorXd vector(size);
@@ -20,6 +25,31 @@ Eigen::VectorXd lopsided(Index size) {
 }
 
 }  // namespace
+
+bool as_stiff_as_factorised(const System& system, const Iterate& at, const Demand& demand,
+                            const std::vector<bool>& active, const System::Balance& balance, System::Workspace& work,
+                            Team& team) {
+  if (work.softest.size() == 0) {
+    System::Balance right;
+    right.constraint = Eigen::VectorXd::Zero(system.actuators());
+    Eigen::VectorXd next, multipliers;
+    work.softest = lopsided(system.freedoms().size());
+    for (int i = 0; i < soft_iterations; ++i) {
+      right.force = -work.softest;
+      system.step(right, work, next, multipliers, team);
+      work.softness = work.softest.dot(next) / next.squaredNorm();
+      work.softest = next.normalized();
+    }
+  }
+  Iterate beside = at;
+  const double largest = system.size_of(work.softest, at.positions).largest;
+  const double reach = difference * system.model().diagonal_mm / largest;
+  system.freedoms().move(work.softest, reach, beside.positions);
+  System::Balance there;
+  system.evaluate(beside, demand, active, work, there, team);
+  const double curvature = work.softest.dot(there.force - balance.force) / reach;
+  return std::abs(curvature - work.softness) <= as_stiff * work.softness;
+}
 
 LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
                        System::Workspace& work, Team& team, SolveReport& report) {

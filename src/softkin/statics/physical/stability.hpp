@@ -5,6 +5,12 @@
 
 namespace softkin::physical {
 
+/// Is the stiffness along the softest change of shape, which an instability comes by, still that of the factor at hand?
+/// balance: of the iterate, just evaluated; the workspace is left with another one.
+[[nodiscard]] bool as_stiff_as_factorised(const System& system, const Iterate& at, const Demand& demand,
+                                          const std::vector<bool>& active, const System::Balance& balance,
+                                          System::Workspace& work, Team& team);
+
 /// The direction in which the energy curves least, among those that keep the active measures.
 struct LowestMode {
   int unstable = 0;           // negative eigenvalues of the stiffness on those directions

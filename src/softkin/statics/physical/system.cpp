@@ -119,6 +119,7 @@ void System::couple(const Iterate& at, const std::vector<bool>& active, Workspac
   if (balance) work.solutions.col(count) = -balance->force;
   work.factor.solve(work.solutions, team);
   work.unstable = work.negative;
+  work.softest.resize(0);
   if (count == 0) return;
   work.responses = work.solutions.leftCols(count);
   Eigen::MatrixXd schur = work.constraint_slopes.transpose() * work.responses;

@@ -46,13 +46,15 @@ class System {
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> schur;  // S G^T K^-1 G S; singular where constraints depend
                                                                     // on each other
     std::vector<Index> active;                                      // constraints of the factorisation
-    double stiffest = 0;  // the largest of the diagonal [N/mm] of the last factorisation
-    double mean = 0;      // and their mean
-    bool exact = false;   // the last factorisation: the stiffness neither made positive nor shifted
-    int negative = 0;     // its negative eigenvalues,
-    int unstable = 0;     // and those that the constraints leave
-    Points factorised;    // its shape
-    Points home;          // equilibrium at which the last solve ended, and near which it factorised
+    double stiffest = 0;      // the largest of the diagonal [N/mm] of the last factorisation
+    double mean = 0;          // and their mean
+    bool exact = false;       // the last factorisation: the stiffness neither made positive nor shifted
+    int negative = 0;         // its negative eigenvalues,
+    int unstable = 0;         // and those that the constraints leave
+    Points factorised;        // its shape
+    Eigen::VectorXd softest;  // nearly its softest change that the constraints leave, of length 1; empty: not asked for
+    double softness = 0;      // its curvature along that
+    Points home;              // equilibrium at which the last solve ended, and near which it factorised
   };
 
   struct Balance {
