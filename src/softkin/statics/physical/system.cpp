@@ -12,7 +12,7 @@ namespace {
 constexpr double dependent = 1e-9;
 
 /// Moves shorter than this share of the robot's diagonal turn nothing that matters.
-constexpr double least_turning = 1e-5;
+constexpr double least_turning = 1e-4;
 
 }  // namespace
 
