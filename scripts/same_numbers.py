@@ -3,8 +3,9 @@
 
     scripts/same_numbers.py PYTHON OTHER_PYTHON
 
-Solves every scene in examples with both interpreters, each actuator a fifth of the way to the farther end of its range, and
-prints the largest difference of positions, over the robot's size. Exit codes: 0 all within 1e-9, 1 not.
+Solves every scene in examples with both interpreters, each actuator a fifth of the way to the farther end of its range, to
+steps of 1e-9 of the robot's size, and prints the largest difference of positions over that size. Exit codes: 0 all within
+1e-9, 1 not.
 """
 
 import subprocess
@@ -32,7 +33,8 @@ def solve(folder: Path) -> None:
         rest = np.array(robot.rest_actuation)
         ends = np.array(robot.ranges).reshape(-1, 2)
         far = np.where(abs(ends[:, 0] - rest) > abs(ends[:, 1] - rest), ends[:, 0], ends[:, 1])
-        shape = robot.solve(rest + 0.2 * (far - rest), threads=1).require()
+        commands = rest + 0.2 * (far - rest)
+        shape = robot.solve(commands, threads=1, tolerance_mm=LIMIT * robot.diagonal_mm).require()
         np.save(folder / f"{scene.parent.name}.{scene.stem}.npy", shape.positions)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -69,3 +70,9 @@ def test_the_library_names_no_options_of_the_command() -> None:
     passed_on = r'"--(width|grip|cells|law|poisson-ratio|stiffer)"'  # to be told of by who gave them
     only_the_command = r"--fps|add --resume|softkin calibrate material --tensile|softkin fk --report"
     assert [each for each in named if not re.fullmatch(passed_on, each[1]) and not re.search(only_the_command, each[1])] == []
+
+
+@pytest.mark.skipif(sys.version_info < (3, 12), reason="built for this version of Python alone")
+def test_stable_abi() -> None:
+    """The wheel says that it is for later versions, too."""
+    assert Path(softkin._core.__file__).name == "_core.abi3.so"
