@@ -1,30 +1,18 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <softkin/linear/front_kernel.hpp>
+#include <softkin/linear/front_rows.hpp>
 
 namespace softkin::linear {
 
 namespace {
 
-/// Eight rows of a column, wherever they begin.
-typedef double Rows __attribute__((vector_size(64)));
-constexpr Index panel_rows = 8, block = 64;
+constexpr Index block = 64;
 #ifdef __AVX512F__
 constexpr Index strip_panels = 3;  // 3 x 8 sums fill the vector registers
 #else
 constexpr Index strip_panels = 1;
 #endif
-
-inline Rows load(const double* p) {
-  Rows r;
-  std::memcpy(&r, p, sizeof r);
-  return r;
-}
-
-inline void store(double* p, const Rows& r) {
-  std::memcpy(p, &r, sizeof r);
-}
 
 /// Unit lower L and D of the pivot block in place; pivots below `least` in magnitude are replaced.
 Index factor_corner(double* corner, Index stride, Index width, double least, double* diagonal) {

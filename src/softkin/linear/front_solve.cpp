@@ -1,26 +1,11 @@
-#include <algorithm>
-#include <cstring>
+#include <softkin/linear/front_rows.hpp>
 #include <softkin/linear/front_solve.hpp>
 
 namespace softkin::linear {
 
 namespace {
 
-/// Eight rows of a column, wherever they begin.
-typedef double Eight __attribute__((vector_size(64)));
-constexpr Index rows_together = 8;
-
-inline Eight load(const double* p) {
-  Eight r;
-  std::memcpy(&r, p, sizeof r);
-  return r;
-}
-
-inline void store(double* p, const Eight& r) {
-  std::memcpy(p, &r, sizeof r);
-}
-
-inline double sum(const Eight& r) {
+inline double sum(const Rows& r) {
   return ((r[0] + r[4]) + (r[2] + r[6])) + ((r[1] + r[5]) + (r[3] + r[7]));
 }
 
@@ -36,12 +21,12 @@ void forward_block(const double* panel, Index size, Index k, double* y, Index st
       for (int i = j + 1; i < Width; ++i) own[c][i] -= l[static_cast<std::ptrdiff_t>(j) * size + k + i] * own[c][j];
     for (int i = 0; i < Width; ++i) at[i] = own[c][i];
   }
-  for (Index r = k + Width; r < size; r += rows_together) {
-    Eight rest[Columns];
+  for (Index r = k + Width; r < size; r += panel_rows) {
+    Rows rest[Columns];
     for (int c = 0; c < Columns; ++c) rest[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Eight column = load(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Rows column = load(l + static_cast<std::ptrdiff_t>(j) * size + r);
       for (int c = 0; c < Columns; ++c) rest[c] -= own[c][j] * column;
     }
     for (int c = 0; c < Columns; ++c) store(y + c * static_cast<std::ptrdiff_t>(stride) + r, rest[c]);
@@ -52,13 +37,13 @@ void forward_block(const double* panel, Index size, Index k, double* y, Index st
 template <int Columns, int Width>
 void backward_block(const double* panel, Index size, Index k, double* y, Index stride) {
   const double* l = panel + static_cast<std::ptrdiff_t>(k) * size;
-  Eight sums[Columns][Width] = {};
-  for (Index r = k + Width; r < size; r += rows_together) {
-    Eight known[Columns];
+  Rows sums[Columns][Width] = {};
+  for (Index r = k + Width; r < size; r += panel_rows) {
+    Rows known[Columns];
     for (int c = 0; c < Columns; ++c) known[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Eight column = load(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Rows column = load(l + static_cast<std::ptrdiff_t>(j) * size + r);
       for (int c = 0; c < Columns; ++c) sums[c][j] += column * known[c];
     }
   }
@@ -90,32 +75,29 @@ void backward(const double* panel, Index size, Index pivots, double* y, Index st
   for (; k > 0; k -= width) backward_block<Columns, width>(panel, size, k - width, y, stride);
 }
 
-}  // namespace
-
-void solve_forward(const double* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
+/// visit.operator()<columns>()
+template <class Visit>
+void with_columns(Index columns, const Visit& visit) {
   switch (columns) {
     case 1:
-      return forward<1>(panel, size, pivots, y, stride);
+      return visit.template operator()<1>();
     case 2:
-      return forward<2>(panel, size, pivots, y, stride);
+      return visit.template operator()<2>();
     case 3:
-      return forward<3>(panel, size, pivots, y, stride);
+      return visit.template operator()<3>();
     default:
-      return forward<4>(panel, size, pivots, y, stride);
+      return visit.template operator()<4>();
   }
 }
 
+}  // namespace
+
+void solve_forward(const double* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
+  with_columns(columns, [&]<int Columns>() { forward<Columns>(panel, size, pivots, y, stride); });
+}
+
 void solve_backward(const double* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
-  switch (columns) {
-    case 1:
-      return backward<1>(panel, size, pivots, y, stride);
-    case 2:
-      return backward<2>(panel, size, pivots, y, stride);
-    case 3:
-      return backward<3>(panel, size, pivots, y, stride);
-    default:
-      return backward<4>(panel, size, pivots, y, stride);
-  }
+  with_columns(columns, [&]<int Columns>() { backward<Columns>(panel, size, pivots, y, stride); });
 }
 
 }  // namespace softkin::linear

@@ -151,6 +151,15 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
   return Advance::made;
 }
 
+/// Steps with the factor of the iterate.
+Newton::Advance Newton::steps_from_here(Iterate& at, double& damping) {
+  const Advance advance = damped_step(at, damping);
+  if (advance != Advance::made || damping < 1) return advance;
+  if (step_.size.largest < settings_.tolerance_mm) return Advance::arrived;
+  made_.assign(1, step_);
+  return quasi_newton_steps(at);
+}
+
 /// Steps with the factor of a shape close by, as long as they shrink as fast as they would with that of the iterate.
 Newton::Advance Newton::steps_from_nearby(Iterate& at) {
   if (!as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_)) return reject(at);
@@ -213,14 +222,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
       const Advance ready = factorise(at, policy);
       if (ready == Advance::interrupted) return Outcome::interrupted;
       if (ready == Advance::none) return Outcome::stuck;
-      advance = damped_step(at, damping);
-      if (advance != Advance::made || damping < 1) continue;
-      if (step_.size.largest < settings_.tolerance_mm) {
-        advance = Advance::arrived;
-      } else {
-        made_.assign(1, step_);
-        advance = quasi_newton_steps(at);
-      }
+      advance = steps_from_here(at, damping);
     }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
       advance = Advance::made;

@@ -59,6 +59,7 @@ class Newton {
   Advance damped_step(Iterate& at, double& damping);
   bool update_next();
   Advance quasi_newton_steps(Iterate& at);
+  Advance steps_from_here(Iterate& at, double& damping);
   Advance steps_from_nearby(Iterate& at);
   [[nodiscard]] bool meets_constraints() const;
   bool improve_balance();
