@@ -7,9 +7,9 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/runs/store.hpp>
-#include <vector>
 
 namespace softkin::runs {
 
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double sync_every = 1;  // [s]
-constexpr std::size_t piece = 1 << 18;
+constexpr std::size_t piece = 1 << 15;
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -27,13 +27,13 @@ double seconds_now() {
 /// Every line of a file from an offset on, without its end, and whether it has one.
 void each_line(int file, std::size_t offset, const std::function<bool(std::string_view line, bool whole)>& visit) {
   std::string rest;
-  std::vector<char> buffer(piece);
+  const auto buffer = std::make_unique_for_overwrite<char[]>(piece);
   for (;;) {
-    const ssize_t count = ::pread(file, buffer.data(), buffer.size(), static_cast<off_t>(offset));
+    const ssize_t count = ::pread(file, buffer.get(), piece, static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
     offset += static_cast<std::size_t>(count);
-    std::string_view text(buffer.data(), static_cast<std::size_t>(count));
+    std::string_view text(buffer.get(), static_cast<std::size_t>(count));
     for (std::size_t end; (end = text.find('\n')) != std::string_view::npos; text.remove_prefix(end + 1)) {
       rest += text.substr(0, end);
       if (!visit(rest, true)) return;
