@@ -5,9 +5,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/model/names.hpp>
-#include <softkin/runs/jobs.hpp>
-#include <softkin/runs/plots.hpp>
-#include <softkin/runs/reports.hpp>
+#include <softkin/runs/follow_run.hpp>
 #include <softkin/runs/run_tables.hpp>
 #include <softkin/runs/workspace_file.hpp>
 
@@ -28,14 +26,13 @@ struct FollowOptions : SolveOptions, MethodOptions, RunOptions {
   std::string path, folder, marker, workspace, plot_file;
   double max_step_mm = 0;  // 0: as given
 
-  // In the folder:
-  [[nodiscard]] fs::path file(const char* name) const { return fs::path(folder) / name; }
-  [[nodiscard]] fs::path plot() const { return plot_file.empty() ? file("path.svg") : fs::path(plot_file); }
+  [[nodiscard]] runs::FollowFolder files() const { return runs::FollowFolder(folder, plot_file); }
   [[nodiscard]] std::vector<Output> outputs(std::size_t waypoints) const {
+    const runs::FollowFolder all = files();
     std::vector<Output> outputs;
-    for (const char* name : {"commands.csv", "errors.csv", "report.json"}) outputs.push_back({"--output", file(name)});
-    outputs.push_back({"--output", file("path.pvd"), waypoints});
-    outputs.push_back({plot_file.empty() ? "--output" : "--plot", plot()});
+    for (const fs::path& file : {all.commands(), all.errors(), all.run().report}) outputs.push_back({"--output", file});
+    outputs.push_back({"--output", all.run().shapes, waypoints});
+    outputs.push_back({plot_file.empty() ? "--output" : "--plot", all.plot()});
     return outputs;
   }
   [[nodiscard]] TrajectoryOptions trajectory() const {
@@ -126,20 +123,16 @@ std::string missed_text(const std::vector<WaypointRecord>& done) {
   return text;
 }
 
-class FollowRun {
+class ShownTrajectory {
  public:
-  FollowRun(const Model& model, const Statics& statics, const FollowOptions& options, const MarkerPath& path,
-            const TrajectoryOptions& trajectory)
-      : model_(model),
-        options_(options),
-        path_(path),
-        reach_mm_(trajectory.inverse.tolerance_mm),
-        job_(model, statics, path, options.path, trajectory),
-        run_(model, job_, {options.file("report.json"), options.file("path.pvd")},
-             runs::follow_head(model, options.scene, trajectory), {"follow"}),
-        table_(runs::table_of_waypoints(model, path.waypoints.size())) {}
+  ShownTrajectory(const Model& model, const FollowOptions& options, double reach_mm, runs::FollowRun& follow)
+      : options_(options),
+        reach_mm_(reach_mm),
+        follow_(follow),
+        run_(follow.run()),
+        table_(runs::table_of_waypoints(model, run_.size())) {}
 
-  int run() {
+  int show() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "waypoint", options_.json);
     const runs::Advance end = advance_run(
         run_, table_, "waypoint", options_.json,
@@ -149,14 +142,25 @@ class FollowRun {
           line.show(text);
         },
         [&] { return runs::row_of(run_.done() - 1, run_.last()); });
-    const std::vector<WaypointRecord> done = finish();
+    follow_.finish();
+    if (options_.json) show_report(run_);
     if (end != runs::Advance::made) return tell_stopped(run_.done(), run_.size(), "waypoint", options_.folder, true);
+    return tell(follow_.records());
+  }
+
+ private:
+  void say(const std::string& line) const {
+    if (!options_.json) print(line + "\n");
+  }
+
+  [[nodiscard]] int tell(const std::vector<WaypointRecord>& done) const {
     say(summary_of(done, reach_mm_));
     OverlapTally overlaps;
     for (std::size_t i = 0; i < done.size(); ++i) overlaps.add(i, done[i]);
     if (const std::string text = overlaps.text("waypoint"); !text.empty()) say(text);
-    say("commands: " + options_.file("commands.csv").string() + "; plot: " + options_.plot().string() +
-        "; shapes: " + options_.file("path.pvd").string() + " (open it in ParaView)");
+    const runs::FollowFolder files = options_.files();
+    say("commands: " + files.commands().string() + "; plot: " + files.plot().string() +
+        "; shapes: " + files.run().shapes.string() + " (open it in ParaView)");
     std::vector<std::size_t> unstable;
     for (std::size_t i = 0; i < done.size(); ++i)
       if (done[i].unstable_modes > 0) unstable.push_back(i);
@@ -167,31 +171,10 @@ class FollowRun {
     return not_converged;
   }
 
- private:
-  void say(const std::string& line) const {
-    if (!options_.json) print(line + "\n");
-  }
-
-  std::vector<WaypointRecord> finish() {
-    std::vector<WaypointRecord> done;
-    run_.log().each([&](std::size_t, const WaypointRecord& record) { done.push_back(record); });
-    run_.finish();
-    if (!done.empty()) {
-      write_file(options_.file("commands.csv"), runs::commands_table(model_, path_, done).csv());
-      write_file(options_.file("errors.csv"), runs::errors_table(model_, path_, done).csv());
-      const std::string title = runs::plot_title(model_, options_.scene, options_.path);
-      write_svg(options_.plot(), runs::plot_of_path(model_, path_, done, reach_mm_, title));
-    }
-    if (options_.json) show_report(run_);
-    return done;
-  }
-
-  const Model& model_;
   const FollowOptions& options_;
-  const MarkerPath& path_;
   double reach_mm_;
-  runs::FollowJob job_;
-  runs::Run<WaypointRecord> run_;
+  runs::FollowRun& follow_;
+  runs::Run<WaypointRecord>& run_;
   Table table_;
 };
 
@@ -218,7 +201,8 @@ int run_follow(const FollowOptions& options) {
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
   if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
-  return FollowRun(model, statics, options, path, trajectory).run();
+  runs::FollowRun follow(model, statics, {options.scene, options.path, std::move(path)}, trajectory, options.files());
+  return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow).show();
 }
 
 }  // namespace

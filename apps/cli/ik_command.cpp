@@ -129,7 +129,7 @@ int run_ik(const IkOptions& options) {
   line.clear();
   catch_interrupt();
   const OutputFolders folders(options.outputs());
-  for (const std::string& doubt : doubts_about(model, search.asked))
+  for (const std::string& doubt : doubts_about(model, search.goals))
     std::fprintf(stderr, "softkin: warning: %s\n", doubt.c_str());
   if (!options.json) {
     print(options.scene + ": " + summary(model, options.solver_name) + "\n");

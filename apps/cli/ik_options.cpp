@@ -190,16 +190,6 @@ void set_weight(const Model& model, const std::string& text, std::vector<runs::N
   if (!any) argument.refuse("nothing is asked of " + excerpt(argument.name()) + suggest_name(argument.name(), names));
 }
 
-/// Distance of a marker at rest from its target, along the coordinates that count, were it given in units of so many
-/// millimetres [mm].
-double distance_from_rest(const Model& model, const PositionGoal& goal, double unit_mm) {
-  const Vec3 rest = at_rest(model, goal.marker);
-  Vec3 away = Vec3::Zero();
-  for (int axis = 0; axis < 3; ++axis)
-    if (goal.axes[static_cast<std::size_t>(axis)]) away[axis] = unit_mm * goal.target[axis] - rest[axis];
-  return away.stableNorm();
-}
-
 }  // namespace
 
 std::vector<Output> IkOptions::outputs() const {
@@ -250,25 +240,6 @@ std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& op
   for (const runs::NamedGoal& goal : goals) plain.push_back(goal.goal);
   check_goals(model, plain);
   return goals;
-}
-
-std::vector<std::string> doubts_about(const Model& model, const std::vector<runs::NamedGoal>& goals) {
-  constexpr double large = 100, metre = 1000;
-  std::vector<std::string> doubts;
-  for (const runs::NamedGoal& asked : goals) {
-    const auto* goal = std::get_if<PositionGoal>(&asked.goal.what);
-    if (goal == nullptr) continue;
-    const double given = distance_from_rest(model, *goal, 1), metres = distance_from_rest(model, *goal, metre);
-    const std::string away = "--target of '" + asked.name + "': " + number(given) +
-                             " mm away from the marker at rest, but the robot is " + number(model.diagonal_mm) +
-                             " mm across";
-    if (given > large * model.diagonal_mm)
-      doubts.push_back(away + ": are the coordinates in another unit than mm?");
-    else if (metres < 0.5 * given && goal->target.cwiseAbs().maxCoeff() * large < model.diagonal_mm)
-      doubts.push_back(away + "; it would be " + number(metres, 3) +
-                       " mm away if the coordinates were in metres: are they? They are taken as mm");
-  }
-  return doubts;
 }
 
 }  // namespace softkin::cli

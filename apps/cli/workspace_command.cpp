@@ -225,12 +225,9 @@ class WorkspaceRun {
   void tell(const runs::Reach& reach, double seconds) const {
     const Index converged = file_->count(Status::converged);
     if (options_.json)
-      return print(runs::workspace_summary(options_.scene, asked_.head, reach,
-                                           {{"samples", asked_.plan.samples()},
-                                            {"converged", converged},
-                                            {"limit", file_->count(Status::limit)},
-                                            {"not_converged", file_->count(Status::not_converged)}},
-                                           seconds) +
+      return print(runs::workspace_summary(
+                       options_.scene, asked_.head, reach, asked_.plan.samples(),
+                       [this](Status status) { return file_->count(status); }, seconds) +
                    "\n");
     say(std::to_string(converged) + " of " + samples_text() + " converged; " + duration(seconds));
     say(reach_text(reach, options_));

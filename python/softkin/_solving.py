@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Floats, floats, vector
+from .errors import SoftkinWarning
 from .inverse import Answer
 from .shape import Shape
 
@@ -181,7 +183,8 @@ class Solving:
             goals.direction(first, second, vector("directions", direction), lever_mm, weight)
         if left:
             raise ValueError(f"weights: nothing is asked of {next(iter(left))!r}")
-        goals.check()
+        for doubt in goals.check():
+            warnings.warn(doubt, SoftkinWarning, stacklevel=3)
         return goals
 
     def _solve_inverse(

@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._arrays import Floats
+from ._core import Answer as CoreAnswer
+from ._core import Shape as CoreShape
+from ._saving import Saving
 from .errors import NotConverged
 from .shape import Shape
 
@@ -19,10 +22,12 @@ if TYPE_CHECKING:
 __all__ = ["Answer"]
 
 
-class Answer:
+class Answer(Saving):
     """What inverse kinematics came to."""
 
-    def __init__(self, robot: Robot, core: _core.Answer) -> None:
+    _core: CoreAnswer
+
+    def __init__(self, robot: Robot, core: CoreAnswer) -> None:
         self._robot = robot
         self._core = core
 
@@ -87,6 +92,13 @@ class Answer:
         """What `softkin ik --report` writes: docs/formats.md."""
         report: dict[str, Any] = json.loads(self._core.report())
         return report
+
+    def _core_shape(self) -> CoreShape:
+        return self._core.shape
+
+    def _title(self) -> str:
+        title = f"{self._robot.name}: {self.status}"
+        return title + f", {self.error_mm:.2g} mm off" if self._core.has_shape else title
 
     def save_plot(self, path: str | os.PathLike[str]) -> None:
         """The error over the equilibria of the search: an .svg."""

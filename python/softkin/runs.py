@@ -237,7 +237,7 @@ class _Runs(Solving):
         max_step_mm  inserts waypoints so that no step is longer [mm]
         start        commands from which the first waypoint is sought; None: rest
         workspace    CSV of a workspace: the first waypoint is sought from its nearest sample
-        store        folder of report.json and path.pvd with the shapes: a run that was stopped goes on where it was
+        store        folder as `softkin follow -o` writes it: a run that was stopped goes on where it was
         tolerance_mm distance from a waypoint at which it is reached [mm]; None: 0.001, gradient 0.2
         others       as inverse's
         """

@@ -8,14 +8,15 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, neighbours
-from ._arrays import Floats, vector
+from ._arrays import Floats
+from ._core import Shape as CoreShape
+from ._saving import Saving
 from .errors import NotConverged
 
 if TYPE_CHECKING:
@@ -161,10 +162,12 @@ class Views(Mapping[str, Floats]):
         return "{" + ", ".join(f"{name!r}: {_point(self[name])}" for name in self) + "}"
 
 
-class Shape:
+class Shape(Saving):
     """An equilibrium of a robot, or how far the solver came: see `status`."""
 
-    def __init__(self, robot: Robot, core: _core.Shape) -> None:
+    _core: CoreShape
+
+    def __init__(self, robot: Robot, core: CoreShape) -> None:
         self._robot = robot
         self._core = core
 
@@ -281,29 +284,6 @@ class Shape:
         report: dict[str, Any] = json.loads(self._core.report())
         return report
 
-    def save(self, path: str | os.PathLike[str], *, view: tuple[float, float, float] | None = None) -> None:
-        """Writes the shape as .vtu (ParaView), a picture as .png, or the report as .json.
-
-        view  of a picture: from the robot to the eye
-        """
-        file = Path(path)
-        ending = file.suffix.lower()
-        if ending == ".vtu":
-            self._core.save_vtu(str(file))
-        elif ending == ".png":
-            file.write_bytes(self.png(view))
-        elif ending == ".json":
-            file.write_text(self._core.report())
-        else:
-            raise ValueError(f"path must end in .vtu, .png or .json, not {file.name!r}")
-
-    def png(self, view: tuple[float, float, float] | None = None) -> bytes:
-        """A picture of it, coloured by displacement, as the content of a PNG file."""
-        direction = [] if view is None else list(vector("view", view))
-        if direction and not any(direction):
-            raise ValueError("view must be a direction, so not zero")
-        return self._core.png(direction, self._title())
-
     def to_meshio(self) -> meshio.Mesh:
         """A meshio.Mesh of it, with displacements, strains and stresses; needs meshio."""
         return neighbours.to_meshio(self)
@@ -312,13 +292,13 @@ class Shape:
         """A pyvista.UnstructuredGrid of it, with displacements, strains and stresses; needs PyVista."""
         return neighbours.to_pyvista(self)
 
+    def _core_shape(self) -> CoreShape:
+        return self._core
+
     def _title(self) -> str:
         commands = zip(self._robot.actuator_infos, self.actuation)
         title = ", ".join(f"{info.name} = {info.command_text(value)}" for info, value in commands)
         return title if self.converged else f"{title}: {self.status}"
-
-    def _repr_png_(self) -> bytes:
-        return self.png()
 
     def _repr_html_(self) -> str:
         rows = [("status", self.status)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -121,6 +122,16 @@ class Workspace:
         """Of the samples that have an equilibrium; None: the robot's first marker."""
         kind, vertices, triangles, volume, area, (long, wide, thin) = self._core.hull(marker or "")
         return Hull(kind, vertices, triangles, volume, area, (long, wide, thin))
+
+    @property
+    def seconds(self) -> float:
+        """That it took [s]."""
+        return self._core.seconds
+
+    def summary(self, marker: str | None = None) -> dict[str, Any]:
+        """What `softkin workspace --json` prints: samples per status, reach and hull of a marker. None: the first."""
+        summary: dict[str, Any] = json.loads(self._core.summary(marker or ""))
+        return summary
 
     def save(self, path: str | os.PathLike[str], marker: str | None = None) -> None:
         """The places of a marker for ParaView, with commands and loads: a .vtu. None: the robot's first marker."""

@@ -133,7 +133,13 @@ void bind_goals(nb::module_& module) {
             goals.named.push_back({from + ":" + to, {DirectionGoal{first, second, vec3_of(direction), lever}, weight}});
           },
           nb::arg("first"), nb::arg("second"), nb::arg("direction"), nb::arg("lever_mm").none(), nb::arg("weight"))
-      .def("check", [](const Goals& goals) { check_goals(goals.robot->model(), goals.plain()); })
+      .def(
+          "check",
+          [](const Goals& goals) {
+            check_goals(goals.robot->model(), goals.plain());
+            return doubts_about(goals.robot->model(), goals.plain());
+          },
+          "What looks wrong about them, a sentence each.")
       .def(
           "nearest_sample",
           [](const Goals& goals, const std::string& workspace) {
@@ -191,6 +197,12 @@ void bind_inverse(nb::module_& module) {
             return answer;
           },
           nb::arg("robot"), nb::arg("bytes"))
+      .def(
+          "png",
+          [](const Answer& a, const std::vector<double>& view, const std::string& title) {
+            return picture_of(*a.shape, view, title, a.goals.plain());
+          },
+          nb::arg("view"), nb::arg("title"))
       .def(
           "save_plot",
           [](const Answer& a, const std::string& path) {

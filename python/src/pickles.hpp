@@ -11,6 +11,10 @@ namespace softkin::python {
 
 // The members of results. Found by the archive's namespace.
 
+template <class A, class First, class Second>
+void members(A& archive, std::pair<First, Second>& p) {
+  archive(p.first, p.second);
+}
 template <class A>
 void members(A& archive, IterationRecord& r) {
   archive(r.energy, r.step_mm, r.gradient_norm);

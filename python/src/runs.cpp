@@ -11,6 +11,7 @@
 #include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/follow_run.hpp>
 #include <softkin/runs/jobs.hpp>
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
@@ -89,69 +90,46 @@ class Runner {
   bool lost_ = false;
 };
 
-/// A job and its run, by statics of its own.
-template <class Record, class JobOf>
-class JobRunner : public Runner<Record> {
- protected:
-  JobRunner(RobotPtr robot, StaticsOptions options)
-      : Runner<Record>(std::move(robot), options), statics_(Runner<Record>::model()) {}
-
-  template <class... Arguments>
-  void begin(const std::string& store, const std::string& head, const std::vector<std::string>& same,
-             Arguments&&... arguments) {
-    job_.emplace(std::forward<Arguments>(arguments)...);
-    run_.emplace(this->model(), *job_, files_in(store), head, same);
-    this->resume(store);
-  }
-  [[nodiscard]] runs::Run<Record>& run() override { return *run_; }
-  [[nodiscard]] const JobOf& job() const { return *job_; }
-  [[nodiscard]] const Statics& statics() const { return statics_; }
-  [[nodiscard]] std::vector<Record> records() {
-    std::vector<Record> all;
-    run_->log().each([&](std::size_t, const Record& record) { all.push_back(record); });
-    return all;
-  }
-
- private:
-  Statics statics_;
-  std::optional<JobOf> job_;
-  std::optional<runs::Run<Record>> run_;
-};
-
-class PathRun : public JobRunner<runs::StepRecord, runs::PathJob> {
+class PathRun : public Runner<runs::StepRecord> {
  public:
   PathRun(const RobotPtr& robot, Steps steps, const std::string& name, const StaticsOptions& options,
           const std::string& store)
-      : JobRunner(robot, options), steps_(std::move(steps)) {
-    begin(store, runs::report_head(model(), model().name, options), {}, model(), statics(), steps_, name, options);
+      : Runner(robot, options),
+        statics_(model()),
+        steps_(std::move(steps)),
+        job_(model(), statics_, steps_, name, options),
+        run_(model(), job_, files_in(store), runs::report_head(model(), model().name, options), {}) {
+    resume(store);
   }
   void save_plot(const std::string& path) {
+    std::vector<runs::StepRecord> records;
+    run_.log().each([&](std::size_t, const runs::StepRecord& record) { records.push_back(record); });
     const std::string title = runs::plot_title(model(), model().name) + ", " + name_of(options().solver);
-    write_svg(path, runs::plot_of_steps(model(), records(), title));
+    write_svg(path, runs::plot_of_steps(model(), records, title));
   }
 
  private:
+  [[nodiscard]] runs::Run<runs::StepRecord>& run() override { return run_; }
+
+  Statics statics_;
   Steps steps_;
+  runs::PathJob job_;
+  runs::Run<runs::StepRecord> run_;
 };
 
-class FollowRun : public JobRunner<runs::WaypointRecord, runs::FollowJob> {
+class FollowRun : public Runner<runs::WaypointRecord> {
  public:
   FollowRun(const RobotPtr& robot, MarkerPath path, const std::string& name, const TrajectoryOptions& options,
             const std::string& store)
-      : JobRunner(robot, options.inverse.statics),
-        path_(std::move(path)),
-        name_(name),
-        tolerance_mm_(options.inverse.tolerance_mm) {
-    begin(store, runs::follow_head(model(), model().name, options), {"follow"}, model(), statics(), path_, name,
-          options);
+      : Runner(robot, options.inverse.statics),
+        statics_(model()),
+        follow_(model(), statics_, {model().name, name, std::move(path)}, options, runs::FollowFolder(made(store))) {
+    resume(store);
   }
-  void save_plot(const std::string& path) {
-    const std::string title = runs::plot_title(model(), model().name, name_);
-    write_svg(path, runs::plot_of_path(model(), path_, records(), tolerance_mm_, title));
-  }
-  [[nodiscard]] const MarkerPath& path() const { return path_; }
-  [[nodiscard]] Table commands() { return runs::commands_table(model(), path_, records()); }
-  [[nodiscard]] Table errors() { return runs::errors_table(model(), path_, records()); }
+  void finish() override { follow_.finish(); }
+  void save_plot(const std::string& path) { write_svg(path, follow_.plot()); }
+  [[nodiscard]] Table commands() { return follow_.commands(); }
+  [[nodiscard]] Table errors() { return follow_.errors(); }
   /// Status, error [mm], targets by marker, equilibria, why the search stopped, time [s], inserted.
   using Asked = std::tuple<std::string, double, std::map<std::string, std::vector<std::optional<double>>>, int,
                            std::string, std::optional<double>, bool>;
@@ -159,20 +137,22 @@ class FollowRun : public JobRunner<runs::WaypointRecord, runs::FollowJob> {
     const runs::WaypointRecord& record = run().last();
     Asked all{name_of(record.end), record.error_mm,      {}, record.equilibria, record.search_remark,
               record.asked.time,   record.asked.inserted};
-    for (std::size_t p = 0; p < path_.markers.size(); ++p) {
-      auto& target = std::get<2>(all)[model().markers[static_cast<std::size_t>(path_.markers[p])].name];
+    const MarkerPath& path = follow_.path();
+    for (std::size_t p = 0; p < path.markers.size(); ++p) {
+      auto& target = std::get<2>(all)[model().markers[static_cast<std::size_t>(path.markers[p])].name];
       for (Index axis = 0; axis < 3; ++axis)
-        target.push_back(path_.axes[p][static_cast<std::size_t>(axis)] ? std::optional(record.asked.targets[p][axis])
-                                                                       : std::nullopt);
+        target.push_back(path.axes[p][static_cast<std::size_t>(axis)] ? std::optional(record.asked.targets[p][axis])
+                                                                      : std::nullopt);
     }
     return all;
   }
-  [[nodiscard]] std::string step() { return job().codec().write(run().last()); }
+  [[nodiscard]] std::string step() { return follow_.step_text(run().last()); }
 
  private:
-  MarkerPath path_;
-  std::string name_;
-  double tolerance_mm_;
+  [[nodiscard]] runs::Run<runs::WaypointRecord>& run() override { return follow_.run(); }
+
+  Statics statics_;
+  runs::FollowRun follow_;
 };
 
 class WalkRun : public Runner<runs::WalkRecord> {

@@ -14,6 +14,7 @@
 #include "bindings.hpp"
 #include "convert.hpp"
 #include "pickles.hpp"
+#include "solve.hpp"
 
 namespace softkin::python {
 
@@ -96,6 +97,16 @@ void bind_fields(nb::class_<Shape>& type) {
 
 }  // namespace
 
+nb::bytes picture_of(const Shape& shape, const std::vector<double>& view, const std::string& title,
+                     const std::vector<Goal>& goals) {
+  std::string bytes;
+  {
+    const nb::gil_scoped_release released;
+    bytes = runs::image_png(shape.model(), shape.positions(), view, title, goals);
+  }
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
 void bind_shape(nb::module_& module) {
   nb::class_<Shape> type(module, "Shape", "An equilibrium of a robot.");
   type.def_prop_ro("robot", [](const Shape& s) { return s.robot(); })
@@ -142,12 +153,7 @@ void bind_shape(nb::module_& module) {
       .def(
           "png",
           [](const Shape& s, const std::vector<double>& view, const std::string& title) {
-            std::string bytes;
-            {
-              const nb::gil_scoped_release released;
-              bytes = runs::image_png(s.model(), s.positions(), view, title);
-            }
-            return nb::bytes(bytes.data(), bytes.size());
+            return picture_of(s, view, title);
           },
           nb::arg("view"), nb::arg("title"))
       .def("pickled",

@@ -2,6 +2,10 @@
 
 #include <nanobind/nanobind.h>
 
+#include <softkin/kinematics/goal.hpp>
+#include <string>
+#include <vector>
+
 #include "robot.hpp"
 #include "watch.hpp"
 
@@ -19,5 +23,9 @@ auto watched_solve(const Robot& robot, const Tell& tell, Work work) {
 [[nodiscard]] inline const Statics& statics_of(const Robot& robot, const Session* session) {
   return session != nullptr ? session->statics : robot.statics();
 }
+
+/// The content of a PNG file, as runs::image_png draws it.
+[[nodiscard]] nb::bytes picture_of(const Shape& shape, const std::vector<double>& view, const std::string& title,
+                                   const std::vector<Goal>& goals = {});
 
 }  // namespace softkin::python

@@ -5,6 +5,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <chrono>
 #include <softkin/kinematics/hull.hpp>
 #include <softkin/runs/ranks.hpp>
 #include <softkin/runs/workspace_file.hpp>
@@ -70,6 +72,8 @@ using Counter = nb::typed<nb::callable, nb::object(Index)>;
 struct Workspace {
   RobotPtr robot;
   std::string sampling;
+  WorkspaceHead head;
+  double seconds = 0;
   std::vector<WorkspaceSample> samples;
 };
 
@@ -110,9 +114,14 @@ std::shared_ptr<Workspace> workspace(const RobotPtr& robot, Index samples, const
   begin(plan.samples());
   Watch watch{std::nullopt};
   const int many = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  auto result = std::make_shared<Workspace>(Workspace{robot, runs::sampling_text(robot->model(), sampling), {}});
+  const auto start = std::chrono::steady_clock::now();
+  auto result = std::make_shared<Workspace>();
+  result->robot = robot;
+  result->sampling = runs::sampling_text(robot->model(), sampling);
+  result->head = runs::workspace_head(robot->model(), sampling, options);
   result->samples = store.empty() ? solve_all(*robot, plan, options, many, watch, kept)
                                   : solve_into(*robot, sampling, plan, options, many, store, watch, kept);
+  result->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 
@@ -156,6 +165,16 @@ HullOut hull_of(const Workspace& workspace, const std::string& marker) {
           hull.volume,
           hull.area,
           array_of(hull.extents)};
+}
+
+std::string summary_of(const Workspace& workspace, const std::string& marker) {
+  const Model& model = workspace.robot->model();
+  const auto count = [&](Status status) {
+    return static_cast<Index>(std::count_if(workspace.samples.begin(), workspace.samples.end(),
+                                            [&](const WorkspaceSample& s) { return s.status == status; }));
+  };
+  return runs::workspace_summary(model.name, workspace.head, runs::reach_of(model, workspace.samples, marker, true),
+                                 static_cast<Index>(workspace.samples.size()), count, workspace.seconds);
 }
 
 }  // namespace
@@ -216,19 +235,22 @@ void bind_workspace(nb::module_& module) {
       .def("pickled",
            [](const Workspace& w) {
              Writer writer;
-             writer(w.sampling, w.samples);
+             writer(w.sampling, w.head, w.seconds, w.samples);
              return nb::bytes(writer.bytes().data(), writer.bytes().size());
            })
       .def_static(
           "unpickled",
           [](RobotPtr robot, nb::bytes bytes) {
-            auto read = std::make_shared<Workspace>(Workspace{std::move(robot), "", {}});
+            auto read = std::make_shared<Workspace>();
+            read->robot = std::move(robot);
             Reader reader({bytes.c_str(), bytes.size()});
-            reader(read->sampling, read->samples);
+            reader(read->sampling, read->head, read->seconds, read->samples);
             reader.finish();
             return read;
           },
           nb::arg("robot"), nb::arg("bytes"))
+      .def_ro("seconds", &Workspace::seconds)
+      .def("summary", &summary_of, nb::arg("marker"))
       .def("hull", &hull_of, nb::arg("marker"))
       .def("save_hull", &save_hull, nb::arg("path"), nb::arg("marker"))
       .def(

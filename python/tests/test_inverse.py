@@ -1,6 +1,8 @@
 from __future__ import annotations
 
+import json
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -53,6 +55,27 @@ def test_starts_preferences_and_what_is_fixed(robot: softkin.Robot, goal: softki
     assert near.reached
     assert robot.inverse(tip=goal["tip"], start={"air1": 1.3}).reached
     assert robot.inverse(tip=goal["tip"], method="gradient", tolerance_mm=0.5).error_mm < 0.5
+
+
+def test_files(robot: softkin.Robot, goal: softkin.Shape, tmp_path: Path) -> None:
+    answer = robot.inverse(tip=goal["tip"])
+    for name in ("a.png", "a.vtu", "a.json"):
+        answer.save(tmp_path / name)
+    assert json.loads((tmp_path / "a.json").read_text()) == answer.report
+    answer.shape.save(tmp_path / "s.vtu")
+    assert (tmp_path / "a.vtu").read_bytes() == (tmp_path / "s.vtu").read_bytes()
+    picture = (tmp_path / "a.png").read_bytes()
+    assert picture == answer.png() == answer._repr_png_() != answer.shape.png()
+    assert answer.png(view=(0, 0, 1)) != picture
+    with pytest.raises(ValueError, match="path must end in .vtu, .png or .json, not 'a.gif'"):
+        answer.save(tmp_path / "a.gif")
+
+
+def test_targets_in_other_units(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    with pytest.warns(softkin.SoftkinWarning, match="target of 'tip': .* in metres: are they"):
+        robot.inverse(tip=goal["tip"] / 1000, max_equilibria=1)
+    with pytest.warns(softkin.SoftkinWarning, match="another unit than mm"):
+        robot.session().inverse(tip=goal["tip"] * 1000, max_equilibria=1)
 
 
 def test_out_of_reach(robot: softkin.Robot) -> None:

@@ -71,7 +71,9 @@ def test_follow(robot: softkin.Robot, tmp_path: Path) -> None:
     again = robot.follow({"tip": path}, times=[0, 0.5, 1], store=tmp_path)
     assert again.done == 1
     assert [w.shape.fingerprint for w in again] == [w.shape.fingerprint for w in waypoints[1:]]
-    again.finish()
+    assert (tmp_path / "commands.csv").read_text() == run.commands.csv()
+    assert (tmp_path / "errors.csv").read_text() == run.errors.csv()
+    assert "</svg>" in (tmp_path / "path.svg").read_text()
 
 
 def test_follow_with_waypoints_between_and_free_coordinates(robot: softkin.Robot) -> None:

@@ -46,6 +46,11 @@ def test_grid(robot: softkin.Robot) -> None:
     again = pickle.loads(pickle.dumps(cloud))
     assert again.samples.tobytes() == samples.tobytes() and again.sampling == cloud.sampling
     hull = cloud.hull()
+    summary = cloud.summary()
+    assert again.summary() == summary and summary["seconds"] == cloud.seconds > 0
+    assert [summary[key] for key in ("samples", "converged", "limit", "not_converged")] == [8, 8, 0, 0]
+    assert summary["reach_mm"]["y"] == [cloud["tip"][:, 1].min(), cloud["tip"][:, 1].max()]
+    assert summary["hull"]["volume_mm3"] == hull.volume_mm3
     assert hull.kind == "solid" and hull.volume_mm3 > 0 and hull.area_mm2 > 0
     assert hull.vertices.shape[1] == 3 and hull.triangles.shape[1] == 3 and len(hull.extents_mm) == 3
     assert "8 of 8 converged" in repr(cloud) and "<table>" in cloud._repr_html_()

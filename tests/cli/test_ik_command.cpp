@@ -212,7 +212,7 @@ TEST(IkCommand, WarnsOfOtherUnits) {
   const IkFolder folder;
   const ProgramResult far = run_ik(folder.scene, {"--target", "tip=20000,6000,6000"});
   EXPECT_EQ(far.exit_code, 1);
-  EXPECT_NE(far.errors.find("softkin: warning: --target of 'tip': "), std::string::npos) << far.errors;
+  EXPECT_NE(far.errors.find("softkin: warning: target of 'tip': "), std::string::npos) << far.errors;
   EXPECT_NE(far.errors.find("another unit than mm?"), std::string::npos) << far.errors;
   const ProgramResult metres = run_ik(folder.scene, {"--target", "tip=0.02,0.006,0.006"});
   EXPECT_NE(metres.errors.find("if the coordinates were in metres: are they?"), std::string::npos) << metres.errors;

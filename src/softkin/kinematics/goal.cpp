@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
 #include <softkin/kinematics/inverse_response.hpp>
 #include <string>
 
@@ -119,6 +120,16 @@ class Check {
   std::string name_;
 };
 
+/// Distance of a marker at rest from its target, along the coordinates that count, were it given in units of so many
+/// millimetres [mm].
+double distance_from_rest(const Model& model, const PositionGoal& goal, double unit_mm) {
+  const Vec3 rest = marker_at(model, goal.marker, model.rest);
+  Vec3 away = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (goal.axes[static_cast<std::size_t>(axis)]) away[axis] = unit_mm * goal.target[axis] - rest[axis];
+  return away.stableNorm();
+}
+
 }  // namespace
 
 void check_goals(const Model& model, const std::vector<Goal>& goals) {
@@ -135,6 +146,26 @@ Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, 
   for (std::size_t i = 0; i < goals.size(); ++i)
     errors[static_cast<Index>(i)] = terms_of(model, goals[i], positions).stableNorm();
   return errors;
+}
+
+std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal>& goals) {
+  constexpr double large = 100, metre = 1000;
+  std::vector<std::string> doubts;
+  for (const Goal& asked : goals) {
+    const auto* goal = std::get_if<PositionGoal>(&asked.what);
+    if (goal == nullptr) continue;
+    const double given = distance_from_rest(model, *goal, 1), metres = distance_from_rest(model, *goal, metre);
+    const bool far = given > large * model.diagonal_mm;
+    const bool small = metres < 0.5 * given && goal->target.cwiseAbs().maxCoeff() * large < model.diagonal_mm;
+    if (!far && !small) continue;
+    const std::string away = "target of '" + model.markers[static_cast<std::size_t>(goal->marker)].name +
+                             "': " + number(given) + " mm away from the marker at rest, but the robot is " +
+                             number(model.diagonal_mm) + " mm across";
+    doubts.push_back(away + (far ? ": are the coordinates in another unit than mm?"
+                                 : "; it would be " + number(metres, 3) +
+                                       " mm away if the coordinates were in metres: are they? They are taken as mm"));
+  }
+  return doubts;
 }
 
 Eigen::VectorXd inverse::goal_terms(const Model& model, const std::vector<Goal>& goals, const Points& positions) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/model/model.hpp>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -39,5 +40,9 @@ void check_goals(const Model& model, const std::vector<Goal>& goals);
 
 /// Distance of each goal from being met [mm], unweighted.
 [[nodiscard]] Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, const Points& positions);
+
+/// What looks wrong about targets beside this robot, a sentence each: 100 times its size away, or near it if they were
+/// in metres.
+[[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal>& goals);
 
 }  // namespace softkin

@@ -265,12 +265,14 @@ Plot plot_of_reach(const Reach& reach) {
   return plot;
 }
 
-std::string workspace_summary(const std::string& scene, const WorkspaceHead& head, const Reach& reach,
-                              const std::vector<std::pair<std::string, Index>>& counts, double seconds) {
+std::string workspace_summary(const std::string& scene, const WorkspaceHead& head, const Reach& reach, Index samples,
+                              const std::function<Index(Status)>& count, double seconds) {
   Json json = {{"softkin", SOFTKIN_VERSION}, {"scene", scene}};
   for (const auto& [key, value] : head)
     if (key == "robot" || key == "solver" || key == "sampling") json[key] = value;
-  for (const auto& [key, count] : counts) json[key] = count;
+  json["samples"] = samples;
+  for (const Status status : {Status::converged, Status::limit, Status::not_converged})
+    json[workspace_status(status)] = count(status);
   json["marker"] = reach.marker;
   if (!reach.samples.empty())
     for (int axis = 0; axis < 3; ++axis)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/table/workspace_table.hpp>
@@ -94,8 +95,8 @@ void write_hull(const std::filesystem::path& path, const Hull& hull);
 /// The positions, seen along the axes.
 [[nodiscard]] Plot plot_of_reach(const Reach& reach);
 
-/// JSON of what a workspace with such a head came to. counts: of samples, per status
+/// JSON of what a workspace with such a head came to. samples: in all; count: of those that ended so
 [[nodiscard]] std::string workspace_summary(const std::string& scene, const WorkspaceHead& head, const Reach& reach,
-                                            const std::vector<std::pair<std::string, Index>>& counts, double seconds);
+                                            Index samples, const std::function<Index(Status)>& count, double seconds);
 
 }  // namespace softkin::runs

@@ -1,0 +1,51 @@
+"""Files and pictures of shapes."""
+
+from __future__ import annotations
+
+import os
+from abc import abstractmethod
+from pathlib import Path
+
+from ._arrays import vector
+from ._core import Answer as CoreAnswer
+from ._core import Shape as CoreShape
+
+View = tuple[float, float, float]
+
+
+class Saving:
+    """What has a picture, a report and a shape."""
+
+    _core: CoreShape | CoreAnswer
+
+    @abstractmethod
+    def _core_shape(self) -> CoreShape: ...
+
+    @abstractmethod
+    def _title(self) -> str: ...
+
+    def save(self, path: str | os.PathLike[str], *, view: View | None = None) -> None:
+        """Writes the shape as .vtu (ParaView), a picture as .png, or the report as .json.
+
+        view  of a picture: from the robot to the eye
+        """
+        file = Path(path)
+        ending = file.suffix.lower()
+        if ending == ".vtu":
+            self._core_shape().save_vtu(str(file))
+        elif ending == ".png":
+            file.write_bytes(self.png(view))
+        elif ending == ".json":
+            file.write_text(self._core.report())
+        else:
+            raise ValueError(f"path must end in .vtu, .png or .json, not {file.name!r}")
+
+    def png(self, view: View | None = None) -> bytes:
+        """A picture, coloured by displacement, with crosses at the targets of an answer: the content of a PNG file."""
+        direction = [] if view is None else list(vector("view", view))
+        if direction and not any(direction):
+            raise ValueError("view must be a direction, so not zero")
+        return self._core.png(direction, self._title())
+
+    def _repr_png_(self) -> bytes:
+        return self.png()
