@@ -48,7 +48,7 @@ struct InverseResult {
   std::vector<int> active;    // m: -1 at the low end of its range and pushed there, +1 at the high end, else 0
   double slope = 0;           // norm of the projected gradient of the error (root of the weighted sum of squares)
                               // by the share of each range [mm]: 0 where no allowed change helps; newton
-  Sensitivity sensitivity;    // at the equilibrium; newton
+  Sensitivity sensitivity;    // at the equilibrium, to 1e-6; newton
   int iterations = 0, equilibria = 0;
   std::vector<InverseTrial> history;  // every equilibrium
   std::string remark;                 // why it stopped, where status is not reached

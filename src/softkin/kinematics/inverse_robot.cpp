@@ -13,6 +13,8 @@ namespace {
 constexpr double none = std::numeric_limits<double>::infinity();
 /// Share of the way below which an equilibrium on it is not worth having.
 constexpr double least_way = 0.02;
+/// Of slopes: steps and verdicts of a search need no more.
+constexpr double slope_accuracy = 1e-6;
 
 }  // namespace
 
@@ -141,7 +143,8 @@ Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& f
 bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   const State& state = at.equilibrium.state;
   const bool given = options_.start_sensitivity != nullptr && history_.empty() && at.idle.isZero(0);
-  slopes.sensitivity = given ? *options_.start_sensitivity : statics_.sensitivity(state, options_.statics);
+  slopes.sensitivity =
+      given ? *options_.start_sensitivity : statics_.sensitivity(state, options_.statics, slope_accuracy);
   if (!slopes.sensitivity.regular) return false;
   const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity);
   const auto free = static_cast<Index>(free_.size());

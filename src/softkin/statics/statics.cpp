@@ -42,7 +42,7 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
 
 /// Waking a thread for every loop costs as much as some hundred elements.
 int worthwhile_threads(const Model& model) {
-  constexpr std::size_t elements_each = 1500;
+  constexpr std::size_t elements_each = 1000;
   const std::size_t elements = model.tetrahedra.size() + model.prisms.size();
   return static_cast<int>(
       std::clamp<std::size_t>(elements / elements_each, 1, std::max(1u, std::thread::hardware_concurrency())));
@@ -161,11 +161,11 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   return result;
 }
 
-Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options) const {
+Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options, double accuracy) const {
   parts_->check_known(at, options, "the sensitivity of a shape");
   const TeamPool::Lent team = parts_->team(options);
-  if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, *team);
-  return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, *team);
+  if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, accuracy, *team);
+  return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, accuracy, *team);
 }
 
 ElementDeformation Statics::measured(const State& at) const {

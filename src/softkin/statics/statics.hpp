@@ -61,11 +61,13 @@ class Statics {
   /// How an equilibrium changes with its actuation, by implicit differentiation of the equations that solve() meets;
   /// with the factor that the solve left behind where there is one.
   ///
-  /// at       an equilibrium that solve() returned; its actuation and, physical, its multipliers must be known
-  /// returns  zero by slack cables, which are those without tension that are shorter than they may be; another one
-  ///          without tension counts as taut, as when it is pulled. Not regular at a limit of existence
-  /// throws   InvalidInput on a size mismatch, an unknown actuation, or a number that is not finite
-  [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {}) const;
+  /// at        an equilibrium that solve() returned; its actuation and, physical, its multipliers must be known
+  /// accuracy  of the derivatives, relative, > 0: what is left of the equations, seen through their factor
+  /// returns   zero by slack cables, which are those without tension that are shorter than they may be; another one
+  ///           without tension counts as taut, as when it is pulled. Not regular at a limit of existence
+  /// throws    InvalidInput on a size mismatch, an unknown actuation, or a number that is not finite
+  [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {},
+                                        double accuracy = 1e-8) const;
 
   /// What a shape measures: deformation_of and, physical, the stress of the elements and what holds the robot.
   ///

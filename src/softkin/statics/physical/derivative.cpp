@@ -7,8 +7,6 @@ namespace softkin::physical {
 
 namespace {
 
-/// Of the residual, seen through the factor: as well as the equilibrium itself is known.
-constexpr double accuracy = 1e-8;
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with that.
 constexpr int most_rounds = 8, exact_rounds = 3;
 /// What rounding may add to a solution with the factor of the stiffness itself: more, and that is singular.
@@ -18,8 +16,12 @@ constexpr double verge = 1e-9;
 
 }  // namespace
 
-Derivative::Derivative(const System& system, System::Workspace& work, Team& team)
-    : system_(system), work_(work), team_(team), active_(static_cast<std::size_t>(system.actuators())) {}
+Derivative::Derivative(const System& system, System::Workspace& work, double accuracy, Team& team)
+    : system_(system),
+      work_(work),
+      accuracy_(accuracy),
+      team_(team),
+      active_(static_cast<std::size_t>(system.actuators())) {}
 
 /// Measures that are held: of chambers, and of cables that pull or are as long as they may be.
 void Derivative::hold(const Iterate& at, const Demand& demand) {
@@ -98,8 +100,9 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
   Eigen::MatrixXd left(size + count, found_.moves.cols()), x;
   join(found_, left);
   const linear::Remainder remainder =
-      linear::conjugate_residuals(product, accuracy, exact_factor ? exact_rounds : most_rounds, left, x);
-  if (!(remainder.left <= accuracy) || (exact_factor && !(remainder.apart <= singular)) || !x.allFinite()) return false;
+      linear::conjugate_residuals(product, accuracy_, exact_factor ? exact_rounds : most_rounds, left, x);
+  if (!(remainder.left <= accuracy_) || (exact_factor && !(remainder.apart <= singular)) || !x.allFinite())
+    return false;
   found_ = split(x);
   return true;
 }
@@ -140,9 +143,9 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   return result(at);
 }
 
-Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, Team& team) const {
+Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
   Lease lease(*this, at.positions, reuse_factor);
-  return Derivative(system_, lease.work(), team).of(system_.iterate(at), {at.actuation, at.share});
+  return Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(at), {at.actuation, at.share});
 }
 
 }  // namespace softkin::physical

@@ -11,7 +11,7 @@ namespace softkin::physical {
 class Derivative {
  public:
   /// All must outlive the object. work.home: the shape near which the workspace factorised, or empty
-  Derivative(const System& system, System::Workspace& work, Team& team);
+  Derivative(const System& system, System::Workspace& work, double accuracy, Team& team);
 
   /// at  multipliers in internal units
   [[nodiscard]] Sensitivity of(const Iterate& at, const Demand& demand);
@@ -30,6 +30,7 @@ class Derivative {
 
   const System& system_;
   System::Workspace& work_;
+  double accuracy_;
   Team& team_;
   std::vector<bool> active_;
   std::vector<Index> held_;

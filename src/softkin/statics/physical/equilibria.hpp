@@ -29,7 +29,7 @@ class Equilibria {
                                   const ProgressCallback& progress, Team& team) const;
 
   /// Of an equilibrium; see Statics::sensitivity.
-  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
+  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
 
   /// Adds stress and reactions of an equilibrium; see Statics::measured.
   void measure(const State& at, ElementDeformation& out, Team& team) const;

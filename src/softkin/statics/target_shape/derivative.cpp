@@ -9,8 +9,6 @@ using namespace energy;
 
 namespace {
 
-/// Of the residual, seen through the preconditioner.
-constexpr double accuracy = 1e-10;
 /// What rounding may add to a solution with the factor of K itself: more, and K is singular.
 constexpr double singular = 1e-6, unlimited = std::numeric_limits<double>::infinity();
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with one that is never exact.
@@ -19,7 +17,7 @@ constexpr int symmetric_rounds = 8, most_rounds = 60;
 }  // namespace
 
 bool Tangent::solve_exactly(const System::Scratch& local, const Points& positions, const Eigen::MatrixXd& rights,
-                            int rounds, double apart, Team& team, Eigen::MatrixXd& steps) {
+                            int rounds, double accuracy, double apart, Team& team, Eigen::MatrixXd& steps) {
   const auto precondition_all = [&](Eigen::MatrixXd& columns) {
     factor_.solve(columns, team);
     if (sources_.cols() > 0) columns -= sources_ * (capacitance_ * (targets_.transpose() * columns));
@@ -39,7 +37,7 @@ bool Tangent::solve_exactly(const System::Scratch& local, const Points& position
   return remainder.apart <= apart && remainder.left <= accuracy && steps.allFinite();
 }
 
-Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, Team& team) const {
+Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
   const Index actuators = static_cast<Index>(at.actuation.size());
   Sensitivity result = no_sensitivity(static_cast<Index>(at.positions.rows()), actuators);
   std::unique_ptr<Workspace> workspace = take_workspace(&at.positions);
@@ -54,7 +52,7 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, Team& team) 
   }
   const bool near = reuse_factor && workspace->home.rows() == at.positions.rows() && workspace->home == at.positions;
   const auto solve = [&](int rounds, double apart) {
-    return tangent.solve_exactly(local, at.positions, rights, rounds, apart, team, steps);
+    return tangent.solve_exactly(local, at.positions, rights, rounds, accuracy, apart, team, steps);
   };
   result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, unlimited);
   if (!result.regular) {

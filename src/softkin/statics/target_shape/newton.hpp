@@ -90,7 +90,7 @@ class Newton {
              Equilibrium& result) const;
 
   /// Of an equilibrium; see Statics::sensitivity.
-  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, Team& team) const;
+  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
 
   /// Drops what earlier solves left.
   void forget() const;

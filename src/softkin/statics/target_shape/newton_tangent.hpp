@@ -92,10 +92,11 @@ class Tangent {
   /// Solves K steps = rights, a column each, for the exact K at a shape near that of the factor, symmetric or not, by
   /// conjugate residuals.
   ///
-  /// apart    how far the preconditioned K may be from the identity, in the preconditioned right-hand sides
-  /// returns  false where it is farther, or so many rounds do not do
+  /// accuracy  of the preconditioned residual, relative
+  /// apart     how far the preconditioned K may be from the identity, in the preconditioned right-hand sides
+  /// returns   false where it is farther, or so many rounds do not do
   [[nodiscard]] bool solve_exactly(const System::Scratch& local, const Points& positions, const Eigen::MatrixXd& rights,
-                                   int rounds, double apart, Team& team, Eigen::MatrixXd& steps);
+                                   int rounds, double accuracy, double apart, Team& team, Eigen::MatrixXd& steps);
 
   [[nodiscard]] const supports::Freedoms& freedoms() const { return unknowns_.freedoms; }
   [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
