@@ -111,7 +111,7 @@ fuzz:
 	cmake --preset sanitize
 	cmake --build --preset sanitize --target softkin_fuzz softkin_fuzz_journals
 	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz full $(TARGETS)
-	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz_journals full
+	$(if $(TARGETS),,scripts/fuzz.sh build-sanitize/tests/softkin_fuzz_journals full)
 
 random:
 	@$(SETUP) --tests
