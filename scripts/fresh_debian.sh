@@ -29,13 +29,13 @@ fresh() {
   [ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$root/etc/"
 }
 
-inside() { # NAME COMMAND: with the variables that pip and apt read
+inside() { # NAME COMMAND: with the variables that pip and apt read, and /proc, by which programs find their libraries
   local root=$folder/$1
   shift
   local settings
   mapfile -t settings < <(env | grep -iE '^(pip_|https?_proxy|no_proxy)' || true)
   env -i "${settings[@]}" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-    chroot "$root" bash -euo pipefail -c "$*"
+    unshare --mount bash -euc 'mount -t proc proc "$0/proc" && exec chroot "$0" bash -euo pipefail -c "$1"' "$root" "$*"
 }
 
 first_script="cd /softkin/examples/python && /softkin/venv/bin/python first_bend.py && /softkin/venv/bin/softkin --version"
