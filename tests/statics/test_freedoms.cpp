@@ -1,6 +1,8 @@
 #include <Eigen/Geometry>
+#include <set>
 #include <softkin/energy/rotation.hpp>
-#include <softkin/statics/supports/freedoms.hpp>
+#include <softkin/linear/sparse_ldlt.hpp>
+#include <softkin/statics/supports/reduced_matrix.hpp>
 
 #include "model/physical_robots.hpp"
 #include "statics/robots.hpp"
@@ -42,6 +44,7 @@ struct FreedomSample {
     cliques.add(std::vector<Index>{0, n - 1, n / 2, 3, n / 3});
     pattern.emplace(n, cliques);
     freedoms.emplace(model, *pattern);
+    reduced.emplace(*freedoms, *pattern);
     positions = model.rest + noise(n, 1, 1);
     freedoms->hold(1, positions);
   }
@@ -56,6 +59,7 @@ struct FreedomSample {
   Cliques cliques;
   std::optional<BlockPattern> pattern;
   std::optional<supports::Freedoms> freedoms;
+  std::optional<supports::ReducedMatrix> reduced;
   Points positions;
 };
 
@@ -170,10 +174,46 @@ TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
   Team alone(1), pair(2);
   LargeVector<double> values, shared;
   const Points none = Points::Zero(sample.model.rest.rows(), 3);
-  sample.freedoms->reduce_matrix(*sample.pattern, matrix.slots, none, sample.positions, values, alone);
-  sample.freedoms->reduce_matrix(*sample.pattern, matrix.slots, none, sample.positions, shared, pair);
+  sample.reduced->reduce(*sample.pattern, matrix.slots, none, sample.positions, values, alone);
+  sample.reduced->reduce(*sample.pattern, matrix.slots, none, sample.positions, shared, pair);
   EXPECT_EQ(values, shared);
-  EXPECT_LT((dense_of(sample.freedoms->columns(), values) - expected).norm(), 1e-12 * expected.norm());
+  EXPECT_LT((dense_of(sample.reduced->columns(), values) - expected).norm(), 1e-12 * expected.norm());
+}
+
+/// Vertices that were far apart in the order of elimination become neighbours, with each other and with regions.
+TEST(Freedoms, MatrixOfAWiderPatternIsTheDenseOne) {
+  FreedomSample sample(held_robot());
+  const Index n = static_cast<Index>(sample.model.rest.rows());
+  std::mt19937 engine(11);
+  for (int i = 0; i < 30; ++i) {
+    std::set<Index> set;
+    while (set.size() < 4) set.insert(static_cast<Index>(engine() % static_cast<unsigned>(n)));
+    sample.cliques.add(std::vector<Index>(set.begin(), set.end()));
+  }
+  sample.pattern.emplace(n, sample.cliques);
+  const supports::ReducedMatrix wider = supports::ReducedMatrix::wider(*sample.freedoms, *sample.pattern);
+  ASSERT_FALSE(wider.in_order());
+  const RandomMatrix matrix(sample);
+  const Eigen::MatrixXd t = tangent_of(sample), expected = t.transpose() * matrix.dense * t;
+  Team alone(1);
+  LargeVector<double> values;
+  wider.reduce(*sample.pattern, matrix.slots, Points::Zero(n, 3), sample.positions, values, alone);
+  const Eigen::MatrixXd in_columns = dense_of(wider.columns(), values);
+  Eigen::MatrixXd half, whole(expected.rows(), expected.cols()), mine;  // P^T (P expected)^T, and back
+  wider.to_columns(expected, half);
+  wider.to_columns(half.transpose(), mine);
+  EXPECT_LT((in_columns - mine).norm(), 1e-12 * expected.norm());
+  wider.to_unknowns(half, whole);
+  EXPECT_EQ(whole, expected);
+
+  // and it can be factorised in that order
+  SparseLdlt factor(wider.columns());
+  ASSERT_EQ(factor.factorise(values, 1e-13, alone).replaced, 0);
+  Eigen::MatrixXd right = sample.random_unknowns(3), solved;
+  wider.to_columns(right, solved);
+  factor.solve(solved, alone);
+  wider.to_unknowns(solved, right);
+  EXPECT_LT((expected * right - sample.random_unknowns(3)).norm(), 1e-6);
 }
 
 /// Along a straight line of unknowns regions turn about one axis: the derivative of u . T^T gradient there is u^T K u,
@@ -188,9 +228,9 @@ TEST(Freedoms, ReducedMatrixIsTheSlopeOfTheReducedGradient) {
     return gradient;
   };
   LargeVector<double> values;
-  sample.freedoms->reduce_matrix(*sample.pattern, hessian.slots, gradient_at(sample.positions), sample.positions,
-                                 values, alone);
-  const Eigen::MatrixXd matrix = dense_of(sample.freedoms->columns(), values);
+  sample.reduced->reduce(*sample.pattern, hessian.slots, gradient_at(sample.positions), sample.positions, values,
+                         alone);
+  const Eigen::MatrixXd matrix = dense_of(sample.reduced->columns(), values);
   constexpr double reach = 1e-5;
   const auto slope_at = [&](const Eigen::VectorXd& unknowns, double scale) {
     Points moved = sample.positions;
@@ -206,8 +246,8 @@ TEST(Freedoms, ReducedMatrixIsTheSlopeOfTheReducedGradient) {
   }
   // the turns alone, where the gradient counts
   Index turns = 0;
-  for (Index node = 0; node < sample.freedoms->columns().nodes(); ++node)
-    if (sample.freedoms->columns().width(node) == 6) turns = sample.freedoms->columns().unknowns[node] + 3;
+  for (Index node = 0; node < sample.reduced->columns().nodes(); ++node)
+    if (sample.reduced->columns().width(node) == 6) turns = sample.reduced->columns().unknowns[node] + 3;
   ASSERT_GT(turns, 0);
   for (int i = 0; i < 6; ++i) {
     const Vec3 about = i < 3 ? Vec3(Vec3::Unit(i)) : Vec3(Vec3::Unit(i % 3) + Vec3::Unit((i + 1) % 3));

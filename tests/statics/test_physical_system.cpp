@@ -205,7 +205,6 @@ TEST(System, AdvanceBendsABarWithoutStretchingIt) {
   RobotSpec spec = physical_robot(block_mesh({24, 2, 2}, {length, 5, 5}));
   SystemSample sample(spec);
   sample.at.positions = sample.model.rest;
-  const linear::BlockColumns& columns = sample.system.freedoms().columns();
   for (const double angle : {0.5, 1.5, 2.5}) {
     // the tangent of an evenly bent bar: section at x turns by angle x / length about y
     Points moves(sample.model.rest.rows(), 3);
@@ -213,7 +212,7 @@ TEST(System, AdvanceBendsABarWithoutStretchingIt) {
       const double x = sample.model.rest(v, 0), z = sample.model.rest(v, 2) - 2.5;
       moves.row(v) << angle * x / length * z, 0, -angle * x * x / (2 * length);
     }
-    Eigen::VectorXd step(columns.size());
+    Eigen::VectorXd step(sample.system.freedoms().size());
     sample.system.freedoms().reduce(moves, sample.at.positions, step);  // nothing rigid: picks the free ones
     Points bent = sample.at.positions, straight = sample.at.positions;
     sample.system.advance(step, 1, sample.work, bent, sample.team);

@@ -56,7 +56,7 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
 
 /// Solves with the factor, in place.
 void Derivative::precondition(Columns& columns) {
-  if (!columns.moves.isZero(0)) work_.factor.solve(columns.moves, team_);
+  if (!columns.moves.isZero(0)) work_.solve(columns.moves, team_);
   if (held_.empty()) return;
   const Eigen::MatrixXd asked =
       work_.scale.asDiagonal() * (work_.constraint_slopes.transpose() * columns.moves - columns.multipliers);

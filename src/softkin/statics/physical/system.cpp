@@ -24,19 +24,29 @@ System::System(const Model& model)
   linear::Cliques cliques;
   elastic_.add_cliques(cliques);
   measures_.add_cliques(cliques);
-  slots_ = cliques.slots.back();
-  pattern_ = std::make_unique<linear::BlockPattern>(static_cast<Index>(model.rest.rows()), cliques);
-  freedoms_ = std::make_unique<supports::Freedoms>(model, *pattern_);
-  symbolic_ = std::make_shared<const linear::FrontTree>(linear::make_front_tree(freedoms_->columns()));
-  linear::require_memory(*symbolic_);  // before what takes long
+  linear::BlockPattern pattern(static_cast<Index>(model.rest.rows()), cliques);
+  freedoms_ = std::make_unique<supports::Freedoms>(model, pattern);
+  supports::ReducedMatrix reduced(*freedoms_, pattern);
+  auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
+  linear::require_memory(*symbolic);  // before what takes long
+  layout_ = std::make_shared<const Layout>(
+      Layout{std::move(pattern), std::move(reduced), std::move(symbolic), cliques.slots.back()});
   turning_ = std::make_unique<supports::GlobalStep>(model, elastic_.laplacian(), freedoms_->vertex_order());
 }
 
 System::Workspace::Workspace(const System& system)
     : elastic(system.elastic_.make_scratch()),
-      slots(9 * static_cast<std::size_t>(system.slots_)),
+      layout(system.layout_),
+      slots(9 * static_cast<std::size_t>(layout->slots)),
       slopes(system.model_.actuators.size()),
-      factor(system.symbolic_) {}
+      factor(layout->symbolic) {}
+
+void System::Workspace::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+  if (layout->reduced.in_order()) return factor.solve(right_sides, team);
+  layout->reduced.to_columns(right_sides, in_columns);
+  factor.solve(in_columns, team);
+  layout->reduced.to_unknowns(in_columns, right_sides);
+}
 
 bool System::constrains(Index actuator) const {
   const Actuator& a = model_.actuators[actuator];
@@ -80,9 +90,10 @@ void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, W
 int System::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
                       double shift, Workspace& work, Team& team, const Balance* balance) const {
   assemble(at, demand, kind, work, team);
-  freedoms_->reduce_matrix(*pattern_, work.slots, work.gradient, at.positions, work.values, team);
+  const Layout& layout = *work.layout;
+  layout.reduced.reduce(layout.pattern, work.slots, work.gradient, at.positions, work.values, team);
 
-  const linear::BlockColumns& columns = freedoms_->columns();
+  const linear::BlockColumns& columns = layout.reduced.columns();
   double trace = 0;
   work.stiffest = 0;
   const auto each_diagonal = [&](const auto& visit) {
@@ -117,7 +128,7 @@ void System::couple(const Iterate& at, const std::vector<bool>& active, Workspac
   work.solutions.resize(freedoms_->size(), count + (balance ? 1 : 0));
   work.solutions.leftCols(count) = work.constraint_slopes;
   if (balance) work.solutions.col(count) = -balance->force;
-  work.factor.solve(work.solutions, team);
+  work.solve(work.solutions, team);
   work.unstable = work.negative;
   work.softest.resize(0);
   if (count == 0) return;
@@ -134,7 +145,7 @@ void System::couple(const Iterate& at, const std::vector<bool>& active, Workspac
 void System::step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change,
                   Team& team) const {
   step = -balance.force;
-  if (!step.isZero(0)) work.factor.solve(step, team);  // where constraints alone change there is nothing to solve for
+  if (!step.isZero(0)) work.solve(step, team);  // where constraints alone change there is nothing to solve for
   meet_constraints(balance, work, step, change);
 }
 
@@ -166,8 +177,8 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   if (moves.isZero(0)) {
     force.setZero(moves.rows(), 3);
   } else {
-    pattern_->gather(work.slots, work.blocks, team);
-    pattern_->multiply(work.blocks, moves, force, team);
+    work.layout->pattern.gather(work.slots, work.blocks, team);
+    work.layout->pattern.multiply(work.blocks, moves, force, team);
   }
   bool layers = false;
   for (Index a = 0; a < actuators(); ++a) {
@@ -231,7 +242,7 @@ System::Size System::size_of(const Eigen::VectorXd& unknowns, const Points& posi
 }
 
 void System::gather(Workspace& work, Team& team) const {
-  pattern_->gather(work.slots, work.blocks, team);
+  work.layout->pattern.gather(work.slots, work.blocks, team);
 }
 
 void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
@@ -239,7 +250,7 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
   Points force;
   for (Index i = 0; i < vectors.cols(); ++i) {
     freedoms_->expand(vectors.col(i), at.positions, work.moves);
-    pattern_->multiply(work.blocks, work.moves, force, team);
+    work.layout->pattern.multiply(work.blocks, work.moves, force, team);
     freedoms_->reduce(force, at.positions, product.col(i));
     freedoms_->add_turning(work.gradient, at.positions, vectors.col(i), product.col(i));
   }

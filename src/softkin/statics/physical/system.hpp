@@ -8,6 +8,7 @@
 #include <softkin/statics/supports/actuator_measures.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
 #include <softkin/statics/supports/global_step.hpp>
+#include <softkin/statics/supports/reduced_matrix.hpp>
 
 namespace softkin::physical {
 
@@ -29,12 +30,25 @@ class System {
  public:
   explicit System(const Model& model);
 
+  /// What the matrix of a factorisation looks like.
+  struct Layout {
+    linear::BlockPattern pattern;  // over vertices
+    supports::ReducedMatrix reduced;
+    std::shared_ptr<const linear::FrontTree> symbolic;
+    std::int64_t slots = 0;  // of the cliques of the pattern
+  };
+
   /// Everything that is written while solving; one per thread of control. Nothing is allocated per iteration.
   struct Workspace {
     explicit Workspace(const System& system);
 
     Body::Scratch elastic;
+    /// Every column becomes its solution with the last factorisation.
+    void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
+
+    std::shared_ptr<const Layout> layout;
     LargeVector<double> slots, blocks, values;
+    Eigen::MatrixXd in_columns;  // right-hand sides in the order of the layout, where it has its own
     Points gradient;             // of the Lagrangian in x
     Points moves, lacking;       // of advance()
     std::vector<Points> slopes;  // of each active measure
@@ -157,11 +171,9 @@ class System {
   const Model& model_;
   Body elastic_;
   supports::ActuatorMeasures measures_;
-  std::int64_t slots_ = 0;
   bool any_dead_load_;
-  std::unique_ptr<linear::BlockPattern> pattern_;
   std::unique_ptr<supports::Freedoms> freedoms_;
-  std::shared_ptr<const linear::FrontTree> symbolic_;
+  std::shared_ptr<const Layout> layout_;  // of the body
   std::unique_ptr<supports::GlobalStep> turning_;
 };
 

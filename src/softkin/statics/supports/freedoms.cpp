@@ -1,9 +1,9 @@
 #include <Eigen/Geometry>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <softkin/linear/ordering.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
+#include <softkin/statics/supports/reduced_matrix.hpp>
 
 namespace softkin::supports {
 
@@ -30,36 +30,27 @@ void Freedoms::find_regions(const Model& model) {
 }
 
 void Freedoms::number(const linear::BlockPattern& pattern) {
-  std::vector<Index> node_of(static_cast<std::size_t>(rest_.rows()), -1), vertex_of;
+  node_of_.assign(static_cast<std::size_t>(rest_.rows()), -1);
+  std::vector<Index> vertex_of;
   for (Index v = 0; v < rest_.rows(); ++v)
     if (fixed_[v] != std::array<bool, 3>{true, true, true}) {
-      node_of[v] = static_cast<Index>(vertex_of.size());
+      node_of_[v] = static_cast<Index>(vertex_of.size());
       vertex_of.push_back(v);
     }
   const Index vertex_nodes = static_cast<Index>(vertex_of.size());
   const Index count = vertex_nodes + static_cast<Index>(regions_.size());
   for (Index v = 0; v < rest_.rows(); ++v)
-    if (region_of_[v] >= 0) node_of[v] = vertex_nodes + region_of_[v];
-
-  std::vector<Eigen::Triplet<double>> links;
-  for (Index node = 0; node < count; ++node) links.emplace_back(node, node, 1.0);
-  pattern.each([&](std::int64_t, Index row, Index column) {
-    const Index i = node_of[row], j = node_of[column];
-    if (i >= 0 && j >= 0 && i != j) links.emplace_back(std::max(i, j), std::min(i, j), 1.0);
-  });
-  Eigen::SparseMatrix<double> graph(count, count);
-  graph.setFromTriplets(links.begin(), links.end());
-  links = {};
-  const linear::Ordering ordering = linear::nested_dissection(graph);
+    if (region_of_[v] >= 0) node_of_[v] = vertex_nodes + region_of_[v];
+  const linear::Ordering ordering = linear::nested_dissection(node_graph(pattern, node_of_, count));
+  pieces_ = ordering.pieces;
 
   std::vector<Index> place(static_cast<std::size_t>(count));
   for (Index k = 0; k < count; ++k) place[ordering.order[k]] = k;
-  for (Index& node : node_of)
+  for (Index& node : node_of_)
     if (node >= 0) node = place[node];
   first_unknown_.assign(static_cast<std::size_t>(rest_.rows()), -1);
-  columns_.pieces = ordering.pieces;
   for (Index k = 0; k < count; ++k) {
-    const Index node = ordering.order[k], first = columns_.unknowns.back();
+    const Index node = ordering.order[k], first = unknowns_.back();
     Index width = 0;
     if (node < vertex_nodes) {
       const Index v = vertex_of[node];
@@ -72,47 +63,7 @@ void Freedoms::number(const linear::BlockPattern& pattern) {
       region.node = k;
       width = static_cast<Index>(region.slide_axes.size() + region.turn_axes.size());
     }
-    columns_.unknowns.push_back(first + width);
-  }
-  std::vector<std::vector<Index>> rows(static_cast<std::size_t>(count));
-  for (Index j = 0; j < count; ++j)
-    for (Eigen::SparseMatrix<double>::InnerIterator it(graph, j); it; ++it) {
-      const Index a = place[it.row()], b = place[j];
-      rows[std::min(a, b)].push_back(std::max(a, b));
-    }
-  for (Index j = 0; j < count; ++j) {
-    std::sort(rows[j].begin(), rows[j].end());
-    for (const Index row : rows[j]) {
-      columns_.rows.push_back(row);
-      columns_.offsets.push_back(columns_.offsets.back() +
-                                 static_cast<std::int64_t>(columns_.width(row)) * columns_.width(j));
-    }
-    columns_.starts.push_back(static_cast<Index>(columns_.rows.size()));
-  }
-  find_sources(pattern, node_of);
-}
-
-void Freedoms::find_sources(const linear::BlockPattern& pattern, const std::vector<Index>& node_of) {
-  std::vector<std::pair<std::int64_t, bool>> block_of(columns_.rows.size(), {-1, false});  // and is it the transpose
-  pattern.each([&](std::int64_t block, Index row, Index column) {
-    const Index i = node_of[row], j = node_of[column];
-    if (i < 0 || j < 0) return;
-    const Index low = std::min(i, j), high = std::max(i, j);
-    const auto first = columns_.rows.begin() + columns_.starts[low],
-               last = columns_.rows.begin() + columns_.starts[low + 1];
-    const std::int64_t entry = std::lower_bound(first, last, high) - columns_.rows.begin();
-    if (region_of_[row] < 0 && region_of_[column] < 0)
-      block_of[entry] = {block, i < j};
-    else
-      region_blocks_.push_back({block, entry, row, column, i < j});
-  });
-  source_starts_.push_back(0);
-  for (const auto& [block, flipped] : block_of) {
-    if (block >= 0)
-      pattern.each_slot(block, [&, other = flipped](std::int64_t slot, bool transposed) {
-        sources_.push_back(2 * slot + (transposed != other));
-      });
-    source_starts_.push_back(static_cast<std::int64_t>(sources_.size()));
+    unknowns_.push_back(first + width);
   }
 }
 
@@ -134,7 +85,7 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> Freedoms::tangent(Index vertex, const s
                                                            const Points& positions) const {
   if (const Index r = region_of_[vertex]; r >= 0) {
     const Region& region = regions_[r];
-    Eigen::Matrix<double, 3, Eigen::Dynamic> t(3, columns_.width(region.node));
+    Eigen::Matrix<double, 3, Eigen::Dynamic> t(3, width(region.node));
     Index column = 0;
     for (const int axis : region.slide_axes) t.col(column++) = Vec3::Unit(axis);
     const Vec3 arm = (positions.row(vertex).transpose() - centers[r]) / region.reach;
@@ -165,7 +116,7 @@ void Freedoms::reduce(const Points& vectors, const Points& positions, Eigen::Ref
       force += vector;
       torque += (positions.row(v).transpose() - middle).cross(vector);
     }
-    Index u = columns_.unknowns[region.node];
+    Index u = unknowns_[region.node];
     for (const int axis : region.slide_axes) out[u++] = force[axis];
     for (const int axis : region.turn_axes) out[u++] = torque[axis] / region.reach;
   }
@@ -176,11 +127,11 @@ double Freedoms::largest(const Eigen::VectorXd& reduced) const {
   const auto count = [&square](double value) {
     if (!(value <= square)) square = value;  // also where it is not a number
   };
-  for (Index node = 0; node < columns_.nodes(); ++node)
-    if (vertex_of_[node] >= 0) count(reduced.segment(columns_.unknowns[node], columns_.width(node)).squaredNorm());
+  for (Index node = 0; node < nodes(); ++node)
+    if (vertex_of_[node] >= 0) count(reduced.segment(unknowns_[node], width(node)).squaredNorm());
   for (const Region& region : regions_) {
-    const Index slides = static_cast<Index>(region.slide_axes.size()), first = columns_.unknowns[region.node];
-    const Index turns = columns_.width(region.node) - slides;
+    const Index slides = static_cast<Index>(region.slide_axes.size()), first = unknowns_[region.node];
+    const Index turns = width(region.node) - slides;
     count(reduced.segment(first, slides).squaredNorm());
     if (turns > 0)
       count(reduced.segment(first + slides, turns).squaredNorm() / region.offsets.rowwise().squaredNorm().maxCoeff());
@@ -197,7 +148,7 @@ void Freedoms::expand(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const P
   for (const Region& region : regions_) {
     const Vec3 middle = center_of(region, positions);
     Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
-    Index u = columns_.unknowns[region.node];
+    Index u = unknowns_[region.node];
     for (const int axis : region.slide_axes) slide[axis] = unknowns[u++];
     for (const int axis : region.turn_axes) turn[axis] = unknowns[u++] / region.reach;
     for (const Index v : region.vertices)
@@ -215,7 +166,7 @@ void Freedoms::move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double sc
   for (const Region& region : regions_) {
     const Vec3 middle = center_of(region, positions);
     Vec3 slide = Vec3::Zero(), turn = Vec3::Zero();
-    Index u = columns_.unknowns[region.node];
+    Index u = unknowns_[region.node];
     for (const int axis : region.slide_axes) slide[axis] = scale * unknowns[u++];
     for (const int axis : region.turn_axes) turn[axis] = scale * unknowns[u++] / region.reach;
     const Mat3 rotation = rotation_about(turn);
@@ -239,68 +190,11 @@ void Freedoms::add_turning(const Points& gradient, const Points& positions,
                            const Eigen::Ref<const Eigen::VectorXd>& unknowns, Eigen::Ref<Eigen::VectorXd> out) const {
   for (const Region& region : regions_) {
     const Mat3 bend = bend_of(region, gradient, positions);
-    const Index first = columns_.unknowns[region.node] + static_cast<Index>(region.slide_axes.size());
+    const Index first = unknowns_[region.node] + static_cast<Index>(region.slide_axes.size());
     for (std::size_t i = 0; i < region.turn_axes.size(); ++i)
       for (std::size_t k = 0; k < region.turn_axes.size(); ++k)
         out[first + static_cast<Index>(i)] +=
             bend(region.turn_axes[i], region.turn_axes[k]) * unknowns[first + static_cast<Index>(k)];
-  }
-}
-
-void Freedoms::reduce_matrix(const linear::BlockPattern& pattern, const LargeVector<double>& slots,
-                             const Points& gradient, const Points& positions, LargeVector<double>& values,
-                             Team& team) const {
-  values.resize(static_cast<std::size_t>(columns_.offsets.back()));
-  const auto sources = static_cast<std::int64_t>(sources_.size());
-  team.pieces(columns_.nodes(), [&](Index begin, Index end) {
-    constexpr std::int64_t ahead = 12;  // the slots lie all over the memory
-    for (Index j = begin; j < end; ++j)
-      for (Index e = columns_.starts[j]; e < columns_.starts[j + 1]; ++e) {
-        double block[9] = {};
-        for (std::int64_t s = source_starts_[e]; s < source_starts_[e + 1]; ++s) {
-          const char* next =
-              reinterpret_cast<const char*>(slots.data() + 9 * (sources_[std::min(s + ahead, sources - 1)] / 2));
-          __builtin_prefetch(next);
-          __builtin_prefetch(next + 64);
-          linear::BlockPattern::add_slot(slots.data() + 9 * (sources_[s] / 2), sources_[s] % 2 != 0, block);
-        }
-        double* value = values.data() + columns_.offsets[e];
-        if (vertex_of_[j] < 0 || vertex_of_[columns_.rows[e]] < 0) {  // of a region
-          std::fill(value, values.data() + columns_.offsets[e + 1], 0.0);
-          continue;
-        }
-        const auto &row_fixed = fixed_[vertex_of_[columns_.rows[e]]], &column_fixed = fixed_[vertex_of_[j]];
-        for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r)
-            if (!row_fixed[r] && !column_fixed[c]) *value++ = block[3 * r + c];
-      }
-  });
-  if (regions_.empty()) return;
-  const std::vector<Vec3> middles = centers(positions);
-  for (const RegionBlock& part : region_blocks_) {
-    double sum[9];
-    pattern.sum(slots, part.block, sum);
-    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(sum);
-    const Eigen::MatrixXd product =
-        tangent(part.row, middles, positions).transpose() * block * tangent(part.column, middles, positions);
-    const bool same_node = region_of_[part.row] >= 0 && region_of_[part.row] == region_of_[part.column];
-    const bool flipped = part.transposed && !same_node;
-    const Index height = flipped ? static_cast<Index>(product.cols()) : static_cast<Index>(product.rows());
-    Eigen::Map<Eigen::MatrixXd> target(values.data() + columns_.offsets[part.entry], height,
-                                       flipped ? product.rows() : product.cols());
-    if (flipped)
-      target += product.transpose();
-    else
-      target += product;
-    if (same_node && part.row != part.column) target += product.transpose();
-  }
-  for (const Region& region : regions_) {
-    const Mat3 bend = bend_of(region, gradient, positions);
-    const Index width = columns_.width(region.node), slides = static_cast<Index>(region.slide_axes.size());
-    Eigen::Map<Eigen::MatrixXd> target(values.data() + columns_.offsets[columns_.starts[region.node]], width, width);
-    for (Index i = slides; i < width; ++i)
-      for (Index k = slides; k < width; ++k)
-        target(i, k) += bend(region.turn_axes[i - slides], region.turn_axes[k - slides]);
   }
 }
 

@@ -130,7 +130,8 @@ Unknowns::Unknowns(const Model& robot, const System& target_shapes)
       system(target_shapes),
       matrix(robot, target_shapes),
       freedoms(robot, matrix.pattern()),
-      symbolic(std::make_shared<const linear::FrontTree>(linear::make_front_tree(freedoms.columns()))),
+      reduced(freedoms, matrix.pattern()),
+      symbolic(std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()))),
       symmetric(target_shapes.is_gradient()) {}
 
 Tangent::Tangent(const Unknowns& unknowns)
@@ -145,7 +146,7 @@ Tangent::Tangent(const Unknowns& unknowns)
 }
 
 bool Tangent::factorise_values(double shift, Team& team, SolveReport& report) {
-  const linear::BlockColumns& columns = unknowns_.freedoms.columns();
+  const linear::BlockColumns& columns = unknowns_.reduced.columns();
   shift_ = shift;
   double largest = 0;
   shifted_ = values_;
@@ -171,7 +172,7 @@ bool Tangent::factorise(const System::Scratch& local, const Points& positions, b
   gradient_ = -local.residual;
   const auto assemble = [&](bool positive) {
     unknowns_.matrix.assemble(local, positive, slots_, team);
-    unknowns_.freedoms.reduce_matrix(unknowns_.matrix.pattern(), slots_, gradient_, positions, values_, team);
+    unknowns_.reduced.reduce(unknowns_.matrix.pattern(), slots_, gradient_, positions, values_, team);
   };
   bool definite = false;
   if (!projected) {

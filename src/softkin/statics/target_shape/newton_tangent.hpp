@@ -3,7 +3,7 @@
 #include <softkin/energy/target_shape_stiffness.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/linear/sparse_ldlt.hpp>
-#include <softkin/statics/supports/freedoms.hpp>
+#include <softkin/statics/supports/reduced_matrix.hpp>
 #include <softkin/statics/target_shape/system.hpp>
 
 namespace softkin::target_shape {
@@ -52,6 +52,7 @@ struct Unknowns {
   const System& system;
   NewtonMatrix matrix;
   supports::Freedoms freedoms;
+  supports::ReducedMatrix reduced;
   std::shared_ptr<const linear::FrontTree> symbolic;
   bool symmetric;  // is the residual's derivative symmetric
 };
