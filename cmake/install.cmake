@@ -4,14 +4,14 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/softkin)
 
 # Not the library's own headers: those that need a library beyond Eigen, and those with vectors of eight numbers, which
 # a program built for another processor would pass in other registers.
-set(own energy linear physical target_shape supports vision records_json.hpp)
+set(own contact energy linear physical target_shape supports vision records_json.hpp)
 list(TRANSFORM own REPLACE "(.+)" "PATTERN;\\1;EXCLUDE")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/softkin DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp
         ${own})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-install(TARGETS softkin_settings softkin_core softkin_linear softkin_model softkin_io softkin_energy softkin_statics
-        softkin_kinematics softkin_drive softkin_calibration softkin_runs softkin_all EXPORT softkin
+install(TARGETS softkin_settings softkin_core softkin_linear softkin_model softkin_io softkin_energy softkin_contact
+        softkin_statics softkin_kinematics softkin_drive softkin_calibration softkin_runs softkin_all EXPORT softkin
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT softkin NAMESPACE softkin:: FILE softkin-targets.cmake DESTINATION ${package_dir})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/softkin-config.cmake.in softkin-config.cmake

@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <softkin/contact/candidates.hpp>
+#include <utility>
+
+namespace softkin::contact {
+
+namespace {
+
+std::array<Index, 1> vertices_of(Index vertex) {
+  return {vertex};
+}
+
+template <std::size_t N>
+const std::array<Index, N>& vertices_of(const std::array<Index, N>& vertices) {
+  return vertices;
+}
+
+template <class Items>
+Points centres_of(const Items& items, const Points& rest) {
+  Points centres = Points::Zero(static_cast<Eigen::Index>(items.size()), 3);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const auto& vertices = vertices_of(items[i]);
+    for (const Index v : vertices)
+      centres.row(static_cast<Eigen::Index>(i)) += rest.row(v) / static_cast<double>(vertices.size());
+  }
+  return centres;
+}
+
+/// Box of an item of the list at two instants.
+template <class Items>
+auto boxes_of(const Items& items, const Points& from, const Points& to) {
+  return [&](Index item) {
+    Box box;
+    for (const Index v : vertices_of(items[static_cast<std::size_t>(item)]))
+      for (const double* x : {from.data() + 3 * v, to.data() + 3 * v}) box.extend(Vec3(x[0], x[1], x[2]));
+    return box;
+  };
+}
+
+Box enlarged(const Box& box, double reach) {
+  return {box.min().array() - reach, box.max().array() + reach};
+}
+
+bool share(const Index* a, int of_a, const Index* b, int of_b) {
+  bool any = false;
+  for (int i = 0; i < of_a; ++i)
+    for (int j = 0; j < of_b; ++j) any |= a[i] == b[j];
+  return any;
+}
+
+}  // namespace
+
+Lists neighbours_of(const Surface& surface, Index rows, int edges) {
+  std::vector<std::vector<Index>> next(static_cast<std::size_t>(rows));
+  for (const auto& [a, b] : surface.edges) {
+    next[static_cast<std::size_t>(a)].push_back(b);
+    next[static_cast<std::size_t>(b)].push_back(a);
+  }
+  Lists lists;
+  lists.begin.assign(1, 0);
+  for (Index row = 0; row < rows; ++row) {
+    std::vector<Index> reached{row};
+    for (int ring = 0; ring < edges; ++ring) {
+      const std::vector<Index> before = reached;
+      for (const Index v : before) {
+        const auto& around = next[static_cast<std::size_t>(v)];
+        reached.insert(reached.end(), around.begin(), around.end());
+      }
+      std::sort(reached.begin(), reached.end());
+      reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+    }
+    lists.items.insert(lists.items.end(), reached.begin(), reached.end());
+    lists.begin.push_back(static_cast<Index>(lists.items.size()));
+  }
+  return lists;
+}
+
+BroadPhase::BroadPhase(const Surface& surface, const Points& rest, Exclusions exclusions)
+    : surface_(surface),
+      exclusions_(std::move(exclusions)),
+      vertices_(centres_of(surface.vertices, rest)),
+      edges_(centres_of(surface.edges, rest)),
+      triangles_(centres_of(surface.triangles, rest)) {}
+
+bool BroadPhase::neighbours(Index a, Index b) const {
+  const auto* items = exclusions_.neighbours.items.data();
+  const auto& begin = exclusions_.neighbours.begin;
+  return std::binary_search(items + begin[static_cast<std::size_t>(a)], items + begin[static_cast<std::size_t>(a) + 1],
+                            b);
+}
+
+bool BroadPhase::left_out(const Index* a, int of_a, const Index* b, int of_b) const {
+  if (share(a, of_a, b, of_b)) return true;
+  if (!exclusions_.group.empty()) {
+    const auto group = [&](Index v) { return exclusions_.group[static_cast<std::size_t>(v)]; };
+    const auto same = [&](Index v) { return group(v) == group(a[0]); };
+    if (group(a[0]) >= 0 && std::all_of(a, a + of_a, same) && std::all_of(b, b + of_b, same)) return true;
+  }
+  if (exclusions_.neighbours.items.empty()) return false;
+  for (int i = 0; i < of_a; ++i)
+    for (int j = 0; j < of_b; ++j)
+      if (neighbours(a[i], b[j])) return true;
+  return false;
+}
+
+/// same: both trees are one, of which each pair is looked at once.
+template <class Keep>
+void BroadPhase::pair_up(const WideTree& queries, const WideTree& tree, bool same, double reach, Team& team,
+                         const Keep& keep, std::vector<Pair>& out) {
+  constexpr Index groups_a_piece = 32;
+  const Index pieces = (queries.groups() + groups_a_piece - 1) / groups_a_piece;
+  if (found_.size() < static_cast<std::size_t>(pieces)) found_.resize(static_cast<std::size_t>(pieces));
+  const auto pair_group = [&](Index group, std::vector<Pair>& found) {
+    Box boxes[8], all;
+    const int lanes = static_cast<int>(std::min<Index>(8, queries.size() - 8 * group));
+    for (int lane = 0; lane < lanes; ++lane) {
+      boxes[lane] = enlarged(queries.boxes(group).at(lane), reach);
+      all.extend(boxes[lane]);
+    }
+    tree.visit(all, same ? group : 0, [&](Index other) {
+      for (int lane = 0; lane < lanes; ++lane) {
+        unsigned bits = tree.boxes(other).overlaps(boxes[lane]);
+        if (same && other == group) bits &= ~0u << (lane + 1);
+        for (; bits != 0; bits &= bits - 1) {
+          const Pair pair{queries.item(group, lane), tree.item(other, __builtin_ctz(bits))};
+          if (keep(pair)) found.push_back(pair);
+        }
+      }
+    });
+  };
+  team.each(pieces, [&](Index piece) {
+    std::vector<Pair>& found = found_[static_cast<std::size_t>(piece)];
+    found.clear();
+    const Index end = std::min(queries.groups(), (piece + 1) * groups_a_piece);
+    for (Index group = piece * groups_a_piece; group < end; ++group) pair_group(group, found);
+  });
+  out.clear();
+  for (Index piece = 0; piece < pieces; ++piece) {
+    const std::vector<Pair>& found = found_[static_cast<std::size_t>(piece)];
+    out.insert(out.end(), found.begin(), found.end());
+  }
+}
+
+void BroadPhase::find(const Points& positions, double reach, Team& team, Candidates& out) {
+  find(positions, positions, reach, team, out);
+}
+
+void BroadPhase::find(const Points& from, const Points& to, double reach, Team& team, Candidates& out) {
+  vertices_.refit(boxes_of(surface_.vertices, from, to), team);
+  edges_.refit(boxes_of(surface_.edges, from, to), team);
+  triangles_.refit(boxes_of(surface_.triangles, from, to), team);
+  const auto keep_vertex = [&](const Pair& pair) {
+    const Nodes n = nodes_of_vertex_triangle(surface_, pair);
+    return !left_out(n.data(), 1, n.data() + 1, 3);
+  };
+  const auto keep_edges = [&](const Pair& pair) {
+    const Nodes n = nodes_of_edge_edge(surface_, pair);
+    return !left_out(n.data(), 2, n.data() + 2, 2);
+  };
+  pair_up(vertices_, triangles_, false, reach, team, keep_vertex, out.vertex_triangle);
+  pair_up(edges_, edges_, true, reach, team, keep_edges, out.edge_edge);
+  for (Pair& pair : out.edge_edge)
+    if (pair.second < pair.first) std::swap(pair.first, pair.second);
+}
+
+}  // namespace softkin::contact

@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <softkin/contact/collision.hpp>
+
+namespace softkin::contact {
+
+namespace {
+
+/// Points of one feature and of the other. What lies between two features is a mean of what lies between such points.
+using PointPair = std::array<int, 2>;
+constexpr std::array<PointPair, 3> of_triangle{{{0, 1}, {0, 2}, {0, 3}}};
+constexpr std::array<PointPair, 4> of_edges{{{0, 2}, {0, 3}, {1, 2}, {1, 3}}};
+
+template <std::size_t N>
+double largest_speed(const FourPoints& motion, const std::array<PointPair, N>& pairs) {
+  double largest = 0;
+  for (const auto& [i, j] : pairs) largest = std::max(largest, (motion.col(i) - motion.col(j)).squaredNorm());
+  return std::sqrt(largest);
+}
+
+/// How long all points of one feature stay more than `apart` from those of the other along a direction, whatever that
+/// direction is; below 0 where they are not.
+template <std::size_t N>
+double time_apart(const FourPoints& x, const FourPoints& motion, const std::array<PointPair, N>& pairs,
+                  const Vec3& direction, double apart) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [i, j] : pairs) {
+    const double gap = direction.dot(x.col(i) - x.col(j)) - apart;
+    const double approach = -direction.dot(motion.col(i) - motion.col(j));
+    if (gap < 0) return -1;
+    if (approach > 0) least = std::min(least, gap / approach);
+  }
+  return least;
+}
+
+template <std::size_t N>
+double safe_share(const FourPoints& from, const FourPoints& to, double keep, const std::array<PointPair, N>& pairs,
+                  Separation (*separation)(const FourPoints&)) {
+  constexpr int most_advances = 100;
+  constexpr double small_advance = 3e-4;  // of the share so far: what is left is not worth a distance
+  const FourPoints motion = to - from;
+  const double speed = largest_speed(motion, pairs);
+  if (speed == 0) return 1;
+  // of all that is rounded here, and of positions that are rounded once more
+  const double rounding =
+      32 * std::numeric_limits<double>::epsilon() * (from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
+  double share = 0, floor = 0;
+  for (int advance = 0; advance < most_advances; ++advance) {
+    const FourPoints x = from + share * motion;
+    const Separation between = separation(x);
+    const double distance = std::sqrt(between.squared);
+    if (advance == 0) floor = keep * distance + rounding;
+    if (!(distance > floor)) break;
+    const double step =
+        std::max((distance - floor) / speed, time_apart(x, motion, pairs, between.vector / distance, floor));
+    if (!(share + step < 1)) return 1;
+    share += step;
+    if (step < small_advance * share) break;
+  }
+  return share;
+}
+
+}  // namespace
+
+double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep) {
+  return safe_share(from, to, keep, of_triangle, vertex_triangle);
+}
+
+double safe_edge_edge(const FourPoints& from, const FourPoints& to, double keep) {
+  return safe_share(from, to, keep, of_edges, edge_edge);
+}
+
+}  // namespace softkin::contact
