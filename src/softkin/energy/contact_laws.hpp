@@ -13,7 +13,7 @@ struct LengthLaw {
 /// gap      > 0 [mm]
 /// reach    gap at which surfaces begin to feel each other, > 0 [mm]
 /// returns  value [mm], slope [-], whose negative times the modulus is the pressure, curvature [1/mm]
-/// source   Li et al. 2020, "Incremental potential contact", Eq. (6), by the gap itself and with the factor that
+/// source   Li et al. 2020, "Incremental potential contact", equation 6, by the gap itself and with the factor that
 ///          makes pressure independent of the mesh: Li et al. 2023, "Convergent incremental potential contact"
 [[nodiscard]] LengthLaw barrier(double gap, double reach);
 
@@ -23,7 +23,7 @@ struct LengthLaw {
 /// slip     >= 0 [mm]
 /// creep    > 0 [mm]
 /// returns  value [mm], slope, 0 to 1 [-], curvature [1/mm]
-/// source   Li et al. 2020, Eqs. (14) and (15)
+/// source   Li et al. 2020, equations 14 and 15
 [[nodiscard]] LengthLaw friction(double slip, double creep);
 
 }  // namespace softkin::energy
