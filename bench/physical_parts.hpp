@@ -28,7 +28,7 @@ class PhysicalParts {
   [[nodiscard]] Index unknowns() const { return work_.factor.size(); }
 
   /// The last stiffness, lower triangle in elimination order, as softkin's factorisation takes it.
-  [[nodiscard]] const linear::BlockColumns& pattern() const { return system_.freedoms().columns(); }
+  [[nodiscard]] const linear::BlockColumns& pattern() const { return work_.layout->reduced.columns(); }
   [[nodiscard]] const LargeVector<double>& values() const { return work_.values; }
   [[nodiscard]] Eigen::SparseMatrix<double> matrix() const;
   /// Was it made positive definite element by element?
