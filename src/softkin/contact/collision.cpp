@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <softkin/contact/collision.hpp>
@@ -35,13 +36,13 @@ double time_apart(const FourPoints& x, const FourPoints& motion, const std::arra
 }
 
 template <std::size_t N>
-double safe_share(const FourPoints& from, const FourPoints& to, double keep, const std::array<PointPair, N>& pairs,
-                  Separation (*separation)(const FourPoints&)) {
+double safe_share(const FourPoints& from, const FourPoints& to, double keep, double until,
+                  const std::array<PointPair, N>& pairs, Separation (*separation)(const FourPoints&)) {
   constexpr int most_advances = 100;
   constexpr double small_advance = 3e-4;  // of the share so far: what is left is not worth a distance
   const FourPoints motion = to - from;
   const double speed = largest_speed(motion, pairs);
-  if (speed == 0) return 1;
+  if (speed == 0) return until;
   // of all that is rounded here, and of positions that are rounded once more
   const double rounding =
       32 * std::numeric_limits<double>::epsilon() * (from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
@@ -54,21 +55,49 @@ double safe_share(const FourPoints& from, const FourPoints& to, double keep, con
     if (!(distance > floor)) break;
     const double step =
         std::max((distance - floor) / speed, time_apart(x, motion, pairs, between.vector / distance, floor));
-    if (!(share + step < 1)) return 1;
+    if (!(share + step < until)) return until;
     share += step;
     if (step < small_advance * share) break;
   }
   return share;
 }
 
-}  // namespace
-
-double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep) {
-  return safe_share(from, to, keep, of_triangle, vertex_triangle);
+FourPoints points_of(const Points& positions, const Nodes& nodes) {
+  FourPoints x;
+  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
+  return x;
 }
 
-double safe_edge_edge(const FourPoints& from, const FourPoints& to, double keep) {
-  return safe_share(from, to, keep, of_edges, edge_edge);
+}  // namespace
+
+double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep, double until) {
+  return safe_share(from, to, keep, until, of_triangle, vertex_triangle);
+}
+
+double safe_edge_edge(const FourPoints& from, const FourPoints& to, double keep, double until) {
+  return safe_share(from, to, keep, until, of_edges, edge_edge);
+}
+
+double safe_motion(const Surface& surface, const Candidates& candidates, const Points& from, const Points& to,
+                   double keep, Team& team) {
+  std::atomic<double> least{1};
+  const auto lower = [&](double share) {
+    double before = least.load(std::memory_order_relaxed);
+    while (share < before && !least.compare_exchange_weak(before, share, std::memory_order_relaxed)) {
+    }
+  };
+  const auto look = [&](const std::vector<Pair>& pairs, auto nodes_of, auto safe) {
+    team.pieces(static_cast<Index>(pairs.size()), [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) {
+        const Nodes nodes = nodes_of(surface, pairs[static_cast<std::size_t>(i)]);
+        // a pair that is safe beyond what others are stops there: the least does not depend on who was first
+        lower(safe(points_of(from, nodes), points_of(to, nodes), keep, least.load(std::memory_order_relaxed)));
+      }
+    });
+  };
+  look(candidates.vertex_triangle, nodes_of_vertex_triangle, safe_vertex_triangle);
+  look(candidates.edge_edge, nodes_of_edge_edge, safe_edge_edge);
+  return least.load();
 }
 
 }  // namespace softkin::contact
