@@ -257,7 +257,7 @@ TEST(Collision, EndsOnMotionsThatAreSlowAgainstTheSpeedOfTheirPoints) {
     to.row(2).head<2>() += Eigen::RowVector2d(-20, 20) * height;
     const double turned = safe_edge_edge(from, to);
     EXPECT_LE(turned, first_below(Kind::edge_edge, from, to, 0.1 * height, 2000));
-    EXPECT_GT(turned, first_below(Kind::edge_edge, from, to, 0.12 * height, 2000) - 1e-3);
+    EXPECT_GT(turned, first_below(Kind::edge_edge, from, to, 0.103 * height, 2000) - 1e-3);
   }
 }
 

@@ -13,8 +13,9 @@ namespace softkin::contact {
 /// keep       in (0, 1)
 /// until      no longer share is of interest: returned where it is safe
 /// algorithm  additive advancement (Li, Kaufman, Jiang 2021, "Codimensional incremental potential contact", ACCD)
-/// deviation  advances by the larger of two safe times: distance over the largest relative speed of two points, and
-///            the time that the planes across the shortest way stay apart, in which motion along them costs nothing; at
+/// deviation  advances by the largest of three safe times: distance over the largest relative speed of two points; how
+///            long the planes across the shortest way stay apart, in which motion along them costs nothing; and, from
+///            the third advance on, how long the planes that the features span do, in which turning costs little. At
 ///            most 100 advances
 [[nodiscard]] double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep = 0.1,
                                           double until = 1);
