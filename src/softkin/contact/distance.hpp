@@ -54,7 +54,7 @@ void squared_hessian(const Separation& separation, Hessian& out);
 /// What multiplies the potential of two edges, so that it stays smooth where they become parallel and the closest
 /// points jump: m = q (2 - q) for q = |e1 x e2|^2 / threshold < 1, otherwise 1.
 ///
-/// source  Li et al. 2020, "Incremental potential contact", Eq. (24)
+/// source  Li et al. 2020, "Incremental potential contact", equation 24
 [[nodiscard]] double mollifier(const FourPoints& x, double threshold);
 
 /// The same with its derivatives in the points [1/mm, 1/mm^2].
