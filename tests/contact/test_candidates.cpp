@@ -133,7 +133,7 @@ TEST(Candidates, OfTrianglesOfAnyNumberAreThoseOfAllPairs) {
 /// More than one level of the tree above groups, which have moved far from where they were sorted.
 TEST(Candidates, OfADeformedSphereAreThoseOfAllPairs) {
   Random random(22);
-  const Sphere sphere = make_sphere(4, 5);
+  const Sphere sphere = make_sphere(3, 5);
   const Surface s = make_surface(sphere.triangles, sphere.points);
   BroadPhase phase(s, sphere.points);
   expect_same(s, phase, {sphere.points}, 0.2);

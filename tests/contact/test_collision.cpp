@@ -6,6 +6,7 @@
 #include <softkin/contact/collision.hpp>
 
 #include "contact/contact_samples.hpp"
+#include "contact/sphere.hpp"
 
 namespace softkin::contact {
 
@@ -256,8 +257,46 @@ TEST(Collision, EndsOnMotionsThatAreSlowAgainstTheSpeedOfTheirPoints) {
     to.row(2).head<2>() += Eigen::RowVector2d(-20, 20) * height;
     const double turned = safe_edge_edge(from, to);
     EXPECT_LE(turned, first_below(Kind::edge_edge, from, to, 0.1 * height, 2000));
-    EXPECT_GT(turned, first_below(Kind::edge_edge, from, to, 0.12 * height, 2000) - 1e-3);
+    EXPECT_GT(turned, first_below(Kind::edge_edge, from, to, 0.103 * height, 2000) - 1e-3);
   }
+}
+
+/// A sphere whose poles are pushed through each other, while it is turned and shaken.
+TEST(Collision, AMotionIsAsSafeAsItsLeastSafePair) {
+  Random random(15);
+  const Sphere sphere = make_sphere(3, 5);
+  const Surface s = make_surface(sphere.triangles, sphere.points);
+  BroadPhase phase(s, sphere.points);
+  const Mat3 turn = Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  Points to = sphere.points;
+  for (Eigen::Index i = 0; i < to.rows(); ++i) {
+    if (std::abs(to(i, 2)) > 4) to(i, 2) *= -0.2;
+    to.row(i) = (turn * to.row(i).transpose() + 0.02 * random.vector()).transpose().eval();
+  }
+  Team one(1), two(2);
+  Candidates found;
+  phase.find(sphere.points, to, 0, one, found);
+  const double share = safe_motion(s, found, sphere.points, to, 0.1, one);
+  EXPECT_EQ(share, safe_motion(s, found, sphere.points, to, 0.1, two));
+  EXPECT_GT(share, 0.3);
+  const Points stop = sphere.points + share * (to - sphere.points);
+  double least = 1;
+  const auto look = [&](Kind kind, const Pair& pair) {
+    const Nodes nodes = kind == Kind::edge_edge ? nodes_of_edge_edge(s, pair) : nodes_of_vertex_triangle(s, pair);
+    FourPoints a, b, c;
+    for (int k = 0; k < 4; ++k) {
+      a.col(k) = sphere.points.row(nodes[static_cast<std::size_t>(k)]);
+      b.col(k) = to.row(nodes[static_cast<std::size_t>(k)]);
+      c.col(k) = stop.row(nodes[static_cast<std::size_t>(k)]);
+    }
+    least = std::min(least, safe(kind, a, b));
+    EXPECT_GE(distance(kind, c), 0.1 * distance(kind, a));
+  };
+  for (const Pair& pair : found.vertex_triangle) look(Kind::vertex_triangle, pair);
+  for (const Pair& pair : found.edge_edge) look(Kind::edge_edge, pair);
+  EXPECT_EQ(share, least);
+  EXPECT_LT(share, 0.9);
+  EXPECT_EQ(safe_motion(s, found, sphere.points, sphere.points, 0.1, two), 1);
 }
 
 }  // namespace softkin::contact

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <softkin/contact/collision.hpp>
@@ -34,14 +35,46 @@ double time_apart(const FourPoints& x, const FourPoints& motion, const std::arra
   return least;
 }
 
+/// How long the triangle's plane and the vertex, or the parallel planes through two edges, stay more than `apart` from
+/// each other, up to `horizon`: they may turn on the way, which to time_apart is an approach. 0 where they are not.
+///
+/// equation  (u x v) . w > apart |u x v| with u, v, w linear in time: left a cubic, right bounded by its polynomials
+double time_of_planes(const FourPoints& x, const FourPoints& motion, const Separation& between, const PointPair& pair,
+                      double apart, double horizon) {
+  const auto along = [](const FourPoints& of, const FreeWeight& weight) -> Vec3 {
+    return of.col(weight.plus) - of.col(weight.minus);
+  };
+  const Vec3 &u = between.moves[0].along, &v = between.moves[1].along, w = x.col(pair[0]) - x.col(pair[1]);
+  const Vec3 du = along(motion, between.moves[0]), dv = along(motion, between.moves[1]);
+  const Vec3 dw = motion.col(pair[0]) - motion.col(pair[1]);
+  const Vec3 n = u.cross(v), dn = u.cross(dv) + du.cross(v), ddn = du.cross(dv);
+  const double sign = n.dot(w) < 0 ? -1 : 1;
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() * (u.norm() + horizon * du.norm()) *
+                          (v.norm() + horizon * dv.norm()) * (w.norm() + horizon * dw.norm());
+  const double f0 = sign * n.dot(w) - apart * n.norm() - rounding;
+  const double f1 = sign * (dn.dot(w) + n.dot(dw)) - apart * dn.norm();
+  const double f2 = sign * (ddn.dot(w) + dn.dot(dw)) - apart * ddn.norm(), f3 = sign * ddn.dot(dw);
+  if (!(f0 > 0)) return 0;
+  double longest = 0;
+  for (int tries = 0; tries < 8; ++tries) {
+    // f >= f0 + slope t for t up to the horizon; the shorter that is, the steeper the slope need not be
+    const double slope = f1 + std::min(0.0, horizon * std::min(f2, f2 + horizon * f3));
+    longest = std::max(longest, slope < 0 ? std::min(horizon, -f0 / slope) : horizon);
+    if (2 * longest >= horizon) break;
+    horizon = 2 * longest;
+  }
+  return longest;
+}
+
 template <std::size_t N>
-double safe_share(const FourPoints& from, const FourPoints& to, double keep, const std::array<PointPair, N>& pairs,
-                  Separation (*separation)(const FourPoints&)) {
+double safe_share(const FourPoints& from, const FourPoints& to, double keep, double until,
+                  const std::array<PointPair, N>& pairs, Separation (*separation)(const FourPoints&)) {
   constexpr int most_advances = 100;
+  constexpr int patience = 2;             // advances after which it is worth more to look longer
   constexpr double small_advance = 3e-4;  // of the share so far: what is left is not worth a distance
   const FourPoints motion = to - from;
   const double speed = largest_speed(motion, pairs);
-  if (speed == 0) return 1;
+  if (speed == 0) return until;
   // of all that is rounded here, and of positions that are rounded once more
   const double rounding =
       32 * std::numeric_limits<double>::epsilon() * (from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
@@ -52,23 +85,52 @@ double safe_share(const FourPoints& from, const FourPoints& to, double keep, con
     const double distance = std::sqrt(between.squared);
     if (advance == 0) floor = keep * distance + rounding;
     if (!(distance > floor)) break;
-    const double step =
-        std::max((distance - floor) / speed, time_apart(x, motion, pairs, between.vector / distance, floor));
-    if (!(share + step < 1)) return 1;
+    double step = std::max((distance - floor) / speed, time_apart(x, motion, pairs, between.vector / distance, floor));
+    if (advance >= patience && between.free == 2)
+      step = std::max(step, time_of_planes(x, motion, between, pairs[0], floor, until - share));
+    if (!(share + step < until)) return until;
     share += step;
     if (step < small_advance * share) break;
   }
   return share;
 }
 
-}  // namespace
-
-double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep) {
-  return safe_share(from, to, keep, of_triangle, vertex_triangle);
+FourPoints points_of(const Points& positions, const Nodes& nodes) {
+  FourPoints x;
+  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
+  return x;
 }
 
-double safe_edge_edge(const FourPoints& from, const FourPoints& to, double keep) {
-  return safe_share(from, to, keep, of_edges, edge_edge);
+}  // namespace
+
+double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep, double until) {
+  return safe_share(from, to, keep, until, of_triangle, vertex_triangle);
+}
+
+double safe_edge_edge(const FourPoints& from, const FourPoints& to, double keep, double until) {
+  return safe_share(from, to, keep, until, of_edges, edge_edge);
+}
+
+double safe_motion(const Surface& surface, const Candidates& candidates, const Points& from, const Points& to,
+                   double keep, Team& team) {
+  std::atomic<double> least{1};
+  const auto lower = [&](double share) {
+    double before = least.load(std::memory_order_relaxed);
+    while (share < before && !least.compare_exchange_weak(before, share, std::memory_order_relaxed)) {
+    }
+  };
+  const auto look = [&](const std::vector<Pair>& pairs, auto nodes_of, auto safe) {
+    team.pieces(static_cast<Index>(pairs.size()), [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) {
+        const Nodes nodes = nodes_of(surface, pairs[static_cast<std::size_t>(i)]);
+        // a pair that is safe beyond what others are stops there: the least does not depend on who was first
+        lower(safe(points_of(from, nodes), points_of(to, nodes), keep, least.load(std::memory_order_relaxed)));
+      }
+    });
+  };
+  look(candidates.vertex_triangle, nodes_of_vertex_triangle, safe_vertex_triangle);
+  look(candidates.edge_edge, nodes_of_edge_edge, safe_edge_edge);
+  return least.load();
 }
 
 }  // namespace softkin::contact

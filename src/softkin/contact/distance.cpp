@@ -113,6 +113,18 @@ Separation vertex_triangle(const FourPoints& x) {
   return {at.squared, {1, at.a + at.b - 1, -at.a, -at.b}, at.vector, 2, {first, second}, 15};
 }
 
+Separation vertex_side(const FourPoints& x, int side) {
+  return closest_side(x, std::array<Side, 1>{triangle_sides[static_cast<std::size_t>(side)]});
+}
+
+Separation vertex_corner(const FourPoints& x, int corner) {
+  const Vec3 way = x.col(0) - x.col(1 + corner);
+  Separation out{way.squaredNorm(), Eigen::Vector4d::UnitX(), way, 0, {}, 0};
+  out.weights[1 + corner] = -1;
+  out.nodes = static_cast<std::uint8_t>(1 | bit(1 + corner));
+  return out;
+}
+
 Separation edge_edge(const FourPoints& x) {
   const FreeWeight first = move(x, 1, 0), second = move(x, 2, 3);
   const Crossing at = crossing(x.col(0) - x.col(2), first.along, second.along);

@@ -33,6 +33,12 @@ struct Separation {
 /// Column 0 is the vertex, 1 to 3 are the triangle.
 [[nodiscard]] Separation vertex_triangle(const FourPoints& x);
 
+/// The same to one side of the triangle alone: side k lies between its corners k and k + 1.
+[[nodiscard]] Separation vertex_side(const FourPoints& x, int side);
+
+/// The same to corner k alone.
+[[nodiscard]] Separation vertex_corner(const FourPoints& x, int corner);
+
 /// Columns 0 and 1 are one edge, 2 and 3 the other.
 [[nodiscard]] Separation edge_edge(const FourPoints& x);
 

@@ -1,0 +1,276 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <softkin/statics/physical/contact_potential.hpp>
+
+namespace softkin::physical {
+
+using contact::Candidates;
+using contact::FourPoints;
+using contact::Pair;
+using contact::Separation;
+
+namespace {
+
+FourPoints points_of(const Points& positions, const contact::Nodes& nodes) {
+  FourPoints x;
+  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
+  return x;
+}
+
+bool contains(const contact::Lists& lists, Index of, Index item) {
+  const auto begin = lists.items.begin() + lists.begin[static_cast<std::size_t>(of)],
+             end = lists.items.begin() + lists.begin[static_cast<std::size_t>(of) + 1];
+  return std::binary_search(begin, end, item);
+}
+
+contact::Lists lists_of(std::size_t count, std::vector<Pair>& pairs) {
+  const auto before = [](const Pair& a, const Pair& b) {
+    return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+  };
+  std::sort(pairs.begin(), pairs.end(), before);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  contact::Lists lists;
+  lists.begin.assign(count + 1, 0);
+  for (const Pair& pair : pairs) {
+    ++lists.begin[static_cast<std::size_t>(pair.first) + 1];
+    lists.items.push_back(pair.second);
+  }
+  for (std::size_t i = 0; i < count; ++i) lists.begin[i + 1] += lists.begin[i];
+  return lists;
+}
+
+/// Of n, how the separation's length changes with the points.
+contact::Gradient length_gradient(const Separation& separation, const Vec3& normal) {
+  contact::Gradient out;
+  for (int i = 0; i < 4; ++i) out.segment<3>(3 * i) = separation.weights[i] * normal;
+  return out;
+}
+
+}  // namespace
+
+void sort_candidates(Candidates& candidates) {
+  const auto before = [](const Pair& a, const Pair& b) {
+    return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+  };
+  std::sort(candidates.vertex_triangle.begin(), candidates.vertex_triangle.end(), before);
+  std::sort(candidates.edge_edge.begin(), candidates.edge_edge.end(), before);
+}
+
+void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces) {
+  const contact::Surface& surface = surfaces.surface;
+  const double near = 4 * surfaces.reach_mm * surfaces.reach_mm;
+  Candidates close;
+  broad.find(rest, 2 * surfaces.reach_mm, team, close);
+  std::vector<Pair> triangles, edges;
+  for (const Pair& pair : close.vertex_triangle)
+    if (contact::vertex_triangle(points_of(rest, nodes_of_vertex_triangle(surface, pair))).squared < near)
+      triangles.push_back(pair);
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    for (Index i = surface.vertex_triangles.begin[v]; i < surface.vertex_triangles.begin[v + 1]; ++i)
+      triangles.push_back({static_cast<Index>(v), surface.vertex_triangles.items[static_cast<std::size_t>(i)]});
+  for (const Pair& pair : close.edge_edge)
+    if (contact::edge_edge(points_of(rest, nodes_of_edge_edge(surface, pair))).squared < near) edges.push_back(pair);
+  surfaces.unfelt_triangles = lists_of(surface.vertices.size(), triangles);
+  surfaces.unfelt_edges = lists_of(surface.edges.size(), edges);
+}
+
+/// A triangle, edge or vertex of the surface that a vertex is closest to, and how often it counts.
+struct ContactPotential::Feature {
+  int corners;  // 3: a triangle, 2: an edge, 1: a vertex
+  Index place, count;
+  Separation separation;
+  Index pair;
+};
+
+ContactPotential::ContactPotential(const ContactSurfaces& surfaces, const Points& rest)
+    : surfaces_(surfaces), place_(static_cast<std::size_t>(rest.rows()), -1) {
+  const contact::Surface& surface = surfaces.surface;
+  for (const contact::Ends& e : surface.edges)
+    squared_lengths_.push_back((rest.row(e[1]) - rest.row(e[0])).squaredNorm());
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    place_[static_cast<std::size_t>(surface.vertices[v])] = static_cast<Index>(v);
+}
+
+bool ContactPotential::felt(Index vertex, Index triangle) const {
+  return !contains(surfaces_.unfelt_triangles, vertex, triangle);
+}
+
+/// Triangles at an edge that a vertex feels.
+Index ContactPotential::felt_at(Index vertex, Index edge) const {
+  const contact::Lists& around = surfaces_.surface.edge_triangles;
+  Index count = 0;
+  for (Index i = around.begin[static_cast<std::size_t>(edge)]; i < around.begin[static_cast<std::size_t>(edge) + 1];
+       ++i)
+    count += felt(vertex, around.items[static_cast<std::size_t>(i)]);
+  return count;
+}
+
+namespace {
+
+/// Which side of a triangle two of its corners are, by the bits of a separation's nodes.
+int side_of(std::uint8_t nodes) {
+  return nodes == 0b0111 ? 0 : nodes == 0b1101 ? 1 : 2;  // corners 0 1, 1 2, 2 0
+}
+
+void note_once(std::vector<Index>& seen, Index item, const auto& visit) {
+  if (std::find(seen.begin(), seen.end(), item) != seen.end()) return;
+  seen.push_back(item);
+  visit();
+}
+
+}  // namespace
+
+/// count  of what the separation was looked for in: a triangle, or a side or corner of it
+void ContactPotential::count(Index triangle, const Separation& separation, Index count, Index pair,
+                             std::vector<Feature>& features) const {
+  if (!(separation.squared < surfaces_.reach_mm * surfaces_.reach_mm)) return;
+  const contact::Surface& surface = surfaces_.surface;
+  const auto t = static_cast<std::size_t>(triangle);
+  const int corners = std::popcount(static_cast<unsigned>(separation.nodes)) - 1;
+  Index place = triangle;
+  if (corners == 2) place = surface.triangle_edges[t][static_cast<std::size_t>(side_of(separation.nodes))];
+  if (corners == 1)
+    place =
+        surface.triangles[t][static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(separation.nodes) >> 1u))];
+  for (Feature& feature : features)
+    if (feature.corners == corners && feature.place == place) {
+      feature.count += count;
+      return;
+    }
+  features.push_back({corners, place, count, separation, pair});
+}
+
+/// Of a corner of a triangle: 1, less the triangles around it that are felt, plus the edges between those.
+Index ContactPotential::count_at(Index vertex, Index corner) const {
+  const contact::Surface& surface = surfaces_.surface;
+  const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(corner)]);
+  Index triangles = 0;
+  std::vector<Index> edges;
+  for (Index i = surface.vertex_triangles.begin[place]; i < surface.vertex_triangles.begin[place + 1]; ++i) {
+    const Index t = surface.vertex_triangles.items[static_cast<std::size_t>(i)];
+    if (!felt(vertex, t)) continue;
+    ++triangles;
+    for (const Index e : surface.triangle_edges[static_cast<std::size_t>(t)]) {
+      const contact::Ends& ends = surface.edges[static_cast<std::size_t>(e)];
+      if (ends[0] == corner || ends[1] == corner) note_once(edges, e, [] {});
+    }
+  }
+  return 1 + triangles - static_cast<Index>(edges.size());  // every triangle has two of the edges
+}
+
+void ContactPotential::add_vertex(const Points& positions, const Candidates& candidates, std::size_t begin,
+                                  std::size_t end, std::vector<Term>& terms) const {
+  const contact::Surface& surface = surfaces_.surface;
+  const double squared_reach = surfaces_.reach_mm * surfaces_.reach_mm;
+  const Index vertex = candidates.vertex_triangle[begin].first;
+  std::vector<Feature> features;
+  std::vector<std::size_t> near;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Pair& pair = candidates.vertex_triangle[i];
+    if (!felt(vertex, pair.second)) continue;
+    const Separation found = contact::vertex_triangle(points_of(positions, nodes_of_vertex_triangle(surface, pair)));
+    if (!(found.squared < squared_reach)) continue;
+    count(pair.second, found, 1, static_cast<Index>(i), features);
+    near.push_back(i);
+  }
+  std::vector<Index> edges, corners;
+  for (const std::size_t i : near) {
+    const Pair& pair = candidates.vertex_triangle[i];
+    const FourPoints x = points_of(positions, nodes_of_vertex_triangle(surface, pair));
+    for (int k = 0; k < 3; ++k) {
+      const Index edge = surface.triangle_edges[static_cast<std::size_t>(pair.second)][static_cast<std::size_t>(k)];
+      note_once(edges, edge, [&] {
+        const Index more = felt_at(vertex, edge) - 1;
+        if (more != 0) count(pair.second, contact::vertex_side(x, k), -more, static_cast<Index>(i), features);
+      });
+      const Index corner = surface.triangles[static_cast<std::size_t>(pair.second)][static_cast<std::size_t>(k)];
+      note_once(corners, corner, [&] {
+        const Index more = count_at(vertex, corner);
+        if (more != 0) count(pair.second, contact::vertex_corner(x, k), more, static_cast<Index>(i), features);
+      });
+    }
+  }
+  const double weight = surfaces_.modulus_MPa * surfaces_.vertex_area[static_cast<std::size_t>(vertex)];
+  for (const Feature& feature : features)
+    if (feature.count != 0)
+      terms.push_back(
+          {nodes_of_vertex_triangle(surface, candidates.vertex_triangle[static_cast<std::size_t>(feature.pair)]),
+           feature.separation, feature.count * weight, 0, feature.pair});
+}
+
+void ContactPotential::find(const Points& positions, const Candidates& candidates, std::vector<Term>& terms) const {
+  terms.clear();
+  const std::vector<Pair>& vertices = candidates.vertex_triangle;
+  for (std::size_t i = 0, j = 0; i < vertices.size(); i = j) {
+    for (j = i + 1; j < vertices.size() && vertices[j].first == vertices[i].first;) ++j;
+    add_vertex(positions, candidates, i, j, terms);
+  }
+  const contact::Surface& surface = surfaces_.surface;
+  for (std::size_t i = 0; i < candidates.edge_edge.size(); ++i) {
+    const Pair& pair = candidates.edge_edge[i];
+    if (contains(surfaces_.unfelt_edges, pair.first, pair.second)) continue;
+    const contact::Nodes nodes = nodes_of_edge_edge(surface, pair);
+    const Separation found = contact::edge_edge(points_of(positions, nodes));
+    if (!(found.squared < surfaces_.reach_mm * surfaces_.reach_mm)) continue;
+    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+    terms.push_back({nodes, found, 0.5 * surfaces_.modulus_MPa * (surfaces_.edge_area[a] + surfaces_.edge_area[b]),
+                     1e-3 * squared_lengths_[a] * squared_lengths_[b], static_cast<Index>(vertices.size() + i)});
+  }
+}
+
+double ContactPotential::energy(const Points& positions, const std::vector<Term>& terms) const {
+  double sum = 0;
+  for (const Term& term : terms) {
+    const double gap = std::sqrt(term.separation.squared);
+    const double smooth = term.threshold > 0 ? contact::mollifier(points_of(positions, term.nodes), term.threshold) : 1;
+    sum += smooth * term.weight * energy::barrier(gap, surfaces_.reach_mm).value;
+  }
+  return sum;
+}
+
+void ContactPotential::add_gradient(const Points& positions, const std::vector<Term>& terms, Points& gradient) const {
+  contact::Gradient of_term, of_mollifier;
+  contact::Hessian unused;
+  for (const Term& term : terms) {
+    const double gap = std::sqrt(term.separation.squared);
+    const energy::LengthLaw law = energy::barrier(gap, surfaces_.reach_mm);
+    of_term = law.slope * length_gradient(term.separation, term.separation.vector / gap);
+    if (term.threshold > 0) {
+      of_term *= contact::mollifier(points_of(positions, term.nodes), term.threshold, of_mollifier, unused);
+      of_term += law.value * of_mollifier;
+    }
+    for (int i = 0; i < 4; ++i)
+      gradient.row(term.nodes[static_cast<std::size_t>(i)]) += term.weight * of_term.segment<3>(3 * i).transpose();
+  }
+}
+
+void ContactPotential::stiffness(const Points& positions, const Term& term, bool projected,
+                                 contact::Hessian& out) const {
+  const double gap = std::sqrt(term.separation.squared);
+  const energy::LengthLaw law = energy::barrier(gap, surfaces_.reach_mm);
+  const Vec3 normal = term.separation.vector / gap;
+  const contact::Gradient along = length_gradient(term.separation, normal);
+  const contact::Relief relief = contact::relief(term.separation);
+  const double turning = law.slope / gap;  // <= 0
+  const bool attracts = term.weight < 0;
+  // of d: (c c^T (x) (I - n n^T) - Z Z^T) / d
+  out.setZero();
+  if (!projected || !attracts) out += law.curvature * along * along.transpose() - turning * relief * relief.transpose();
+  if (!projected || attracts) {
+    const Mat3 across = Mat3::Identity() - normal * normal.transpose();
+    const Eigen::Vector4d& c = term.separation.weights;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) out.block<3, 3>(3 * i, 3 * j) += turning * c[i] * c[j] * across;
+  }
+  if (term.threshold > 0) {
+    contact::Gradient of_mollifier;
+    contact::Hessian bend;
+    out *= contact::mollifier(points_of(positions, term.nodes), term.threshold, of_mollifier, bend);
+    if (!projected)
+      out += law.slope * (of_mollifier * along.transpose() + along * of_mollifier.transpose()) + law.value * bend;
+  }
+  out *= term.weight;
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <softkin/contact/candidates.hpp>
+#include <softkin/contact/distance.hpp>
+#include <softkin/energy/contact_laws.hpp>
+
+namespace softkin::physical {
+
+/// Surfaces that may touch, and what the potential between them needs.
+struct ContactSurfaces {
+  contact::Surface surface;
+  std::vector<double> vertex_area, edge_area;  // that each carries pressure for, by place in the surface [mm^2]
+  double reach_mm = 0;                         // > 0: surfaces that are closer repel each other
+  double modulus_MPa = 0;                      // > 0: of that repulsion
+  /// Of every vertex, by place: triangles that it does not feel, ascending, those around it among them.
+  contact::Lists unfelt_triangles;
+  /// Of every edge, by place: edges after it that it does not feel, ascending.
+  contact::Lists unfelt_edges;
+};
+
+/// Closeness at rest is no contact: every vertex and edge does not feel what is nearer than twice the reach at rest.
+///
+/// broad  of that surface
+void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces);
+
+/// Potential between surfaces: the barrier of the distance of every vertex to the surface before it, for the area that
+/// the vertex carries, and of edges that cross. Each vertex counts the nearest features once, by inclusion and
+/// exclusion: triangles, less the edges where two meet, plus the vertices where those meet. So the potential does not
+/// depend on how a surface before it is cut into triangles, and its gradient is continuous.
+///
+/// source     barrier: energy/contact_laws.hpp; exclusion of duplicates: Li et al. 2023, "Convergent incremental
+///            potential contact"
+/// deviation  edges carry a small share of the area: they only keep crossing edges apart
+class ContactPotential {
+ public:
+  /// surfaces and rest must outlive the object
+  ContactPotential(const ContactSurfaces& surfaces, const Points& rest);
+
+  /// Two features that are closer than the reach.
+  struct Term {
+    contact::Nodes nodes;
+    contact::Separation separation;
+    double weight = 0;     // area times modulus [N], negative where features are excluded
+    double threshold = 0;  // of the mollifier of two edges [mm^4]; 0: a vertex
+    Index pair = 0;        // candidate whose nodes these are: vertices with triangles first, then edges
+  };
+
+  /// The terms of a shape, always in the same order.
+  ///
+  /// candidates  all pairs that are closer than the reach; sorted
+  void find(const Points& positions, const contact::Candidates& candidates, std::vector<Term>& terms) const;
+
+  /// [mJ]; infinite where a pair touches.
+  [[nodiscard]] double energy(const Points& positions, const std::vector<Term>& terms) const;
+
+  /// Adds the gradient of the energy [N].
+  void add_gradient(const Points& positions, const std::vector<Term>& terms, Points& gradient) const;
+
+  /// Second derivative of a term in its nodes [N/mm]; projected: a positive semidefinite part of it.
+  void stiffness(const Points& positions, const Term& term, bool projected, contact::Hessian& out) const;
+
+ private:
+  struct Feature;
+  void add_vertex(const Points& positions, const contact::Candidates& candidates, std::size_t begin, std::size_t end,
+                  std::vector<Term>& terms) const;
+  void count(Index triangle, const contact::Separation& separation, Index count, Index pair,
+             std::vector<Feature>& features) const;
+  [[nodiscard]] Index count_at(Index vertex, Index corner) const;
+  [[nodiscard]] bool felt(Index vertex, Index triangle) const;
+  [[nodiscard]] Index felt_at(Index vertex, Index edge) const;
+
+  const ContactSurfaces& surfaces_;
+  std::vector<double> squared_lengths_;  // of the edges at rest [mm^2]
+  std::vector<Index> place_;             // of a vertex in the surface
+};
+
+/// Sorts candidates by their first, then their second feature.
+void sort_candidates(contact::Candidates& candidates);
+
+}  // namespace softkin::physical
