@@ -52,6 +52,7 @@ import sys, threading, time
 sys.path.insert(0, {tests!r})
 from beams import beam
 import numpy as np, os, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background of a shell begins without it
 {prepare}
 sent = []
 def send():
