@@ -1,5 +1,7 @@
 #pragma once
 
+#include <compare>
+#include <softkin/contact/distance.hpp>
 #include <softkin/contact/surface.hpp>
 #include <softkin/contact/wide_tree.hpp>
 #include <softkin/core/team.hpp>
@@ -9,7 +11,7 @@ namespace softkin::contact {
 /// Places in a surface's lists: of a vertex and a triangle, or of two edges, the lower one first.
 struct Pair {
   Index first, second;
-  friend bool operator==(const Pair&, const Pair&) = default;
+  friend auto operator<=>(const Pair&, const Pair&) = default;
 };
 
 struct Candidates {
@@ -26,6 +28,12 @@ using Nodes = std::array<Index, 4>;
   const Ends &a = surface.edges[static_cast<std::size_t>(pair.first)],
              &b = surface.edges[static_cast<std::size_t>(pair.second)];
   return {a[0], a[1], b[0], b[1]};
+}
+
+[[nodiscard]] inline FourPoints points_of(const Points& positions, const Nodes& nodes) {
+  FourPoints x;
+  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
+  return x;
 }
 
 /// Pairs that are left out beside those that share a vertex. Nothing keeps these from passing through each other.

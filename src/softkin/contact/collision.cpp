@@ -95,12 +95,6 @@ double safe_share(const FourPoints& from, const FourPoints& to, double keep, dou
   return share;
 }
 
-FourPoints points_of(const Points& positions, const Nodes& nodes) {
-  FourPoints x;
-  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
-  return x;
-}
-
 }  // namespace
 
 double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep, double until) {

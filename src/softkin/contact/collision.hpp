@@ -1,7 +1,6 @@
 #pragma once
 
 #include <softkin/contact/candidates.hpp>
-#include <softkin/contact/distance.hpp>
 
 namespace softkin::contact {
 

@@ -8,15 +8,10 @@ namespace softkin::physical {
 using contact::Candidates;
 using contact::FourPoints;
 using contact::Pair;
+using contact::points_of;
 using contact::Separation;
 
 namespace {
-
-FourPoints points_of(const Points& positions, const contact::Nodes& nodes) {
-  FourPoints x;
-  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
-  return x;
-}
 
 bool contains(const contact::Lists& lists, Index of, Index item) {
   const auto begin = lists.items.begin() + lists.begin[static_cast<std::size_t>(of)],
@@ -25,10 +20,7 @@ bool contains(const contact::Lists& lists, Index of, Index item) {
 }
 
 contact::Lists lists_of(std::size_t count, std::vector<Pair>& pairs) {
-  const auto before = [](const Pair& a, const Pair& b) {
-    return std::pair(a.first, a.second) < std::pair(b.first, b.second);
-  };
-  std::sort(pairs.begin(), pairs.end(), before);
+  std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   contact::Lists lists;
   lists.begin.assign(count + 1, 0);
@@ -50,11 +42,8 @@ contact::Gradient length_gradient(const Separation& separation, const Vec3& norm
 }  // namespace
 
 void sort_candidates(Candidates& candidates) {
-  const auto before = [](const Pair& a, const Pair& b) {
-    return std::pair(a.first, a.second) < std::pair(b.first, b.second);
-  };
-  std::sort(candidates.vertex_triangle.begin(), candidates.vertex_triangle.end(), before);
-  std::sort(candidates.edge_edge.begin(), candidates.edge_edge.end(), before);
+  std::sort(candidates.vertex_triangle.begin(), candidates.vertex_triangle.end());
+  std::sort(candidates.edge_edge.begin(), candidates.edge_edge.end());
 }
 
 void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces) {
@@ -84,10 +73,8 @@ struct ContactPotential::Feature {
 };
 
 ContactPotential::ContactPotential(const ContactSurfaces& surfaces, const Points& rest)
-    : surfaces_(surfaces), place_(static_cast<std::size_t>(rest.rows()), -1) {
+    : surfaces_(surfaces), rest_(rest), place_(static_cast<std::size_t>(rest.rows()), -1) {
   const contact::Surface& surface = surfaces.surface;
-  for (const contact::Ends& e : surface.edges)
-    squared_lengths_.push_back((rest.row(e[1]) - rest.row(e[0])).squaredNorm());
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
     place_[static_cast<std::size_t>(surface.vertices[v])] = static_cast<Index>(v);
 }
@@ -215,7 +202,7 @@ void ContactPotential::find(const Points& positions, const Candidates& candidate
     if (!(found.squared < surfaces_.reach_mm * surfaces_.reach_mm)) continue;
     const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
     terms.push_back({nodes, found, 0.5 * surfaces_.modulus_MPa * (surfaces_.edge_area[a] + surfaces_.edge_area[b]),
-                     1e-3 * squared_lengths_[a] * squared_lengths_[b], static_cast<Index>(vertices.size() + i)});
+                     contact::mollifier_threshold(points_of(rest_, nodes)), static_cast<Index>(vertices.size() + i)});
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <softkin/contact/candidates.hpp>
-#include <softkin/contact/distance.hpp>
 #include <softkin/energy/contact_laws.hpp>
 
 namespace softkin::physical {
@@ -70,8 +69,8 @@ class ContactPotential {
   [[nodiscard]] Index felt_at(Index vertex, Index edge) const;
 
   const ContactSurfaces& surfaces_;
-  std::vector<double> squared_lengths_;  // of the edges at rest [mm^2]
-  std::vector<Index> place_;             // of a vertex in the surface
+  const Points& rest_;
+  std::vector<Index> place_;  // of a vertex in the surface
 };
 
 /// Sorts candidates by their first, then their second feature.
