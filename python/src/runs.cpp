@@ -102,10 +102,8 @@ class PathRun : public Runner<runs::StepRecord> {
     resume(store);
   }
   void save_plot(const std::string& path) {
-    std::vector<runs::StepRecord> records;
-    run_.log().each([&](std::size_t, const runs::StepRecord& record) { records.push_back(record); });
     const std::string title = runs::plot_title(model(), model().name) + ", " + name_of(options().solver);
-    write_svg(path, runs::plot_of_steps(model(), records, title));
+    write_svg(path, runs::plot_of_steps(model(), run_.log().all(), title));
   }
 
  private:

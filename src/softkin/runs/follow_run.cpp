@@ -15,12 +15,6 @@ FollowRun::FollowRun(const Model& model, const Statics& statics, FollowTask task
       job_(model, statics, task_.path, task_.file, options),
       run_(model, job_, folder_.run(), follow_head(model, task_.scene, options), {"follow"}) {}
 
-std::vector<WaypointRecord> FollowRun::records() {
-  std::vector<WaypointRecord> all;
-  run_.log().each([&](std::size_t, const WaypointRecord& record) { all.push_back(record); });
-  return all;
-}
-
 Table FollowRun::commands() {
   return commands_table(model_, task_.path, records());
 }

@@ -42,7 +42,7 @@ class FollowRun {
             FollowFolder folder);
 
   [[nodiscard]] Run<WaypointRecord>& run() { return run_; }
-  [[nodiscard]] std::vector<WaypointRecord> records();
+  [[nodiscard]] std::vector<WaypointRecord> records() { return run_.log().all(); }
   [[nodiscard]] const MarkerPath& path() const { return task_.path; }
 
   [[nodiscard]] Table commands();

@@ -109,6 +109,11 @@ class TypedLog : public RecordLog {
       return true;
     });
   }
+  [[nodiscard]] std::vector<Record> all() const {
+    std::vector<Record> records;
+    each([&](std::size_t, const Record& record) { records.push_back(record); });
+    return records;
+  }
   [[nodiscard]] Record at(std::size_t number) const {
     Record record;
     RecordLog::each([&](std::size_t each, std::string_view line) {

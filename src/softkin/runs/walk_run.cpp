@@ -15,12 +15,6 @@ WalkRun::WalkRun(const Model& model, WalkTask task, const StaticsOptions& option
       run_(model, job_, folder_.run(),
            walk_head(model, task_.scene, options, task_.gait, task_.cycles, walker_.direction()), {"feet"}) {}
 
-std::vector<WalkRecord> WalkRun::records() {
-  std::vector<WalkRecord> all;
-  run_.log().each([&](std::size_t, const WalkRecord& record) { all.push_back(record); });
-  return all;
-}
-
 Plot WalkRun::plot() {
   return plot_of_walk(model_, records(), plot_title(model_, task_.scene, task_.gait));
 }

@@ -38,7 +38,7 @@ class WalkRun {
   WalkRun(const Model& model, WalkTask task, const StaticsOptions& options, WalkFolder folder);
 
   [[nodiscard]] Run<WalkRecord>& run() { return run_; }
-  [[nodiscard]] std::vector<WalkRecord> records();
+  [[nodiscard]] std::vector<WalkRecord> records() { return run_.log().all(); }
   [[nodiscard]] const Vec3& direction() const { return walker_.direction(); }
 
   /// Of the steps so far, at least one.
