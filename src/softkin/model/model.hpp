@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/model/contact_model.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
 
@@ -112,9 +113,10 @@ struct Model {
   Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
   std::vector<Support> supports;           // in the order of the description's `fixed`
   std::vector<std::array<Index, 3>>
-      support_of;                     // per vertex and axis: the support that bears it, the first of several,
-                                      // or -1; a rigid region that is held is borne as a whole
-  Points dead_load;                   // #V by 3 [N]: weight and forces; physical, else empty
+      support_of;    // per vertex and axis: the support that bears it, the first of several,
+                     // or -1; a rigid region that is held is borne as a whole
+  Points dead_load;  // #V by 3 [N]: weight and forces; physical, else empty
+  ContactModel contact;
   std::vector<bool> used;             // per vertex: is it a vertex of an element
   double diagonal_mm = 0;             // of the bounding box of the used vertices
   std::vector<std::string> notes;     // what compile() changed or the user should know, a sentence each
