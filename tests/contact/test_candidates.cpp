@@ -32,18 +32,21 @@ std::vector<Index> vertices_in(const Surface& s, Index i, int of) {
   return {s.triangles[at].begin(), s.triangles[at].end()};
 }
 
-/// Along the axis along which they are farthest apart.
+/// Along the axis along which they stay farthest apart, where every vertex of one may move as any other of it does.
 double gap(const std::vector<Index>& a, const std::vector<Index>& b, const std::vector<Points>& instants) {
+  const Points &from = instants.front(), &to = instants.back();
   double largest = -1e300;
   for (int k = 0; k < 3; ++k) {
-    double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
-    for (const Points& x : instants)
-      for (const auto& [side, vertices] : {std::pair(0, &a), std::pair(1, &b)})
-        for (const Index v : *vertices) {
-          low[side] = std::min(low[side], x(v, k));
-          high[side] = std::max(high[side], x(v, k));
-        }
-    largest = std::max({largest, low[0] - high[1], low[1] - high[0]});
+    double above = 1e300, below = 1e300;  // the least gap with a above b, and below it
+    for (const Index v : a)
+      for (const Index w : b)
+        for (const Index moves_v : a)
+          for (const Index moves_w : b) {
+            const double move = (to(moves_v, k) - from(moves_v, k)) - (to(moves_w, k) - from(moves_w, k));
+            above = std::min(above, from(v, k) - from(w, k) + std::min(0.0, move));
+            below = std::min(below, from(w, k) - from(v, k) - std::max(0.0, move));
+          }
+    largest = std::max({largest, above, below});
   }
   return largest;
 }

@@ -26,19 +26,24 @@ Points centres_of(const Items& items, const Points& rest) {
   return centres;
 }
 
-/// Box of an item of the list at two instants.
+/// Where an item of the list is, and how it moves.
 template <class Items>
 auto boxes_of(const Items& items, const Points& from, const Points& to) {
   return [&](Index item) {
-    Box box;
-    for (const Index v : vertices_of(items[static_cast<std::size_t>(item)]))
-      for (const double* x : {from.data() + 3 * v, to.data() + 3 * v}) box.extend(Vec3(x[0], x[1], x[2]));
+    MovingBox box;
+    for (const Index v : vertices_of(items[static_cast<std::size_t>(item)])) {
+      const Vec3 x = from.row(v).transpose();
+      box.at.extend(x);
+      box.move.extend(Vec3(to.row(v).transpose() - x));
+    }
     return box;
   };
 }
 
-Box enlarged(const Box& box, double reach) {
-  return {box.min().array() - reach, box.max().array() + reach};
+MovingBox enlarged(MovingBox box, double reach) {
+  box.at.min().array() -= reach;
+  box.at.max().array() += reach;
+  return box;
 }
 
 bool share(const Index* a, int of_a, const Index* b, int of_b) {
@@ -111,7 +116,7 @@ void BroadPhase::pair_up(const WideTree& queries, const WideTree& tree, bool sam
   const Index pieces = (queries.groups() + groups_a_piece - 1) / groups_a_piece;
   if (found_.size() < static_cast<std::size_t>(pieces)) found_.resize(static_cast<std::size_t>(pieces));
   const auto pair_group = [&](Index group, std::vector<Pair>& found) {
-    Box boxes[8], all;
+    MovingBox boxes[8], all;
     const int lanes = static_cast<int>(std::min<Index>(8, queries.size() - 8 * group));
     for (int lane = 0; lane < lanes; ++lane) {
       boxes[lane] = enlarged(queries.boxes(group).at(lane), reach);
@@ -119,7 +124,7 @@ void BroadPhase::pair_up(const WideTree& queries, const WideTree& tree, bool sam
     }
     tree.visit(all, same ? group : 0, [&](Index other) {
       for (int lane = 0; lane < lanes; ++lane) {
-        unsigned bits = tree.boxes(other).overlaps(boxes[lane]);
+        unsigned bits = tree.boxes(other).may_meet(boxes[lane]);
         if (same && other == group) bits &= ~0u << (lane + 1);
         for (; bits != 0; bits &= bits - 1) {
           const Pair pair{queries.item(group, lane), tree.item(other, __builtin_ctz(bits))};

@@ -64,7 +64,8 @@ class BroadPhase {
   /// positions  finite [mm]
   void find(const Points& positions, double reach, Team& team, Candidates& out);
 
-  /// The same with the boxes of a linear motion: all pairs that are at most `reach` apart at any instant of it.
+  /// The same along a linear motion: all pairs whose boxes are so near at any instant of it, for all that is known of
+  /// moves by their boxes, too; what moves together is not near for that.
   void find(const Points& from, const Points& to, double reach, Team& team, Candidates& out);
 
  private:

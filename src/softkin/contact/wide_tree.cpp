@@ -33,11 +33,13 @@ void WideTree::sort(const Points& centres, Index begin, Index end) {
   sort(centres, middle, end);
 }
 
-Box WideTree::joint(const EightBoxes& boxes) {
-  Box box;
+MovingBox WideTree::joint(const EightBoxes& boxes) {
+  const auto least = [](const double(&values)[8]) { return *std::min_element(values, values + 8); };
+  const auto most = [](const double(&values)[8]) { return *std::max_element(values, values + 8); };
+  MovingBox box;
   for (int k = 0; k < 3; ++k) {
-    box.min()[k] = *std::min_element(boxes.low[k], boxes.low[k] + 8);
-    box.max()[k] = *std::max_element(boxes.high[k], boxes.high[k] + 8);
+    box.at.min()[k] = least(boxes.low[k]), box.at.max()[k] = most(boxes.high[k]);
+    box.move.min()[k] = least(boxes.least_move[k]), box.move.max()[k] = most(boxes.most_move[k]);
   }
   return box;
 }

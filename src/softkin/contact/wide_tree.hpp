@@ -13,22 +13,38 @@ namespace softkin::contact {
 
 using Box = Eigen::AlignedBox3d;
 
-/// Boxes of eight things or of eight groups of them; lanes without any overlap with nothing.
+/// Where a thing is, and how its points move: each in a box.
+struct MovingBox {
+  Box at, move;
+
+  void extend(const MovingBox& other) {
+    at.extend(other.at);
+    move.extend(other.move);
+  }
+};
+
+/// Eight things or groups of them; lanes without any overlap with nothing.
 struct alignas(64) EightBoxes {
-  double low[3][8], high[3][8];
+  double low[3][8], high[3][8], least_move[3][8], most_move[3][8];
 
   EightBoxes() {
-    std::fill_n(&low[0][0], 24, std::numeric_limits<double>::infinity());
-    std::fill_n(&high[0][0], 24, -std::numeric_limits<double>::infinity());
+    for (double* all : {&low[0][0], &least_move[0][0]}) std::fill_n(all, 24, std::numeric_limits<double>::infinity());
+    for (double* all : {&high[0][0], &most_move[0][0]}) std::fill_n(all, 24, -std::numeric_limits<double>::infinity());
   }
-  void set(int lane, const Box& box) {
-    for (int k = 0; k < 3; ++k) low[k][lane] = box.min()[k], high[k][lane] = box.max()[k];
+  void set(int lane, const MovingBox& box) {
+    for (int k = 0; k < 3; ++k) {
+      low[k][lane] = box.at.min()[k], high[k][lane] = box.at.max()[k];
+      least_move[k][lane] = box.move.min()[k], most_move[k][lane] = box.move.max()[k];
+    }
   }
-  [[nodiscard]] Box at(int lane) const {
-    return {Vec3(low[0][lane], low[1][lane], low[2][lane]), Vec3(high[0][lane], high[1][lane], high[2][lane])};
+  [[nodiscard]] MovingBox at(int lane) const {
+    const auto place = [lane](const double(&values)[3][8]) {
+      return Vec3(values[0][lane], values[1][lane], values[2][lane]);
+    };
+    return {{place(low), place(high)}, {place(least_move), place(most_move)}};
   }
-  /// Bit l: lane l overlaps with the box.
-  [[nodiscard]] unsigned overlaps(const Box& box) const;
+  /// Bit l: something of lane l may meet something of the box on the way, as moves against each other tell.
+  [[nodiscard]] unsigned may_meet(const MovingBox& box) const;
 };
 
 /// A tree of axis-aligned boxes with eight branches at every node. Its order is chosen once; boxes come and go.
@@ -48,31 +64,34 @@ class WideTree {
   template <class BoxOf>
   void refit(const BoxOf& box_of, Team& team);
 
-  /// Calls visit(group) for every group from `first` on with a box that overlaps with the given one; always in the same
-  /// order.
+  /// Calls visit(group) for every group from `first` on of which one may meet the given box; always in the same order.
   template <class Visit>
-  void visit(const Box& box, Index first, const Visit& visit) const;
+  void visit(const MovingBox& box, Index first, const Visit& visit) const;
 
  private:
   using Level = std::vector<EightBoxes>;
   static constexpr std::size_t depth = 80;  // of the stack: 7 a level and one more, 11 levels of an Index
 
   void sort(const Points& centres, Index begin, Index end);
-  [[nodiscard]] static Box joint(const EightBoxes& boxes);
+  [[nodiscard]] static MovingBox joint(const EightBoxes& boxes);
   void refit_upper(std::size_t level);
 
   std::vector<Index> items_;
   std::vector<Level> levels_;  // [0]: of the items; lane l of block b of a level: block 8 b + l of the level below
 };
 
-inline unsigned EightBoxes::overlaps(const Box& box) const {
+inline unsigned EightBoxes::may_meet(const MovingBox& box) const {
   typedef double Eight __attribute__((vector_size(64)));
   typedef long long Mask __attribute__((vector_size(64)));
-  const auto* lows = reinterpret_cast<const Eight*>(low);
-  const auto* highs = reinterpret_cast<const Eight*>(high);
-  const Vec3 &from = box.min(), &to = box.max();
-  const Mask meets = (lows[0] <= to[0]) & (highs[0] >= from[0]) & (lows[1] <= to[1]) & (highs[1] >= from[1]) &
-                     (lows[2] <= to[2]) & (highs[2] >= from[2]);
+  const auto at = [](const double(&values)[3][8], int k) { return reinterpret_cast<const Eight*>(values)[k]; };
+  Mask meets = ~Mask{};
+  for (int k = 0; k < 3; ++k) {
+    // moves of the box against the lanes, and where it is on the way, seen from them
+    const Eight back = box.move.min()[k] - at(most_move, k), forth = box.move.max()[k] - at(least_move, k);
+    const Eight from = box.at.min()[k] + (back < 0 ? back : Eight{}),
+                to = box.at.max()[k] + (forth > 0 ? forth : Eight{});
+    meets &= (at(low, k) <= to) & (at(high, k) >= from);
+  }
   unsigned bits = 0;
   for (unsigned l = 0; l < 8; ++l) bits |= static_cast<unsigned>(meets[l]) & (1u << l);
   return bits;
@@ -92,7 +111,7 @@ void WideTree::refit(const BoxOf& box_of, Team& team) {
 }
 
 template <class Visit>
-void WideTree::visit(const Box& box, Index first, const Visit& visit) const {
+void WideTree::visit(const MovingBox& box, Index first, const Visit& visit) const {
   struct Place {
     std::int32_t level;
     Index block;
@@ -107,7 +126,7 @@ void WideTree::visit(const Box& box, Index first, const Visit& visit) const {
       visit(block);
       continue;
     }
-    unsigned bits = levels_[static_cast<std::size_t>(level)][static_cast<std::size_t>(block)].overlaps(box);
+    unsigned bits = levels_[static_cast<std::size_t>(level)][static_cast<std::size_t>(block)].may_meet(box);
     for (; bits != 0; bits &= bits - 1) {
       const Index below = 8 * block + __builtin_ctz(bits);
       // the last of its groups

@@ -30,6 +30,13 @@ SparseLdlt::SparseLdlt(std::shared_ptr<const FrontTree> tree)
       diagonal_(static_cast<std::size_t>(tree_->pattern.size())),
       pieces_(tree_->arena_sizes.size()) {}
 
+void SparseLdlt::change(std::shared_ptr<const FrontTree> tree) {
+  tree_ = std::move(tree);
+  diagonal_.resize(static_cast<std::size_t>(tree_->pattern.size()));
+  pieces_ = std::vector<Piece>(tree_->arena_sizes.size());
+  has_memory_ = false;
+}
+
 /// A bench for the time of a piece.
 class SparseLdlt::Seat {
  public:
@@ -59,6 +66,7 @@ class SparseLdlt::Seat {
 };
 
 void SparseLdlt::take_memory() {
+  has_memory_ = true;
   lower_.resize(static_cast<std::size_t>(tree_->values) + solve_slack);
   std::fill(lower_.end() - solve_slack, lower_.end(), 0.0);
   top_.arena.resize(static_cast<std::size_t>(tree_->arena_sizes.back()) + front_slack);
@@ -136,7 +144,7 @@ Index SparseLdlt::factor(Index index, const LargeVector<double>& values, double 
 }
 
 SparseLdlt::Pivots SparseLdlt::factorise(const LargeVector<double>& values, double least, Team& team) {
-  if (lower_.empty()) take_memory();
+  if (!has_memory_) take_memory();
   const Index count = static_cast<Index>(pieces_.size()) - 1;
   Team alone(1);
   const auto run = [&](Index p, Bench& bench, Team& helpers) {

@@ -18,6 +18,9 @@ class SparseLdlt {
   explicit SparseLdlt(const BlockColumns& pattern);
   explicit SparseLdlt(std::shared_ptr<const FrontTree> tree);
 
+  /// Goes on with another pattern, in the memory that there is; nothing is factorised.
+  void change(std::shared_ptr<const FrontTree> tree);
+
   struct Pivots {
     Index negative = 0;  // as many as the matrix has negative eigenvalues
     Index replaced = 0;  // pivots too small to divide by; they count as negative
@@ -54,6 +57,7 @@ class SparseLdlt {
   void backward(const Front& front, Index begin, Index columns, Piece& piece);
 
   std::shared_ptr<const FrontTree> tree_;
+  bool has_memory_ = false;  // for this tree
   LargeVector<double> lower_;
   std::vector<double> diagonal_;
   std::vector<Piece> pieces_;  // the top's is the last

@@ -60,8 +60,8 @@ std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, c
                                                          const LowestMode& mode, double share) {
   Pushed found{from};
   const double reach = share * system_.model().diagonal_mm;
-  system_.advance(mode.direction, reach / system_.size_of(mode.direction, from.positions).largest, work_,
-                  found.at.positions, team_);
+  double scale = reach / system_.size_of(mode.direction, from.positions).largest;
+  if (!system_.advance_clear(mode.direction, scale, work_, found.at.positions, team_)) return std::nullopt;
   double shift = mode.steep_shift();
   bool settled = false;
   for (int i = 0; i < most_downhill && !settled; ++i) {

@@ -32,6 +32,15 @@ contact::Lists lists_of(std::size_t count, std::vector<Pair>& pairs) {
   return lists;
 }
 
+bool same_robot(const ContactSurfaces& surfaces, const std::vector<Index>& a_parts, Index a,
+                const std::vector<Index>& b_parts, Index b) {
+  if (surfaces.rules == nullptr) return true;
+  const auto rank = [&](const std::vector<Index>& parts, Index item) {
+    return surfaces.rules->parts[static_cast<std::size_t>(parts[static_cast<std::size_t>(item)])].rank;
+  };
+  return rank(a_parts, a) == ContactRank::robot && rank(b_parts, b) == ContactRank::robot;
+}
+
 /// Of n, how the separation's length changes with the points.
 contact::Gradient length_gradient(const Separation& separation, const Vec3& normal) {
   contact::Gradient out;
@@ -40,6 +49,22 @@ contact::Gradient length_gradient(const Separation& separation, const Vec3& norm
 }
 
 }  // namespace
+
+double ContactSurfaces::area(Index vertex, Index triangle) const {
+  const double own = vertex_area[static_cast<std::size_t>(vertex)];
+  if (rules == nullptr) return own;
+  const Index a = vertex_part[static_cast<std::size_t>(vertex)], b = triangle_part[static_cast<std::size_t>(triangle)];
+  if (!rules->pair(a, b).touch) return 0;
+  const ContactRank rank = rules->parts[static_cast<std::size_t>(a)].rank,
+                    before = rules->parts[static_cast<std::size_t>(b)].rank;
+  return rank < before ? own : rank == before ? 0.5 * own : guard_area;
+}
+
+double ContactSurfaces::area_of_edges(Index a, Index b) const {
+  const double own = 0.5 * (edge_area[static_cast<std::size_t>(a)] + edge_area[static_cast<std::size_t>(b)]);
+  if (rules == nullptr) return own;
+  return rules->pair(edge_part[static_cast<std::size_t>(a)], edge_part[static_cast<std::size_t>(b)]).touch ? own : 0;
+}
 
 void sort_candidates(Candidates& candidates) {
   std::sort(candidates.vertex_triangle.begin(), candidates.vertex_triangle.end());
@@ -53,13 +78,16 @@ void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& 
   broad.find(rest, 2 * surfaces.reach_mm, team, close);
   std::vector<Pair> triangles, edges;
   for (const Pair& pair : close.vertex_triangle)
-    if (contact::vertex_triangle(points_of(rest, nodes_of_vertex_triangle(surface, pair))).squared < near)
+    if (same_robot(surfaces, surfaces.vertex_part, pair.first, surfaces.triangle_part, pair.second) &&
+        contact::vertex_triangle(points_of(rest, nodes_of_vertex_triangle(surface, pair))).squared < near)
       triangles.push_back(pair);
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
     for (Index i = surface.vertex_triangles.begin[v]; i < surface.vertex_triangles.begin[v + 1]; ++i)
       triangles.push_back({static_cast<Index>(v), surface.vertex_triangles.items[static_cast<std::size_t>(i)]});
   for (const Pair& pair : close.edge_edge)
-    if (contact::edge_edge(points_of(rest, nodes_of_edge_edge(surface, pair))).squared < near) edges.push_back(pair);
+    if (same_robot(surfaces, surfaces.edge_part, pair.first, surfaces.edge_part, pair.second) &&
+        contact::edge_edge(points_of(rest, nodes_of_edge_edge(surface, pair))).squared < near)
+      edges.push_back(pair);
   surfaces.unfelt_triangles = lists_of(surface.vertices.size(), triangles);
   surfaces.unfelt_edges = lists_of(surface.edges.size(), edges);
 }
@@ -80,7 +108,12 @@ ContactPotential::ContactPotential(const ContactSurfaces& surfaces, const Points
 }
 
 bool ContactPotential::felt(Index vertex, Index triangle) const {
-  return !contains(surfaces_.unfelt_triangles, vertex, triangle);
+  return !contains(surfaces_.unfelt_triangles, vertex, triangle) && surfaces_.area(vertex, triangle) > 0;
+}
+
+bool ContactPotential::edges_felt(const Pair& edges) const {
+  return surfaces_.area_of_edges(edges.first, edges.second) > 0 &&
+         !contains(surfaces_.unfelt_edges, edges.first, edges.second);
 }
 
 /// Triangles at an edge that a vertex feels.
@@ -178,12 +211,12 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
       });
     }
   }
-  const double weight = surfaces_.modulus_MPa * surfaces_.vertex_area[static_cast<std::size_t>(vertex)];
-  for (const Feature& feature : features)
-    if (feature.count != 0)
-      terms.push_back(
-          {nodes_of_vertex_triangle(surface, candidates.vertex_triangle[static_cast<std::size_t>(feature.pair)]),
-           feature.separation, feature.count * weight, 0, feature.pair});
+  for (const Feature& feature : features) {
+    if (feature.count == 0) continue;
+    const Pair& pair = candidates.vertex_triangle[static_cast<std::size_t>(feature.pair)];
+    const double weight = surfaces_.modulus_MPa * surfaces_.area(vertex, pair.second);
+    terms.push_back({nodes_of_vertex_triangle(surface, pair), feature.separation, feature.count * weight, 0, pair});
+  }
 }
 
 void ContactPotential::find(const Points& positions, const Candidates& candidates, std::vector<Term>& terms) const {
@@ -196,13 +229,12 @@ void ContactPotential::find(const Points& positions, const Candidates& candidate
   const contact::Surface& surface = surfaces_.surface;
   for (std::size_t i = 0; i < candidates.edge_edge.size(); ++i) {
     const Pair& pair = candidates.edge_edge[i];
-    if (contains(surfaces_.unfelt_edges, pair.first, pair.second)) continue;
+    if (!edges_felt(pair)) continue;
     const contact::Nodes nodes = nodes_of_edge_edge(surface, pair);
     const Separation found = contact::edge_edge(points_of(positions, nodes));
     if (!(found.squared < surfaces_.reach_mm * surfaces_.reach_mm)) continue;
-    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
-    terms.push_back({nodes, found, 0.5 * surfaces_.modulus_MPa * (surfaces_.edge_area[a] + surfaces_.edge_area[b]),
-                     contact::mollifier_threshold(points_of(rest_, nodes)), static_cast<Index>(vertices.size() + i)});
+    terms.push_back({nodes, found, surfaces_.modulus_MPa * surfaces_.area_of_edges(pair.first, pair.second),
+                     contact::mollifier_threshold(points_of(rest_, nodes)), pair});
   }
 }
 

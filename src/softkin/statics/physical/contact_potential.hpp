@@ -2,6 +2,7 @@
 
 #include <softkin/contact/candidates.hpp>
 #include <softkin/energy/contact_laws.hpp>
+#include <softkin/model/contact_model.hpp>
 
 namespace softkin::physical {
 
@@ -15,9 +16,20 @@ struct ContactSurfaces {
   contact::Lists unfelt_triangles;
   /// Of every edge, by place: edges after it that it does not feel, ascending.
   contact::Lists unfelt_edges;
+
+  // of surfaces of several parts; else empty
+  const ContactModel* rules = nullptr;
+  std::vector<Index> vertex_part, edge_part, triangle_part;  // by place
+  double guard_area = 0;  // for which a vertex carries pressure against what it stands behind in rank [mm^2]
+
+  /// For which a vertex carries pressure against a triangle [mm^2].
+  [[nodiscard]] double area(Index vertex, Index triangle) const;
+  /// For which two edges do; they only keep each other from crossing.
+  [[nodiscard]] double area_of_edges(Index a, Index b) const;
 };
 
-/// Closeness at rest is no contact: every vertex and edge does not feel what is nearer than twice the reach at rest.
+/// Closeness of a robot to itself at rest is no contact: none of its vertices and edges feels what is nearer than twice
+/// the reach at rest.
 ///
 /// broad  of that surface
 void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces);
@@ -41,7 +53,7 @@ class ContactPotential {
     contact::Separation separation;
     double weight = 0;     // area times modulus [N], negative where features are excluded
     double threshold = 0;  // of the mollifier of two edges [mm^4]; 0: a vertex
-    Index pair = 0;        // candidate whose nodes these are: vertices with triangles first, then edges
+    contact::Pair pair{};  // whose nodes these are: of edges where there is a threshold
   };
 
   /// The terms of a shape, always in the same order.
@@ -58,6 +70,10 @@ class ContactPotential {
   /// Second derivative of a term in its nodes [N/mm]; projected: a positive semidefinite part of it.
   void stiffness(const Points& positions, const Term& term, bool projected, contact::Hessian& out) const;
 
+  /// May a vertex come to feel a triangle; may two edges?
+  [[nodiscard]] bool felt(Index vertex, Index triangle) const;
+  [[nodiscard]] bool edges_felt(const contact::Pair& edges) const;
+
  private:
   struct Feature;
   void add_vertex(const Points& positions, const contact::Candidates& candidates, std::size_t begin, std::size_t end,
@@ -65,7 +81,6 @@ class ContactPotential {
   void count(Index triangle, const contact::Separation& separation, Index count, Index pair,
              std::vector<Feature>& features) const;
   [[nodiscard]] Index count_at(Index vertex, Index corner) const;
-  [[nodiscard]] bool felt(Index vertex, Index triangle) const;
   [[nodiscard]] Index felt_at(Index vertex, Index edge) const;
 
   const ContactSurfaces& surfaces_;

@@ -47,7 +47,8 @@ Continuation::Continuation(const System& system, System::Workspace& work, Team& 
     : system_(system),
       work_(work),
       team_(team),
-      newton_(system, work, team, {options.tolerance_mm, options.force_share, 30, options.keep_history}, progress,
+      newton_(system, work, team,
+              {options.tolerance_mm, options.force_share, system.contact() ? 100 : 30, options.keep_history}, progress,
               report),
       tolerance_mm_(options.tolerance_mm),
       max_iterations_(options.max_iterations),
@@ -57,14 +58,18 @@ Continuation::Continuation(const System& system, System::Workspace& work, Team& 
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
-  move_mm_ = predict(system_, here, there, active_, work_, team_, trial);
-  predicted_ = trial.positions;
+  const auto prediction = [&] {
+    const auto move = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_);
+    if (move) move_mm_ = *move;
+    begun_ = trial.positions;
+    return move.has_value();
+  };
+  if (!prediction()) return Newton::Outcome::stuck;
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   auto outcome = settle(there, Newton::Policy::descend, trial, whole && factorised_nearby(trial.positions));
   if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
-    (void)predict(system_, here, there, active_, work_, team_, trial);
-    outcome = settle(there, Newton::Policy::follow, trial);
+    if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);
   }
   return outcome;
 }
@@ -76,8 +81,10 @@ bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate
   const auto jumps = [&] {
     Iterate back = trial;
     (void)predict(system_, there, here, active_, work_, team_, back);
-    jump_mm_ = 0.5 * largest_move(predicted_ - trial.positions, back.positions - at.positions);
-    return !(jump_mm_ <= least_jump * correction);
+    const Points ahead = predicted_ - trial.positions, behind = back.positions - at.positions;
+    jump_mm_ = 0.5 * largest_move(ahead, behind);
+    // where the way has a corner, at which something begins to touch, both miss on the same side, by any lengths
+    return !(jump_mm_ <= least_jump * correction) && !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
   };
   if (correction <= least_snap * system_.model().diagonal_mm) return false;
   // the factor at hand is of a shape nearby, and mostly good enough
@@ -117,8 +124,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const std::vector<bool> active = active_;
   auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
-  if (way_.loads_change && snapped(move_mm_, largest_move(predicted_, trial.positions)))
-    outcome = Newton::Outcome::stuck;
+  if (way_.loads_change && snapped(move_mm_, largest_move(begun_, trial.positions))) outcome = Newton::Outcome::stuck;
   const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
   const bool unstable = outcome == Newton::Outcome::unstable;
   if (newton_.inverted() && !last_.inverted && length > most_inverting) outcome = Newton::Outcome::stuck;

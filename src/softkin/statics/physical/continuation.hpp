@@ -107,7 +107,7 @@ class Continuation {
   SolveReport& report_;
   Way way_;
   std::vector<bool> active_;
-  Points predicted_;                  // by the last step
+  Points predicted_, begun_;          // by the last step, and what of it is in nobody's way
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
   Judgement last_;                    // of the last good shape
   bool interrupted_ = false;

@@ -9,6 +9,8 @@ namespace softkin::physical {
 namespace {
 
 constexpr double least_damping = 1e-3;
+/// Of the merit function's slope, that a step must bring.
+constexpr double worthwhile_descent = 1e-4;
 /// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
 /// factorisation.
 constexpr double worthwhile_contraction = 0.6;
@@ -64,13 +66,41 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   return end;
 }
 
-/// Moves by `damping` times a step and finds the simplified step there. False where the law has no energy.
-bool Newton::attempt(const Step& step, double damping, const Iterate& from) {
+/// Moves by `damping` times a step, less where something is in the way. False where the law has no energy, or where
+/// there is no way.
+bool Newton::attempt(const Step& step, double& damping, const Iterate& from) {
   trial_ = from;
-  system_.advance(step.move, damping, work_, trial_.positions, team_);
+  if (!system_.advance_clear(step.move, damping, work_, trial_.positions, team_)) return false;
   trial_.multipliers += damping * step.change;
   system_.evaluate(trial_, *demand_, *active_, work_, trial_balance_, team_);
   return !trial_balance_.forbidden && trial_balance_.force.allFinite();
+}
+
+bool Newton::attempt_whole(const Step& step, const Iterate& from) {
+  double damping = 1;
+  return attempt(step, damping, from) && damping == 1;
+}
+
+/// What a step of Newton's makes less where the stiffness is positive: potential, and constraints that are missed.
+double Newton::merit(const System::Balance& balance) const {
+  return balance.energy + balance.load_energy + constraint_weights_.dot(balance.constraint.cwiseAbs());
+}
+
+/// Chooses the weights of missed constraints, larger than the multipliers, for the step at hand.
+///
+/// returns  the slope of the merit function along the step, which is to be negative
+/// source   Nocedal, Wright 2006, Numerical optimization, theorem 18.2
+double Newton::weigh_constraints(const Iterate& at) {
+  constexpr double above = 2;  // the multipliers
+  constraint_weights_ = Eigen::VectorXd::Zero(system_.actuators());
+  double slope = balance_.force.dot(step_.move);
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!(*active_)[a]) continue;
+    const double multiplier = at.multipliers[a], missed = balance_.constraint[a];
+    constraint_weights_[a] = above * std::max(std::abs(multiplier), std::abs(multiplier + step_.change[a]));
+    slope += system_.sign(a) * multiplier * missed - constraint_weights_[a] * std::abs(missed);
+  }
+  return slope;
 }
 
 /// Step that the factor at hand asks for.
@@ -92,6 +122,8 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   step_.size = system_.size_of(step_.move, at.positions);
   if (!std::isfinite(step_.size.mean)) return Advance::none;
   damping = std::min(1.0, 2 * damping);
+  // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
+  const double slope = system_.contact() ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
@@ -99,7 +131,9 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       if (next_.size.mean < step_.size.mean || step_.size.largest < settings_.tolerance_mm) break;
       // near a singular stiffness the next step may be long although little is left
       if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
-      if (std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
+      if (slope < 0 && merit(trial_balance_) < before + worthwhile_descent * damping * slope) break;
+      if (!system_.contact() &&
+          std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
         const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
         factor = std::min(0.5, damping / (2 * residue));
       }
@@ -139,7 +173,7 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
   while (static_cast<int>(made_.size()) <= most_updates && update_next()) {
     made_.push_back(next_);
     const Step& step = made_.back();
-    if (!attempt(step, 1, at)) return reject(at);
+    if (!attempt_whole(step, at)) return reject(at);
     const bool last = step.size.largest < settings_.tolerance_mm;
     if (!last) {
       find(trial_balance_, trial_.positions, next_);
@@ -164,7 +198,7 @@ Newton::Advance Newton::steps_from_here(Iterate& at, double& damping) {
 Newton::Advance Newton::steps_from_nearby(Iterate& at) {
   if (!as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_)) return reject(at);
   find(balance_, at.positions, step_);
-  if (!std::isfinite(step_.size.mean) || !attempt(step_, 1, at)) return reject(at);
+  if (!std::isfinite(step_.size.mean) || !attempt_whole(step_, at)) return reject(at);
   const bool last = step_.size.largest < settings_.tolerance_mm;
   if (!last) {
     find(trial_balance_, trial_.positions, next_);
@@ -259,6 +293,21 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   return largest_move(before, at.positions);
 }
 
+std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
+                                    const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
+                                    Points& predicted) {
+  const Iterate before = at;
+  const double move = predict(system, here, there, active, work, team, at);
+  predicted = at.positions;
+  if (!predicted.allFinite()) return move;
+  const double left = system.keep_clear(before.positions, there.share, work, at.positions, team);
+  if (left == 1) return move;
+  if (left == 0) return std::nullopt;
+  for (Index a = 0; a < system.actuators(); ++a)
+    if (active[a]) at.multipliers[a] = before.multipliers[a] + left * (at.multipliers[a] - before.multipliers[a]);
+  return largest_move(before.positions, at.positions);
+}
+
 Predictor::Predictor(const System& system, System::Workspace& work, const State& at, Team& team)
     : system_(system),
       work_(work),
@@ -278,7 +327,9 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
 
 State Predictor::predict(const Actuation& actuation, Team& team) {
   Iterate there = iterate_;
-  (void)physical::predict(system_, {at_.actuation, at_.share}, {actuation, 1}, active_, work_, team, there);
+  Points predicted;
+  if (!predict_clear(system_, {at_.actuation, at_.share}, {actuation, 1}, active_, work_, team, there, predicted))
+    return at_;
   if (!there.positions.allFinite() || !there.multipliers.allFinite()) return at_;
   State state{std::move(there.positions), actuation, std::move(there.multipliers), 1};
   for (Index a = 0; a < system_.actuators(); ++a) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <softkin/core/progress.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/system.hpp>
@@ -54,7 +55,10 @@ class Newton {
   [[nodiscard]] bool goes_on() const;
   Advance factorise(const Iterate& at, Policy policy);
   void find(const System::Balance& balance, const Points& positions, Step& step);
-  bool attempt(const Step& step, double damping, const Iterate& from);
+  bool attempt(const Step& step, double& damping, const Iterate& from);
+  bool attempt_whole(const Step& step, const Iterate& from);
+  [[nodiscard]] double merit(const System::Balance& balance) const;
+  [[nodiscard]] double weigh_constraints(const Iterate& at);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
   bool update_next();
@@ -77,7 +81,8 @@ class Newton {
   const std::vector<bool>* active_ = nullptr;
   System::Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
-  std::vector<Step> made_;  // with the last factor
+  std::vector<Step> made_;              // with the last factor
+  Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
   Iterate trial_;
   int negative_ = 0;  // of the last factorisation
   System::Imbalance imbalance_;
@@ -89,6 +94,14 @@ class Newton {
 /// returns  the largest move of a vertex [mm]
 double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
                System::Workspace& work, Team& team, Iterate& at);
+
+/// The same, less far where otherwise something would pass through something.
+///
+/// predicted  becomes what predict() gives
+/// returns    the largest move of a vertex [mm]; none where supports are in each other's way
+std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
+                                    const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
+                                    Points& predicted);
 
 /// The stiffness at an equilibrium, for predictions of those around it.
 class Predictor {

@@ -119,8 +119,9 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
     system.step(balance, work, step, change, team);
     if (!step.allFinite() || !change.allFinite()) continue;
     Iterate trial = at;
-    system.advance(step, 1, work, trial.positions, team);
-    trial.multipliers += change;
+    double scale = 1;
+    if (!system.advance_clear(step, scale, work, trial.positions, team)) continue;
+    trial.multipliers += scale * change;
     system.evaluate(trial, demand, active, work, there, team);
     if (there.forbidden || !there.force.allFinite()) continue;
     if (!(lagrangian(system, there, trial.positions, at.multipliers) <
@@ -137,11 +138,7 @@ double potential(const System& system, const Iterate& at, const Demand& demand, 
                  System::Workspace& work, Team& team) {
   System::Balance balance;
   system.evaluate(at, demand, active, work, balance, team);
-  double energy = balance.energy;
-  for (Index a = 0; a < system.actuators(); ++a)
-    if (system.measures().measures(a) && !system.constrains(a))
-      energy += system.sign(a) * at.multipliers[a] * system.measures().value(a, at.positions);
-  return energy;
+  return balance.energy + balance.load_energy;
 }
 
 }  // namespace softkin::physical

@@ -51,8 +51,8 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
   std::optional<Measured> found;
   if (prepare(here, from.at) >= 0) {
     Iterate trial = from.at;
-    (void)predict(system_, here, there, active_, work_, team_, trial);
-    const auto outcome = settle(there, Newton::Policy::descend, trial);
+    const bool clear = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_).has_value();
+    const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
     interrupted_ = outcome == Newton::Outcome::interrupted;
     if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted))
       found = Measured{measure, trial.multipliers[a] / system_.unit(a), std::move(trial), judged()};

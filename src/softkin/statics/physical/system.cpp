@@ -11,6 +11,9 @@ namespace {
 /// Share of a constraint's own compliance below which what it adds to others is rounding [-].
 constexpr double dependent = 1e-9;
 
+/// What is gone of a share that is safe: a shorter way is not quite the same.
+constexpr double within = 0.95;
+
 /// Moves shorter than this share of the robot's diagonal turn nothing that matters.
 constexpr double least_turning = 1e-4;
 
@@ -21,31 +24,37 @@ System::System(const Model& model)
       elastic_(model),
       measures_(model),
       any_dead_load_(model.dead_load.rows() > 0 && !model.dead_load.isZero(0)) {
-  linear::Cliques cliques;
-  elastic_.add_cliques(cliques);
-  measures_.add_cliques(cliques);
-  linear::BlockPattern pattern(static_cast<Index>(model.rest.rows()), cliques);
+  elastic_.add_cliques(cliques_);
+  measures_.add_cliques(cliques_);
+  linear::BlockPattern pattern(static_cast<Index>(model.rest.rows()), cliques_);
   freedoms_ = std::make_unique<supports::Freedoms>(model, pattern);
   supports::ReducedMatrix reduced(*freedoms_, pattern);
   auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
   linear::require_memory(*symbolic);  // before what takes long
-  layout_ = std::make_shared<const Layout>(
-      Layout{std::move(pattern), std::move(reduced), std::move(symbolic), cliques.slots.back()});
+  layout_ = std::make_shared<const Layout>(Layout{
+      std::move(pattern), std::move(reduced), std::move(symbolic), cliques_.slots.back(), {}, cliques_.slots.back()});
+  if (model.contact.any())
+    contacts_ = std::make_unique<Contacts>(model);
+  else
+    cliques_ = {};
   turning_ = std::make_unique<supports::GlobalStep>(model, elastic_.laplacian(), freedoms_->vertex_order());
 }
 
 System::Workspace::Workspace(const System& system)
     : elastic(system.elastic_.make_scratch()),
+      contacts(system.contacts_ ? system.contacts_->make_scratch() : nullptr),
       layout(system.layout_),
+      factorised_layout(layout),
       slots(9 * static_cast<std::size_t>(layout->slots)),
       slopes(system.model_.actuators.size()),
       factor(layout->symbolic) {}
 
 void System::Workspace::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
-  if (layout->reduced.in_order()) return factor.solve(right_sides, team);
-  layout->reduced.to_columns(right_sides, in_columns);
+  const supports::ReducedMatrix& reduced = factorised_layout->reduced;
+  if (reduced.in_order()) return factor.solve(right_sides, team);
+  reduced.to_columns(right_sides, in_columns);
   factor.solve(in_columns, team);
-  layout->reduced.to_unknowns(in_columns, right_sides);
+  reduced.to_unknowns(in_columns, right_sides);
 }
 
 bool System::constrains(Index actuator) const {
@@ -63,11 +72,21 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
     balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();
     work.gradient -= demand.share * model_.dead_load;
   }
+  if (contacts_ && !balance.forbidden) {
+    contacts_->find(at.positions, *work.contacts, team);
+    balance.energy += contacts_->energy(at.positions, *work.contacts);
+    balance.forbidden = !std::isfinite(balance.energy);
+    if (!balance.forbidden) contacts_->add_gradient(at.positions, *work.contacts, work.gradient);
+  }
   balance.constraint.setZero(actuators());
+  balance.load_energy = 0;
   for (Index a = 0; a < actuators(); ++a) {
     if (!measures_.measures(a) || (!active[a] && at.multipliers[a] == 0)) continue;
     const double value = measures_.value(a, at.positions, &work.slopes[a]);
-    if (active[a]) balance.constraint[a] = value - target(a, demand);
+    if (active[a])
+      balance.constraint[a] = value - target(a, demand);
+    else
+      balance.load_energy += sign(a) * at.multipliers[a] * value;
     work.gradient += sign(a) * at.multipliers[a] * work.slopes[a];
   }
   balance.force.resize(freedoms_->size());
@@ -80,11 +99,30 @@ System::Imbalance System::imbalance(const Balance& balance, const Workspace& wor
           roundings * std::numeric_limits<double>::epsilon() * work.stiffest * model_.diagonal_mm};
 }
 
+/// The layout of the body with all that is near each other, where the one that there is does not hold what touches.
+void System::hold_contacts(const Iterate& at, Workspace& work, Team& team) const {
+  if (!contacts_ || Contacts::holds(work.layout->touching, *work.contacts)) return;
+  contact::Candidates pairs;
+  contacts_->find_pairs(at.positions, *work.contacts, team, pairs);
+  linear::Cliques cliques = cliques_;
+  contacts_->add_cliques(pairs, cliques);
+  linear::BlockPattern pattern(static_cast<Index>(model_.rest.rows()), cliques);
+  supports::ReducedMatrix reduced = supports::ReducedMatrix::wider(*freedoms_, pattern);
+  auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
+  work.layout = std::make_shared<const Layout>(Layout{std::move(pattern), std::move(reduced), std::move(symbolic),
+                                                      cliques.slots.back(), std::move(pairs), cliques_.slots.back()});
+  work.slots.resize(9 * static_cast<std::size_t>(work.layout->slots));
+}
+
 void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const {
+  hold_contacts(at, work, team);
   elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
   Eigen::VectorXd scale(actuators());
   for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
   measures_.second_derivatives(at.positions, scale, work.slots, team);
+  if (contacts_)
+    contacts_->stiffness(at.positions, kind == Stiffness::projected, *work.contacts, work.layout->touching,
+                         work.slots.data() + 9 * work.layout->first_touching);
 }
 
 int System::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
@@ -107,6 +145,10 @@ int System::factorise(const Iterate& at, const Demand& demand, const std::vector
   });
   const double mean = work.mean = trace / std::max<Index>(1, columns.size());
   if (shift > 0) each_diagonal([&](double& value) { value += shift * mean; });
+  if (work.factorised_layout != work.layout) {
+    work.factor.change(layout.symbolic);
+    work.factorised_layout = work.layout;
+  }
   work.negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
   work.exact = kind == Stiffness::exact && shift == 0;
   work.factorised = at.positions;
@@ -227,6 +269,41 @@ void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work,
   freedoms_->move(step, scale, positions);
   std::vector<supports::Pose> poses = turning_->poses(positions);
   turning_->step(work.lacking, positions, poses, team);
+}
+
+bool System::advance_clear(const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
+                           Team& team) const {
+  constexpr double least = 1e-3;  // of the scale
+  if (!contacts_) {
+    advance(step, scale, work, positions, team);
+    return true;
+  }
+  const Points from = positions;
+  for (const double whole = scale;;) {
+    advance(step, scale, work, positions, team);
+    if (!positions.allFinite()) return false;
+    const double share = contacts_->safe_share(from, positions, *work.contacts, team);
+    if (share >= 1) return true;
+    scale *= within * share;
+    if (!(std::abs(scale) >= least * std::abs(whole))) return false;
+    positions = from;
+  }
+}
+
+double System::keep_clear(const Points& from, double held, Workspace& work, Points& positions, Team& team) const {
+  constexpr double least = 1e-3;
+  if (!contacts_) return 1;
+  const Points to = positions;
+  double left = 1;
+  for (;;) {
+    const double share = contacts_->safe_share(from, positions, *work.contacts, team);
+    if (share >= 1) return left;
+    if (left == 0) return 0;
+    left *= within * share;
+    if (left < least) left = 0;
+    positions = from + left * (to - from);
+    freedoms_->hold(held, positions);
+  }
 }
 
 System::Size System::size_of(const Eigen::VectorXd& unknowns, const Points& positions) const {

@@ -5,6 +5,7 @@
 #include <softkin/linear/sparse_ldlt.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
+#include <softkin/statics/physical/contacts.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
 #include <softkin/statics/supports/global_step.hpp>
@@ -35,7 +36,9 @@ class System {
     linear::BlockPattern pattern;  // over vertices
     supports::ReducedMatrix reduced;
     std::shared_ptr<const linear::FrontTree> symbolic;
-    std::int64_t slots = 0;  // of the cliques of the pattern
+    std::int64_t slots = 0;           // of the cliques of the pattern
+    contact::Candidates touching;     // the last cliques are of these pairs
+    std::int64_t first_touching = 0;  // slot
   };
 
   /// Everything that is written while solving; one per thread of control. Nothing is allocated per iteration.
@@ -46,7 +49,9 @@ class System {
     /// Every column becomes its solution with the last factorisation.
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
-    std::shared_ptr<const Layout> layout;
+    std::unique_ptr<Contacts::Scratch> contacts;      // where there is contact
+    std::shared_ptr<const Layout> layout;             // of the slots
+    std::shared_ptr<const Layout> factorised_layout;  // of the factor
     LargeVector<double> slots, blocks, values;
     Eigen::MatrixXd in_columns;  // right-hand sides in the order of the layout, where it has its own
     Points gradient;             // of the Lagrangian in x
@@ -74,7 +79,8 @@ class System {
   struct Balance {
     Eigen::VectorXd force;       // of the unknowns, what is not in balance [N, N mm]
     Eigen::VectorXd constraint;  // m: measure minus demand, 0 where not active [mm, mm^3]
-    double energy = 0;           // elastic, less the work of dead loads [mJ]
+    double energy = 0;           // elastic and of contact, less the work of dead loads [mJ]
+    double load_energy = 0;      // of measures whose multipliers are given [mJ]
     bool inverted = false;       // an element
     bool forbidden = false;      // inverted where the law has no energy
   };
@@ -134,6 +140,20 @@ class System {
   /// order, and far better where a step bends the robot.
   void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
 
+  [[nodiscard]] bool contact() const { return contacts_ != nullptr; }
+
+  /// The same, less far where otherwise something would pass through something.
+  ///
+  /// scale    becomes what was moved by
+  /// returns  false where hardly any move is possible
+  bool advance_clear(const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions, Team& team) const;
+
+  /// Brings a shape nearer to another one, from which it cannot be come to without that something passes through
+  /// something, supports and rigid regions staying where they are held at that share.
+  ///
+  /// returns  how much of the way is left [-]; 0: the supports alone are in each other's way
+  double keep_clear(const Points& from, double held, Workspace& work, Points& positions, Team& team) const;
+
   /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
   struct Size {
     double largest = 0, mean = 0;
@@ -166,6 +186,7 @@ class System {
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
 
  private:
+  void hold_contacts(const Iterate& at, Workspace& work, Team& team) const;
   void meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
   const Model& model_;
@@ -173,7 +194,9 @@ class System {
   supports::ActuatorMeasures measures_;
   bool any_dead_load_;
   std::unique_ptr<supports::Freedoms> freedoms_;
-  std::shared_ptr<const Layout> layout_;  // of the body
+  linear::Cliques cliques_;               // of the body
+  std::shared_ptr<const Layout> layout_;  // of the body alone
+  std::unique_ptr<Contacts> contacts_;
   std::unique_ptr<supports::GlobalStep> turning_;
 };
 

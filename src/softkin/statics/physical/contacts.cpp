@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/contact/collision.hpp>
+#include <softkin/statics/physical/contacts.hpp>
+
+namespace softkin::physical {
+
+using contact::Candidates;
+using contact::Pair;
+
+namespace {
+
+/// Area of a vertex's guard and of edges, over the mean area of a robot's vertices: it changes a pressure by as much,
+/// and yet nothing passes.
+constexpr double guard_share = 0.01;
+/// A motion may shrink gaps to this share.
+constexpr double kept_gap = 0.1;
+/// Pairs within so many reaches stand in the pattern.
+constexpr double foresight = 2;
+/// Slots of four vertices.
+constexpr Index clique_slots = 10;
+
+}  // namespace
+
+Contacts::Contacts(const Model& model) : model_(model) {
+  const ContactModel& rules = model.contact;
+  surfaces_.surface = contact::make_surface(rules.triangles, model.rest);
+  surfaces_.reach_mm = rules.distance_mm;
+  surfaces_.modulus_MPa = rules.modulus_MPa;
+  surfaces_.rules = &rules;
+  find_parts();
+  choose_areas();
+  Team alone(1);
+  leave_out_neighbours(model.rest, make_scratch()->broad, alone, surfaces_);
+  potential_ = std::make_unique<ContactPotential>(surfaces_, model.rest);
+}
+
+/// A vertex where parts of the robot meet is of the last of them.
+void Contacts::find_parts() {
+  const contact::Surface& surface = surfaces_.surface;
+  surfaces_.triangle_part = surfaces_.rules->part_of;
+  surfaces_.vertex_part.resize(surface.vertices.size());
+  surfaces_.edge_part.resize(surface.edges.size());
+  const auto last = [&](const contact::Lists& triangles, std::size_t of) {
+    Index part = 0;
+    for (Index i = triangles.begin[of]; i < triangles.begin[of + 1]; ++i)
+      part = std::max(part,
+                      surfaces_.triangle_part[static_cast<std::size_t>(triangles.items[static_cast<std::size_t>(i)])]);
+    return part;
+  };
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    surfaces_.vertex_part[v] = last(surface.vertex_triangles, v);
+  for (std::size_t e = 0; e < surface.edges.size(); ++e) surfaces_.edge_part[e] = last(surface.edge_triangles, e);
+}
+
+void Contacts::choose_areas() {
+  double sum = 0;
+  Index count = 0;
+  for (std::size_t v = 0; v < surfaces_.surface.vertices.size(); ++v) {
+    surfaces_.vertex_area.push_back(surfaces_.rules->area[static_cast<std::size_t>(surfaces_.surface.vertices[v])]);
+    if (surfaces_.rules->parts[static_cast<std::size_t>(surfaces_.vertex_part[v])].rank != ContactRank::robot) continue;
+    sum += surfaces_.vertex_area.back();
+    ++count;
+  }
+  surfaces_.guard_area = guard_share * sum / std::max<Index>(1, count);
+  surfaces_.edge_area.assign(surfaces_.surface.edges.size(), surfaces_.guard_area);
+}
+
+/// Obstacles do not touch each other, nor a body itself, nor a robot where that is not asked for.
+contact::Exclusions Contacts::exclusions() const {
+  const ContactModel& rules = *surfaces_.rules;
+  const auto parts = static_cast<Index>(rules.parts.size());
+  std::vector<Index> group_of_part;
+  for (Index part = 0; part < parts; ++part) {
+    const ContactRank rank = rules.parts[static_cast<std::size_t>(part)].rank;
+    const bool untouched = rank == ContactRank::obstacle || !rules.pair(part, part).touch;
+    group_of_part.push_back(rank == ContactRank::obstacle ? 0
+                            : !untouched                  ? -1
+                            : rank == ContactRank::robot  ? 1
+                                                          : 2 + part);
+  }
+  contact::Exclusions out;
+  out.group.assign(static_cast<std::size_t>(model_.rest.rows()), -1);
+  for (std::size_t v = 0; v < surfaces_.surface.vertices.size(); ++v)
+    out.group[static_cast<std::size_t>(surfaces_.surface.vertices[v])] =
+        group_of_part[static_cast<std::size_t>(surfaces_.vertex_part[v])];
+  return out;
+}
+
+std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
+  return std::make_unique<Scratch>(
+      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, {}});
+}
+
+void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const {
+  scratch.broad.find(positions, surfaces_.reach_mm, team, scratch.near);
+  sort_candidates(scratch.near);
+  potential_->find(positions, scratch.near, scratch.terms);
+}
+
+double Contacts::energy(const Points& positions, const Scratch& scratch) const {
+  return potential_->energy(positions, scratch.terms);
+}
+
+void Contacts::add_gradient(const Points& positions, const Scratch& scratch, Points& gradient) const {
+  potential_->add_gradient(positions, scratch.terms, gradient);
+}
+
+namespace {
+
+/// Place of a term's pair among pairs, those of edges after those of vertices; -1: none.
+Index place_of(const Candidates& pairs, const ContactPotential::Term& term) {
+  const bool edges = term.threshold > 0;
+  const std::vector<Pair>& all = edges ? pairs.edge_edge : pairs.vertex_triangle;
+  const auto found = std::lower_bound(all.begin(), all.end(), term.pair);
+  if (found == all.end() || *found != term.pair) return -1;
+  return static_cast<Index>(found - all.begin() +
+                            (edges ? static_cast<std::ptrdiff_t>(pairs.vertex_triangle.size()) : 0));
+}
+
+}  // namespace
+
+bool Contacts::holds(const Candidates& pairs, const Scratch& scratch) {
+  return std::all_of(scratch.terms.begin(), scratch.terms.end(),
+                     [&](const ContactPotential::Term& term) { return place_of(pairs, term) >= 0; });
+}
+
+void Contacts::find_pairs(const Points& positions, Scratch& scratch, Team& team, Candidates& pairs) const {
+  const double reach = foresight * surfaces_.reach_mm;
+  scratch.broad.find(positions, reach, team, pairs);
+  const contact::Surface& surface = surfaces_.surface;
+  std::erase_if(pairs.vertex_triangle, [&](const Pair& pair) {
+    return !potential_->felt(pair.first, pair.second) ||
+           contact::vertex_triangle(contact::points_of(positions, nodes_of_vertex_triangle(surface, pair))).squared >
+               reach * reach;
+  });
+  std::erase_if(pairs.edge_edge, [&](const Pair& pair) {
+    return !potential_->edges_felt(pair) ||
+           contact::edge_edge(contact::points_of(positions, nodes_of_edge_edge(surface, pair))).squared > reach * reach;
+  });
+  sort_candidates(pairs);
+}
+
+void Contacts::add_cliques(const Candidates& pairs, linear::Cliques& cliques) const {
+  for (const Pair& pair : pairs.vertex_triangle) cliques.add(nodes_of_vertex_triangle(surfaces_.surface, pair));
+  for (const Pair& pair : pairs.edge_edge) cliques.add(nodes_of_edge_edge(surfaces_.surface, pair));
+}
+
+void Contacts::stiffness(const Points& positions, bool projected, const Scratch& scratch, const Candidates& pairs,
+                         double* slots) const {
+  const std::size_t count = pairs.vertex_triangle.size() + pairs.edge_edge.size();
+  std::fill_n(slots, 9 * clique_slots * count, 0.0);
+  contact::Hessian block;
+  for (const ContactPotential::Term& term : scratch.terms) {
+    potential_->stiffness(positions, term, projected, block);
+    double* slot = slots + static_cast<std::ptrdiff_t>(9 * clique_slots) * place_of(pairs, term);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b <= a; ++b, slot += 9)
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(3 * a + r, 3 * b + c);
+  }
+}
+
+double Contacts::safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
+  constexpr double margin = 1e-6;  // of the reach, far above what boxes lose by rounding
+  scratch.broad.find(from, to, margin * surfaces_.reach_mm, team, scratch.moving);
+  return contact::safe_motion(surfaces_.surface, scratch.moving, from, to, kept_gap, team);
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <softkin/linear/block_matrix.hpp>
+#include <softkin/model/model.hpp>
+#include <softkin/statics/physical/contact_potential.hpp>
+
+namespace softkin::physical {
+
+/// What touches in the shapes of a robot: the potential between its surfaces and those around it, what it adds to the
+/// pattern of the stiffness, and how far the robot may move before anything passes through anything.
+class Contacts {
+ public:
+  /// model must outlive the object, and have contact.
+  explicit Contacts(const Model& model);
+
+  /// What changes with the shape; one per thread of control.
+  struct Scratch {
+    contact::BroadPhase broad;
+    contact::Candidates near, moving;
+    std::vector<ContactPotential::Term> terms;  // of the shape that was found last
+  };
+  [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const;
+
+  /// Finds what is closer than the reach.
+  void find(const Points& positions, Scratch& scratch, Team& team) const;
+
+  // Of the terms that were found, at the same positions.
+  /// [mJ]; infinite where a pair touches.
+  [[nodiscard]] double energy(const Points& positions, const Scratch& scratch) const;
+  /// Adds it [N].
+  void add_gradient(const Points& positions, const Scratch& scratch, Points& gradient) const;
+
+  /// Does a pattern with the cliques of these pairs hold the stiffness of all terms?
+  [[nodiscard]] static bool holds(const contact::Candidates& pairs, const Scratch& scratch);
+  /// Pairs that are close enough to come within reach soon; sorted.
+  void find_pairs(const Points& positions, Scratch& scratch, Team& team, contact::Candidates& pairs) const;
+  /// Adds every pair as a clique of four vertices.
+  void add_cliques(const contact::Candidates& pairs, linear::Cliques& cliques) const;
+  /// Second derivatives of the terms into the slots of the cliques of pairs that hold them, the first of which is
+  /// given; 9 values each [N/mm].
+  void stiffness(const Points& positions, bool projected, const Scratch& scratch, const contact::Candidates& pairs,
+                 double* slots) const;
+
+  /// The share in [0, 1] of a motion, every vertex on its straight way, in which nothing passes through anything and no
+  /// gap shrinks to less than a tenth.
+  [[nodiscard]] double safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
+
+  [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
+
+ private:
+  void find_parts();
+  void choose_areas();
+  [[nodiscard]] contact::Exclusions exclusions() const;
+
+  const Model& model_;
+  ContactSurfaces surfaces_;
+  std::unique_ptr<ContactPotential> potential_;
+};
+
+}  // namespace softkin::physical
