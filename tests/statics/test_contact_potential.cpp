@@ -43,7 +43,7 @@ Points places(int cells, double sideways, double height, double bumps, std::mt19
 struct Sample {
   Sample(std::vector<Corners> triangles, Points its_rest, double reach)
       : rest(std::move(its_rest)),
-        surface{contact::make_surface(std::move(triangles), rest), {}, {}, reach, 2.5, {}, {}} {
+        surface{.surface = contact::make_surface(std::move(triangles), rest), .reach_mm = reach, .modulus_MPa = 2.5} {
     surface.vertex_area = surface.surface.vertex_area;
     surface.edge_area = surface.surface.edge_area;
     broad.emplace(surface.surface, rest);

@@ -9,17 +9,17 @@ namespace softkin::physical {
 /// Surfaces that may touch, and what the potential between them needs.
 struct ContactSurfaces {
   contact::Surface surface;
-  std::vector<double> vertex_area, edge_area;  // that each carries pressure for, by place in the surface [mm^2]
+  std::vector<double> vertex_area{}, edge_area{};  // that each carries pressure for, by place in the surface [mm^2]
   double reach_mm = 0;                         // > 0: surfaces that are closer repel each other
   double modulus_MPa = 0;                      // > 0: of that repulsion
   /// Of every vertex, by place: triangles that it does not feel, ascending, those around it among them.
-  contact::Lists unfelt_triangles;
+  contact::Lists unfelt_triangles{};
   /// Of every edge, by place: edges after it that it does not feel, ascending.
-  contact::Lists unfelt_edges;
+  contact::Lists unfelt_edges{};
 
   // of surfaces of several parts; else empty
   const ContactModel* rules = nullptr;
-  std::vector<Index> vertex_part, edge_part, triangle_part;  // by place
+  std::vector<Index> vertex_part{}, edge_part{}, triangle_part{};  // by place
   double guard_area = 0;  // for which a vertex carries pressure against what it stands behind in rank [mm^2]
 
   /// For which a vertex carries pressure against a triangle [mm^2].

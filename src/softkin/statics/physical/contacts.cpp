@@ -89,13 +89,32 @@ contact::Exclusions Contacts::exclusions() const {
 
 std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
   return std::make_unique<Scratch>(
-      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, {}});
+      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, {}, {}});
+}
+
+/// Of candidates those that are so close and feel each other; sorted.
+void Contacts::keep_close(const Points& positions, double reach, Candidates& pairs) const {
+  const contact::Surface& surface = surfaces_.surface;
+  std::erase_if(pairs.vertex_triangle, [&](const Pair& pair) {
+    return !potential_->felt(pair.first, pair.second) ||
+           contact::vertex_triangle(contact::points_of(positions, nodes_of_vertex_triangle(surface, pair))).squared >
+               reach * reach;
+  });
+  std::erase_if(pairs.edge_edge, [&](const Pair& pair) {
+    return !potential_->edges_felt(pair) ||
+           contact::edge_edge(contact::points_of(positions, nodes_of_edge_edge(surface, pair))).squared > reach * reach;
+  });
+  sort_candidates(pairs);
 }
 
 void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const {
-  scratch.broad.find(positions, surfaces_.reach_mm, team, scratch.near);
-  sort_candidates(scratch.near);
-  potential_->find(positions, scratch.near, scratch.terms);
+  if (scratch.searched.rows() == 0 || scratch.searched != positions) {
+    scratch.broad.find(positions, surfaces_.reach_mm, team, scratch.passing);
+    scratch.searched = positions;
+  }
+  scratch.close = scratch.passing;
+  keep_close(positions, surfaces_.reach_mm, scratch.close);
+  potential_->find(positions, scratch.close, scratch.terms);
 }
 
 double Contacts::energy(const Points& positions, const Scratch& scratch) const {
@@ -128,17 +147,7 @@ bool Contacts::holds(const Candidates& pairs, const Scratch& scratch) {
 void Contacts::find_pairs(const Points& positions, Scratch& scratch, Team& team, Candidates& pairs) const {
   const double reach = foresight * surfaces_.reach_mm;
   scratch.broad.find(positions, reach, team, pairs);
-  const contact::Surface& surface = surfaces_.surface;
-  std::erase_if(pairs.vertex_triangle, [&](const Pair& pair) {
-    return !potential_->felt(pair.first, pair.second) ||
-           contact::vertex_triangle(contact::points_of(positions, nodes_of_vertex_triangle(surface, pair))).squared >
-               reach * reach;
-  });
-  std::erase_if(pairs.edge_edge, [&](const Pair& pair) {
-    return !potential_->edges_felt(pair) ||
-           contact::edge_edge(contact::points_of(positions, nodes_of_edge_edge(surface, pair))).squared > reach * reach;
-  });
-  sort_candidates(pairs);
+  keep_close(positions, reach, pairs);
 }
 
 void Contacts::add_cliques(const Candidates& pairs, linear::Cliques& cliques) const {
@@ -161,10 +170,19 @@ void Contacts::stiffness(const Points& positions, bool projected, const Scratch&
   }
 }
 
+double Contacts::largest_turn(const Points& from, const Points& to) const {
+  double most = 0;
+  for (const auto& [a, b] : surfaces_.surface.edges) {
+    const auto before = from.row(b) - from.row(a), after = to.row(b) - to.row(a);
+    most = std::max(most, (after - before).squaredNorm() / before.squaredNorm());
+  }
+  return std::sqrt(most);
+}
+
 double Contacts::safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
-  constexpr double margin = 1e-6;  // of the reach, far above what boxes lose by rounding
-  scratch.broad.find(from, to, margin * surfaces_.reach_mm, team, scratch.moving);
-  return contact::safe_motion(surfaces_.surface, scratch.moving, from, to, kept_gap, team);
+  scratch.broad.find(from, to, surfaces_.reach_mm, team, scratch.passing);  // what touches in the end is among them
+  scratch.searched = to;
+  return contact::safe_motion(surfaces_.surface, scratch.passing, from, to, kept_gap, team);
 }
 
 }  // namespace softkin::physical

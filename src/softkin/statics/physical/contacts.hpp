@@ -17,7 +17,9 @@ class Contacts {
   /// What changes with the shape; one per thread of control.
   struct Scratch {
     contact::BroadPhase broad;
-    contact::Candidates near, moving;
+    contact::Candidates passing;                // what may be within reach on the way to a shape
+    Points searched;                            // that shape
+    contact::Candidates close;                  // what is within reach
     std::vector<ContactPotential::Term> terms;  // of the shape that was found last
   };
   [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const;
@@ -46,9 +48,14 @@ class Contacts {
   /// gap shrinks to less than a tenth.
   [[nodiscard]] double safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
 
+  /// How much an edge of the surfaces changes in a motion, over its length, the largest of all: 2 sin(angle / 2) where
+  /// it only turns [-].
+  [[nodiscard]] double largest_turn(const Points& from, const Points& to) const;
+
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
 
  private:
+  void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
   void find_parts();
   void choose_areas();
   [[nodiscard]] contact::Exclusions exclusions() const;

@@ -60,11 +60,11 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
                                    Iterate& trial) {
   const auto prediction = [&] {
     const auto move = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_);
-    if (move) move_mm_ = *move;
+    move_mm_ = move.value_or(largest_move(at.positions, predicted_));
     begun_ = trial.positions;
     return move.has_value();
   };
-  if (!prediction()) return Newton::Outcome::stuck;
+  if (!prediction()) return Newton::Outcome::blocked;
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   auto outcome = settle(there, Newton::Policy::descend, trial, whole && factorised_nearby(trial.positions));
   if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
@@ -125,6 +125,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   if (way_.loads_change && snapped(move_mm_, largest_move(begun_, trial.positions))) outcome = Newton::Outcome::stuck;
+  const bool blocked = outcome == Newton::Outcome::blocked;
+  if (blocked) outcome = Newton::Outcome::stuck;
   const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
   const bool unstable = outcome == Newton::Outcome::unstable;
   if (newton_.inverted() && !last_.inverted && length > most_inverting) outcome = Newton::Outcome::stuck;
@@ -132,7 +134,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   std::optional<Status> end;
   const double longest = longest_step(snap, unstable);
   if (outcome == Newton::Outcome::stuck) {
-    way_.factorised = false;
+    way_.factorised = blocked;
     active_ = active;
     end = shorten(length, at);
   } else if (length > 1.001 * longest) {

@@ -116,6 +116,14 @@ bool Newton::accept(double moved_mm, Iterate& at) {
   return goes_on();
 }
 
+/// Where contacts cut step after step, a way with less to go is shorter.
+bool Newton::labours(double damping) {
+  constexpr double poor = 0.2;
+  constexpr int most_poor = 8;  // in a row
+  poor_ = damping < poor ? poor_ + 1 : 0;
+  return system_.contact() && poor_ >= most_poor;
+}
+
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   system_.first_step(balance_, work_, step_.move, step_.change);
@@ -141,6 +149,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     damping *= factor;
     if (!(damping >= least_damping)) return Advance::none;
   }
+  if (labours(damping)) return Advance::none;
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
 
@@ -247,6 +256,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   Advance advance = Advance::made;
   double damping = 1;
+  poor_ = 0;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (factorised && iteration == 0) {
@@ -275,37 +285,72 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }
 
-double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-               System::Workspace& work, Team& team, Iterate& at) {
-  System::Balance balance;
+namespace {
+
+/// First-order change of unknowns and multipliers.
+struct Tangent {
   Eigen::VectorXd step, change;
-  system.upset(at, here, there, active, work, balance, team);
-  system.step(balance, work, step, change, team);
-  const Points before = at.positions;
-  if (step.allFinite() && change.allFinite()) {
-    system.advance(step, 1, work, at.positions, team);
-    at.multipliers += change;
+
+  Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+          System::Workspace& work, Team& team, const Iterate& at) {
+    System::Balance balance;
+    system.upset(at, here, there, active, work, balance, team);
+    system.step(balance, work, step, change, team);
+    if (step.allFinite() && change.allFinite()) return;
+    step.setZero();
+    change.setZero();
   }
-  system.freedoms().hold(there.share, at.positions);
+};
+
+/// Multipliers at a share of a tangent; those that are given are those of `there`.
+void follow(const Tangent& tangent, double share, const System& system, const Demand& there,
+            const std::vector<bool>& active, Eigen::VectorXd& multipliers) {
+  multipliers += share * tangent.change;
   for (Index a = 0; a < system.actuators(); ++a)
     if (!active[a] && !system.constrains(a) && system.measures().measures(a))
-      at.multipliers[a] = system.unit(a) * there.actuation[a];
+      multipliers[a] = system.unit(a) * there.actuation[a];
+}
+
+}  // namespace
+
+double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+               System::Workspace& work, Team& team, Iterate& at) {
+  const Tangent tangent(system, here, there, active, work, team, at);
+  const Points before = at.positions;
+  system.advance(tangent.step, 1, work, at.positions, team);
+  system.freedoms().hold(there.share, at.positions);
+  follow(tangent, 1, system, there, active, at.multipliers);
   return largest_move(before, at.positions);
 }
 
 std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
                                     const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
                                     Points& predicted) {
-  const Iterate before = at;
-  const double move = predict(system, here, there, active, work, team, at);
-  predicted = at.positions;
-  if (!predicted.allFinite()) return move;
-  const double left = system.keep_clear(before.positions, there.share, work, at.positions, team);
-  if (left == 1) return move;
-  if (left == 0) return std::nullopt;
-  for (Index a = 0; a < system.actuators(); ++a)
-    if (active[a]) at.multipliers[a] = before.multipliers[a] + left * (at.multipliers[a] - before.multipliers[a]);
-  return largest_move(before.positions, at.positions);
+  constexpr double shorter = 0.9;                    // than what is clear
+  constexpr double most_cut = 0.5, long_way = 0.05;  // of the way, of the diagonal
+  constexpr double least = 1e-3;
+  const Tangent tangent(system, here, there, active, work, team, at);
+  const Points from = at.positions;
+  // what is held comes to its place whatever is left of the way
+  double held = 1;
+  const System::Way way = [&](double share, Points& out) {
+    out = from;
+    system.advance(tangent.step, share, work, out, team);
+    system.freedoms().hold(here.share + share / held * (there.share - here.share), out);
+  };
+  double end = 1;
+  for (bool first = true;; first = false) {
+    held = std::max(end, least);
+    const double share = system.clear_share(from, way, end, work, at.positions, team);
+    if (first) predicted = at.positions;
+    if (share >= end) break;
+    if (end == 0) return std::nullopt;
+    end = shorter * share;
+    if (end < most_cut && largest_move(from, predicted) > long_way * system.model().diagonal_mm) return std::nullopt;
+    if (end < least) end = 0;
+  }
+  follow(tangent, end, system, there, active, at.multipliers);
+  return largest_move(from, at.positions);
 }
 
 Predictor::Predictor(const System& system, System::Workspace& work, const State& at, Team& team)

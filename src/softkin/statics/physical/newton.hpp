@@ -20,7 +20,8 @@ class Newton {
     bool keep_history = true;
   };
   /// unmet: arrived where the active constraints contradict each other or cannot be moved; they are missed.
-  enum class Outcome { converged, unstable, stuck, unmet, interrupted };
+  /// blocked: not tried, as the way there is.
+  enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked };
 
   Newton(const System& system, System::Workspace& work, Team& team, const Settings& settings,
          const ProgressCallback& progress, SolveReport& report);
@@ -57,6 +58,7 @@ class Newton {
   void find(const System::Balance& balance, const Points& positions, Step& step);
   bool attempt(const Step& step, double& damping, const Iterate& from);
   bool attempt_whole(const Step& step, const Iterate& from);
+  bool labours(double damping);
   [[nodiscard]] double merit(const System::Balance& balance) const;
   [[nodiscard]] double weigh_constraints(const Iterate& at);
   bool accept(double moved_mm, Iterate& at);
@@ -84,6 +86,7 @@ class Newton {
   std::vector<Step> made_;              // with the last factor
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
   Iterate trial_;
+  int poor_ = 0;      // steps in a row that were much shorter than Newton's
   int negative_ = 0;  // of the last factorisation
   System::Imbalance imbalance_;
   double missed_ = 0;  // the worst constraint, over its measure at rest [-]
@@ -98,7 +101,8 @@ double predict(const System& system, const Demand& here, const Demand& there, co
 /// The same, less far where otherwise something would pass through something.
 ///
 /// predicted  becomes what predict() gives
-/// returns    the largest move of a vertex [mm]; none where supports are in each other's way
+/// returns    the largest move of a vertex [mm]; none where a shorter way is better: supports are in each other's way, or
+///            little of a long one is left
 std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
                                     const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
                                     Points& predicted);

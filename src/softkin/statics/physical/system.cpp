@@ -271,39 +271,44 @@ void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work,
   turning_->step(work.lacking, positions, poses, team);
 }
 
-bool System::advance_clear(const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
+double System::clear_share(const Points& from, const Way& way, double end, Workspace& work, Points& to,
                            Team& team) const {
-  constexpr double least = 1e-3;  // of the scale
-  if (!contacts_) {
-    advance(step, scale, work, positions, team);
-    return true;
+  constexpr double gentle = 0.7, wild = 2.5;  // turns of a piece, and of what was stretched as well
+  way(end, to);
+  if (!contacts_) return end;
+  const double turn = to.allFinite() ? contacts_->largest_turn(from, to) : 2 * wild;
+  if (!(turn <= wild)) return 0.5 * end * wild / turn;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(turn / gentle)));
+  Points last = from, next;
+  for (int piece = 1; piece <= pieces; ++piece) {
+    if (piece < pieces)
+      way(end * piece / pieces, next);
+    else
+      next = to;
+    const double share = contacts_->safe_share(last, next, *work.contacts, team);
+    if (share < 1) return end * (piece - 1 + share) / pieces;
+    last.swap(next);
   }
-  const Points from = positions;
-  for (const double whole = scale;;) {
-    advance(step, scale, work, positions, team);
-    if (!positions.allFinite()) return false;
-    const double share = contacts_->safe_share(from, positions, *work.contacts, team);
-    if (share >= 1) return true;
-    scale *= within * share;
-    if (!(std::abs(scale) >= least * std::abs(whole))) return false;
-    positions = from;
-  }
+  return end;
 }
 
-double System::keep_clear(const Points& from, double held, Workspace& work, Points& positions, Team& team) const {
+bool System::advance_clear(const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
+                           Team& team) const {
   constexpr double least = 1e-3;
-  if (!contacts_) return 1;
-  const Points to = positions;
-  double left = 1;
-  for (;;) {
-    const double share = contacts_->safe_share(from, positions, *work.contacts, team);
-    if (share >= 1) return left;
-    if (left == 0) return 0;
-    left *= within * share;
-    if (left < least) left = 0;
-    positions = from + left * (to - from);
-    freedoms_->hold(held, positions);
+  const Points from = positions;
+  const Way way = [&](double share, Points& out) {
+    out = from;
+    advance(step, share * scale, work, out, team);
+  };
+  for (double end = 1; end >= least;) {
+    const double share = clear_share(from, way, end, work, positions, team);
+    if (share >= end) {
+      scale *= end;
+      return true;
+    }
+    end = within * share;
   }
+  return false;
 }
 
 System::Size System::size_of(const Eigen::VectorXd& unknowns, const Points& positions) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <functional>
 #include <softkin/linear/sparse_ldlt.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
@@ -148,11 +149,13 @@ class System {
   /// returns  false where hardly any move is possible
   bool advance_clear(const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions, Team& team) const;
 
-  /// Brings a shape nearer to another one, from which it cannot be come to without that something passes through
-  /// something, supports and rigid regions staying where they are held at that share.
+  /// A way: the shape at a share of it.
+  using Way = std::function<void(double, Points&)>;
+  /// How far a way can be gone before something passes through something or is torn out of all proportion [-]. Where it
+  /// turns what touches by much it is looked at in pieces.
   ///
-  /// returns  how much of the way is left [-]; 0: the supports alone are in each other's way
-  double keep_clear(const Points& from, double held, Workspace& work, Points& positions, Team& team) const;
+  /// end  of the way, whose shape is written to `to`
+  double clear_share(const Points& from, const Way& way, double end, Workspace& work, Points& to, Team& team) const;
 
   /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
   struct Size {
