@@ -35,8 +35,7 @@ PressedBody shaped(const Cell& cells, const Place& place, const Keep& keep = {})
     Tetrahedron distinct = t;
     for (Index& v : distinct) {
       const Vec3 p = place(v % across, v % layer / across, v / layer);
-      const auto [found, added] =
-          vertex_at_place.try_emplace({p.x(), p.y(), p.z()}, static_cast<Index>(places.size()));
+      const auto [found, added] = vertex_at_place.try_emplace({p.x(), p.y(), p.z()}, static_cast<Index>(places.size()));
       if (added) places.push_back(p);
       if (v < layer) body.held.push_back(found->second);
       v = found->second;
@@ -77,14 +76,16 @@ PressedBody crack() {
 
 /// 4 mm wide, 5 mm deep.
 PressedBody block_with_hole() {
-  return shaped({3, 3, 2}, [](int i, int j, int k) { return Vec3(4 * i - half, 4 * j - half, base + 5 * k); },
-                [](int i, int j, int k) { return i != 1 || j != 1 || k != 1; });
+  return shaped(
+      {3, 3, 2}, [](int i, int j, int k) { return Vec3(4 * i - half, 4 * j - half, base + 5 * k); },
+      [](int i, int j, int k) { return i != 1 || j != 1 || k != 1; });
 }
 
 /// The higher half is at x <= 0.
 PressedBody step() {
-  return shaped({4, 2, 2}, [](int i, int j, int k) { return Vec3(3 * (i - 2), half * (j - 1), base + 5 * k); },
-                [](int i, int, int k) { return i < 2 || k == 0; });
+  return shaped(
+      {4, 2, 2}, [](int i, int j, int k) { return Vec3(3 * (i - 2), half * (j - 1), base + 5 * k); },
+      [](int i, int, int k) { return i < 2 || k == 0; });
 }
 
 PressedBody flat() {
@@ -92,9 +93,8 @@ PressedBody flat() {
 }
 
 PressedBody block(double wide, double deep) {
-  return shaped({2, 2, 1}, [=](int i, int j, int k) {
-    return Vec3(wide / 2 * (i - 1), deep / 2 * (j - 1), k == 0 ? -half : 0);
-  });
+  return shaped({2, 2, 1},
+                [=](int i, int j, int k) { return Vec3(wide / 2 * (i - 1), deep / 2 * (j - 1), k == 0 ? -half : 0); });
 }
 
 /// Turned half around x, then moved.
@@ -124,18 +124,30 @@ struct Arrangement {
 
 Arrangement arrangement(DegenerateCase kind) {
   switch (kind) {
-    case DegenerateCase::spikes: return {"spikes", spike(), spike()};
-    case DegenerateCase::spike_on_wedge: return {"spike_on_wedge", wedge(), spike()};
-    case DegenerateCase::wedges: return {"wedges", wedge(), wedge()};
-    case DegenerateCase::crossed_wedges: return {"crossed_wedges", wedge(), turned(wedge())};
-    case DegenerateCase::spike_in_crack: return {"spike_in_crack", crack(), spike(), {0, 0, -3}};
-    case DegenerateCase::wedge_in_crack: return {"wedge_in_crack", crack(), wedge(), {0, 0, -3}};
-    case DegenerateCase::spike_in_hole: return {"spike_in_hole", block_with_hole(), spike(), {0, 0, -2}};
-    case DegenerateCase::cliff_edges: return {"cliff_edges", step(), block(half, 2 * half), {-half / 2, 0, 0}};
-    case DegenerateCase::internal_edges: return {"internal_edges", flat(), block(half, half), {0, 0, 0}, true};
-    case DegenerateCase::sliding_spike: return {"sliding_spike", flat(), spike(), {-3, 0, 0}, true};
-    case DegenerateCase::sliding_wedge: return {"sliding_wedge", flat(), wedge(), {-3, 0, 0}, true};
-    case DegenerateCase::count: break;
+    case DegenerateCase::spikes:
+      return {"spikes", spike(), spike()};
+    case DegenerateCase::spike_on_wedge:
+      return {"spike_on_wedge", wedge(), spike()};
+    case DegenerateCase::wedges:
+      return {"wedges", wedge(), wedge()};
+    case DegenerateCase::crossed_wedges:
+      return {"crossed_wedges", wedge(), turned(wedge())};
+    case DegenerateCase::spike_in_crack:
+      return {"spike_in_crack", crack(), spike(), {0, 0, -3}};
+    case DegenerateCase::wedge_in_crack:
+      return {"wedge_in_crack", crack(), wedge(), {0, 0, -3}};
+    case DegenerateCase::spike_in_hole:
+      return {"spike_in_hole", block_with_hole(), spike(), {0, 0, -2}};
+    case DegenerateCase::cliff_edges:
+      return {"cliff_edges", step(), block(half, 2 * half), {-half / 2, 0, 0}};
+    case DegenerateCase::internal_edges:
+      return {"internal_edges", flat(), block(half, half), {0, 0, 0}, true};
+    case DegenerateCase::sliding_spike:
+      return {"sliding_spike", flat(), spike(), {-3, 0, 0}, true};
+    case DegenerateCase::sliding_wedge:
+      return {"sliding_wedge", flat(), wedge(), {-3, 0, 0}, true};
+    case DegenerateCase::count:
+      break;
   }
   throw std::invalid_argument("degenerate_scene: no such case");
 }

@@ -25,8 +25,8 @@ enum class DegenerateCase {
 };
 
 struct DegenerateScene {
-  RobotSpec robot;   // named as the case is
-  Index upper = 0;   // the first vertex of the upper body
+  RobotSpec robot;  // named as the case is
+  Index upper = 0;  // the first vertex of the upper body
 };
 
 /// gap    by which the upper body would have to fall to touch the lower one, everywhere at once [mm]: 0 < gap <= 4

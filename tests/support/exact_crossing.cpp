@@ -37,8 +37,8 @@ class ExactPoints {
     const Vec3 from = at(a), u = at(b) - from, v = at(c) - from, w = at(d) - from;
     const double volume = u.dot(v.cross(w));
     const Vec3 x = v.cwiseAbs(), y = w.cwiseAbs();
-    const double size = u.cwiseAbs().dot(
-        Vec3(x[1] * y[2] + x[2] * y[1], x[2] * y[0] + x[0] * y[2], x[0] * y[1] + x[1] * y[0]));
+    const double size =
+        u.cwiseAbs().dot(Vec3(x[1] * y[2] + x[2] * y[1], x[2] * y[0] + x[0] * y[2], x[0] * y[1] + x[1] * y[0]));
     // rounding is below 8e-16 of it (Shewchuk 1997, orient3d), unless products vanish
     if (size > 1e-250 && std::abs(volume) > 4e-15 * size) return volume > 0 ? 1 : -1;
     for (int i = 0; i < 3; ++i)
@@ -100,9 +100,7 @@ class ExactPoints {
     const Vec3 x = at(a), y = at(b);
     return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
   }
-  [[nodiscard]] static bool agree(int a, int b, int c) {
-    return std::min({a, b, c}) >= 0 || std::max({a, b, c}) <= 0;
-  }
+  [[nodiscard]] static bool agree(int a, int b, int c) { return std::min({a, b, c}) >= 0 || std::max({a, b, c}) <= 0; }
 
   [[nodiscard]] bool boxes_meet(Index s, Index t, Index a, Index b) const {
     return (at(s).cwiseMin(at(t)).array() <= at(a).cwiseMax(at(b)).array()).all() &&
@@ -168,9 +166,9 @@ bool cross_at_vertex(const ExactPoints& points, Index v, const Triple& a, const 
 
 bool cross_at_edge(const ExactPoints& points, const std::vector<Index>& edge, const Triple& a, const Triple& b,
                    int axis) {
-  const auto third = [&](const Triple& t) { return *std::find_if_not(t.begin(), t.end(), [&](Index v) {
-                                              return v == edge[0] || v == edge[1];
-                                            }); };
+  const auto third = [&](const Triple& t) {
+    return *std::find_if_not(t.begin(), t.end(), [&](Index v) { return v == edge[0] || v == edge[1]; });
+  };
   const Index p = third(a), q = third(b);
   return points.orientation(edge[0], edge[1], p, q) == 0 &&
          points.turn(axis, edge[0], edge[1], p) == points.turn(axis, edge[0], edge[1], q);

@@ -1,6 +1,10 @@
 #include "support/random_drops.hpp"
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
 #include <softkin/model/mesh/boundary.hpp>
 
 #include "model/block_mesh.hpp"
@@ -105,20 +109,29 @@ bool is_sound(const PressedBody& body) {
   });
 }
 
+/// Have the first vertex and two others a triangle of at least that area, doubled?
+bool span_area(const PressedBody& body, double area) {
+  const auto from_first = [&](Index v) {
+    return Vec3(vertex_at(body.vertices, v) - vertex_at(body.vertices, body.held.front()));
+  };
+  for (const Index a : body.held)
+    for (const Index b : body.held)
+      if (from_first(a).cross(from_first(b)).norm() >= area) return true;
+  return false;
+}
+
 /// side  1: the far side is above, -1: below
 void hold_far_side(PressedBody& body, double side) {
-  const auto height = side * body.vertices.col(2).array();
-  const double from = 0.8 * height.maxCoeff() + 0.2 * height.minCoeff();
-  for (Index v = 0; v < body.vertices.rows(); ++v)
-    if (side * body.vertices(v, 2) >= from) body.held.push_back(v);
-  const auto look = [&](const Triangle& t) {
-    const Vec3 a = vertex_at(body.vertices, t[0]);
-    return side * (vertex_at(body.vertices, t[1]) - a).cross(vertex_at(body.vertices, t[2]) - a).normalized().z();
-  };
-  const std::vector<Triangle> faces = boundary_of(body.tetrahedra, {}).triangles;
-  const Triangle far =
-      *std::max_element(faces.begin(), faces.end(), [&](const auto& a, const auto& b) { return look(a) < look(b); });
-  body.held.insert(body.held.end(), far.begin(), far.end());
+  const Eigen::VectorXd height = side * body.vertices.col(2);
+  const double extent = height.maxCoeff() - height.minCoeff();
+  std::vector<Index> farthest_first(static_cast<std::size_t>(height.size()));
+  std::iota(farthest_first.begin(), farthest_first.end(), 0);
+  std::sort(farthest_first.begin(), farthest_first.end(), [&](Index a, Index b) { return height[a] > height[b]; });
+  for (const Index v : farthest_first) {
+    const bool near = height[v] < height.maxCoeff() - 0.2 * extent;
+    if (near && span_area(body, 0.1 * extent * extent)) break;
+    body.held.push_back(v);
+  }
 }
 
 PressedBody draw_body(Draw& draw, double size, double side) {
@@ -169,10 +182,14 @@ double touching_height(const Meeting& meeting, double apart, double size) {
   return high;
 }
 
-}  // namespace
+double lowest_of(const PressedBody& body, double side) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Index v : body.held) lowest = std::min(lowest, side * body.vertices(v, 2));
+  return lowest;
+}
 
-Drop random_drop(std::uint64_t seed) {
-  Draw draw(seed);
+/// None where the bodies would meet at rest, or what is held would come too near to each other.
+std::optional<Drop> attempt(Draw& draw, const std::string& name) {
   const double size = draw.log_between(2, 50);
   const PressedBody lower = draw_body(draw, size * draw.between(0.7, 1.5), -1);
   PressedBody upper = draw_body(draw, size, 1);
@@ -180,18 +197,27 @@ Drop random_drop(std::uint64_t seed) {
   Drop drop;
   drop.upper = static_cast<Index>(lower.vertices.rows());
   drop.size_mm = height.maxCoeff() - height.minCoeff();
-  upper.vertices.rowwise() += drop.size_mm * Eigen::RowVector3d(draw.between(-0.3, 0.3), draw.between(-0.3, 0.3), 0);
-  const double above = lower.vertices.col(2).maxCoeff() - height.minCoeff() + 1e-3 * size;
-  const double touching = touching_height(Meeting(lower, upper), above, size);
-  do {
-    drop.gap_mm = drop.size_mm * draw.log_between(0.02, 0.5);
-    drop.displacement = {0, 0, -drop.size_mm * draw.between(0.2, 0.8)};
-  } while (Meeting(lower, upper).raised_by(touching + drop.gap_mm));
-  upper.vertices.col(2).array() += touching + drop.gap_mm;
+  drop.gap_mm = drop.size_mm * draw.log_between(0.02, 0.5);
+  drop.displacement.z() = -drop.size_mm * draw.between(0.2, 0.8);
   if (draw.chance(0.5)) drop.displacement.head<2>() = 0.5 * drop.size_mm * draw.offset().head<2>();
-  drop.robot = two_bodies("drop_" + std::to_string(seed), lower, upper, drop.displacement);
+  upper.vertices.rowwise() += drop.size_mm * Eigen::RowVector3d(draw.between(-0.3, 0.3), draw.between(-0.3, 0.3), 0);
+  const Meeting meeting(lower, upper);
+  const double above = lower.vertices.col(2).maxCoeff() - height.minCoeff() + 1e-3 * size;
+  const double raise = touching_height(meeting, above, size) + drop.gap_mm;
+  upper.vertices.col(2).array() += raise;
+  const double room = lowest_of(upper, 1) + lowest_of(lower, -1) + drop.displacement.z();
+  if (room < 0.3 * drop.size_mm || meeting.raised_by(raise)) return {};
+  drop.robot = two_bodies(name, lower, upper, drop.displacement);
   drop.robot.quadratic = draw.chance(0.25);
   return drop;
+}
+
+}  // namespace
+
+Drop random_drop(std::uint64_t seed) {
+  Draw draw(seed);
+  for (;;)
+    if (std::optional<Drop> drop = attempt(draw, "drop_" + std::to_string(seed))) return *drop;
 }
 
 }  // namespace softkin::testing

@@ -70,7 +70,7 @@ TEST(DegenerateScenes, AreFoundCoveredWhereFacesEnter) {
   for (const DegenerateCase kind : all_cases()) {
     const DegenerateScene scene = degenerate_scene(kind, gap, press);
     const Mesh& mesh = scene.robot.mesh;
-    const Points entered = moved_from(scene.upper, mesh.vertices, {0.1, 0.2, -gap - 6});
+    const Points entered = moved_from(scene.upper, mesh.vertices, {0.1, 0.2, -gap - 9});
     EXPECT_GT(covered_faces(entered, mesh.tetrahedra).size(), 0u) << scene.robot.name;
   }
 }

@@ -30,17 +30,27 @@ bool meets_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
   return count({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, a, b, c}, {{0, 1, 2}, {3, 4, 5}}) > 0;
 }
 
-double above(double x) { return std::nextafter(x, inf); }
-double below(double x) { return std::nextafter(x, -inf); }
+double above(double x) {
+  return std::nextafter(x, inf);
+}
+double below(double x) {
+  return std::nextafter(x, -inf);
+}
 
 // By another way than the code under test: whole numbers, and planes that separate.
 
-Whole operator-(const Whole& a, const Whole& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-std::int64_t dot(const Whole& a, const Whole& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Whole operator-(const Whole& a, const Whole& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+std::int64_t dot(const Whole& a, const Whole& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 Whole cross(const Whole& a, const Whole& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-bool is_zero(const Whole& a) { return dot(a, a) == 0; }
+bool is_zero(const Whole& a) {
+  return dot(a, a) == 0;
+}
 
 /// Is the origin in the convex hull of points? If not, a plane through it has them all on one side, and one such plane
 /// is normal to a point or an edge of theirs, to two, or contains such a normal and one.
@@ -63,7 +73,9 @@ bool hull_holds_origin(const std::vector<Whole>& points, const std::vector<Whole
 
 using WholeTriangle = std::array<Whole, 3>;
 
-bool has_area(const WholeTriangle& t) { return !is_zero(cross(t[1] - t[0], t[2] - t[0])); }
+bool has_area(const WholeTriangle& t) {
+  return !is_zero(cross(t[1] - t[0], t[2] - t[0]));
+}
 
 bool meet_anywhere(const WholeTriangle& a, const WholeTriangle& b) {
   std::vector<Whole> points, all(a.begin(), a.end()), along;
@@ -284,7 +296,8 @@ TEST(ExactCrossing, OfManyTrianglesIsThatOfEachPair) {
 /// A tilted plane, where every pair of neighbours needs the sums without rounding.
 TEST(ExactCrossing, OfAPlaneIsNone) {
   std::size_t found = 0;
-  const double seconds = seconds_of(sheet(70, [](double u, double v) { return Vec3(u, v, 0.25 * u + 0.5 * v); }), found);
+  const double seconds =
+      seconds_of(sheet(70, [](double u, double v) { return Vec3(u, v, 0.25 * u + 0.5 * v); }), found);
   EXPECT_LE(found, 70u * 70u * 16);
   RecordProperty("seconds", std::to_string(seconds));
   const Sheet whole = sheet(64, [](double u, double v) { return Vec3(u, v, 0.25 * u + 0.5 * v); });

@@ -66,6 +66,28 @@ TEST(RandomDrops, ArePressedOnEachOther) {
   EXPECT_LT(sideways, drops * 2 / 3);
 }
 
+/// Between what is held, at the end.
+TEST(RandomDrops, LeaveRoomForTheBodies) {
+  double least = 1;
+  std::size_t held = 0, all = 0;
+  for (std::uint64_t seed = 0; seed < drops; ++seed) {
+    const Drop drop = random_drop(seed);
+    const Model model = compile(drop.robot);
+    const auto heights = [&](const Support& support) {
+      std::vector<double> found;
+      for (const Index v : support.vertices) found.push_back(model.held(v, 2));
+      return found;
+    };
+    const std::vector<double> bottom = heights(model.supports[0]), top = heights(model.supports[1]);
+    const double room = *std::min_element(top.begin(), top.end()) - *std::max_element(bottom.begin(), bottom.end());
+    least = std::min(least, room / drop.size_mm);
+    held += bottom.size() + top.size();
+    all += static_cast<std::size_t>(model.rest.rows());
+  }
+  EXPECT_GT(least, 0.299);
+  EXPECT_LT(held, all / 2);
+}
+
 TEST(RandomDrops, AreTheSameForTheSameSeed) {
   for (const std::uint64_t seed : {3, 4}) {
     const Drop one = random_drop(seed), other = random_drop(seed);
