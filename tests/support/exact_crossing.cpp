@@ -40,7 +40,7 @@ class ExactPoints {
     const double size =
         u.cwiseAbs().dot(Vec3(x[1] * y[2] + x[2] * y[1], x[2] * y[0] + x[0] * y[2], x[0] * y[1] + x[1] * y[0]));
     // rounding is below 8e-16 of it (Shewchuk 1997, orient3d), unless products vanish
-    if (std::abs(volume) > 4e-15 * size) return volume > 0 ? 1 : -1;
+    if (size > 1e-250 && std::abs(volume) > 4e-15 * size) return volume > 0 ? 1 : -1;
     for (int i = 0; i < 3; ++i)
       if (u[i] == 0 && v[i] == 0 && w[i] == 0) return 0;
     return random_robots::exact_orientation(p_, Tetrahedron{a, b, c, d});

@@ -128,7 +128,8 @@ Whole sheared(const Whole& p) {
   return {x, p[1], p[2] + much * x};
 }
 
-/// Pairs that have so many corners in common; compares both ways. Every other pair is sheared.
+/// Pairs that have so many corners in common; compares both ways. Every other pair is sheared, others
+/// so small that products of three coordinates, or of two, are next to nothing.
 Tally compare_random_pairs(std::size_t shared, int range, int pairs, std::uint64_t seed) {
   Draw draw(seed);
   Tally tally;
@@ -147,7 +148,8 @@ Tally compare_random_pairs(std::size_t shared, int range, int pairs, std::uint64
     Points positions(6, 3);
     for (int i = 0; i < 6; ++i) {
       const Whole corner = i < 3 ? a[i] : b[i - 3], at = pair % 2 == 0 ? corner : sheared(corner);
-      for (int k = 0; k < 3; ++k) positions(i, k) = static_cast<double>(at[k]);
+      const double scale = pair % 4 == 0 ? 0x1p-359 : pair % 4 == 2 ? 0x1p-538 : 1;
+      for (int k = 0; k < 3; ++k) positions(i, k) = scale * static_cast<double>(at[k]);
     }
     std::rotate(first.begin(), first.begin() + turn, first.end());
     std::rotate(second.begin(), second.begin() + draw.below(3), second.end());

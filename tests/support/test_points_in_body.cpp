@@ -92,6 +92,9 @@ TEST(PointsInBody, AreFoundFromTheFirstStepOn) {
   EXPECT_EQ(covered_at(1.1e-6), 0u);  // its point is 1e-6 below it
   EXPECT_EQ(covered_at(0.9e-6), 1u);
   EXPECT_EQ(covered_at(-1e-3), 1u);
+  // turned inside out: what it covers, and its own four faces, whose outer side is taken to be within
+  std::swap(mesh.tetrahedra[1][0], mesh.tetrahedra[1][1]);
+  EXPECT_EQ(covered_at(-1e-3), 5u);
 }
 
 }  // namespace softkin::testing
