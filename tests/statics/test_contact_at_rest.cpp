@@ -84,6 +84,8 @@ TEST(ContactAtRest, AnObstacleThatTouches) {
   EXPECT_EQ(refusal_at_rest(robot_and("block", Box{{20, 4, 3}, {30, 6, 7}})),
             "robot.yaml:6: the robot and obstacle 'block' touch or cross at rest, at (20, 6, 6) mm: move the obstacle "
             "away, so that a gap is left");
+  EXPECT_NE(refusal_at_rest(robot_and("block", Box{{20 + 1e-8, 4, 3}, {30, 6, 7}})), "");
+  EXPECT_EQ(refusal_at_rest(robot_and("block", Box{{20 + 1e-7, 4, 3}, {30, 6, 7}})), "");
   // corner at corner
   EXPECT_NE(refusal_at_rest(robot_and("block", Box{{20, 20, 10}, {30, 30, 20}})), "");
   // edge across edge
@@ -185,16 +187,17 @@ TEST(ContactAtRest, ThinWallsAreNoGap) {
 }
 
 TEST(ContactAtRest, NeighboursAroundACornerAreNoGap) {
-  // a right angle and one of 60 degrees, meshed more finely than the distance
-  Mesh corner = drawn({"###   ", "###   ", "######", "######"});
-  corner.vertices *= 0.03;
+  // a right angle and one of 45 degrees, meshed about as finely as the distance
+  std::vector<std::string> rows(9, "######      ");
+  rows.insert(rows.end(), 3, "############");
+  Mesh corner = drawn(rows);
+  corner.vertices *= 0.01;
   RobotSpec spec = robot_of(corner);
   spec.fixed = {{{Halfspace{{0, 0.01, 0}, {0, -1, 0}}, {}}}};
-  spec.contact->distance_mm.reset();
   spec.contact->distance_mm = 0.08;
   EXPECT_EQ(refusal_at_rest(spec), "");
   for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
-    spec.mesh.vertices(v, 0) += std::tan(std::numbers::pi / 6) * std::max(0.0, spec.mesh.vertices(v, 1) - 0.6);
+    spec.mesh.vertices(v, 0) += std::max(0.0, spec.mesh.vertices(v, 1) - 0.3);
   EXPECT_EQ(refusal_at_rest(spec), "");
 }
 
