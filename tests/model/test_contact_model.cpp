@@ -286,6 +286,11 @@ TEST(ContactModel, Refusals) {
        {"a box inside out", shape(Box{{60, 0, 0}, {61, -1, 1}}),
         "robot.yaml:8: obstacle 'ball': the box has a low corner above its high corner"},
        {"a flat box", shape(Box{{60, 0, 0}, {61, 0, 1}}), "robot.yaml:8: obstacle 'ball': the box has no volume"},
+       {"a far ball", shape(Sphere{{1e9, 0, 0}, 1}),
+        "robot.yaml:8: obstacle 'ball': it reaches farther from the origin than a million of the robot's diagonals, "
+        "4.58e+07 mm: check its numbers and their unit"},
+       {"a ball without end", shape(Sphere{{1e308, 0, 0}, 1e308}), "check its numbers and their unit"},
+       {"a far plane", shape(Halfspace{{1e308, 0, 0}, {1, 1, 0}}), "check its numbers and their unit"},
        {"an empty surface", shape(TriangleSurface{}), "robot.yaml:8: obstacle 'ball': the surface has no triangle"},
        {"a flat triangle", shape(flat),
         "robot.yaml:8: obstacle 'ball': triangle 0 (from 0) of the surface has no area"},

@@ -135,8 +135,9 @@ struct Model {
 ///         actuators, values outside their ranges, a robot with a part that can still move rigidly, DEA regions with
 ///         tetrahedra, pneumatic regions with prisms, cables of zero length, duplicate names, elements without volume;
 ///         physical: materials without elastic constants, chambers that do not touch the body, gravity without a
-///         density; target-shape: load control, contact; feet that are not two different markers; contact with unknown or
-///         repeated names, obstacles without extent, a distance that is not below a twentieth of the robot's diagonal
+///         density; target-shape: load control, contact; feet that are not two different markers; contact with unknown
+///         or repeated names, obstacles without extent, a distance that is not below a twentieth of the robot's
+///         diagonal
 [[nodiscard]] Model compile(const RobotSpec& spec);
 
 /// The ratio that an actuator's curve gives for an input: pressure [kPa gauge] or voltage [kV]. Without input it is the

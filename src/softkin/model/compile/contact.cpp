@@ -14,6 +14,7 @@ constexpr double default_distance = 5e-4, most_distance = 0.05;  // over the rob
 constexpr double least_area = 0.01;          // of a vertex, over the mean of the robot's: nothing slips past corners
 constexpr double finest_sagitta = 0.1;       // over the distance
 constexpr double halfspace_diagonals = 100;  // that its triangle reaches to every side
+constexpr double most_diagonals = 1e6;       // from the origin
 constexpr const char* robot_name = "robot";
 
 std::string obstacle_label(const ObstacleSpec& spec) {
@@ -233,6 +234,14 @@ FacetedSurface facets_of(const Compilation& c, const ObstacleSpec& spec) {
   return faceted(std::get<Halfspace>(spec.shape), bounds.center(), halfspace_diagonals * c.model.diagonal_mm);
 }
 
+/// Coordinates so far away that their rounding would show beside the robot, or that are no numbers.
+void check_reach(const Compilation& c, const ObstacleSpec& spec, const Points& vertices) {
+  const double most = most_diagonals * c.model.diagonal_mm;
+  if (!(vertices.array().abs() <= most).all())
+    refuse_obstacle(spec, "it reaches farther from the origin than a million of the robot's diagonals, " +
+                              number(most, 3) + " mm: check its numbers and their unit");
+}
+
 /// Vertices of no element, which stay where they are.
 void append_vertices(Model& model, const Points& vertices, double area) {
   const Index first = static_cast<Index>(model.rest.rows()), rows = first + static_cast<Index>(vertices.rows());
@@ -251,6 +260,7 @@ void append_vertices(Model& model, const Points& vertices, double area) {
 void add_obstacle(Compilation& c, const ObstacleSpec& spec, double area) {
   ContactModel& contact = c.model.contact;
   const FacetedSurface made = facets_of(c, spec);
+  check_reach(c, spec, made.surface.vertices);
   const auto part = static_cast<Index>(contact.parts.size()), first = static_cast<Index>(c.model.rest.rows());
   contact.parts.push_back({.name = spec.name,
                            .rank = ContactRank::obstacle,

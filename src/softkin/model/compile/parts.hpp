@@ -116,8 +116,8 @@ void compile_feet(Compilation& c);
 /// Physical: the weight of the elements and the forces, lumped on the vertices [N].
 void compile_loads(Compilation& c);
 
-/// Refuses what can be told of contact before anything is compiled: of target shapes, numbers outside their ranges, names
-/// that are taken or that nothing has, shapes without extent.
+/// Refuses what can be told of contact before anything is compiled: of target shapes, numbers outside their ranges,
+/// names that are taken or that nothing has, shapes without extent.
 void check_contact(const Compilation& c);
 /// Last: the surfaces that may touch; appends the obstacles' vertices to the model's.
 void compile_contact(Compilation& c);

@@ -14,8 +14,8 @@ struct FacetedSurface {
 
 inline constexpr std::size_t most_facets = 20000;
 
-// Shapes of which complaint_about() finds nothing to complain. Curved ones get as many facets as it takes to stay within
-// sagitta_mm > 0 of the shape, but at most most_facets.
+// Shapes of which complaint_about() finds nothing to complain. Curved ones get as many facets as it takes to stay
+// within sagitta_mm > 0 of the shape, but at most most_facets.
 
 /// 12 triangles.
 [[nodiscard]] FacetedSurface faceted(const Box& box);
