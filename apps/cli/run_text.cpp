@@ -189,7 +189,7 @@ std::string EquilibriumProgress::text(const Progress& p) {
 }
 
 std::string summary(const Model& model, const std::string& solver) {
-  std::string text = grouped(static_cast<std::size_t>(model.rest.rows())) + " vertices";
+  std::string text = grouped(static_cast<std::size_t>(model.robot_vertices())) + " vertices";
   if (!model.tetrahedra.empty())
     text += ", " + grouped(model.tetrahedra.size()) + " tetrahedra of order " + (model.edge_nodes.empty() ? "1" : "2");
   if (!model.prisms.empty()) text += ", " + grouped(model.prisms.size()) + " prisms";

@@ -121,6 +121,8 @@ class Robot(_Walks, _Workspaces):
         gravity: Sequence[float] | None = None,
         forces: Entries = (),
         feet: Entries = (),
+        contact: Mapping[str, Any] | None = None,
+        obstacles: Entries = (),
         formulation: str | None = None,
         units: str = "mm",
         order: int | None = None,
@@ -162,6 +164,8 @@ class Robot(_Walks, _Workspaces):
             "forces": forces,
             "markers": markers,
             "feet": feet if len(feet) else None,
+            "contact": contact,
+            "obstacles": obstacles if len(obstacles) else None,
         }
         source = _core.Source.of_mesh(name, mesh, _plain(description, "description"), "", [])
         self._take(_core.Robot(source, True))
@@ -230,7 +234,7 @@ class Robot(_Walks, _Workspaces):
 
     @property
     def rest(self) -> Floats:
-        """(n, 3) vertices at rest [mm], read-only."""
+        """(n, 3) vertices at rest [mm], read-only; those of obstacles are the last ones."""
         return self._core.rest
 
     @property
@@ -330,7 +334,7 @@ class Robot(_Walks, _Workspaces):
         if len(self.prisms):
             elements += (", " if elements else "") + f"{len(self.prisms)} prisms"
         return (
-            f"<softkin.Robot {self.name}: {len(self.rest)} vertices, {elements}; {self.formulation}; "
+            f"<softkin.Robot {self.name}: {self._core.robot_vertices} vertices, {elements}; {self.formulation}; "
             f"{actuators or 'no actuator'}; markers {', '.join(self._markers) or 'none'}>"
         )
 
@@ -343,7 +347,7 @@ class Robot(_Walks, _Workspaces):
             for info in self._infos
         )
         return (
-            f"<p>{escape(self.name)}: {len(self.rest)} vertices, {len(self.tetrahedra)} tetrahedra, "
+            f"<p>{escape(self.name)}: {self._core.robot_vertices} vertices, {len(self.tetrahedra)} tetrahedra, "
             f"{len(self.prisms)} prisms; {self.formulation}; markers {escape(', '.join(self._markers)) or 'none'}</p>"
             f"<table><tr><th>actuator</th><th>kind</th><th>commands</th><th>range</th></tr>{rows}</table>"
         )

@@ -87,6 +87,7 @@ void bind_robot(nb::module_& module) {
       .def_prop_ro("formulation", [](const Robot& r) { return formulation_name(r.model().formulation); })
       .def_prop_ro("fingerprint", [](const Robot& r) { return fingerprint_of(r.model()); })
       .def_prop_ro("diagonal_mm", [](const Robot& r) { return r.model().diagonal_mm; })
+      .def_prop_ro("robot_vertices", [](const Robot& r) { return r.model().robot_vertices(); })
       .def_prop_ro("notes", [](const Robot& r) { return r.model().notes; })
       .def_prop_ro("warnings", [](const Robot& r) { return r.model().warnings; })
       .def_prop_ro("materials", [](const Robot& r) { return materials_of(r.model()); })

@@ -36,6 +36,12 @@ void check(const Model& model) {
     require_finite(law.mu + law.lambda + law.c10 + law.c01 + law.c20 + law.c30 + law.bulk, "a modulus is not finite");
     require_finite(material.shape_ratio + material.weight + material.density, "a material is not finite");
   }
+  const ContactModel& contact = model.contact;
+  require(contact.any() || contact.triangles.empty(), "surfaces of contact without a distance");
+  require(contact.triangles.size() == contact.part_of.size(), "a triangle of no part");
+  for (const Triangle& triangle : contact.triangles)
+    for (const Index v : triangle) require(v >= 0 && v < vertices, "a triangle of no vertex");
+  for (const double area : contact.area) require_finite(area, "an area is not finite");
   require(model.rest_actuation().allFinite(), "an actuation is not finite");
   (void)fingerprint_of(model);
 }

@@ -358,13 +358,14 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     begin += fence.size();
     specs.push_back(parse(manual.substr(begin, manual.find("```", begin) - begin)));
   }
-  ASSERT_EQ(specs.size(), 3u);
+  ASSERT_EQ(specs.size(), 4u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
   EXPECT_EQ(specs[1].formulation, Formulation::physical);
   EXPECT_EQ(specs[1].actuators.at(0).control, Control::load);
   EXPECT_EQ(specs[1].forces.size(), 1u);
+  EXPECT_EQ(specs[3].contact.value().obstacles.size(), 2u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

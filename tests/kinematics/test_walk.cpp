@@ -189,6 +189,12 @@ TEST(Walk, Refusals) {
   spec.feet.clear();
   expect_refused(spec, "the robot has no feet to walk on");
   spec = good;
+  spec.contact = ContactSpec{};
+  spec.contact->obstacles = {{"kerb", Box{{500, 0, 0}, {501, 1, 1}}, std::nullopt, {"s.yaml", 7}}};
+  expect_refused(spec,
+                 "s.yaml:7: 'kerb' stands where it is while the robot walks away from it: a walk knows no floor "
+                 "but that of the feet; leave it out");
+  spec = good;
   spec.feet.pop_back();
   expect_refused(spec, "walks on two feet, the rear one and the front one, not on 1");
   spec = good;

@@ -76,6 +76,13 @@ void check_loads(const Model& model, const Vec3& direction) {
                                                  std::to_string(along) + " N: a walk is on a level floor");
 }
 
+void check_surroundings(const Model& model) {
+  for (const ContactPart& part : model.contact.parts)
+    if (part.rank != ContactRank::robot)
+      throw InvalidInput(part.origin, "'" + part.name + "' stands where it is while the robot walks away from it: " +
+                                          "a walk knows no floor but that of the feet; leave it out");
+}
+
 /// The robot with a cable between its feet that carries what the floor carries: a tension that may also push.
 Model linked(const Model& model, const FootForces& limits) {
   Model robot = model;
@@ -100,7 +107,7 @@ struct Walker::Parts {
         forces(forces_of(robot.feet[0], robot.feet[1])),
         physical(robot.formulation == Formulation::physical),
         model(physical ? linked(robot, forces) : robot),
-        statics((check_holds(robot, direction), check_loads(robot, direction), model)),
+        statics((check_holds(robot, direction), check_loads(robot, direction), check_surroundings(robot), model)),
         options(solver),
         actuators(static_cast<Index>(robot.actuators.size())),
         state(statics.rest()) {

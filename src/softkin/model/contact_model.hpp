@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <softkin/core/error.hpp>
 #include <softkin/core/types.hpp>
 #include <string>
@@ -15,6 +16,7 @@ enum class ContactRank { robot, body, obstacle };
 struct ContactPart {
   std::string name;  // of the robot: "robot", or a region; of an obstacle or body its own
   ContactRank rank = ContactRank::robot;
+  bool halfspace = false;  // all behind the plane of its only triangle is solid
   Origin origin;
 };
 
@@ -33,6 +35,7 @@ struct ContactModel {
   std::vector<std::array<Index, 3>> triangles;  // vertices of the model, normals outwards; faces of order 2 as four
   std::vector<Index> part_of;                   // per triangle
   std::vector<double> area;                     // per vertex of the model: for which it carries pressure [mm^2]
+  Index obstacle_vertices = 0;                  // the last vertices of the model, none of the robot's
 
   [[nodiscard]] bool any() const { return distance_mm > 0; }
   [[nodiscard]] const ContactPair& pair(Index a, Index b) const {

@@ -71,6 +71,11 @@ class Hash {
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
   void put(const Marker& marker) { add(marker.name, marker.point); }
   void put(const RigidRegion& region) { add(region.name, region.vertices); }
+  void put(const ContactPart& part) { add(part.name, part.rank, part.halfspace); }
+  void put(const ContactPair& pair) { add(pair.touch, pair.friction); }
+  void put(const ContactModel& c) {
+    add(c.distance_mm, c.modulus_MPa, c.parts, c.pairs, c.triangles, c.part_of, c.area, c.obstacle_vertices);
+  }
   void put(const Actuator& a) {
     add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.points,
         a.surface, a.gaps, a.rest_measure);
@@ -153,6 +158,7 @@ std::string fingerprint_of(const Model& model) {
   hash.add(model.formulation, model.rest, model.tetrahedra, model.edge_nodes, model.prisms, model.tetrahedron_roles,
            model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
            model.fixed, model.held, model.dead_load);
+  if (model.contact.any()) hash.add(model.contact);
   return hash.text();
 }
 

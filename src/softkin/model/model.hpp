@@ -97,7 +97,7 @@ struct ElementRole {
 struct Model {
   std::string name;
   Formulation formulation = Formulation::target_shape;
-  Points rest;                          // #V by 3 [mm], every vertex of the mesh
+  Points rest;                          // #V by 3 [mm], every vertex of the mesh, then those of obstacles
   std::vector<Tetrahedron> tetrahedra;  // without void elements (physical: nor those of chambers); positive volume
   std::vector<EdgeNodes> edge_nodes;    // order 2: of every tetrahedron; order 1: empty
   std::vector<Prism> prisms;            // without void elements; positive volume
@@ -122,6 +122,9 @@ struct Model {
   std::vector<std::string> notes;     // what compile() changed or the user should know, a sentence each
   std::vector<std::string> warnings;  // what is probably not meant, a sentence each: units, elements that lock
 
+  /// How many vertices are the mesh's: the first ones.
+  [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.obstacle_vertices; }
+
   /// Values where the user asks for none, in the order of actuators.
   [[nodiscard]] Eigen::VectorXd rest_actuation() const;
 };
@@ -132,7 +135,9 @@ struct Model {
 ///         actuators, values outside their ranges, a robot with a part that can still move rigidly, DEA regions with
 ///         tetrahedra, pneumatic regions with prisms, cables of zero length, duplicate names, elements without volume;
 ///         physical: materials without elastic constants, chambers that do not touch the body, gravity without a
-///         density; target-shape: load control; feet that are not two different markers
+///         density; target-shape: load control, contact; feet that are not two different markers; contact with unknown
+///         or repeated names, obstacles without extent, a distance that is not below a twentieth of the robot's
+///         diagonal
 [[nodiscard]] Model compile(const RobotSpec& spec);
 
 /// The ratio that an actuator's curve gives for an input: pressure [kPa gauge] or voltage [kV]. Without input it is the

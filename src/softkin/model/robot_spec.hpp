@@ -4,26 +4,14 @@
 #include <softkin/core/elastic_law.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/model/actuator_curve.hpp>
+#include <softkin/model/contact_spec.hpp>
 #include <softkin/model/mesh/mesh.hpp>
+#include <softkin/model/shapes.hpp>
 #include <variant>
 
 namespace softkin {
 
-// Shapes that select vertices (inside or on the boundary) and elements (centroid inside). Lengths in mm.
-struct Box {
-  Vec3 low, high;
-};
-struct Sphere {
-  Vec3 center;
-  double radius = 0;
-};
-struct Cylinder {  // finite, flat ends
-  Vec3 start, end;
-  double radius = 0;
-};
-struct Halfspace {  // the side to which the normal points
-  Vec3 point, normal;
-};
+// Selectors choose vertices (inside or on the boundary) and elements (centroid inside); shapes are in mm.
 struct VertexList {
   std::vector<Index> vertices;  // from 0
 };
@@ -145,7 +133,8 @@ struct RobotSpec {
   std::vector<RigidSpec> rigid;
   std::vector<ActuatorSpec> actuators;
   std::vector<MarkerSpec> markers;
-  std::vector<FootSpec> feet;  // none, or the rear one and the front one
+  std::vector<FootSpec> feet;          // none, or the rear one and the front one
+  std::optional<ContactSpec> contact;  // physical; none: everything passes through everything
 };
 
 }  // namespace softkin

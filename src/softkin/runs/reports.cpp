@@ -86,7 +86,7 @@ Json head_json(const Model& model, const std::string& scene, const StaticsOption
           {"units", units_json(model)},
           {"mesh",
            {{"order", model.edge_nodes.empty() ? 1 : 2},
-            {"vertices", model.rest.rows()},
+            {"vertices", model.robot_vertices()},
             {"tetrahedra", model.tetrahedra.size()},
             {"prisms", model.prisms.size()}}},
           {"notes", model.notes},

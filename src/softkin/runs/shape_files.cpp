@@ -89,6 +89,28 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
                                      deformation.multipliers[static_cast<Index>(a)]);
 }
 
+/// Adds the obstacles, each as a region, after all fields: whatever is known of elements is 0 in them. Half-spaces stay
+/// without cells: their triangles would dwarf the robot.
+void add_obstacles(const Model& model, VtuContent& content) {
+  const ContactModel& contact = model.contact;
+  std::vector<Index> regions(contact.parts.size(), -1);
+  for (std::size_t p = 0; p < contact.parts.size(); ++p) {
+    const ContactPart& part = contact.parts[p];
+    if (part.rank != ContactRank::obstacle || part.halfspace) continue;
+    regions[p] = static_cast<Index>(content.region_names.size());
+    content.region_names.push_back(part.name);
+  }
+  for (std::size_t t = 0; t < contact.triangles.size(); ++t) {
+    const Index region = regions[static_cast<std::size_t>(contact.part_of[t])];
+    if (region < 0) continue;
+    content.triangles.push_back(contact.triangles[t]);
+    content.cell_regions.push_back(region);
+  }
+  for (Field& field : content.cell_fields)
+    field.values.resize(content.cell_regions.size() * static_cast<std::size_t>(field.components),
+                        field.name == "actuator" ? -1 : 0);
+}
+
 }  // namespace
 
 void write_shape(const fs::path& path, const Model& model, const Points& positions,
@@ -114,6 +136,7 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
   content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator, mark};
   content.region_names = model.region_names;
   add_forces(model, deformation, content);
+  add_obstacles(model, content);
   write_vtu(path, content);
 }
 

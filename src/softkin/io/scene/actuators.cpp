@@ -68,17 +68,10 @@ void read_range(const Node& node, ActuatorSpec& actuator) {
     fail(node, node.name + " must be [low, high], but " + items[0]->text + " is above " + items[1]->text);
 }
 
-TriangleSurface read_surface_file(const Context& context, const Node& node, double to_mm) {
-  TriangleSurface surface = load_file(context, node, context.files.surface);
-  surface.vertices *= to_mm;
-  if (!surface.vertices.allFinite()) fail(node, "the surface's coordinates are too large");
-  return surface;
-}
-
 /// A file, a map of file and unit, or a map with the region of the wall's faces.
 void read_surface(const Context& context, const Node& node, ActuatorSpec& actuator) {
   if (node.kind != Node::Kind::map) {
-    actuator.surface = read_surface_file(context, node, context.to_mm);
+    actuator.surface = read_surface_file(context, node, nullptr);
     return;
   }
   const Map map(node, {"file", "unit", "region"});
@@ -88,8 +81,7 @@ void read_surface(const Context& context, const Node& node, ActuatorSpec& actuat
     if (unit) fail(*unit, "'unit' is that of a file; a region has the mesh's");
     actuator.wall = text(*entry.value);
   } else {
-    const double to_mm = unit ? mm_per(length_units()[choice(*unit, length_units())]) : context.to_mm;
-    actuator.surface = read_surface_file(context, *entry.value, to_mm);
+    actuator.surface = read_surface_file(context, *entry.value, unit);
   }
 }
 
@@ -149,6 +141,14 @@ ActuatorSpec read_actuator(const Context& context, Formulation formulation, cons
 }
 
 }  // namespace
+
+TriangleSurface read_surface_file(const Context& context, const Node& file, const Node* unit) {
+  const double to_mm = unit ? mm_per(length_units()[choice(*unit, length_units())]) : context.to_mm;
+  TriangleSurface surface = load_file(context, file, context.files.surface);
+  surface.vertices *= to_mm;
+  if (!surface.vertices.allFinite()) fail(file, "the surface's coordinates are too large");
+  return surface;
+}
 
 std::vector<ActuatorSpec> read_actuators(const Context& context, Formulation formulation, const Node& node) {
   Keys known = common_keys;

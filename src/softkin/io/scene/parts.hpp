@@ -37,7 +37,17 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
   }
 }
 
-[[nodiscard]] Vec3 read_position(const Context& context, const Node& node);  // [mm]
+[[nodiscard]] double read_length(const Context& context, const Node& node);           // [mm]
+[[nodiscard]] double read_positive_length(const Context& context, const Node& node);  // [mm]
+[[nodiscard]] Vec3 read_position(const Context& context, const Node& node);           // [mm]
+[[nodiscard]] Box read_box(const Context& context, const Node& node);
+[[nodiscard]] Sphere read_sphere(const Context& context, const Node& node);
+[[nodiscard]] Cylinder read_cylinder(const Context& context, const Node& node);
+[[nodiscard]] Halfspace read_halfspace(const Context& context, const Node& node);
+/// Of an STL file in a unit of its own or that of the scene.
+///
+/// unit  its key; nullptr: the scene's
+[[nodiscard]] TriangleSurface read_surface_file(const Context& context, const Node& file, const Node* unit);
 [[nodiscard]] PointRef read_point(const Context& context, const Node& node);
 /// Keys that say where something is: a region's name, or a shape in its place.
 [[nodiscard]] const Keys& place_keys();
@@ -47,6 +57,8 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 /// The mesh of a scene, or its meshes as one, in mm.
 void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] std::vector<RegionSpec> read_regions(const Context& context, const Node& node);
+/// Keys `contact` and `obstacles`; none where neither is there.
+[[nodiscard]] std::optional<ContactSpec> read_contact(const Context& context, const Map& scene);
 /// Target-shape keys, elastic constants, or both.
 [[nodiscard]] MaterialSpec read_material(const Node& node);
 /// Loads are commanded in the physical formulation alone.

@@ -8,49 +8,6 @@ namespace softkin::scene {
 
 namespace {
 
-double read_length(const Context& context, const Node& node) {
-  const double value = number(node) * context.to_mm;
-  if (!std::isfinite(value)) fail(node, node.name + " is too large: " + node.text);
-  return value;
-}
-
-double read_radius(const Context& context, const Node& node) {
-  const double radius = read_length(context, node);
-  if (radius <= 0) fail(node, node.name + " must be greater than 0, not " + node.text);
-  return radius;
-}
-
-Selector read_box(const Context& context, const Node& node) {
-  const auto& corners = list_of(2, node);
-  const Box box{read_position(context, *corners[0]), read_position(context, *corners[1])};
-  for (int axis = 0; axis < 3; ++axis)
-    if (box.low[axis] > box.high[axis])
-      fail(node, node.name + " has its low corner above its high corner in " + "xyz"[axis]);
-  return box;
-}
-
-Selector read_sphere(const Context& context, const Node& node) {
-  const Map map(node, {"center", "radius"});
-  return Sphere{read_position(context, map.at("center")), read_radius(context, map.at("radius"))};
-}
-
-Selector read_cylinder(const Context& context, const Node& node) {
-  const Map map(node, {"start", "end", "radius"});
-  const Cylinder cylinder{read_position(context, map.at("start")), read_position(context, map.at("end")),
-                          read_radius(context, map.at("radius"))};
-  if (cylinder.start == cylinder.end) fail(node, node.name + " has its start at its end");
-  return cylinder;
-}
-
-Selector read_halfspace(const Context& context, const Node& node) {
-  const Map map(node, {"point", "normal"});
-  const Node& direction = map.at("normal");
-  const Vec3 normal = read_vector(direction);
-  const double largest = normal.cwiseAbs().maxCoeff();
-  if (largest == 0) fail(direction, direction.name + " must not be zero");
-  return Halfspace{read_position(context, map.at("point")), (normal / largest).normalized()};
-}
-
 /// Indices below count, ascending, without repetition.
 std::vector<Index> read_indices(const Node& node, std::int64_t count, const std::string& what) {
   std::vector<Index> indices;
@@ -106,6 +63,49 @@ Selector read_selector(const Context& context, const std::string& key, const Nod
 }
 
 }  // namespace
+
+double read_length(const Context& context, const Node& node) {
+  const double value = number(node) * context.to_mm;
+  if (!std::isfinite(value)) fail(node, node.name + " is too large: " + node.text);
+  return value;
+}
+
+double read_positive_length(const Context& context, const Node& node) {
+  const double length = read_length(context, node);
+  if (length <= 0) fail(node, node.name + " must be greater than 0, not " + node.text);
+  return length;
+}
+
+Box read_box(const Context& context, const Node& node) {
+  const auto& corners = list_of(2, node);
+  const Box box{read_position(context, *corners[0]), read_position(context, *corners[1])};
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.low[axis] > box.high[axis])
+      fail(node, node.name + " has its low corner above its high corner in " + "xyz"[axis]);
+  return box;
+}
+
+Sphere read_sphere(const Context& context, const Node& node) {
+  const Map map(node, {"center", "radius"});
+  return Sphere{read_position(context, map.at("center")), read_positive_length(context, map.at("radius"))};
+}
+
+Cylinder read_cylinder(const Context& context, const Node& node) {
+  const Map map(node, {"start", "end", "radius"});
+  const Cylinder cylinder{read_position(context, map.at("start")), read_position(context, map.at("end")),
+                          read_positive_length(context, map.at("radius"))};
+  if (cylinder.start == cylinder.end) fail(node, node.name + " has its start at its end");
+  return cylinder;
+}
+
+Halfspace read_halfspace(const Context& context, const Node& node) {
+  const Map map(node, {"point", "normal"});
+  const Node& direction = map.at("normal");
+  const Vec3 normal = read_vector(direction);
+  const double largest = normal.cwiseAbs().maxCoeff();
+  if (largest == 0) fail(direction, direction.name + " must not be zero");
+  return Halfspace{read_position(context, map.at("point")), (normal / largest).normalized()};
+}
 
 const std::string& Names::add(const Node& node) {
   const auto [found, fresh] = origins_.emplace(text(node), node.origin);

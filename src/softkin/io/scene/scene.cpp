@@ -105,6 +105,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
   if (const Node* node = map.find("feet"))
     for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
+  spec.contact = read_contact(context, map);
 }
 
 }  // namespace
@@ -118,8 +119,9 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
 RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files) {
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
-  const scene::Map map(root, {"softkin", "units", "mesh", "meshes", "formulation", "regions", "materials", "void",
-                              "fixed", "rigid", "actuators", "gravity", "forces", "markers", "feet"});
+  const scene::Map map(
+      root, {"softkin", "units", "mesh", "meshes", "formulation", "regions", "materials", "void", "fixed", "rigid",
+             "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   RobotSpec spec;

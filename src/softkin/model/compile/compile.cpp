@@ -106,6 +106,7 @@ Model compile(const RobotSpec& spec) {
   c.model.notes = std::move(notes);
   c.model.name = spec.name;
   c.model.formulation = spec.formulation;
+  check_contact(c);
   compile_elements(c);
   refuse_mesh_errors(c);
   compile_actuator_elements(c);
@@ -120,6 +121,7 @@ Model compile(const RobotSpec& spec) {
   check_hinges(c.model, c.origin);
   doubt_units(c);
   doubt_linear_tetrahedra(c);
+  compile_contact(c);
   return std::move(c.model);
 }
 

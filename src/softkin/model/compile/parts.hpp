@@ -116,6 +116,12 @@ void compile_feet(Compilation& c);
 /// Physical: the weight of the elements and the forces, lumped on the vertices [N].
 void compile_loads(Compilation& c);
 
+/// Refuses what can be told of contact before anything is compiled: of target shapes, numbers outside their ranges,
+/// names that are taken or that nothing has, shapes without extent.
+void check_contact(const Compilation& c);
+/// Last: the surfaces that may touch; appends the obstacles' vertices to the model's.
+void compile_contact(Compilation& c);
+
 /// Of a law at small strain, where all are the same.
 struct StiffnessAtRest {
   double youngs_modulus_MPa = 0;

@@ -36,27 +36,12 @@ struct HoldsPoint {
 
 // The complaint about a shape, or nothing.
 struct Complaint {
-  const char* operator()(const Box& box) const {
-    if (!box.low.allFinite() || !box.high.allFinite()) return "has a corner that is not finite";
-    return (box.low.array() <= box.high.array()).all() ? nullptr : "has a low corner above its high corner";
-  }
-  const char* operator()(const Sphere& sphere) const {
-    if (!sphere.center.allFinite()) return "has a center that is not finite";
-    return positive(sphere.radius) ? nullptr : "needs a radius above 0";
-  }
-  const char* operator()(const Cylinder& cylinder) const {
-    if (!cylinder.start.allFinite() || !cylinder.end.allFinite()) return "has an end that is not finite";
-    if (!positive(cylinder.radius)) return "needs a radius above 0";
-    return positive((cylinder.end - cylinder.start).norm()) ? nullptr : "starts where it ends";
-  }
-  const char* operator()(const Halfspace& halfspace) const {
-    if (!halfspace.point.allFinite()) return "has a point that is not finite";
-    return positive(halfspace.normal.norm()) ? nullptr : "needs a normal other than 0";
+  template <class Shape>
+  const char* operator()(const Shape& shape) const {
+    return complaint_about(shape);
   }
   const char* operator()(const VertexList&) const { return nullptr; }
   const char* operator()(const ElementList&) const { return nullptr; }
-
-  static bool positive(double x) { return x > 0 && std::isfinite(x); }
 };
 
 /// "box", "sphere", ...

@@ -123,9 +123,10 @@ std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh) {
 }
 
 std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahedra,
-                                         const std::vector<EdgeNodes>& edge_nodes, const std::vector<Prism>& prisms) {
+                                         const std::vector<EdgeNodes>& edge_nodes, const std::vector<Prism>& prisms,
+                                         std::vector<Index>* owners) {
   const Boundary boundary = boundary_of(tetrahedra, prisms);
-  if (edge_nodes.empty()) return triangulated(boundary);
+  if (edge_nodes.empty()) return triangulated(boundary, owners);
   std::vector<Triangle> triangles;
   triangles.reserve(4 * boundary.triangles.size());
   for (std::size_t i = 0; i < boundary.triangles.size(); ++i) {
@@ -134,6 +135,7 @@ std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahe
     const auto node = [&](Index from, Index to) { return edge_node(tetrahedra[owner], edge_nodes[owner], from, to); };
     const Index ab = node(a, b), bc = node(b, c), ca = node(c, a);
     triangles.insert(triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    if (owners) owners->insert(owners->end(), 4, boundary.triangle_owners[i]);
   }
   return triangles;
 }

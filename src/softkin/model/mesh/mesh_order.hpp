@@ -56,10 +56,13 @@ using QuadraticTriangle = std::array<Index, 6>;
 [[nodiscard]] std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh);
 
 /// Boundary as flat triangles with normals outwards (for positively oriented elements): quads in two, faces of order 2
-/// in four. edge_nodes: of every tetrahedron, or empty.
+/// in four, the last of which lies between the nodes on its edges. edge_nodes: of every tetrahedron, or empty.
+///
+/// owners  if given: whose face each is of, tetrahedra first
 [[nodiscard]] std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahedra,
                                                        const std::vector<EdgeNodes>& edge_nodes,
-                                                       const std::vector<Prism>& prisms);
+                                                       const std::vector<Prism>& prisms,
+                                                       std::vector<Index>* owners = nullptr);
 
 /// A mesh of order 1 with a node in the middle of every edge of a tetrahedron, shared by its elements, after the
 /// vertices that it had. Regions of dimension 1 and 0 get the nodes of the edges both of whose ends they hold.

@@ -1,0 +1,80 @@
+#include <softkin/io/scene/parts.hpp>
+
+namespace softkin::scene {
+
+namespace {
+
+double read_friction(const Node& node) {
+  const double friction = number(node);
+  if (friction < 0) fail(node, node.name + " must be 0 or more, not " + node.text);
+  return friction;
+}
+
+Capsule read_capsule(const Context& context, const Node& node) {
+  const auto [start, end, radius] = read_cylinder(context, node);
+  return {start, end, radius};
+}
+
+/// A file, or a map of file and unit.
+TriangleSurface read_obstacle_surface(const Context& context, const Node& node) {
+  if (node.kind != Node::Kind::map) return read_surface_file(context, node, nullptr);
+  const Map map(node, {"file", "unit"});
+  return read_surface_file(context, map.at("file"), map.find("unit"));
+}
+
+ObstacleShape read_shape(const Context& context, const std::string& key, const Node& node) {
+  if (key == "box") return read_box(context, node);
+  if (key == "sphere") return read_sphere(context, node);
+  if (key == "cylinder") return read_cylinder(context, node);
+  if (key == "capsule") return read_capsule(context, node);
+  if (key == "halfspace") return read_halfspace(context, node);
+  return read_obstacle_surface(context, node);
+}
+
+std::vector<ObstacleSpec> read_obstacles(const Context& context, const Node& node) {
+  const Keys shapes{"box", "sphere", "cylinder", "capsule", "halfspace", "surface"};
+  Keys known = shapes;
+  known.insert(known.begin(), {"name", "friction"});
+  std::vector<ObstacleSpec> obstacles;
+  Names names;
+  for (const auto& item : list(node)) {
+    const Map map(*item, known);
+    ObstacleSpec spec;
+    spec.name = names.add_label(map.at("name"));
+    const Node::Entry& shape = map.one_of(shapes);
+    spec.shape = read_shape(context, shape.key, *shape.value);
+    if (const Node* friction = map.find("friction")) spec.friction = read_friction(*friction);
+    spec.origin = item->origin;
+    obstacles.push_back(std::move(spec));
+  }
+  return obstacles;
+}
+
+ContactPairSpec read_pair(const Node& node) {
+  const Map map(node, {"a", "b", "friction"});
+  return {text(map.at("a")), text(map.at("b")), read_friction(map.at("friction")), node.origin};
+}
+
+void read_contact_keys(const Context& context, const Node& node, ContactSpec& spec) {
+  const Map map(node, {"distance", "friction", "self", "pairs"});
+  if (const Node* distance = map.find("distance")) spec.distance_mm = read_positive_length(context, *distance);
+  if (const Node* friction = map.find("friction")) spec.friction = read_friction(*friction);
+  if (const Node* self = map.find("self")) spec.self = choice(*self, {"false", "true"}) == 1;
+  if (const Node* pairs = map.find("pairs"))
+    for (const auto& item : list(*pairs)) spec.pairs.push_back(read_pair(*item));
+}
+
+}  // namespace
+
+std::optional<ContactSpec> read_contact(const Context& context, const Map& scene) {
+  const Node::Entry* contact = scene.entry("contact");
+  const Node::Entry* obstacles = scene.entry("obstacles");
+  if (contact == nullptr && obstacles == nullptr) return std::nullopt;
+  ContactSpec spec;
+  spec.origin = (contact ? contact : obstacles)->origin;
+  if (contact) read_contact_keys(context, *contact->value, spec);
+  if (obstacles) spec.obstacles = read_obstacles(context, *obstacles->value);
+  return spec;
+}
+
+}  // namespace softkin::scene

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <softkin/core/types.hpp>
+
+namespace softkin {
+
+// Shapes of regions and of obstacles. Lengths in mm.
+struct Box {
+  Vec3 low, high;
+};
+struct Sphere {
+  Vec3 center;
+  double radius = 0;
+};
+struct Cylinder {  // finite, flat ends
+  Vec3 start, end;
+  double radius = 0;
+};
+struct Capsule {  // all that is at most `radius` away from the line between the two
+  Vec3 start, end;
+  double radius = 0;
+};
+struct Halfspace {  // of a region: the side to which the normal points; of an obstacle: the other one
+  Vec3 point, normal;
+};
+
+/// What is wrong with a shape, "needs a radius above 0", or nothing.
+[[nodiscard]] const char* complaint_about(const Box& box);
+[[nodiscard]] const char* complaint_about(const Sphere& sphere);
+[[nodiscard]] const char* complaint_about(const Cylinder& cylinder);
+[[nodiscard]] const char* complaint_about(const Capsule& capsule);
+[[nodiscard]] const char* complaint_about(const Halfspace& halfspace);
+
+}  // namespace softkin

@@ -1,0 +1,337 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <queue>
+#include <softkin/contact/candidates.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/model/mesh/shells.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
+#include <softkin/statics/physical/contact_at_rest.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+constexpr double touching = 1e-9;      // over the robot's diagonal: nearer than this is no gap
+constexpr double too_close = 2;        // over the contact distance
+constexpr double advised = 2.2;        // gap over the distance to choose
+constexpr double neighbourhood = 6;    // along the surface, over the contact distance
+constexpr double facing_cosine = 0.5;  // between the way across and the normals
+
+/// What the checks share: the surfaces at rest, and which part each of their vertices and triangles is of.
+class RestingSurfaces {
+ public:
+  explicit RestingSurfaces(const Model& of)
+      : model(of), surface(contact::make_surface(of.contact.triangles, of.rest)), team(1) {
+    contact::Exclusions exclusions;
+    exclusions.group.assign(static_cast<std::size_t>(model.rest.rows()), -1);
+    std::fill(exclusions.group.begin() + model.robot_vertices(), exclusions.group.end(), 0);
+    broad.emplace(surface, model.rest, std::move(exclusions));
+  }
+
+  [[nodiscard]] Index part(Index triangle) const { return model.contact.part_of[static_cast<std::size_t>(triangle)]; }
+  [[nodiscard]] bool of_robot(Index triangle) const {
+    return model.contact.parts[static_cast<std::size_t>(part(triangle))].rank == ContactRank::robot;
+  }
+  /// A triangle at a vertex or edge, by place.
+  [[nodiscard]] static Index first_at(const contact::Lists& triangles, Index i) {
+    return triangles.items[static_cast<std::size_t>(triangles.begin[static_cast<std::size_t>(i)])];
+  }
+  [[nodiscard]] Index at_vertex(Index vertex) const { return first_at(surface.vertex_triangles, vertex); }
+  [[nodiscard]] Index at_edge(Index edge) const { return first_at(surface.edge_triangles, edge); }
+  [[nodiscard]] const contact::Corners& corners(Index triangle) const {
+    return surface.triangles[static_cast<std::size_t>(triangle)];
+  }
+  [[nodiscard]] Vec3 rest(Index vertex) const { return vertex_at(model.rest, vertex); }
+  [[nodiscard]] bool may_touch(Index triangle, Index other) const {
+    return model.contact.pair(part(triangle), part(other)).touch;
+  }
+
+  const Model& model;
+  contact::Surface surface;
+  Team team;
+  std::optional<contact::BroadPhase> broad;
+};
+
+const ContactPart& part_at(const Model& model, Index part) {
+  return model.contact.parts[static_cast<std::size_t>(part)];
+}
+
+std::string name_of_part(const ContactPart& part) {
+  if (part.rank == ContactRank::obstacle) return "obstacle '" + part.name + "'";
+  if (part.rank == ContactRank::body) return "'" + part.name + "'";
+  return part.name == "robot" ? "the robot" : "region '" + part.name + "'";
+}
+
+std::string place_text(const Vec3& point) {
+  return "at " + point_text(point) + " mm";
+}
+
+std::vector<Triangle> triangles_where(const RestingSurfaces& at, const std::function<bool(Index)>& accept) {
+  std::vector<Triangle> triangles;
+  for (std::size_t t = 0; t < at.surface.triangles.size(); ++t)
+    if (accept(static_cast<Index>(t))) triangles.push_back(at.surface.triangles[t]);
+  return triangles;
+}
+
+bool is_closed(const Points& vertices, const std::vector<Triangle>& triangles) {
+  const std::vector<Shell> shells = shells_of(vertices, triangles);
+  return std::all_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.closed; });
+}
+
+/// The robot's vertices on the wrong side of half-spaces.
+void refuse_behind_planes(const RestingSurfaces& at) {
+  const Model& model = at.model;
+  for (std::size_t t = 0; t < at.surface.triangles.size(); ++t) {
+    const ContactPart& part = part_at(model, at.part(static_cast<Index>(t)));
+    if (!part.halfspace) continue;
+    const auto& [a, b, c] = at.surface.triangles[t];
+    const Vec3 normal = (at.rest(b) - at.rest(a)).cross(at.rest(c) - at.rest(a)).normalized();
+    double least = std::numeric_limits<double>::infinity();
+    Vec3 lowest;
+    for (const Index v : at.surface.vertices) {
+      if (v >= model.robot_vertices()) continue;
+      const double height = normal.dot(at.rest(v) - at.rest(a));
+      if (!(height < least)) continue;
+      least = height;
+      lowest = at.rest(v);
+    }
+    if (least > touching * model.diagonal_mm) continue;
+    const bool deep = least < -touching * model.diagonal_mm;
+    throw InvalidInput(part.origin,
+                       "the robot " + (deep ? "lies " + number(-least) + " mm deep in " : std::string("touches ")) +
+                           name_of_part(part) + " at rest, " + place_text(lowest) + ": move it by more than " +
+                           number(std::max(0.0, -least)) + " mm against its normal, so that a gap is left");
+  }
+}
+
+/// Where an edge passes through a triangle.
+std::optional<Vec3> crossing(const Vec3& from, const Vec3& to, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto hit = meet_plane(from, to - from, a, b, c);
+  if (!hit || hit->t < 0 || hit->t > 1 || hit->weights.minCoeff() < 0) return std::nullopt;
+  return from + hit->t * (to - from);
+}
+
+/// How far a translation has to take apart what crosses, about: the depth of the deepest vertex of either in the other;
+/// 0 where none is inside.
+double depth_of(const Points& rest, const std::vector<Triangle>& one, const std::vector<Triangle>& other) {
+  double deepest = 0;
+  const auto look = [&](const std::vector<Triangle>& triangles, const std::vector<Triangle>& around) {
+    if (!is_closed(rest, around)) return;
+    const SurfaceTree tree(rest, around);
+    for (const Triangle& t : triangles)
+      for (const Index v : t)
+        if (tree.contains(vertex_at(rest, v))) deepest = std::max(deepest, tree.distance(vertex_at(rest, v)));
+  };
+  look(one, other);
+  look(other, one);
+  return deepest;
+}
+
+[[noreturn]] void refuse_crossing(const RestingSurfaces& at, Index triangle, Index other, const Vec3& place) {
+  if (at.of_robot(other)) std::swap(triangle, other);
+  const ContactPart &one = part_at(at.model, at.part(triangle)), &two = part_at(at.model, at.part(other));
+  const std::string where = " at rest, " + place_text(place) + ": ";
+  if (at.of_robot(other)) {
+    const bool same = at.part(triangle) == at.part(other);
+    throw InvalidInput(one.origin,
+                       name_of_part(one) +
+                           (same ? " touches or crosses itself" : " and " + name_of_part(two) + " touch or cross") +
+                           where + "leave a gap there or join the surfaces in the mesh, or set " + "'self: false'");
+  }
+  const Index obstacle = at.part(other);
+  const double depth = depth_of(at.model.rest, triangles_where(at, [&](Index t) { return at.of_robot(t); }),
+                                triangles_where(at, [&](Index t) { return at.part(t) == obstacle; }));
+  throw InvalidInput(two.origin, name_of_part(one) + " and " + name_of_part(two) + " touch or cross" + where +
+                                     (depth > 0 ? "move the obstacle away by about " + number(depth, 2) +
+                                                      " mm or more, so that a gap is left"
+                                                : "move the obstacle away, so that a gap is left"));
+}
+
+/// Surfaces that pass through each other: every piece of their common line ends where an edge meets a triangle.
+void refuse_crossings(RestingSurfaces& at) {
+  const contact::Surface& surface = at.surface;
+  Points centres(static_cast<Index>(surface.triangles.size()), 3);
+  const auto box_of = [&](Index t) {
+    contact::Box box;
+    for (const Index v : at.corners(t)) box.extend(at.rest(v));
+    return box;
+  };
+  for (Index t = 0; t < centres.rows(); ++t) centres.row(t) = box_of(t).center().transpose();
+  contact::WideTree tree(centres);
+  tree.refit(box_of, at.team);
+  for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+    const auto& [p, q] = surface.edges[e];
+    const Index own = at.at_edge(static_cast<Index>(e));
+    contact::Box box(at.rest(p));
+    box.extend(at.rest(q));
+    tree.visit(box, 0, [&](Index group) {
+      for (unsigned bits = tree.boxes(group).overlaps(box); bits != 0; bits &= bits - 1) {
+        const Index t = tree.item(group, __builtin_ctz(bits));
+        const contact::Corners& c = at.corners(t);
+        const bool shared = std::any_of(c.begin(), c.end(), [p = p, q = q](Index v) { return v == p || v == q; });
+        if (shared || !at.may_touch(own, t)) continue;
+        if (const auto place = crossing(at.rest(p), at.rest(q), at.rest(c[0]), at.rest(c[1]), at.rest(c[2])))
+          refuse_crossing(at, own, t, *place);
+      }
+    });
+  }
+}
+
+/// Surfaces without a gap that do not pass through each other.
+void refuse_touching(RestingSurfaces& at) {
+  const double least = touching * at.model.diagonal_mm;
+  contact::Candidates near;
+  at.broad->find(at.model.rest, least, at.team, near);
+  for (const contact::Pair& pair : near.vertex_triangle) {
+    const Index own = at.at_vertex(pair.first);
+    if (!at.may_touch(own, pair.second)) continue;
+    const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
+    if (contact::vertex_triangle(contact::points_of(at.model.rest, nodes)).squared <= least * least)
+      refuse_crossing(at, own, pair.second, at.rest(nodes[0]));
+  }
+  for (const contact::Pair& pair : near.edge_edge) {
+    const Index own = at.at_edge(pair.first), other = at.at_edge(pair.second);
+    if (!at.may_touch(own, other)) continue;
+    const auto x = contact::points_of(at.model.rest, contact::nodes_of_edge_edge(at.surface, pair));
+    const contact::Separation separation = contact::edge_edge(x);
+    if (separation.squared <= least * least)
+      refuse_crossing(at, own, other, separation.weights[0] * x.col(0) + separation.weights[1] * x.col(1));
+  }
+}
+
+/// A vertex of each piece of a surface.
+std::vector<Vec3> one_of_each(const Points& rest, const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> points;
+  for (const Shell& shell : shells_of(rest, triangles))
+    points.push_back(vertex_at(rest, triangles[static_cast<std::size_t>(shell.triangles[0])][0]));
+  return points;
+}
+
+/// What does not cross is inside with all of a piece or with none.
+void refuse_inside(const RestingSurfaces& at) {
+  const Points& rest = at.model.rest;
+  const std::vector<Triangle> robot = triangles_where(at, [&](Index t) { return at.of_robot(t); });
+  const std::vector<Vec3> of_robot = one_of_each(rest, robot);
+  std::optional<SurfaceTree> body;
+  for (std::size_t p = 0; p < at.model.contact.parts.size(); ++p) {
+    const ContactPart& part = at.model.contact.parts[p];
+    if (part.rank != ContactRank::obstacle || part.halfspace) continue;
+    if (!body) body.emplace(rest, robot);
+    const auto triangles = triangles_where(at, [&](Index t) { return at.part(t) == static_cast<Index>(p); });
+    for (const Vec3& point : one_of_each(rest, triangles))
+      if (body->contains(point))
+        throw InvalidInput(part.origin, name_of_part(part) + " lies inside the robot's body at rest, " +
+                                            place_text(point) + ": move it out, so that a gap is left");
+    if (!is_closed(rest, triangles)) continue;
+    const SurfaceTree solid(rest, triangles);
+    for (const Vec3& point : of_robot)
+      if (solid.contains(point))
+        throw InvalidInput(part.origin, "the robot lies inside " + name_of_part(part) + " at rest, " +
+                                            place_text(point) + ": move the obstacle away, so that a gap is left");
+  }
+}
+
+/// Unit normals of the robot's vertices, by place: the mean over their triangles, weighted by area.
+std::vector<Vec3> vertex_normals(const RestingSurfaces& at) {
+  std::vector<Vec3> normals(at.surface.vertices.size(), Vec3::Zero());
+  const contact::Lists& around = at.surface.vertex_triangles;
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    for (Index i = around.begin[v]; i < around.begin[v + 1]; ++i) {
+      const auto& [a, b, c] = at.corners(around.items[static_cast<std::size_t>(i)]);
+      normals[v] += (at.rest(b) - at.rest(a)).cross(at.rest(c) - at.rest(a));
+    }
+    normals[v].normalize();
+  }
+  return normals;
+}
+
+/// Answers what is near along a surface.
+class SurfaceWalk {
+ public:
+  explicit SurfaceWalk(const RestingSurfaces& at)
+      : at_(at), next_(contact::neighbours_of(at.surface, static_cast<Index>(at.model.rest.rows()), 1)) {}
+
+  /// Is the point of a triangle at most so far from the vertex, along edges to a corner and from there straight [mm]?
+  [[nodiscard]] bool reaches(Index vertex, const contact::Corners& corners, const Vec3& point, double length) const {
+    using Reached = std::pair<double, Index>;
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> waiting;
+    std::map<Index, double> shortest{{vertex, 0.0}};
+    for (waiting.emplace(0.0, vertex); !waiting.empty();) {
+      const auto [gone, from] = waiting.top();
+      waiting.pop();
+      if (gone > shortest[from]) continue;
+      if (std::find(corners.begin(), corners.end(), from) != corners.end() &&
+          gone + (at_.rest(from) - point).norm() <= length)
+        return true;
+      const auto v = static_cast<std::size_t>(from);
+      for (Index i = next_.begin[v]; i < next_.begin[v + 1]; ++i) {
+        const Index to = next_.items[static_cast<std::size_t>(i)];
+        const double way = gone + (at_.rest(to) - at_.rest(from)).norm();
+        if (way > length) continue;
+        const auto [known, fresh] = shortest.emplace(to, way);
+        if (!fresh && known->second <= way) continue;
+        known->second = way;
+        waiting.emplace(way, to);
+      }
+    }
+    return false;
+  }
+
+ private:
+  const RestingSurfaces& at_;
+  contact::Lists next_;  // of every vertex of the model those an edge away, itself included
+};
+
+/// Places of the robot that look at each other from too near.
+void refuse_narrow_gaps(RestingSurfaces& at) {
+  const double distance = at.model.contact.distance_mm;
+  contact::Candidates near;
+  at.broad->find(at.model.rest, too_close * distance, at.team, near);
+  const std::vector<Vec3> normals = vertex_normals(at);
+  std::optional<SurfaceWalk> walk;
+  double gap = too_close * distance;
+  std::optional<Vec3> where;
+  for (const contact::Pair& pair : near.vertex_triangle) {
+    const Index own = at.at_vertex(pair.first);
+    if (!at.of_robot(own) || !at.of_robot(pair.second) || !at.may_touch(own, pair.second)) continue;
+    const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
+    const contact::FourPoints x = contact::points_of(at.model.rest, nodes);
+    const contact::Separation separation = contact::vertex_triangle(x);
+    const double apart = std::sqrt(separation.squared);
+    if (!(apart < gap)) continue;
+    const Vec3 way = -separation.vector / apart;  // from the vertex to the triangle
+    const Vec3 normal = (x.col(2) - x.col(1)).cross(x.col(3) - x.col(1)).normalized();
+    if (!(way.dot(normals[static_cast<std::size_t>(pair.first)]) > facing_cosine && -way.dot(normal) > facing_cosine))
+      continue;
+    const double edge =
+        std::max({(x.col(2) - x.col(1)).norm(), (x.col(3) - x.col(2)).norm(), (x.col(1) - x.col(3)).norm()});
+    if (!walk) walk.emplace(at);
+    if (walk->reaches(nodes[0], at.corners(pair.second), x.col(0) - separation.vector, neighbourhood * distance + edge))
+      continue;
+    gap = apart;
+    where = x.col(0);
+  }
+  if (where)
+    throw InvalidInput(at.model.contact.parts[0].origin,
+                       "contact distance " + number(distance) + " mm is too large: " + place_text(*where) +
+                           " the robot's surfaces are only " + number(gap, 3) + " mm apart; choose at most " +
+                           number(gap / advised, 3) + " mm");
+}
+
+}  // namespace
+
+void check_contact_at_rest(const Model& model) {
+  if (!model.contact.any()) return;
+  RestingSurfaces at(model);
+  refuse_behind_planes(at);
+  refuse_crossings(at);
+  refuse_touching(at);
+  refuse_inside(at);
+  refuse_narrow_gaps(at);
+}
+
+}  // namespace softkin::physical
