@@ -162,14 +162,15 @@ void refuse_crossings(RestingSurfaces& at) {
   };
   for (Index t = 0; t < centres.rows(); ++t) centres.row(t) = box_of(t).center().transpose();
   contact::WideTree tree(centres);
-  tree.refit(box_of, at.team);
+  const auto still = [](const contact::Box& box) { return contact::MovingBox{box, contact::Box(Vec3::Zero())}; };
+  tree.refit([&](Index t) { return still(box_of(t)); }, at.team);
   for (std::size_t e = 0; e < surface.edges.size(); ++e) {
     const auto& [p, q] = surface.edges[e];
     const Index own = at.at_edge(static_cast<Index>(e));
     contact::Box box(at.rest(p));
     box.extend(at.rest(q));
-    tree.visit(box, 0, [&](Index group) {
-      for (unsigned bits = tree.boxes(group).overlaps(box); bits != 0; bits &= bits - 1) {
+    tree.visit(still(box), 0, [&](Index group) {
+      for (unsigned bits = tree.boxes(group).may_meet(still(box)); bits != 0; bits &= bits - 1) {
         const Index t = tree.item(group, __builtin_ctz(bits));
         const contact::Corners& c = at.corners(t);
         const bool shared = std::any_of(c.begin(), c.end(), [p = p, q = q](Index v) { return v == p || v == q; });

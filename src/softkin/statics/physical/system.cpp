@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/core/dense.hpp>
+#include <softkin/statics/physical/contact_at_rest.hpp>
 #include <softkin/statics/physical/system.hpp>
 
 namespace softkin::physical {
@@ -33,6 +34,7 @@ System::System(const Model& model)
   linear::require_memory(*symbolic);  // before what takes long
   layout_ = std::make_shared<const Layout>(Layout{
       std::move(pattern), std::move(reduced), std::move(symbolic), cliques_.slots.back(), {}, cliques_.slots.back()});
+  check_contact_at_rest(model);
   if (model.contact.any())
     contacts_ = std::make_unique<Contacts>(model);
   else
