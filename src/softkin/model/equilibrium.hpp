@@ -8,12 +8,20 @@ namespace softkin {
 
 using Actuation = Eigen::VectorXd;
 
+/// Where a vertex sticks to a part of another surface, or slips from: friction pulls it there.
+struct Anchor {
+  Index vertex = -1, part = -1;  // the vertex by its place among those of ContactModel's triangles, ascending
+  Index triangle = -1;           // of ContactModel, of that part
+  Vec3 weights = Vec3::Zero();   // of its corners; their sum is 1
+};
+
 /// Where a search begins or ended.
 struct State {
   Points positions;               // #V by 3 [mm]
   Actuation actuation{};          // of which positions is an equilibrium; empty: not known
   Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa], 0 for a dea; empty: not known
   double share = 1;  // of dead loads and displacements of supports; -1: of no equilibrium that is known [-]
+  std::vector<Anchor> anchors{};  // of friction, sorted by vertex, then part; empty: nothing rubs yet
 
   /// Whether it tells of which actuation, of so many values, positions is an equilibrium.
   [[nodiscard]] bool knows(Eigen::Index actuators) const { return actuation.size() == actuators && share >= 0; }
@@ -49,8 +57,9 @@ struct SolveReport {
   int buckled = 0;         // physical: how often an unstable equilibrium was left for a stable one
   double buckled_mm = 0;   // the largest move of a vertex thereby [mm]
   double snapped_mm = 0;   // physical: the longest move that a step made beside what its tangent predicts [mm]; 0: none
-  double snapped_from = 0;   // share of the way at which that step began [-]
-  double unstable_from = 0;  // physical: the first share of the way at which an equilibrium passed was unstable [-]
+  double snapped_from = 0;     // share of the way at which that step began [-]
+  double friction_change = 0;  // of a vertex' friction when normal forces were found anew, over the largest [-]
+  double unstable_from = 0;    // physical: the first share of the way at which an equilibrium passed was unstable [-]
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   double seconds = 0;

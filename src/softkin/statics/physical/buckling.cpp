@@ -26,7 +26,7 @@ bool Continuation::buckle(const Demand& demand, Iterate& at) {
     if (!best) return true;
     ++report_.buckled;
     report_.buckled_mm = std::max(report_.buckled_mm, largest_move(at.positions, best->at.positions));
-    at = std::move(best->at);
+    take(at, std::move(best->at));
     active_ = best->active;
     last_ = best->last;
   }

@@ -22,12 +22,20 @@ constexpr Index clique_slots = 10;
 
 }  // namespace
 
-Contacts::Contacts(const Model& model) : model_(model) {
-  const ContactModel& rules = model.contact;
-  surfaces_.surface = contact::make_surface(rules.triangles, model.rest);
-  surfaces_.reach_mm = rules.distance_mm;
-  surfaces_.modulus_MPa = rules.modulus_MPa;
-  surfaces_.rules = &rules;
+namespace {
+
+ContactSurfaces surfaces_of(const Model& model) {
+  ContactSurfaces surfaces;
+  surfaces.surface = contact::make_surface(model.contact.triangles, model.rest);
+  surfaces.reach_mm = model.contact.distance_mm;
+  surfaces.modulus_MPa = model.contact.modulus_MPa;
+  surfaces.rules = &model.contact;
+  return surfaces;
+}
+
+}  // namespace
+
+Contacts::Contacts(const Model& model) : model_(model), surfaces_(surfaces_of(model)), friction_(surfaces_) {
   find_parts();
   choose_areas();
   Team alone(1);
@@ -89,7 +97,7 @@ contact::Exclusions Contacts::exclusions() const {
 
 std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
   return std::make_unique<Scratch>(
-      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, {}, {}});
+      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, {}, {}, {}});
 }
 
 /// Of candidates those that are so close and feel each other; sorted.
@@ -118,21 +126,21 @@ void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const
 }
 
 double Contacts::energy(const Points& positions, const Scratch& scratch) const {
-  return potential_->energy(positions, scratch.terms);
+  return potential_->energy(positions, scratch.terms) + friction_.energy(positions, scratch.holds);
 }
 
 void Contacts::add_gradient(const Points& positions, const Scratch& scratch, Points& gradient) const {
   potential_->add_gradient(positions, scratch.terms, gradient);
+  friction_.add_gradient(positions, scratch.holds, gradient);
 }
 
 namespace {
 
-/// Place of a term's pair among pairs, those of edges after those of vertices; -1: none.
-Index place_of(const Candidates& pairs, const ContactPotential::Term& term) {
-  const bool edges = term.threshold > 0;
+/// Place of a pair among those of a pattern, those of edges after those of vertices; -1: none.
+Index place_of(const Candidates& pairs, const Pair& pair, bool edges) {
   const std::vector<Pair>& all = edges ? pairs.edge_edge : pairs.vertex_triangle;
-  const auto found = std::lower_bound(all.begin(), all.end(), term.pair);
-  if (found == all.end() || *found != term.pair) return -1;
+  const auto found = std::lower_bound(all.begin(), all.end(), pair);
+  if (found == all.end() || *found != pair) return -1;
   return static_cast<Index>(found - all.begin() +
                             (edges ? static_cast<std::ptrdiff_t>(pairs.vertex_triangle.size()) : 0));
 }
@@ -141,13 +149,19 @@ Index place_of(const Candidates& pairs, const ContactPotential::Term& term) {
 
 bool Contacts::holds(const Candidates& pairs, const Scratch& scratch) {
   return std::all_of(scratch.terms.begin(), scratch.terms.end(),
-                     [&](const ContactPotential::Term& term) { return place_of(pairs, term) >= 0; });
+                     [&](const auto& term) { return place_of(pairs, term.pair, term.threshold > 0) >= 0; }) &&
+         std::all_of(scratch.holds.begin(), scratch.holds.end(),
+                     [&](const auto& hold) { return place_of(pairs, hold.pair, false) >= 0; });
 }
 
 void Contacts::find_pairs(const Points& positions, Scratch& scratch, Team& team, Candidates& pairs) const {
   const double reach = foresight * surfaces_.reach_mm;
   scratch.broad.find(positions, reach, team, pairs);
   keep_close(positions, reach, pairs);
+  for (const Friction::Hold& hold : scratch.holds) pairs.vertex_triangle.push_back(hold.pair);
+  sort_candidates(pairs);
+  pairs.vertex_triangle.erase(std::unique(pairs.vertex_triangle.begin(), pairs.vertex_triangle.end()),
+                              pairs.vertex_triangle.end());
 }
 
 void Contacts::add_cliques(const Candidates& pairs, linear::Cliques& cliques) const {
@@ -160,13 +174,20 @@ void Contacts::stiffness(const Points& positions, bool projected, const Scratch&
   const std::size_t count = pairs.vertex_triangle.size() + pairs.edge_edge.size();
   std::fill_n(slots, 9 * clique_slots * count, 0.0);
   contact::Hessian block;
-  for (const ContactPotential::Term& term : scratch.terms) {
-    potential_->stiffness(positions, term, projected, block);
-    double* slot = slots + static_cast<std::ptrdiff_t>(9 * clique_slots) * place_of(pairs, term);
+  const auto add = [&](const Pair& pair, bool edges) {
+    double* slot = slots + static_cast<std::ptrdiff_t>(9 * clique_slots) * place_of(pairs, pair, edges);
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b, slot += 9)
         for (int r = 0; r < 3; ++r)
           for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(3 * a + r, 3 * b + c);
+  };
+  for (const ContactPotential::Term& term : scratch.terms) {
+    potential_->stiffness(positions, term, projected, block);
+    add(term.pair, term.threshold > 0);
+  }
+  for (const Friction::Hold& hold : scratch.holds) {
+    friction_.stiffness(positions, hold, block);
+    add(hold.pair, false);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/physical/contact_potential.hpp>
+#include <softkin/statics/physical/friction.hpp>
 
 namespace softkin::physical {
 
@@ -21,13 +22,16 @@ class Contacts {
     Points searched;                            // that shape
     contact::Candidates close;                  // what is within reach
     std::vector<ContactPotential::Term> terms;  // of the shape that was found last
+    Friction::Holds holds;                      // of normal forces that were held last
   };
   [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const;
 
   /// Finds what is closer than the reach.
   void find(const Points& positions, Scratch& scratch, Team& team) const;
 
-  // Of the terms that were found, at the same positions.
+  [[nodiscard]] const Friction& friction() const { return friction_; }
+
+  // Of the terms that were found, at the same positions, and of the holds.
   /// [mJ]; infinite where a pair touches.
   [[nodiscard]] double energy(const Points& positions, const Scratch& scratch) const;
   /// Adds it [N].
@@ -62,6 +66,7 @@ class Contacts {
 
   const Model& model_;
   ContactSurfaces surfaces_;
+  Friction friction_;
   std::unique_ptr<ContactPotential> potential_;
 };
 

@@ -99,6 +99,8 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   way_.load = only_load(from, to);
   way_.marked_iterations = report_.iterations;
   (void)release(to, at, false);
+  from_ = at.positions;
+  (void)system_.renew_friction(from_, at, work_, team_);
   way_.factorised = same_shape(work_.home, at.positions) && factor_holds_active();
   work_.home.resize(0, 3);
   if (!way_.factorised && from.actuation == to.actuation && from.share == to.share) {
@@ -144,9 +146,9 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     way_.advance = std::max(longest, 0.4 * length);
   } else {
     if (snap) tell_snap(jump_mm_, way_.done);
-    at = std::move(trial);
+    take(at, std::move(trial));
     if (!come_to(there, next, unstable, at)) return Status::interrupted;
-    const int used = report_.iterations - before;
+    const int used = (report_.iterations - before) / rounds_;  // those for new normal forces are as many each
     way_.advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
   }
@@ -168,7 +170,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     Beyond beyond = std::move(*way_.beyond);
     way_.beyond.reset();
     tell_snap(beyond.jump_mm, way_.done);
-    at = std::move(beyond.at);
+    take(at, std::move(beyond.at));
     active_ = std::move(beyond.active);
     last_ = beyond.last;
     pass(beyond.demand, beyond.done);
@@ -316,6 +318,7 @@ void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
 /// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.
 int Continuation::prepare(const Demand& here, const Iterate& at) {
   System::Balance balance;
+  system_.hold_friction(at, work_, team_);
   system_.evaluate(at, here, active_, work_, balance, team_);
   ++report_.factorisations;
   const int modes = system_.factorise(at, here, active_, System::Stiffness::exact, 0, work_, team_);
@@ -329,7 +332,7 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   auto outcome = settle(demand, Newton::Policy::descend, trial);
   if (newton_.inverted()) outcome = Newton::Outcome::stuck;
   if (outcome == Newton::Outcome::converged) {
-    at = std::move(trial);
+    take(at, std::move(trial));
     last_ = judged();
     ++report_.continuation_steps;
     report_.reached = 1;
@@ -339,8 +342,32 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   return outcome;
 }
 
-/// Newton, with cables released where they would push and taken up where they are too long.
+/// Newton, again and again with the normal forces that it leads to, by which friction is limited.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
+  constexpr double agree = 1e-4;
+  constexpr int most_rounds = 40;
+  auto outcome = settle_constraints(demand, policy, at, factorised);
+  rounds_ = 1;
+  for (int round = 0; system_.friction() && round < most_rounds; ++round) {
+    if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
+    report_.friction_change = system_.renew_friction(from_, at, work_, team_);
+    if (report_.friction_change <= agree) break;
+    ++rounds_;
+    outcome = settle_constraints(demand, policy, at, factorised_nearby(at.positions) && factor_holds_active());
+  }
+  return outcome;
+}
+
+/// Another equilibrium instead of the one at hand: what slips goes on from there.
+void Continuation::take(Iterate& at, Iterate&& found) {
+  at = std::move(found);
+  system_.slide_friction(at, work_, team_);
+  from_ = at.positions;
+}
+
+/// Newton, with cables released where they would push and taken up where they are too long.
+Newton::Outcome Continuation::settle_constraints(const Demand& demand, Newton::Policy policy, Iterate& at,
+                                                 bool factorised) {
   const std::vector<bool> before = active_;
   for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
     const auto outcome = newton_.solve(demand, active_, policy, factorised && change == 0, at);

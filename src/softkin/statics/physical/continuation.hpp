@@ -94,6 +94,8 @@ class Continuation {
   int prepare(const Demand& here, const Iterate& at);
   Newton::Outcome settle_here(const Demand& demand, Iterate& at);
   Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised = false);
+  Newton::Outcome settle_constraints(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised);
+  void take(Iterate& at, Iterate&& found);
   [[nodiscard]] bool factorised_nearby(const Points& shape) const;
   bool change_active(const Demand& demand, Iterate& at);
 
@@ -107,9 +109,11 @@ class Continuation {
   SolveReport& report_;
   Way way_;
   std::vector<bool> active_;
+  Points from_;                       // the last good shape
   Points predicted_, begun_;          // by the last step, and what of it is in nobody's way
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
   Judgement last_;                    // of the last good shape
+  int rounds_ = 1;                    // of normal forces, for the last equilibrium
   bool interrupted_ = false;
 };
 

@@ -32,6 +32,7 @@ void Derivative::hold(const Iterate& at, const Demand& demand) {
     if (active_[a]) held_.push_back(a);
   }
   System::Balance balance;
+  system_.hold_friction(at, work_, team_);
   system_.evaluate(at, demand, active_, work_, balance, team_);
   slopes_.resize(system_.freedoms().size(), static_cast<Index>(held_.size()));
   for (Index i = 0; i < slopes_.cols(); ++i) {

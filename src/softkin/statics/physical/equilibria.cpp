@@ -64,7 +64,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   Lease lease(*this, start.positions, options.reuse_factor);
 
   const Demand from = demand_of(system_, model, start), to{actuation, 1};
-  Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators())};
+  Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors};
   system_.freedoms().hold(from.share, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
@@ -74,6 +74,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   if (report.status == Status::converged) lease.work().home = at.positions;
   report.estimated_error_mm = report.step_mm;
   result.state.positions = std::move(at.positions);
+  result.state.anchors = std::move(at.anchors);
   result.state.actuation = actuation;
   if (report.status != Status::converged && report.reached < 1) {
     result.state.actuation = from.actuation + report.reached * (actuation - from.actuation);

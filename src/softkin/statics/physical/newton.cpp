@@ -357,15 +357,15 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
     : system_(system),
       work_(work),
       at_(at),
-      iterate_{at.positions, at.multipliers},
+      iterate_(system.iterate(at)),
       active_(static_cast<std::size_t>(system.actuators())) {
   for (Index a = 0; a < system.actuators(); ++a) {
-    iterate_.multipliers[a] *= system.unit(a);
     // chambers are held always, cables where they pull
     active_[a] = system.constrains(a) && (system.sign(a) < 0 || iterate_.multipliers[a] > 0);
   }
   System::Balance balance;
   const Demand demand{at.actuation, at.share};
+  system.hold_friction(iterate_, work_, team);
   system.evaluate(iterate_, demand, active_, work_, balance, team);
   (void)system.factorise(iterate_, demand, active_, System::Stiffness::exact, 0, work_, team);
 }
@@ -376,7 +376,7 @@ State Predictor::predict(const Actuation& actuation, Team& team) {
   if (!predict_clear(system_, {at_.actuation, at_.share}, {actuation, 1}, active_, work_, team, there, predicted))
     return at_;
   if (!there.positions.allFinite() || !there.multipliers.allFinite()) return at_;
-  State state{std::move(there.positions), actuation, std::move(there.multipliers), 1};
+  State state{std::move(there.positions), actuation, std::move(there.multipliers), 1, std::move(there.anchors)};
   for (Index a = 0; a < system_.actuators(); ++a) {
     state.multipliers[a] /= system_.unit(a);
     // no cable pushes

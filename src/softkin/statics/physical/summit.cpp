@@ -48,14 +48,17 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
   here.actuation[a] = from.measure;
   there.actuation[a] = measure;
   active_[a] = true;
+  from_ = from.at.positions;
   std::optional<Measured> found;
   if (prepare(here, from.at) >= 0) {
     Iterate trial = from.at;
     const bool clear = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_).has_value();
     const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
     interrupted_ = outcome == Newton::Outcome::interrupted;
-    if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted))
+    if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted)) {
+      system_.slide_friction(trial, work_, team_);
       found = Measured{measure, trial.multipliers[a] / system_.unit(a), std::move(trial), judged()};
+    }
   }
   active_[a] = false;
   return found;
@@ -120,7 +123,7 @@ Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& ne
   const auto outcome = settle(to, Newton::Policy::descend, trial);
   if (outcome == Newton::Outcome::interrupted) return Climb::interrupted;
   if (outcome != Newton::Outcome::converged || (newton_.inverted() && !last_.inverted)) return Climb::lost;
-  at = std::move(trial);
+  take(at, std::move(trial));
   last_ = judged();
   ++report_.continuation_steps;
   report_.reached = 1;

@@ -255,6 +255,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
 void System::measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out,
                      Team& team) const {
   Balance balance;
+  hold_friction(at, work, team);
   evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(actuators()), false), work, balance, team);
   out.reactions = work.gradient;
   for (Index v = 0; v < out.reactions.rows(); ++v)
@@ -271,6 +272,28 @@ void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work,
   freedoms_->move(step, scale, positions);
   std::vector<supports::Pose> poses = turning_->poses(positions);
   turning_->step(work.lacking, positions, poses, team);
+}
+
+void System::hold_friction(const Iterate& at, Workspace& work, Team& team) const {
+  if (!friction()) return;
+  contacts_->find(at.positions, *work.contacts, team);
+  contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
+}
+
+double System::renew_friction(const Points& from, Iterate& at, Workspace& work, Team& team) const {
+  if (!friction()) return 0;
+  contacts_->find(at.positions, *work.contacts, team);
+  contacts_->friction().renew(from, at.positions, work.contacts->terms, at.anchors);
+  const Friction::Holds before = work.contacts->holds;
+  contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
+  return contacts_->friction().disagreement(at.positions, before, work.contacts->holds);
+}
+
+void System::slide_friction(Iterate& at, Workspace& work, Team& team) const {
+  if (!friction()) return;
+  contacts_->find(at.positions, *work.contacts, team);
+  contacts_->friction().slide(at.positions, work.contacts->terms, work.contacts->holds, at.anchors);
+  contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
 }
 
 double System::clear_share(const Points& from, const Way& way, double end, Workspace& work, Points& to,

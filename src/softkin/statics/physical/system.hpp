@@ -22,8 +22,9 @@ struct Demand {
 
 /// Shape and multipliers; a point of the path that Newton follows.
 struct Iterate {
-  Points positions;             // #V by 3 [mm]
-  Eigen::VectorXd multipliers;  // m: tension [N], gauge pressure [MPa]; 0: dea
+  Points positions;               // #V by 3 [mm]
+  Eigen::VectorXd multipliers;    // m: tension [N], gauge pressure [MPa]; 0: dea
+  std::vector<Anchor> anchors{};  // of friction
 };
 
 /// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
@@ -142,6 +143,16 @@ class System {
   void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
 
   [[nodiscard]] bool contact() const { return contacts_ != nullptr; }
+  [[nodiscard]] bool friction() const { return contacts_ && contacts_->friction().any(); }
+
+  /// Friction by the normal forces of an equilibrium, for what follows, at its anchors.
+  void hold_friction(const Iterate& at, Workspace& work, Team& team) const;
+  /// The same, with new anchors where something began to touch on the way from an earlier shape.
+  ///
+  /// returns  how far the friction at the iterate was by other normal forces, over the largest force on a vertex [-]
+  double renew_friction(const Points& from, Iterate& at, Workspace& work, Team& team) const;
+  /// Lets what slips at an equilibrium go on from there.
+  void slide_friction(Iterate& at, Workspace& work, Team& team) const;
 
   /// The same, less far where otherwise something would pass through something.
   ///
@@ -178,7 +189,7 @@ class System {
   }
   /// Of a shape whose multipliers are known.
   [[nodiscard]] Iterate iterate(const State& at) const {
-    Iterate shape{at.positions, at.multipliers};
+    Iterate shape{at.positions, at.multipliers, at.anchors};
     for (Index a = 0; a < actuators(); ++a) shape.multipliers[a] *= unit(a);
     return shape;
   }

@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical/friction.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+/// By which what sticks gives way, over the contact distance.
+constexpr double creep_share = 0.02;
+
+/// In the order of anchors.
+template <class A, class B>
+bool before(const A& a, const B& b) {
+  return a.vertex != b.vertex ? a.vertex < b.vertex : a.part < b.part;
+}
+
+}  // namespace
+
+Friction::Friction(const ContactSurfaces& surfaces) : surfaces_(surfaces), creep_mm_(creep_share * surfaces.reach_mm) {
+  if (surfaces.rules == nullptr) return;
+  const auto rubs = [](const ContactPair& pair) { return pair.touch && pair.friction > 0; };
+  any_ = std::any_of(surfaces.rules->pairs.begin(), surfaces.rules->pairs.end(), rubs);
+}
+
+/// What a vertex feels of a part.
+struct Friction::Touch {
+  Index vertex, part;  // the vertex by its place in the surface
+  Vec3 force = Vec3::Zero();
+  double nearest = HUGE_VAL;                     // squared [mm^2]
+  const ContactPotential::Term* term = nullptr;  // that is nearest
+};
+
+/// Sorted as anchors are, as terms come by vertices.
+std::vector<Friction::Touch> Friction::touches(const Terms& terms) const {
+  std::vector<Touch> all;
+  std::size_t first = 0;  // of the vertex at hand
+  for (const ContactPotential::Term& term : terms) {
+    if (term.threshold > 0) continue;
+    const Index vertex = term.pair.first, part = surfaces_.triangle_part[static_cast<std::size_t>(term.pair.second)];
+    const Index own = surfaces_.vertex_part[static_cast<std::size_t>(vertex)];
+    if (surfaces_.rules->pair(own, part).friction == 0) continue;
+    if (first < all.size() && all[first].vertex != vertex) first = all.size();
+    auto found = std::find_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(),
+                              [part](const Touch& touch) { return touch.part == part; });
+    if (found == all.end()) found = all.insert(found, Touch{vertex, part});
+    const double gap = std::sqrt(term.separation.squared);
+    found->force -= term.weight * energy::barrier(gap, surfaces_.reach_mm).slope / gap * term.separation.vector;
+    if (term.weight > 0 && term.separation.squared < found->nearest) {
+      found->nearest = term.separation.squared;
+      found->term = &term;
+    }
+  }
+  std::erase_if(all, [](const Touch& touch) { return touch.term == nullptr || !(touch.force.squaredNorm() > 0); });
+  std::sort(all.begin(), all.end(), before<Touch, Touch>);
+  return all;
+}
+
+void Friction::hold(const Terms& terms, const std::vector<Anchor>& anchors, Holds& holds) const {
+  holds.clear();
+  const std::vector<Touch> all = touches(terms);
+  auto touch = all.begin();
+  for (const Anchor& anchor : anchors) {
+    while (touch != all.end() && before(*touch, anchor)) ++touch;
+    if (touch == all.end() || before(anchor, *touch)) continue;
+    Hold hold;
+    hold.pair = {anchor.vertex, anchor.triangle};
+    hold.part = anchor.part;
+    hold.nodes = nodes_of_vertex_triangle(surfaces_.surface, hold.pair);
+    hold.weights << 1, -anchor.weights;
+    const double pressed = touch->force.norm();
+    hold.normal = touch->force / pressed;
+    const Index own = surfaces_.vertex_part[static_cast<std::size_t>(anchor.vertex)];
+    hold.limit = surfaces_.rules->pair(own, anchor.part).friction * pressed;
+    holds.push_back(hold);
+  }
+}
+
+namespace {
+
+/// Weights of the corners of a triangle, columns 1 to 3, that move their point along its plane.
+Vec3 shifted(const contact::FourPoints& x, const Vec3& weights, const Vec3& way) {
+  Eigen::Matrix<double, 3, 2> sides;
+  sides << x.col(2) - x.col(1), x.col(3) - x.col(1);
+  const Eigen::Vector2d change = (sides.transpose() * sides).ldlt().solve(sides.transpose() * way);
+  return change.allFinite() ? Vec3(weights + Vec3(-change.sum(), change[0], change[1])) : weights;
+}
+
+}  // namespace
+
+/// Of what came into reach on the way the anchor lies where it did so, every vertex on its straight way.
+Anchor Friction::fresh_anchor(const Points& from, const Points& to, const Touch& touch) const {
+  const contact::Nodes nodes = nodes_of_vertex_triangle(surfaces_.surface, touch.term->pair);
+  const Eigen::Vector4d& weights = touch.term->separation.weights;
+  const Vec3 now = contact::points_of(to, nodes) * weights, then = contact::points_of(from, nodes) * weights;
+  const Vec3 normal = touch.force.normalized();
+  const double gap_now = now.dot(normal), gap_then = then.dot(normal);
+  const double outside =
+      gap_then > surfaces_.reach_mm ? (gap_then - surfaces_.reach_mm) / (gap_then - gap_now) : 0;  // share of the way
+  Vec3 way = (1 - outside) * (now - then);
+  way -= way.dot(normal) * normal;
+  return {touch.vertex, touch.part, touch.term->pair.second,
+          shifted(contact::points_of(to, nodes), -weights.tail<3>(), -way)};
+}
+
+void Friction::renew(const Points& from, const Points& to, const Terms& terms, std::vector<Anchor>& anchors) const {
+  std::vector<Anchor> now;
+  for (const Touch& touch : touches(terms)) {
+    const auto old = std::lower_bound(anchors.begin(), anchors.end(), touch, before<Anchor, Touch>);
+    const bool known = old != anchors.end() && !before(touch, *old);
+    now.push_back(known ? *old : fresh_anchor(from, to, touch));
+  }
+  anchors = std::move(now);
+}
+
+Vec3 Friction::slip(const Points& positions, const Hold& hold) {
+  const Vec3 way = contact::points_of(positions, hold.nodes) * hold.weights;
+  return way - way.dot(hold.normal) * hold.normal;
+}
+
+void Friction::slide(const Points& positions, const Terms& terms, const Holds& holds,
+                     std::vector<Anchor>& anchors) const {
+  const std::vector<Touch> all = touches(terms);
+  for (const Hold& hold : holds) {
+    const Vec3 way = slip(positions, hold);
+    const double length = way.norm();
+    if (!(length > creep_mm_)) continue;
+    const Index part = surfaces_.triangle_part[static_cast<std::size_t>(hold.pair.second)];
+    const auto anchor = std::find_if(anchors.begin(), anchors.end(),
+                                     [&](const Anchor& a) { return a.vertex == hold.pair.first && a.part == part; });
+    const auto touch = std::find_if(all.begin(), all.end(),
+                                    [&](const Touch& t) { return t.vertex == hold.pair.first && t.part == part; });
+    if (anchor == anchors.end() || touch == all.end()) continue;
+    anchor->triangle = touch->term->pair.second;
+    const contact::FourPoints x =
+        contact::points_of(positions, nodes_of_vertex_triangle(surfaces_.surface, {hold.pair.first, anchor->triangle}));
+    anchor->weights = shifted(x, -touch->term->separation.weights.tail<3>(), -creep_mm_ / length * way);
+  }
+}
+
+/// On the vertex [N].
+Vec3 Friction::force(const Points& positions, const Hold& hold) const {
+  const Vec3 way = slip(positions, hold);
+  const double length = way.norm();
+  return length > 0 ? Vec3(-hold.limit * energy::friction(length, creep_mm_).slope / length * way) : Vec3::Zero();
+}
+
+double Friction::disagreement(const Points& positions, const Holds& before, const Holds& after) const {
+  double largest = 0, change = 0;
+  const auto compare = [&](const Vec3& then, const Vec3& now) {
+    largest = std::max({largest, then.norm(), now.norm()});
+    change = std::max(change, (now - then).norm());
+  };
+  const auto key = [](const Hold& hold) { return std::pair(hold.pair.first, hold.part); };
+  auto old = before.begin();
+  for (const Hold& hold : after) {
+    for (; old != before.end() && key(*old) < key(hold); ++old) compare(force(positions, *old), Vec3::Zero());
+    const bool same = old != before.end() && key(*old) == key(hold);
+    compare(same ? force(positions, *old++) : Vec3::Zero(), force(positions, hold));
+  }
+  for (; old != before.end(); ++old) compare(force(positions, *old), Vec3::Zero());
+  return largest > 0 ? change / largest : 0;
+}
+
+double Friction::energy(const Points& positions, const Holds& holds) const {
+  double sum = 0;
+  for (const Hold& hold : holds) sum += hold.limit * energy::friction(slip(positions, hold).norm(), creep_mm_).value;
+  return sum;
+}
+
+void Friction::add_gradient(const Points& positions, const Holds& holds, Points& gradient) const {
+  for (const Hold& hold : holds) {
+    const Vec3 push = force(positions, hold);
+    for (int i = 0; i < 4; ++i)
+      gradient.row(hold.nodes[static_cast<std::size_t>(i)]) -= hold.weights[i] * push.transpose();
+  }
+}
+
+void Friction::stiffness(const Points& positions, const Hold& hold, contact::Hessian& out) const {
+  const Vec3 way = slip(positions, hold);
+  const double length = way.norm();
+  const energy::LengthLaw law = energy::friction(length, creep_mm_);
+  Mat3 across = Mat3::Identity() - hold.normal * hold.normal.transpose();
+  Mat3 block = hold.limit * (length > 0 ? law.slope / length : law.curvature) * across;
+  if (length > 0) {
+    const Vec3 along = way / length;
+    block += hold.limit * (law.curvature - law.slope / length) * along * along.transpose();
+  }
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) out.block<3, 3>(3 * i, 3 * j) = hold.weights[i] * hold.weights[j] * block;
+}
+
+}  // namespace softkin::physical
