@@ -34,6 +34,8 @@ constexpr double least_jump = 0.9, finest = 0.02;
 constexpr double climb_below = 0.2;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
+/// Friction and the normal forces that it leads to are found in turn until it changes by less than this share.
+constexpr double frictions_agree = 1e-4;
 
 Demand between(const Demand& from, const Demand& to, double share) {
   if (share == 1) return to;
@@ -65,8 +67,6 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     return move.has_value();
   };
   if (!prediction()) return Newton::Outcome::blocked;
-  const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
-  auto outcome = settle(there, Newton::Policy::descend, trial, whole && factorised_nearby(trial.positions));
   if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
     if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);
@@ -300,6 +300,11 @@ Status Continuation::arrive(const Demand& demand, Iterate& at) {
   if (stable_ && !buckle(demand, at)) return Status::interrupted;
   if (last_.modes > 0) tell_stability(demand, at);
   tell_balance();
+  if (report_.friction_change > frictions_agree) {
+    report_.remark = "friction and the normal forces that limit it do not agree: it changed by " +
+                     number(100 * report_.friction_change, 2) + " % when they were found anew";
+    return Status::not_converged;
+  }
   if (last_.balanced) return Status::converged;
   report_.remark = "the steps have become small, but " + number(last_.forces.residual, 2) +
                    " N are out of balance, where elements pull with at most " + number(last_.forces.pull, 2) +
@@ -344,14 +349,13 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
 
 /// Newton, again and again with the normal forces that it leads to, by which friction is limited.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
-  constexpr double agree = 1e-4;
   constexpr int most_rounds = 40;
   auto outcome = settle_constraints(demand, policy, at, factorised);
   rounds_ = 1;
   for (int round = 0; system_.friction() && round < most_rounds; ++round) {
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
     report_.friction_change = system_.renew_friction(from_, at, work_, team_);
-    if (report_.friction_change <= agree) break;
+    if (report_.friction_change <= frictions_agree) break;
     ++rounds_;
     outcome = settle_constraints(demand, policy, at, factorised_nearby(at.positions) && factor_holds_active());
   }

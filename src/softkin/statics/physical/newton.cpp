@@ -129,7 +129,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   system_.first_step(balance_, work_, step_.move, step_.change);
   step_.size = system_.size_of(step_.move, at.positions);
   if (!std::isfinite(step_.size.mean)) return Advance::none;
-  damping = std::min(1.0, 2 * damping);
+  damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   const double slope = system_.contact() ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
@@ -150,7 +150,6 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     if (!(damping >= least_damping)) return Advance::none;
   }
   if (labours(damping)) return Advance::none;
-  return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
 
 /// The workspace is back at the iterate, as the next factorisation wants it.
