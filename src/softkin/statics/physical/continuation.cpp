@@ -67,6 +67,8 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     return move.has_value();
   };
   if (!prediction()) return Newton::Outcome::blocked;
+  const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
+  auto outcome = settle(there, Newton::Policy::descend, trial, whole && factorised_nearby(trial.positions));
   if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
     if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);

@@ -150,6 +150,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     if (!(damping >= least_damping)) return Advance::none;
   }
   if (labours(damping)) return Advance::none;
+  return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
 
 /// The workspace is back at the iterate, as the next factorisation wants it.
