@@ -75,11 +75,6 @@ TEST(Friction, WhatSticksStays) {
   const Vec3 before = reaction(model, statics, once.state), after = reaction(model, statics, again.state);
   EXPECT_LT((after - before).norm(), 1e-3 * before.norm());
   EXPECT_GT(std::abs(before.x()), 0.01 * std::abs(before.z()));
-  // without its anchors the floor lets go of it
-  State forgotten = once.state;
-  forgotten.anchors.clear();
-  const Equilibrium loose = statics.solve(model.rest_actuation(), forgotten, tight(1e-8));
-  EXPECT_LT(std::abs(reaction(model, statics, loose.state).x()), 0.1 * std::abs(before.x()));
 }
 
 TEST(Friction, GradientAndStiffnessAreDerivatives) {
