@@ -97,7 +97,7 @@ TEST(Friction, GradientAndStiffnessAreDerivatives) {
     Eigen::VectorXd move(size);
     for (Index i = 0; i < size; ++i) move[i] = shake * normal(engine);
     system.freedoms().move(move, 1, from.positions);
-    system.hold_friction(at, work, team);
+    system.hold_friction(from, work, team);
     ASSERT_FALSE(work.contacts->holds.empty());
     system.evaluate(from, demand, none, work, balance, team);
     ASSERT_FALSE(balance.forbidden);
@@ -109,16 +109,53 @@ TEST(Friction, GradientAndStiffnessAreDerivatives) {
     Eigen::MatrixXd product(size, 1);
     system.multiply(from, way, work, product, team);
     const double step = 1e-7;
-    const auto beside = [&](double scale) {
+    const auto beside = [&](double scale, bool held) {
       physical::Iterate there = from;
       system.freedoms().move(way, scale, there.positions);
+      system.hold_friction(held ? from : there, work, team);
       system.evaluate(there, demand, none, work, balance, team);
       return std::pair(balance.energy, Eigen::VectorXd(balance.force));
     };
-    const auto [energy_high, force_high] = beside(step);
-    const auto [energy_low, force_low] = beside(-step);
-    EXPECT_NEAR(force.dot(way), (energy_high - energy_low) / (2 * step), 1e-6 * force.norm() * way.norm());
+    EXPECT_NEAR(force.dot(way), (beside(step, true).first - beside(-step, true).first) / (2 * step),
+                1e-6 * force.norm() * way.norm());
+    // with the normal forces of each shape
+    const Eigen::VectorXd force_high = beside(step, false).second, force_low = beside(-step, false).second;
     EXPECT_LT((product.col(0) - (force_high - force_low) / (2 * step)).norm(), 1e-4 * product.norm()) << shake;
+  }
+}
+
+namespace {
+
+/// A beam bent onto a floor under its end.
+RobotSpec leaning_beam(double friction) {
+  RobotSpec spec = cable_beam();
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.1;
+  spec.contact->friction = friction;
+  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -2}, {0, 0, 1}}, {}, {}});
+  return spec;
+}
+
+}  // namespace
+
+/// Against differences of equilibria: of smooth contact both ways, of one that slips the way on which it does.
+TEST(Friction, JacobianOfWhatLeansOnAFloor) {
+  for (const double friction : {0.0, 0.3}) {
+    const Model model = compile(leaning_beam(friction));
+    const Statics statics(model);
+    Equilibrium at = settled(statics, values({1.1, 0.9}));
+    for (const double length : {0.88, 0.86}) at = statics.solve(values({1.1, length}), at.state, tight(1e-10));
+    ASSERT_EQ(at.report.status, Status::converged);
+    EXPECT_LT(marker_at(model, at).z(), 5);  // of the middle of the end
+    const Sensitivity slopes = statics.sensitivity(at.state);
+    ASSERT_TRUE(slopes.regular);
+    constexpr double step = 2e-5;
+    const Points further = statics.solve(values({1.1, 0.86 - step}), at.state, tight(1e-11)).state.positions;
+    const Points back = friction == 0
+                            ? statics.solve(values({1.1, 0.86 + step}), at.state, tight(1e-11)).state.positions
+                            : at.state.positions;
+    const Points difference = (back - further) / (friction == 0 ? 2 * step : step);
+    EXPECT_LT((slopes.positions[1] - difference).norm(), (friction == 0 ? 1e-4 : 1e-2) * difference.norm()) << friction;
   }
 }
 

@@ -48,6 +48,12 @@ class Contacts {
   void stiffness(const Points& positions, bool projected, const Scratch& scratch, const contact::Candidates& pairs,
                  double* slots) const;
 
+  /// Adds what friction's normal forces change of the gradient with moves; see Friction::add_response.
+  void add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
+                             Points& gradient) const {
+    friction_.add_response(*potential_, positions, scratch.terms, scratch.holds, moves, gradient);
+  }
+
   /// The share in [0, 1] of a motion, every vertex on its straight way, in which nothing passes through anything and no
   /// gap shrinks to less than a tenth.
   [[nodiscard]] double safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const;

@@ -358,6 +358,7 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
   for (Index i = 0; i < vectors.cols(); ++i) {
     freedoms_->expand(vectors.col(i), at.positions, work.moves);
     work.layout->pattern.multiply(work.blocks, work.moves, force, team);
+    if (friction()) contacts_->add_friction_response(at.positions, *work.contacts, work.moves, force);
     freedoms_->reduce(force, at.positions, product.col(i));
     freedoms_->add_turning(work.gradient, at.positions, vectors.col(i), product.col(i));
   }

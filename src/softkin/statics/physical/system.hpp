@@ -115,7 +115,8 @@ class System {
   void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
   /// Makes the stiffness that was assembled or factorised last ready for multiply().
   void gather(Workspace& work, Team& team) const;
-  /// K times every column, over the unknowns, at an iterate that was just evaluated. product: of vectors' size
+  /// K times every column, over the unknowns, at an iterate that was just evaluated, and what the normal forces that
+  /// limit friction add to it, which no factor holds. product: of vectors' size
   void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
                 Team& team) const;
 
