@@ -18,9 +18,11 @@ class Contacts {
   /// What changes with the shape; one per thread of control.
   struct Scratch {
     contact::BroadPhase broad;
-    contact::Candidates passing;                // what may be within reach on the way to a shape
-    Points searched;                            // that shape
-    contact::Candidates close;                  // what is within reach
+    // what is within reach on the way to a shape, or after any motion around it of at most half the margin
+    contact::Candidates around;
+    Points center;                              // that shape
+    double least = -1;                          // distance of those pairs there [mm]; negative: not known
+    contact::Candidates close;                  // what is within reach of the shape that was found last
     std::vector<ContactPotential::Term> terms;  // of the shape that was found last
     Friction::Holds holds;                      // of normal forces that were held last
   };
@@ -65,6 +67,8 @@ class Contacts {
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
 
  private:
+  void search(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
+  [[nodiscard]] static double moved(const Points& from, const Points& to);
   void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
   void find_parts();
   void choose_areas();
@@ -73,6 +77,7 @@ class Contacts {
   const Model& model_;
   ContactSurfaces surfaces_;
   Friction friction_;
+  double margin_mm_ = 0;
   std::unique_ptr<ContactPotential> potential_;
 };
 
