@@ -151,7 +151,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     take(at, std::move(trial));
     if (!come_to(there, next, unstable, at)) return Status::interrupted;
     const int used = (report_.iterations - before) / rounds_;  // those for new normal forces are as many each
-    way_.advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
+    const int more = system_.contact() ? 5 : 0;                // something begins to touch in most steps
+    way_.advance *= used <= 5 + more ? 2 : used <= 9 + more ? 1.4 : 0.8;
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
   }
   return end ? end : out_of_patience();

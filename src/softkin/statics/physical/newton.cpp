@@ -11,6 +11,8 @@ namespace {
 constexpr double least_damping = 1e-3;
 /// Of the merit function's slope, that a step must bring.
 constexpr double worthwhile_descent = 1e-4;
+/// By which it may rise, over its value.
+constexpr double most_rise = 1e-8;
 /// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
 /// factorisation.
 constexpr double worthwhile_contraction = 0.6;
@@ -136,10 +138,15 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
       find(trial_balance_, trial_.positions, next_);
-      if (next_.size.mean < step_.size.mean || step_.size.largest < settings_.tolerance_mm) break;
-      // near a singular stiffness the next step may be long although little is left
-      if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
-      if (slope < 0 && merit(trial_balance_) < before + worthwhile_descent * damping * slope) break;
+      if (step_.size.largest < settings_.tolerance_mm) break;
+      const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
+      if (rise < worthwhile_descent * damping * slope) break;
+      // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
+      if (!(rise > most_rise * std::abs(before))) {
+        if (next_.size.mean < step_.size.mean) break;
+        // near a singular stiffness the next step may be long although little is left
+        if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
+      }
       if (!system_.contact() &&
           std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
         const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
