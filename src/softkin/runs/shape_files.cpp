@@ -81,6 +81,7 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
   content.cell_fields.push_back(std::move(principal));
   content.point_fields.push_back({"reaction_N", 3, {forces.data(), forces.data() + forces.size()}});
   content.point_fields.push_back(std::move(support));
+  if (deformation.contacts) content.point_fields.push_back({"contact_pressure_kPa", 1, deformation.contacts->pressure_kPa});
   for (std::size_t s = 0; s < model.supports.size(); ++s)
     content.constants.emplace_back("support_" + model.supports[s].name, static_cast<double>(s));
   for (std::size_t a = 0; a < model.actuators.size(); ++a)

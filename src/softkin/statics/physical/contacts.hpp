@@ -53,6 +53,7 @@ class Contacts {
   [[nodiscard]] double largest_turn(const Points& from, const Points& to) const;
 
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
+  [[nodiscard]] const ContactPotential& potential() const { return *potential_; }
 
  private:
   void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
