@@ -136,6 +136,11 @@ void add_implausible(const Model& model, const StepRecord& record, std::vector<F
 
 using Kind = Finding::Kind;
 
+/// least: of what is more than rounding
+void add_vector(const Vec3& vector, double least, Finding& finding) {
+  for (const double value : vector) finding.values.push_back(vector.norm() > least ? value : 0);
+}
+
 /// "the robot", "region 'skin'", "obstacle 'floor'"
 std::string label(const ContactPart& part, bool whole) {
   if (whole) return "the robot";
@@ -155,8 +160,9 @@ void add_contacts(const Model& model, const StepRecord& record, std::vector<Find
     any = true;
     Finding& contact = found.emplace_back(Finding{Kind::contact, label_of(pair.b)});
     if (pair.a != pair.b) contact.other = label_of(pair.a);
-    for (const Vec3* vector : {&pair.force, &pair.moment, &pair.center})
-      contact.values.insert(contact.values.end(), vector->begin(), vector->end());
+    add_vector(pair.force, rounding, contact);
+    add_vector(pair.moment, rounding * model.diagonal_mm, contact);
+    add_vector(pair.center, 0, contact);
     for (const double value : {pair.normal_N, pair.pressure_kPa, pair.area_mm2, pair.gap_mm})
       contact.values.push_back(value);
   }
@@ -173,12 +179,9 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
     Finding& reaction = found.emplace_back(Finding{Kind::reaction, model.supports[s].name});
     const auto& [force, moment, center] = record.reactions[s];
     const double rounding = 1e-9 * record.pull_N;
-    const auto add = [&reaction](const Vec3& vector, double least) {
-      for (const double value : vector) reaction.values.push_back(vector.norm() > least ? value : 0);
-    };
-    add(force, rounding);
-    add(moment, rounding * model.diagonal_mm);
-    add(center, 0);
+    add_vector(force, rounding, reaction);
+    add_vector(moment, rounding * model.diagonal_mm, reaction);
+    add_vector(center, 0, reaction);
   }
   add_contacts(model, record, found);
   if (record.buckled > 0)

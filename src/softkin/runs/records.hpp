@@ -39,11 +39,11 @@ struct StepRecord : SolveReport {
   std::vector<Vec3> markers;           // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
-  std::optional<StressExtremes> stress{};  // physical; of a walk none
-  std::vector<Reaction> reactions{};       // the same, per support
+  std::optional<StressExtremes> stress{};             // physical; of a walk none
+  std::vector<Reaction> reactions{};                  // the same, per support
   std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything; of a walk none
-  std::optional<WorstPlace> worst{};       // physical, where status is limit
-  std::vector<int> history_iterations;     // from 1, per entry of history; empty: all
+  std::optional<WorstPlace> worst{};                  // physical, where status is limit
+  std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none

@@ -44,9 +44,8 @@ class PressedSurface {
     for (Index v = 0; v < size(); ++v) {
       const Vec3 force = forces.row(v);
       if (force.isZero(0)) continue;
-      const bool passed = visit_bearers(v, force, [&](Index by, double share) {
-        borne.row(by) += share * force.transpose();
-      });
+      const bool passed =
+          visit_bearers(v, force, [&](Index by, double share) { borne.row(by) += share * force.transpose(); });
       if (passed) guards.push_back(v);
     }
     Pressures out{std::vector<double>(static_cast<std::size_t>(size())), {}};
@@ -60,9 +59,8 @@ class PressedSurface {
     }
     for (const Index v : guards) {
       double mean = 0;
-      visit_bearers(v, forces.row(v), [&](Index by, double share) {
-        mean += share * out.pressure_MPa[static_cast<std::size_t>(by)];
-      });
+      visit_bearers(v, forces.row(v),
+                    [&](Index by, double share) { mean += share * out.pressure_MPa[static_cast<std::size_t>(by)]; });
       out.pressure_MPa[static_cast<std::size_t>(v)] = mean;
     }
     return out;
@@ -150,8 +148,8 @@ std::array<Side, 2> sides_of(const ContactSurfaces& surfaces, const Term& term) 
   const auto part = [](const std::vector<Index>& parts, Index of) { return parts[static_cast<std::size_t>(of)]; };
   if (term.threshold > 0)
     return {{{part(surfaces.edge_part, term.pair.first), 0, 2}, {part(surfaces.edge_part, term.pair.second), 2, 4}}};
-  return {{{part(surfaces.vertex_part, term.pair.first), 0, 1},
-           {part(surfaces.triangle_part, term.pair.second), 1, 4}}};
+  return {
+      {{part(surfaces.vertex_part, term.pair.first), 0, 1}, {part(surfaces.triangle_part, term.pair.second), 1, 4}}};
 }
 
 /// Where a term presses on a side.

@@ -10,8 +10,8 @@ namespace softkin::physical {
 struct ContactSurfaces {
   contact::Surface surface;
   std::vector<double> vertex_area{}, edge_area{};  // that each carries pressure for, by place in the surface [mm^2]
-  double reach_mm = 0;                         // > 0: surfaces that are closer repel each other
-  double modulus_MPa = 0;                      // > 0: of that repulsion
+  double reach_mm = 0;                             // > 0: surfaces that are closer repel each other
+  double modulus_MPa = 0;                          // > 0: of that repulsion
   /// Of every vertex, by place: triangles that it does not feel, ascending, those around it among them.
   contact::Lists unfelt_triangles{};
   /// Of every edge, by place: edges after it that it does not feel, ascending.
