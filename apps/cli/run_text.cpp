@@ -112,6 +112,15 @@ std::string finding_text(const runs::Finding& finding) {
     case Kind::reaction:
       return "support '" + finding.name + "' exerts " + point_text(&v[0]) + " N and " + point_text(&v[3]) +
              " N mm about " + point_text(&v[6]) + " mm";
+    case Kind::contact:
+      return finding.name +
+             (finding.other.empty() ? " presses on itself with " + number(v[9], 4) + " N"
+                                    : " exerts " + point_text(&v[0]) + " N and " + point_text(&v[3]) + " N mm") +
+             " about " + point_text(&v[6]) + " mm" + (finding.other.empty() ? "" : " on " + finding.other) +
+             ", at most " + number(v[10], 4) + " kPa over " + number(v[11], 4) + " mm^2; least gap " +
+             number(v[12], 3) + " mm";
+    case Kind::untouched:
+      return "nothing touches";
     case Kind::unstable:
       return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
              ": the robot would buckle or snap away from it; --stable looks for the shape that it goes to";

@@ -39,10 +39,11 @@ struct StepRecord : SolveReport {
   std::vector<Vec3> markers;           // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
-  std::optional<StressExtremes> stress{};  // physical; of a walk none
-  std::vector<Reaction> reactions{};       // the same, per support
-  std::optional<WorstPlace> worst{};       // physical, where status is limit
-  std::vector<int> history_iterations;     // from 1, per entry of history; empty: all
+  std::optional<StressExtremes> stress{};             // physical; of a walk none
+  std::vector<Reaction> reactions{};                  // the same, per support
+  std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything; of a walk none
+  std::optional<WorstPlace> worst{};                  // physical, where status is limit
+  std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
@@ -96,6 +97,9 @@ struct Finding {
     stress,       // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
                   // least principal stress [MPa]
     reaction,     // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
+    contact,      // name: what presses on the other, which is empty where it is itself; values: force [N] (3), moment
+                  // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm]
+    untouched,    // nothing touches what it might
     unstable,     // values: in how many ways
     buckled,      // values: how often, the largest move [mm]
     snapped,      // values: the longest move [mm], share of the way at which its step began [-]
@@ -104,6 +108,7 @@ struct Finding {
   Kind kind;
   std::string name{};
   std::vector<double> values{};
+  std::string other{};
 };
 
 [[nodiscard]] std::vector<Finding> findings(const Model& model, const StepRecord& record);

@@ -65,6 +65,7 @@ class Contacts {
   [[nodiscard]] double largest_turn(const Points& from, const Points& to) const;
 
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
+  [[nodiscard]] const ContactPotential& potential() const { return *potential_; }
 
  private:
   void search(const Points& from, const Points& to, Scratch& scratch, Team& team) const;

@@ -3,6 +3,7 @@
 #include <limits>
 #include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/contact_at_rest.hpp>
+#include <softkin/statics/physical/contact_measure.hpp>
 #include <softkin/statics/physical/system.hpp>
 
 namespace softkin::physical {
@@ -262,6 +263,8 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
     for (int axis = 0; axis < 3; ++axis)
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   elastic_.stress(demand.actuation, at.positions, work.elastic, out.stress, team);
+  if (contacts_ && !balance.forbidden)
+    out.contacts = contact_forces(contacts_->surfaces(), contacts_->potential(), at.positions, work.contacts->terms);
 }
 
 void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {

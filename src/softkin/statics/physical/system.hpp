@@ -136,7 +136,7 @@ class System {
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
 
-  /// Stress and reactions at an equilibrium.
+  /// Stress, reactions and what touches at an equilibrium.
   void measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out, Team& team) const;
 
   /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <softkin/model/model.hpp>
+#include <softkin/runs/records_json.hpp>
+#include <softkin/statics/contact_forces.hpp>
+#include <vector>
+
+namespace softkin::runs {
+
+/// A list; null where it was not measured.
+[[nodiscard]] Json contacts_json(const Model& model, const std::optional<std::vector<PairForces>>& contacts);
+
+/// throws  std::out_of_range and Json::exception on what contacts_json() does not write
+[[nodiscard]] std::vector<PairForces> contacts_of(const Model& model, const Json& list);
+
+}  // namespace softkin::runs
