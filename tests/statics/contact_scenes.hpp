@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/statics/statics.hpp>
 
-#include "statics/physical_samples.hpp"
+#include "model/physical_robots.hpp"
 
 namespace softkin::testing {
 
@@ -69,19 +72,23 @@ struct BlockOnFloor {
   }
 };
 
+/// Slope of the barrier -(z - 1)^2 ln z in the gap over the distance, its sign turned: the pressure over the modulus.
+inline double push_of_gap(double z) {
+  if (!(z > 0)) return std::numeric_limits<double>::infinity();
+  return z < 1 ? 2 * (z - 1) * std::log(z) + (z - 1) * (z - 1) / z : 0;
+}
+
 /// What the barrier pushes at each of the given vertices towards a floor at z = 0 [N]: by its law and the model's areas.
-inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions, const std::vector<Index>& vertices) {
+[[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions, const std::vector<Index>& vertices) {
   Eigen::VectorXd push(static_cast<Index>(vertices.size()));
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const double z = positions(vertices[i], 2) / model.contact.distance_mm, less = z - 1;
-    const double slope = z < 1 ? -2 * less * std::log(z) - less * less / z : 0;  // of -(z - 1)^2 ln z
-    push[static_cast<Index>(i)] = -slope * model.contact.modulus_MPa * model.contact.area[vertices[i]];
-  }
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    push[static_cast<Index>(i)] = push_of_gap(positions(vertices[i], 2) / model.contact.distance_mm) *
+                                  model.contact.modulus_MPa * model.contact.area[vertices[i]];
   return push;
 }
 
-/// Of supports, force by force.
-inline Vec3 reaction_of(const Model& model, const Statics& statics, const Equilibrium& found, std::size_t support) {
+/// Force of a support on the robot [N].
+[[nodiscard]] inline Vec3 reaction_of(const Model& model, const Statics& statics, const Equilibrium& found, std::size_t support) {
   return reactions(model, found.state.positions, statics.measured(found.state))[support].force;
 }
 

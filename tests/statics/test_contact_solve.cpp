@@ -1,10 +1,8 @@
 #include <Eigen/Geometry>
 #include <cstdio>
 
-#include "statics/contact_scenes.hpp"
-#include "support/degenerate_scenes.hpp"
-#include "support/exact_crossing.hpp"
-#include "support/random_drops.hpp"
+#include "statics/physical_samples.hpp"
+#include "statics/pressed_balls.hpp"
 
 /// Equilibria of robots that touch themselves or obstacles.
 
@@ -13,39 +11,82 @@ namespace {
 
 using namespace testing;
 
-/// Stress under a uniform compression: von Mises' of every element, beside that of the force over the area.
-struct Uniformity {
-  double pressure = 0;  // [MPa]
-  double error = 0;     // largest deviation over the pressure
+/// Pressure per area at rest of stacked blocks in exact contact: both are compressed alike, the gap is that at which the
+/// barrier balances them.
+double pressure_by_hand(const StackedBlocks& blocks, const Model& model) {
+  const ElasticLaw& law = model.materials[0].elastic;
+  const auto pressure_at = [&](double stretch) {
+    double low = 1, high = 1.5;  // sideways, where nothing pushes
+    for (int i = 0; i < 100; ++i) {
+      const double side = (low + high) / 2, volume = stretch * side * side;
+      (law.mu / volume * side * side + (law.lambda + law.mu) * (volume - 1) - law.mu > 0 ? high : low) = side;
+    }
+    const double volume = stretch * low * low;
+    const double stress = law.mu / volume * stretch * stretch + (law.lambda + law.mu) * (volume - 1) - law.mu;
+    return -stress * low * low;
+  };
+  double low = 0.5, high = 1;
+  for (int i = 0; i < 100; ++i) {
+    const double stretch = (low + high) / 2;
+    const double left = 2 * StackedBlocks::size * (1 - stretch) + blocks.gap - blocks.press;
+    (push_of_gap(left / blocks.distance) * model.contact.modulus_MPa > pressure_at(stretch) ? high : low) = stretch;
+  }
+  return pressure_at(low);
+}
+
+/// Deviations from a uniform compression.
+struct Unevenness {
+  double force = 0;                // from what was found by hand
+  double largest = 0, root_mean = 0;  // of von Mises' stress of the elements
 };
 
-Uniformity uniformity_of(const StackedBlocks& blocks) {
+Unevenness unevenness_of(const StackedBlocks& blocks) {
   const Model model = compile(blocks.robot());
   const Statics statics(model);
   const Equilibrium found = settled(statics, {});
-  const auto at = [&](Index v) { return Vec3(found.state.positions.row(v)); };
-  double wide[2] = {0, 0};  // of the upper block
-  for (Index v = 0; v < model.robot_vertices(); ++v)
-    for (int axis = 0; axis < 2; ++axis)
-      if (model.rest(v, axis) == StackedBlocks::size && model.rest(v, 2) > StackedBlocks::size + blocks.gap)
-        wide[axis] = std::max(wide[axis], at(v)[axis]);
-  Uniformity out;
-  out.pressure = -reaction_of(model, statics, found, 1).z() / (wide[0] * wide[1]);
-  for (const double stress : statics.measured(found.state).stress.von_mises)
-    out.error = std::max(out.error, std::abs(stress / out.pressure - 1));
-  std::printf("%-9s distance %8g: pressure %.6f MPa, largest deviation %.2e, %d iterations, %.2f s\n",
-              blocks.quadratic ? "quadratic" : "linear", blocks.distance, out.pressure, out.error,
-              found.report.iterations, found.report.seconds);
+  const double force = -reaction_of(model, statics, found, 1).z();
+  Vec3 wide = Vec3::Zero();
+  for (Index v = 0; v < model.robot_vertices(); ++v) wide = wide.cwiseMax(Vec3(found.state.positions.row(v)));
+  Unevenness out;
+  out.force = force / (StackedBlocks::size * StackedBlocks::size * pressure_by_hand(blocks, model)) - 1;
+  const std::vector<double> stresses = statics.measured(found.state).stress.von_mises;
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    const double error = stresses[i] / (force / (wide.x() * wide.y())) - 1;
+    out.largest = std::max(out.largest, std::abs(error));
+    out.root_mean += model.tetrahedron_volumes[i] * error * error;
+  }
+  out.root_mean = std::sqrt(out.root_mean / sum(model.tetrahedron_volumes));
+  std::printf("%-9s distance %.5f: force %+.2e, stress %.2e, root mean %.2e, %3d iterations, %.2f s\n",
+              blocks.quadratic ? "quadratic" : "linear", blocks.distance / StackedBlocks::size, out.force, out.largest,
+              out.root_mean, found.report.iterations, found.report.seconds);
   return out;
 }
 
-TEST(ContactSolve, PatchOfMeshesThatDoNotMatch) {
-  for (const bool quadratic : {false, true})
-    for (const double share : {0.02, 0.005, 0.00125}) {
-      const double distance = share * StackedBlocks::size;
-      const Uniformity found = uniformity_of({distance, 2.5 * distance, 2.5 * distance + 2, quadratic});
-      EXPECT_LT(std::abs(found.error), 0.01) << quadratic << " " << share;
-    }
+Unevenness unevenness_at(double distance, bool quadratic) {
+  const double d = distance * StackedBlocks::size;
+  return unevenness_of({d, 2.5 * d, 2.5 * d + 2, quadratic});
+}
+
+/// Vertices push for areas of their own on surfaces with other vertices: uneven until gaps, which are of the order of
+/// the distance, have made up for it.
+TEST(ContactSolve, BlocksWithOtherMeshesPressEachOtherEvenly) {
+  for (const double distance : {0.02, 0.005, 0.00125}) {
+    const Unevenness found = unevenness_at(distance, false);
+    EXPECT_LT(std::abs(found.force), 0.4 * distance) << distance;
+    EXPECT_LT(found.largest, 0.05) << distance;
+    EXPECT_LT(found.root_mean, 0.015) << distance;
+  }
+  EXPECT_LT(unevenness_at(0.0002, false).largest, 0.01);
+}
+
+/// The nodes of order 2 take other shares of a pressure than the four triangles of a face do, whatever the distance.
+TEST(ContactSolve, BlocksOfOrder2PressEachOther) {
+  for (const double distance : {0.02, 0.005, 0.0005}) {
+    const Unevenness found = unevenness_at(distance, true);
+    EXPECT_LT(std::abs(found.force), 0.01) << distance;
+    EXPECT_LT(found.largest, 0.15) << distance;
+    EXPECT_LT(found.root_mean, 0.07) << distance;
+  }
 }
 
 std::vector<Index> bottom_of(const Model& model, double height) {
@@ -72,27 +113,23 @@ TEST(ContactSolve, AFloorBearsWhatPressesOnIt) {
   }
 }
 
+/// Of the stress under a block on a floor: greatest over least, less 1.
+double unevenness_on_floor(double distance, bool quadratic) {
+  const Model model = compile(BlockOnFloor{distance, 0.5 * distance, 1, quadratic}.robot());
+  const Statics statics(model);
+  const std::vector<double> stresses = statics.measured(settled(statics, {}).state).stress.von_mises;
+  const auto [least, most] = std::minmax_element(stresses.begin(), stresses.end());
+  std::printf("floor, %s, distance %g: stress %.6f to %.6f MPa\n", quadratic ? "quadratic" : "linear", distance, *least,
+              *most);
+  return *most / *least - 1;
+}
+
+/// Edges of the block push for their sides too; gaps make up for it, the more exactly the smaller the distance.
 TEST(ContactSolve, PressureOnAFloorIsUniform) {
   for (const bool quadratic : {false, true}) {
-    const BlockOnFloor block{0.1, 0.05, 1, quadratic};
-    const Model model = compile(block.robot());
-    const Statics statics(model);
-    const Equilibrium found = settled(statics, {});
-    double low = 1e9, high = 0;
-    for (const Index v : bottom_of(model, block.gap)) {
-      low = std::min(low, found.state.positions(v, 2));
-      high = std::max(high, found.state.positions(v, 2));
-    }
-    double least = 1e9, most = 0;
-    for (const double stress : statics.measured(found.state).stress.von_mises) {
-      least = std::min(least, stress);
-      most = std::max(most, stress);
-    }
-    std::printf("floor, %s: gaps %.9g to %.9g mm, stress %.9g to %.9g MPa\n", quadratic ? "quadratic" : "linear", low,
-                high, least, most);
-    EXPECT_GT(low, 0);
-    EXPECT_LT((high - low) / high, quadratic ? 0.1 : 1e-6);
-    EXPECT_LT((most - least) / most, quadratic ? 0.01 : 1e-6);
+    const double coarse = unevenness_on_floor(0.1, quadratic), fine = unevenness_on_floor(0.01, quadratic);
+    EXPECT_LT(coarse, 0.02) << quadratic;
+    EXPECT_LT(fine, 0.15 * coarse) << quadratic;
   }
 }
 
@@ -128,6 +165,22 @@ TEST(ContactSolve, TurnsWithEverythingAround) {
     const double error = distance(back, straight) / 35;
     std::printf("turned: %.2e of the diagonal\n", error);
     EXPECT_LT(error, 1e-9);
+  }
+}
+
+/// A ball on a plane.
+TEST(ContactSolve, Hertz) {
+  for (const double share : {0.01, 0.02}) {
+    const PressedBalls balls{.approach = share * PressedBalls::radius, .distance = 0.02};
+    const BallContact found = pressed(balls);
+    ASSERT_EQ(found.found.report.status, Status::converged);
+    const HertzRatios ratios = beside_hertz(balls, found);
+    EXPECT_NEAR(ratios.force_of_ball, 1, 0.04) << share;
+    EXPECT_NEAR(ratios.force_of_radius, 1, 0.05) << share;
+    EXPECT_NEAR(ratios.radius, 1, 0.05) << share;
+    std::printf("Hertz, approach %.4f: F/F(d) %.4f, F/F(d') %.4f, F/F(a) %.4f, a/a(d) %.4f, %.1f s\n",
+                found.approach / PressedBalls::radius, ratios.force, ratios.force_of_ball, ratios.force_of_radius,
+                ratios.radius, found.found.report.seconds);
   }
 }
 
