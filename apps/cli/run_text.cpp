@@ -55,6 +55,12 @@ std::string reached_text(const Model& model, const StepRecord& step) {
   return percent(step.reached_share.value_or(0)) + " of the loads and displacements were reached";
 }
 
+/// share  of the normal force, that slips
+std::string slipping_text(double share) {
+  if (share <= 0) return "; it sticks";
+  return share >= 1 ? "; it slips" : "; " + number(100 * share, 3) + " % of it slips";
+}
+
 constexpr const char* no_contact =
     "; parts that meet do not stop each other here, so what lies beyond the first touch is not what the robot does: "
     "ask "
@@ -118,7 +124,7 @@ std::string finding_text(const runs::Finding& finding) {
                                     : " exerts " + point_text(&v[0]) + " N and " + point_text(&v[3]) + " N mm") +
              " about " + point_text(&v[6]) + " mm" + (finding.other.empty() ? "" : " on " + finding.other) +
              ", at most " + number(v[10], 4) + " kPa over " + number(v[11], 4) + " mm^2; least gap " +
-             number(v[12], 3) + " mm";
+             number(v[12], 3) + " mm" + (v.size() > 13 ? slipping_text(v[13]) : "");
     case Kind::untouched:
       return "nothing touches";
     case Kind::unstable:

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "statics/contact_scenes.hpp"
+#include "statics/pressed_drops.hpp"
 #include "support/degenerate_scenes.hpp"
 #include "support/exact_crossing.hpp"
-#include "statics/pressed_drops.hpp"
 
 /// Whatever a solve ends with, nothing has passed through anything: decided exactly.
 

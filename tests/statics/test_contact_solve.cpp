@@ -36,7 +36,7 @@ double pressure_by_hand(const StackedBlocks& blocks, const Model& model) {
 
 /// Deviations from a uniform compression.
 struct Unevenness {
-  double force = 0;                // from what was found by hand
+  double force = 0;                   // from what was found by hand
   double largest = 0, root_mean = 0;  // of von Mises' stress of the elements
 };
 

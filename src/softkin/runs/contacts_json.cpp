@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <softkin/runs/contacts_json.hpp>
 #include <stdexcept>
@@ -51,6 +52,36 @@ std::vector<PairForces> contacts_of(const Model& model, const Json& list) {
     if (each.contains("slipping")) pair.slipping = each.at("slipping").get<double>();
   }
   return contacts;
+}
+
+Json anchors_json(const std::vector<Anchor>& anchors) {
+  Json all = Json::array();
+  for (const Anchor& a : anchors)
+    all.push_back({a.vertex, a.part, a.triangle, a.weights[0], a.weights[1], a.weights[2], a.slipped_mm});
+  return all;
+}
+
+std::vector<Anchor> anchors_of(const Model& model, const Json& list) {
+  const auto below = [](const Json& number, std::size_t count) {
+    const auto index = number.get<std::int64_t>();
+    if (index < 0 || index >= static_cast<std::int64_t>(count)) throw std::out_of_range("no such place of contact");
+    return static_cast<Index>(index);
+  };
+  const ContactModel& contact = model.contact;
+  std::vector<Anchor> anchors;
+  for (const Json& each : list) {
+    if (each.size() != 7) throw std::out_of_range("an anchor of friction has seven numbers");
+    Anchor anchor{below(each[0], contact.area.size()), below(each[1], contact.parts.size()),
+                  below(each[2], contact.triangles.size())};
+    if (contact.part_of[static_cast<std::size_t>(anchor.triangle)] != anchor.part)
+      throw std::out_of_range("an anchor of friction is on another part");
+    for (int i = 0; i < 3; ++i) anchor.weights[i] = each[static_cast<std::size_t>(3 + i)].get<double>();
+    anchor.slipped_mm = each[6].get<double>();
+    if (!anchor.weights.allFinite() || !std::isfinite(anchor.slipped_mm))
+      throw std::out_of_range("an anchor of friction is not finite");
+    anchors.push_back(anchor);
+  }
+  return anchors;
 }
 
 }  // namespace softkin::runs

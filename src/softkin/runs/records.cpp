@@ -54,6 +54,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
     record.shape_actuation = found.state.actuation;
     record.shape_load_share = found.state.share;
   }
+  record.anchors = found.state.anchors;
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   record.largest_displacement_mm = largest_move(model.rest, found.state.positions);
@@ -99,6 +100,7 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
   state.share = record.shape_actuation ? record.shape_load_share : -1;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     state.multipliers[static_cast<Index>(a)] = record.actuators[a].multiplier;
+  state.anchors = record.anchors;
   return state;
 }
 
@@ -165,6 +167,7 @@ void add_contacts(const Model& model, const StepRecord& record, std::vector<Find
     add_vector(pair.center, 0, contact);
     for (const double value : {pair.normal_N, pair.pressure_kPa, pair.area_mm2, pair.gap_mm})
       contact.values.push_back(value);
+    if (pair.slipping) contact.values.push_back(*pair.slipping);
   }
   if (!any) found.push_back({Kind::untouched});
 }

@@ -33,6 +33,7 @@ struct StepRecord : SolveReport {
   std::optional<double> reached_share{};       // of the way from the step before [-]; none: not known
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
   double shape_load_share = 1;
+  std::vector<Anchor> anchors{};  // of friction
   std::size_t inverted_elements = 0;
   double largest_displacement_mm = 0;  // of a vertex from its place at rest
   SelfOverlap self_overlap;            // of the shape, set by who makes the record
@@ -98,7 +99,8 @@ struct Finding {
                   // least principal stress [MPa]
     reaction,     // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
     contact,      // name: what presses on the other, which is empty where it is itself; values: force [N] (3), moment
-                  // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm]
+                  // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm],
+                  // with friction the share of the normal force that slips [-]
     untouched,    // nothing touches what it might
     unstable,     // values: in how many ways
     buckled,      // values: how often, the largest move [mm]

@@ -159,6 +159,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
   for (std::size_t s = 0; s < record.reactions.size(); ++s)
     json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
   if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
+  if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
   return json;
 }
 
@@ -172,6 +173,7 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
         {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});
   if (!model.contact.any()) return;
   if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);
+  if (json.contains("anchors")) record.anchors = anchors_of(model, json.at("anchors"));
 }
 
 /// As many digits as a curve needs.

@@ -84,6 +84,8 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
   content.point_fields.push_back(std::move(support));
   if (deformation.contacts)
     content.point_fields.push_back({"contact_pressure_kPa", 1, deformation.contacts->pressure_kPa});
+  if (deformation.contacts && !deformation.contacts->slip_mm.empty())
+    content.point_fields.push_back({"slip_mm", 1, deformation.contacts->slip_mm});
   for (std::size_t s = 0; s < model.supports.size(); ++s)
     content.constants.emplace_back("support_" + model.supports[s].name, static_cast<double>(s));
   for (std::size_t a = 0; a < model.actuators.size(); ++a)

@@ -24,7 +24,7 @@ struct PairForces {
 struct ContactForces {
   std::vector<PairForces> pairs;     // those that feel each other, by a, then b
   std::vector<double> pressure_kPa;  // per vertex of the model: normal force over deformed area; 0 on obstacles
-  std::vector<double> slip_mm{};     // the same; empty: no friction
+  std::vector<double> slip_mm{};     // the same: way that each slipped since it touches; empty: no friction
 };
 
 }  // namespace softkin

@@ -165,6 +165,7 @@ struct PairSum {
   PairForces forces;
   Vec3 moment = Vec3::Zero(), pressed = Vec3::Zero();  // about the origin; places by their normal force
   Points on_vertices;                                  // by their place
+  double rubbing = 0, slipping = 0;                    // normal forces [N]
 };
 
 /// Adds the forces on the nodes of a side.
@@ -200,9 +201,26 @@ void add_term(const Points& positions, const Term& term, const contact::Gradient
   }
 }
 
+/// Adds the friction of a vertex on a triangle.
+void add_friction(const Points& positions, const Friction& friction, const Friction::Hold& hold, double coefficient,
+                  Index vertex_part, PairSum& sum) {
+  constexpr double at_limit = 0.999;  // of the creep
+  const double normal = hold.limit / coefficient;
+  sum.rubbing += normal;
+  if (Friction::slip(positions, hold).norm() >= at_limit * friction.creep_mm()) sum.slipping += normal;
+  if (sum.forces.a == sum.forces.b) return;
+  const Vec3 force = friction.force(positions, hold);
+  const auto [begin, end] = vertex_part == sum.forces.a ? std::pair(0, 1) : std::pair(1, 4);
+  for (int i = begin; i < end; ++i) {
+    sum.forces.force += hold.weights[i] * force;
+    sum.moment += Vec3(positions.row(hold.nodes[static_cast<std::size_t>(i)])).cross(hold.weights[i] * force);
+  }
+}
+
 PairForces finished(const PairSum& sum, const PressedSurface& surface) {
   PairForces out = sum.forces;
   out.center = sum.pressed / out.normal_N;
+  if (sum.rubbing > 0) out.slipping = sum.slipping / sum.rubbing;
   if (out.a != out.b) out.moment = sum.moment - out.center.cross(out.force);
   const PressedSurface::Pressures found = surface.under(sum.on_vertices);
   const double most = *std::max_element(found.pressure_MPa.begin(), found.pressure_MPa.end());
@@ -215,7 +233,8 @@ PairForces finished(const PairSum& sum, const PressedSurface& surface) {
 }  // namespace
 
 ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPotential& potential,
-                             const Points& positions, const std::vector<Term>& terms) {
+                             const Points& positions, const std::vector<Term>& terms, const Friction& friction,
+                             const Friction::Holds& holds, const std::vector<Anchor>& anchors) {
   const std::vector<ContactPart>& parts = surfaces.rules->parts;
   const auto rank = [&](Index part) { return parts[static_cast<std::size_t>(part)].rank; };
   const PressedSurface surface(surfaces, positions);
@@ -233,7 +252,21 @@ ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPoten
     for (const Side& side : sides)
       if (rank(side.part) != ContactRank::obstacle) add_forces(term, gradient, side, surface, all);
   }
+  for (const Friction::Hold& hold : holds) {
+    const Index own = surfaces.vertex_part[static_cast<std::size_t>(hold.pair.first)];
+    const bool swapped = std::pair(rank(hold.part), hold.part) < std::pair(rank(own), own);
+    const auto found = sums.find(swapped ? std::pair(hold.part, own) : std::pair(own, hold.part));
+    if (found != sums.end())
+      add_friction(positions, friction, hold, surfaces.rules->pair(own, hold.part).friction, own, found->second);
+  }
   ContactForces out;
+  if (friction.any()) out.slip_mm.assign(static_cast<std::size_t>(positions.rows()), 0);
+  for (const Anchor& anchor : anchors) {
+    if (anchor.vertex >= surface.size()) continue;  // of no surface
+    const Index vertex = surfaces.surface.vertices[static_cast<std::size_t>(anchor.vertex)];
+    double& slip = out.slip_mm[static_cast<std::size_t>(vertex)];
+    slip = std::max(slip, anchor.slipped_mm);
+  }
   for (const auto& [pair, sum] : sums)
     if (sum.forces.normal_N > 0) out.pairs.push_back(finished(sum, surface));
   out.pressure_kPa.assign(static_cast<std::size_t>(positions.rows()), 0);

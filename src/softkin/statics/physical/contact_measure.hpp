@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/statics/contact_forces.hpp>
-#include <softkin/statics/physical/contact_potential.hpp>
+#include <softkin/statics/physical/friction.hpp>
 
 namespace softkin::physical {
 
@@ -12,7 +12,10 @@ namespace softkin::physical {
 ///
 /// surfaces  of several parts
 /// terms     of positions
+/// holds     of the friction there, with their anchors
 [[nodiscard]] ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPotential& potential,
-                                           const Points& positions, const std::vector<ContactPotential::Term>& terms);
+                                           const Points& positions, const std::vector<ContactPotential::Term>& terms,
+                                           const Friction& friction, const Friction::Holds& holds,
+                                           const std::vector<Anchor>& anchors);
 
 }  // namespace softkin::physical

@@ -131,6 +131,7 @@ void Friction::slide(const Points& positions, const Terms& terms, const Holds& h
     const auto touch = std::find_if(all.begin(), all.end(),
                                     [&](const Touch& t) { return t.vertex == hold.pair.first && t.part == part; });
     if (anchor == anchors.end() || touch == all.end()) continue;
+    anchor->slipped_mm += length - creep_mm_;
     anchor->triangle = touch->term->pair.second;
     const contact::FourPoints x =
         contact::points_of(positions, nodes_of_vertex_triangle(surfaces_.surface, {hold.pair.first, anchor->triangle}));
@@ -138,7 +139,6 @@ void Friction::slide(const Points& positions, const Terms& terms, const Holds& h
   }
 }
 
-/// On the vertex [N].
 Vec3 Friction::force(const Points& positions, const Hold& hold) const {
   const Vec3 way = slip(positions, hold);
   const double length = way.norm();

@@ -58,12 +58,13 @@ class Friction {
   /// How far a vertex is from its anchor, across the normal [mm].
   [[nodiscard]] static Vec3 slip(const Points& positions, const Hold& hold);
   [[nodiscard]] double creep_mm() const { return creep_mm_; }
+  /// On the vertex; the nodes share it by their weights [N].
+  [[nodiscard]] Vec3 force(const Points& positions, const Hold& hold) const;
 
  private:
   struct Touch;
   [[nodiscard]] std::vector<Touch> touches(const Terms& terms) const;
   [[nodiscard]] Anchor fresh_anchor(const Points& from, const Points& to, const Touch& touch) const;
-  [[nodiscard]] Vec3 force(const Points& positions, const Hold& hold) const;
 
   const ContactSurfaces& surfaces_;
   bool any_ = false;

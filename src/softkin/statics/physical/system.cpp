@@ -264,7 +264,8 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   elastic_.stress(demand.actuation, at.positions, work.elastic, out.stress, team);
   if (contacts_ && !balance.forbidden)
-    out.contacts = contact_forces(contacts_->surfaces(), contacts_->potential(), at.positions, work.contacts->terms);
+    out.contacts = contact_forces(contacts_->surfaces(), contacts_->potential(), at.positions, work.contacts->terms,
+                                  contacts_->friction(), work.contacts->holds, at.anchors);
 }
 
 void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {
