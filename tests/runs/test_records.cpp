@@ -145,6 +145,40 @@ TEST_F(Steps, OfAPathAreReadBack) {
   }
 }
 
+/// Friction goes on from where it was.
+TEST_F(Steps, OfWhatRubsKeepWhereItSticks) {
+  const Model model = testing::block_model(
+      "softkin: 1\nmesh: {file: block.msh}\nmaterials: [{youngs_modulus: 1, poisson_ratio: 0.3}]\n"
+      "fixed: [{region: base}]\nactuators:\n"
+      "  - {name: air, kind: pneumatic, region: chamber, control: volume, range: [0.5, 3]}\n"
+      "markers: [{name: tip, region: tip}]\ncontact: {distance: 0.1, friction: 0.4}\n"
+      "obstacles: [{name: floor, halfspace: {point: [0, 0, -0.05], normal: [0, 0, 1]}}]\n");
+  const Statics statics(model);
+  PathJob job(model, statics, testing::steps_of(model, 3), "path.csv", testing::one_thread());
+  const auto records = made(job);
+  const StepRecord& last = records.back();
+  ASSERT_EQ(last.status, Status::converged);
+  ASSERT_FALSE(last.anchors.empty());
+  const State known = state_of(model, read_back(job.codec(), last), model.rest);
+  ASSERT_EQ(known.anchors.size(), last.anchors.size());
+  for (std::size_t i = 0; i < known.anchors.size(); ++i) {
+    EXPECT_EQ(known.anchors[i].vertex, last.anchors[i].vertex);
+    EXPECT_EQ(known.anchors[i].part, last.anchors[i].part);
+    EXPECT_EQ(known.anchors[i].triangle, last.anchors[i].triangle);
+    EXPECT_EQ(known.anchors[i].weights, last.anchors[i].weights);
+    EXPECT_EQ(known.anchors[i].slipped_mm, last.anchors[i].slipped_mm);
+  }
+  for (const char* other :
+       {"[]", "[[0, 0, 99999, 1, 0, 0, 0]]", "[[-1, 1, 0, 1, 0, 0, 0]]", "[[0, 9, 0, 1, 0, 0, 0]]"}) {
+    Json json = Json::parse(job.codec().write(last));
+    json["anchors"] = Json::parse(other);
+    if (json["anchors"].empty())
+      EXPECT_TRUE(job.codec().read(json.dump()).anchors.empty());
+    else
+      EXPECT_THROW((void)job.codec().read(json.dump()), InvalidInput) << other;
+  }
+}
+
 TEST_F(Steps, ThatDidNotConvergeKeepWhatIsNotKnown) {
   const Model model = testing::bending_model();
   const Statics statics(model);
