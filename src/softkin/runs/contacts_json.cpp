@@ -25,7 +25,7 @@ Json contacts_json(const Model& model, const std::optional<std::vector<PairForce
   Json all = Json::array();
   for (const PairForces& pair : *contacts) {
     all.push_back({{"on", name(pair.a)},
-                   {"from", name(pair.b)},
+                   {"by", name(pair.b)},
                    {"force_N", json_of(pair.force)},
                    {"moment_N_mm", json_of(pair.moment)},
                    {"center_mm", json_of(pair.center)}});
@@ -44,7 +44,7 @@ std::vector<PairForces> contacts_of(const Model& model, const Json& list) {
   };
   std::vector<PairForces> contacts;
   for (const Json& each : list) {
-    PairForces& pair = contacts.emplace_back(PairForces{part(each.at("on")), part(each.at("from"))});
+    PairForces& pair = contacts.emplace_back(PairForces{part(each.at("on")), part(each.at("by"))});
     pair.force = point_of(each.at("force_N"));
     pair.moment = point_of(each.at("moment_N_mm"));
     pair.center = point_of(each.at("center_mm"));
