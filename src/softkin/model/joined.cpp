@@ -34,13 +34,12 @@ Vec3 common_gravity(const std::vector<PlacedRobot>& robots, const CommonSpec& co
     const RobotSpec& robot = placed.robot;
     if (common.gravity && robot.gravity_origin.file.empty() && robot.gravity.isZero(0)) continue;
     if (!differ(turned(placed), gravity)) continue;
-    throw InvalidInput(
-        placed.origin,
-        "robot '" + placed.name + "': as it stands, its gravity is " +
-            gravity_text(turned(placed), robot.gravity_origin) + ", but that of " +
-            (common.gravity ? "the whole is " + gravity_text(gravity, common.gravity_origin)
-                            : "robot '" + robots[0].name + "' is " + gravity_text(gravity, robots[0].robot.gravity_origin)) +
-            ": leave 'gravity' out of the robots' scenes and give it in this one");
+    const std::string whose = common.gravity ? "the whole" : "robot '" + robots[0].name + "'";
+    const Origin& origin = common.gravity ? common.gravity_origin : robots[0].robot.gravity_origin;
+    throw InvalidInput(placed.origin, "robot '" + placed.name + "': as it stands, its gravity is " +
+                                          gravity_text(turned(placed), robot.gravity_origin) + ", but that of " +
+                                          whose + " is " + gravity_text(gravity, origin) +
+                                          ": leave 'gravity' out of the robots' scenes and give it in this one");
   }
   return gravity;
 }
@@ -155,10 +154,10 @@ class Joiner {
     for (int axis = 0; axis < 3; ++axis) fixed.axes[axis] = space(axis, axis) > 0.5;
     const Vec3 held = ones(fixed.axes);
     if ((space - Mat3(held.asDiagonal())).cwiseAbs().maxCoeff() > same_direction)
-      throw InvalidInput(fixed.where.origin,
-                         label(fixed.where) + " is fixed along some axes, which the turn of the robot takes to none of "
-                                              "the scene's: fix it along x, y and z, or turn the robot by quarter turns "
-                                              "about its axes");
+      throw InvalidInput(
+          fixed.where.origin,
+          label(fixed.where) + " is fixed along some axes, which the turn of the robot takes to none of the scene's: "
+                               "fix it along x, y and z, or turn the robot by quarter turns about its axes");
     const bool refused = !fixed.displacement.cwiseProduct(Vec3::Ones() - own).isZero(0);  // by compile()
     fixed.displacement = rotation * fixed.displacement;
     if (!refused) fixed.displacement = fixed.displacement.cwiseProduct(held).eval();

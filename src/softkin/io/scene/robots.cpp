@@ -10,7 +10,8 @@ namespace {
 const std::string& read_robot_name(const Node& node, Names& names) {
   const std::string& name = names.add_label(node);
   if (name.find('.') != std::string::npos)
-    fail(node, "the name " + excerpt(name) + " must not hold a '.', which parts a robot's name from those of its parts");
+    fail(node,
+         "the name " + excerpt(name) + " must not hold a '.', which parts a robot's name from those of its parts");
   if (name == "all" || name == "robot")
     fail(node, "the name " + excerpt(name) + " is reserved: it stands for all of the robots");
   return name;

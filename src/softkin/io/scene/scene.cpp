@@ -139,8 +139,8 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
   const scene::Map map(
-      root, {"softkin", "units", "mesh", "meshes", "robots", "formulation", "regions", "materials", "void", "fixed", "rigid",
-             "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles"});
+      root, {"softkin", "units", "mesh", "meshes", "robots", "formulation", "regions", "materials", "void", "fixed",
+             "rigid", "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);
@@ -168,8 +168,9 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const std::string& scene
       return read(path);
     };
   };
-  return parse_scene(read_file(scene), scene,
-                     {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve), noting(read_file)});
+  return parse_scene(
+      read_file(scene), scene,
+      {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve), noting(read_file)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {

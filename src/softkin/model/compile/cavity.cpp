@@ -80,8 +80,8 @@ void take_only_space(Compilation& c, const ActuatorSpec& spec, Actuator& actuato
                      " empty spaces, " + text + cure);
   }
   take_empty_space(c, spec, numbers[0], actuator);
-  c.model.notes.push_back("Actuator '" + spec.name + "' is the only empty space in " + body + ", " + text_of(spaces[0]) +
-                          ".");
+  c.model.notes.push_back("Actuator '" + spec.name + "' is the only empty space in " + body + ", " +
+                          text_of(spaces[0]) + ".");
 }
 
 std::array<Index, 3> sorted(Triangle corners) {

@@ -7,7 +7,7 @@ namespace softkin {
 /// A region of a mesh as it is after append(before, mesh).
 [[nodiscard]] Region renumbered(Region region, const Mesh& before);
 
-/// Appends the vertices and elements of a mesh. Its regions join those of the same name and dimension. All of one order.
+/// Appends a mesh of the same order. Its regions join those of the same name and dimension.
 void append(Mesh& all, const Mesh& part);
 
 }  // namespace softkin
