@@ -78,8 +78,9 @@ inline double push_of_gap(double z) {
   return z < 1 ? 2 * (z - 1) * std::log(z) + (z - 1) * (z - 1) / z : 0;
 }
 
-/// What the barrier pushes at each of the given vertices towards a floor at z = 0 [N]: by its law and the model's areas.
-[[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions, const std::vector<Index>& vertices) {
+/// What a floor at z = 0 pushes at each of some vertices [N], by the law of the barrier and the model's areas.
+[[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions,
+                                                   const std::vector<Index>& vertices) {
   Eigen::VectorXd push(static_cast<Index>(vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i)
     push[static_cast<Index>(i)] = push_of_gap(positions(vertices[i], 2) / model.contact.distance_mm) *
@@ -88,7 +89,8 @@ inline double push_of_gap(double z) {
 }
 
 /// Force of a support on the robot [N].
-[[nodiscard]] inline Vec3 reaction_of(const Model& model, const Statics& statics, const Equilibrium& found, std::size_t support) {
+[[nodiscard]] inline Vec3 reaction_of(const Model& model, const Statics& statics, const Equilibrium& found,
+                                      std::size_t support) {
   return reactions(model, found.state.positions, statics.measured(found.state))[support].force;
 }
 

@@ -169,7 +169,9 @@ struct HertzRatios {
   const double across = found.radius * found.radius + 4 * r * r;
   const double f = 2 * (1 + nu) * r * r / std::pow(across, 1.5) + (1 - nu * nu) / std::sqrt(across);
   const double stiffer = (balls.two ? 2 : 1) * f * found.force / (M_PI * PressedBalls::modulus);
-  const auto force = [&](double approach) { return 4.0 / 3 * modulus * std::sqrt(effective) * std::pow(approach, 1.5); };
+  const auto force = [&](double approach) {
+    return 4.0 / 3 * modulus * std::sqrt(effective) * std::pow(approach, 1.5);
+  };
   const double radius = std::sqrt(effective * d);
   return {found.force / force(d), found.force / force(d + stiffer),
           found.force / (4.0 / 3 * modulus * std::pow(found.radius, 3) / effective), found.radius / radius,
