@@ -204,13 +204,16 @@ TEST(Joined, Gravity) {
   const std::string cure = ": leave 'gravity' out of the robots' scenes and give it in this one";
   EXPECT_EQ(refusal_of_pair(heavy, heavy),
             "pair.yaml:4: robot 'right': as it stands, its gravity is (0, 0, 9.81) m/s^2 (block.yaml:5), but that of "
-            "robot 'left' is (0, 0, -9.81) m/s^2 (block.yaml:5)" + cure);
+            "robot 'left' is (0, 0, -9.81) m/s^2 (block.yaml:5)" +
+                cure);
   EXPECT_EQ(refusal_of_pair(heavy, plain),
             "pair.yaml:4: robot 'right': as it stands, its gravity is (0, 0, 0) m/s^2, but that of robot 'left' is "
-            "(0, 0, -9.81) m/s^2 (block.yaml:5)" + cure);
+            "(0, 0, -9.81) m/s^2 (block.yaml:5)" +
+                cure);
   EXPECT_EQ(refusal_of_pair(plain, heavy, common),
             "pair.yaml:4: robot 'right': as it stands, its gravity is (0, 0, 9.81) m/s^2 (block.yaml:5), but that of "
-            "the whole is (0, 0, -9.81) m/s^2 (pair.yaml:9)" + cure);
+            "the whole is (0, 0, -9.81) m/s^2 (pair.yaml:9)" +
+                cure);
 }
 
 TEST(Joined, WhatDiffersIsRefused) {

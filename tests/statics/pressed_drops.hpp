@@ -45,24 +45,26 @@ struct PressedDrop {
 
 /// Presses a drop in equal steps, each from the shape of the one before, and looks at every shape that comes back.
 ///
-/// threads  of the solver
-[[nodiscard]] inline PressedDrop press_drop(std::uint64_t seed, int steps, int threads = 1) {
+/// cable  has the robot its slack cable; without one no start tells of which share it is
+[[nodiscard]] inline PressedDrop press_drop(std::uint64_t seed, int steps, bool cable = true) {
   const Drop drop = random_drop(seed);
   PressedDrop out;
   out.tetrahedra = drop.robot.mesh.tetrahedra.size();
   State state;
   StaticsOptions options;
-  options.threads = threads;
+  options.threads = 1;
   options.keep_history = false;
   try {
     for (int step = 1; step <= steps; ++step) {
-      const Model model = compile(drop_robot(drop, static_cast<double>(step) / steps));
+      RobotSpec spec = drop_robot(drop, static_cast<double>(step) / steps);
+      if (!cable) spec.actuators.clear();
+      const Model model = compile(spec);
       const Statics statics(model);
       if (step == 1)
         state = statics.rest();
       else
         state.share *= static_cast<double>(step - 1) / step;
-      const Equilibrium found = statics.solve(Actuation::Zero(1), state, options);
+      const Equilibrium found = statics.solve(Actuation::Zero(cable ? 1 : 0), state, options);
       out.shapes.push_back({found.report, crossings(found.state.positions, model.contact.triangles).size()});
       state = found.state;
       if (state.share < 0) break;

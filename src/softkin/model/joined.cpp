@@ -154,10 +154,10 @@ class Joiner {
     for (int axis = 0; axis < 3; ++axis) fixed.axes[axis] = space(axis, axis) > 0.5;
     const Vec3 held = ones(fixed.axes);
     if ((space - Mat3(held.asDiagonal())).cwiseAbs().maxCoeff() > same_direction)
-      throw InvalidInput(
-          fixed.where.origin,
-          label(fixed.where) + " is fixed along some axes, which the turn of the robot takes to none of the scene's: "
-                               "fix it along x, y and z, or turn the robot by quarter turns about its axes");
+      throw InvalidInput(fixed.where.origin,
+                         label(fixed.where) +
+                             " is fixed along some axes, which the turn of the robot takes to none of the scene's: "
+                             "fix it along x, y and z, or turn the robot by quarter turns about its axes");
     const bool refused = !fixed.displacement.cwiseProduct(Vec3::Ones() - own).isZero(0);  // by compile()
     fixed.displacement = rotation * fixed.displacement;
     if (!refused) fixed.displacement = fixed.displacement.cwiseProduct(held).eval();

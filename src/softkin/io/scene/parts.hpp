@@ -13,7 +13,7 @@ struct Context {
   const SceneFiles& files;
   double to_mm = 1;
   std::optional<Formulation> formulation = std::nullopt;  // that of the robots, where the scene has several
-  std::int64_t vertices = 0, tetrahedra = 0;  // of the mesh
+  std::int64_t vertices = 0, tetrahedra = 0;              // of the mesh
 };
 
 /// Names that must differ; a second use fails and names the place of the first.

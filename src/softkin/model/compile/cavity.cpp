@@ -52,9 +52,8 @@ std::vector<Triangle> boundary_of_chamber(const Compilation& c, const std::vecto
 /// Is a space bounded by these elements alone?
 bool lies_in(const EmptySpace& space, const Region& body) {
   return std::all_of(space.triangles.begin(), space.triangles.end(), [&](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(), [&](Index v) {
-      return std::binary_search(body.vertices.begin(), body.vertices.end(), v);
-    });
+    return std::all_of(t.begin(), t.end(),
+                       [&](Index v) { return std::binary_search(body.vertices.begin(), body.vertices.end(), v); });
   });
 }
 

@@ -71,7 +71,7 @@ void refuse_mesh_errors(Compilation& c) {
   for (std::size_t r = 0; r < robots.size(); ++r) {
     const auto range = [&](Index RobotPart::*first, std::size_t count) {
       return IndexRange{static_cast<std::size_t>(robots[r].*first),
-                   r + 1 < robots.size() ? static_cast<std::size_t>(robots[r + 1].*first) : count};
+                        r + 1 < robots.size() ? static_cast<std::size_t>(robots[r + 1].*first) : count};
     };
     refuse_errors_of(c, robots[r], range(&RobotPart::tetrahedra, c.mesh.tetrahedra.size()),
                      range(&RobotPart::prisms, c.mesh.prisms.size()));

@@ -17,9 +17,9 @@ namespace {
 void hold(Compilation& c, const FixedSpec& spec, Index v, int axis) {
   const double place = c.model.rest(v, axis) + spec.displacement[axis];
   if (c.model.used[v] && c.model.fixed[v][axis] && c.model.held(v, axis) != place)
-    throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) +
-                                              " (from 0" + robot_text(c.spec, &RobotPart::vertices, v) + ") along " +
-                                              "xyz"[axis] + " elsewhere than an earlier entry");
+    throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) + " (from 0" +
+                                              robot_text(c.spec, &RobotPart::vertices, v) + ") along " + "xyz"[axis] +
+                                              " elsewhere than an earlier entry");
   c.model.fixed[v][axis] = true;
   c.model.held(v, axis) = place;
   Index& bearer = c.model.support_of[v][axis];
