@@ -31,13 +31,6 @@ void print_row(const PressedBalls& balls, double share) {
 
 int run(const Options& options) {
   bench::print_machine();
-<<<<<<< HEAD
-  std::printf(
-      "%s, E 1 MPa, nu 0.3, neo-Hookean; lengths over the radius; ratios to Hertz:\n"
-      "  F(d)  4/3 E* sqrt(R) d^1.5; F(d')  the same, d' = d and what a ball between two plates is stiffer by;\n"
-      "  F(a)  4/3 E* a^3 / R;  a(d)  sqrt(R d), from the second moment of the force; rim  from the outermost push\n",
-      options.two ? "ball on ball" : "ball on a rigid plane");
-=======
   std::printf(
       "%s, E 1 MPa, nu 0.3, neo-Hookean; lengths over the radius; ratios to Hertz:\n"
       "  F(d)  4/3 E* sqrt(R) d^1.5\n"
@@ -45,7 +38,6 @@ int run(const Options& options) {
       "  F(a)  4/3 E* a^3 / R\n"
       "  a(d)  sqrt(R d), of a from the second moment of the force; rim: of a from the outermost push\n",
       options.two ? "ball on ball" : "ball on a rigid plane");
->>>>>>> contact-tests
   std::printf("%7s %8s %8s %9s %9s %9s | %7s %7s %7s | %7s %7s | %5s %8s %7s\n", "cell", "distance", "asked", "force N",
               "approach", "radius", "F/F(d)", "F/F(d')", "F/F(a)", "a/a(d)", "rim", "iter.", "unknowns", "time s");
   for (const double cell : options.cells)

@@ -78,11 +78,7 @@ inline double push_of_gap(double z) {
   return z < 1 ? 2 * (z - 1) * std::log(z) + (z - 1) * (z - 1) / z : 0;
 }
 
-<<<<<<< HEAD
-/// What the barrier pushes at each of the given vertices towards a floor at z = 0 [N]: by its law and the model's areas.
-=======
 /// What a floor at z = 0 pushes at each of some vertices [N], by the law of the barrier and the model's areas.
->>>>>>> contact-tests
 [[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions,
                                                    const std::vector<Index>& vertices) {
   Eigen::VectorXd push(static_cast<Index>(vertices.size()));
