@@ -7,8 +7,8 @@
 
 namespace softkin::runs {
 
-/// The obstacles, see-through, so that they hide no robot: what of them is no farther from its box than half of the box's
-/// diagonal. Of a half-space a square of its plane, a little larger than the robot's shadow on it.
+/// The obstacles, see-through, so that they hide no robot: what of them is no farther from its box than half of the
+/// box's diagonal. Of a half-space a square of its plane, a little larger than the robot's shadow on it.
 ///
 /// robot    around all of it that is drawn [mm]
 /// returns  none where nothing is so near

@@ -347,14 +347,20 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   };
   double end = 1;
   for (bool first = true;; first = false) {
-    held = std::max(end, least);
+    held = end;
     const double share = system.clear_share(from, way, end, work, at.positions, team);
     if (first) predicted = at.positions;
     if (share >= end) break;
-    if (end == 0) return std::nullopt;
     end = shorter * share;
     if (end < most_cut && largest_move(from, predicted) > long_way * system.model().diagonal_mm) return std::nullopt;
-    if (end < least) end = 0;
+    if (end >= least) continue;
+    end = 0;  // only what is held moves
+    const System::Way alone = [&](double part, Points& out) {
+      out = from;
+      system.freedoms().hold(here.share + part * (there.share - here.share), out);
+    };
+    if (system.clear_share(from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
+    break;
   }
   follow(tangent, end, system, there, active, at.multipliers);
   return largest_move(from, at.positions);
