@@ -150,7 +150,7 @@ TEST(FkPhysical, SaysWhatTouches) {
   EXPECT_EQ(result.output.find("nothing touches"), std::string::npos) << result.output;
   EXPECT_NE(read_text(folder / "shape.vtu").find("Name=\"contact_pressure_kPa\""), std::string::npos);
 
-  const BlockFolder far(above("-3")), without(held);
+  const BlockFolder far(above("-30")), without(held);
   const ProgramResult apart = run_fk(far.scene, {"--report", far / "report.json"}),
                       bare = run_fk(without.scene, {"--report", without / "report.json", "-o", without / "shape.vtu"});
   EXPECT_NE(apart.output.find("\nnothing touches\n"), std::string::npos) << apart.output;

@@ -56,7 +56,7 @@ inline Model leaning_model(double height) {
   return block_model(
       "softkin: 1\nmesh: {file: block.msh}\n"
       "materials: [{youngs_modulus: 1, poisson_ratio: 0.3}]\n"
-      "fixed: [{region: base}]\nforces: [{name: load, region: tip, force: [0, 0, -5]}]\n"
+      "fixed: [{region: base}]\nforces: [{name: load, region: tip, force: [0, 0, -1]}]\n"
       "markers: [{name: tip, region: tip}]\n"
       "contact: {distance: 0.1}\n"
       "obstacles: [{name: floor, halfspace: {point: [0, 0, " +
