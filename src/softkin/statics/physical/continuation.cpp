@@ -37,11 +37,6 @@ constexpr double most_inverting = 0.01;
 /// Friction and the normal forces that it leads to are found in turn until it changes by less than this share.
 constexpr double frictions_agree = 1e-4;
 
-Demand between(const Demand& from, const Demand& to, double share) {
-  if (share == 1) return to;
-  return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share)};
-}
-
 }  // namespace
 
 Continuation::Continuation(const System& system, System::Workspace& work, Team& team,
@@ -248,7 +243,9 @@ double Continuation::longest_step(bool snap, bool unstable) const {
 bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   if (system_.any_dead_load() && from.share != to.share) return true;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (system_.measures().measures(a) && !system_.constrains(a) && from.actuation[a] != to.actuation[a]) return true;
+    if (from.actuation[a] != to.actuation[a] &&
+        (system_.loads(a) || (system_.measures().measures(a) && !system_.constrains(a))))
+      return true;
   return false;
 }
 
@@ -257,7 +254,8 @@ std::string Continuation::instead_of_loads() const {
   bool pressures = false, tensions = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     const Actuator& actuator = system_.model().actuators[a];
-    if (actuator.control != Control::load || way_.from.actuation[a] == way_.to.actuation[a]) continue;
+    if (actuator.control != Control::load || !drives(actuator) || way_.from.actuation[a] == way_.to.actuation[a])
+      continue;
     (actuator.kind == ActuatorKind::cable ? tensions : pressures) = true;
   }
   if (!pressures && !tensions) return "";

@@ -325,7 +325,7 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   const Tangent tangent(system, here, there, active, work, team, at);
   const Points before = at.positions;
   system.advance(tangent.step, 1, work, at.positions, team);
-  system.freedoms().hold(there.share, at.positions);
+  system.hold(there, at.positions);
   follow(tangent, 1, system, there, active, at.multipliers);
   return largest_move(before, at.positions);
 }
@@ -343,7 +343,7 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   const System::Way way = [&](double share, Points& out) {
     out = from;
     system.advance(tangent.step, share, work, out, team);
-    system.freedoms().hold(here.share + share / held * (there.share - here.share), out);
+    system.hold(between(here, there, share / held), out);
   };
   double end = 1;
   for (bool first = true;; first = false) {
@@ -357,7 +357,7 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
     end = 0;  // only what is held moves
     const System::Way alone = [&](double part, Points& out) {
       out = from;
-      system.freedoms().hold(here.share + part * (there.share - here.share), out);
+      system.hold(between(here, there, part), out);
     };
     if (system.clear_share(from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
     break;
