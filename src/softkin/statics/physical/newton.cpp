@@ -118,12 +118,14 @@ bool Newton::accept(double moved_mm, Iterate& at) {
   return goes_on();
 }
 
-/// Where contacts cut step after step, a way with less to go is shorter.
+/// Where contacts cut step after step, a way with less to go is shorter; where what slides has nothing to stop it, step
+/// after step is as long as the last.
 bool Newton::labours(double damping) {
-  constexpr double poor = 0.2;
-  constexpr int most_poor = 8;  // in a row
+  constexpr double poor = 0.2, same = 0.9;
+  constexpr int most_poor = 8, most_same = 12;  // in a row
   poor_ = damping < poor ? poor_ + 1 : 0;
-  return system_.contact() && poor_ >= most_poor;
+  same_ = next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
+  return system_.contact() && (poor_ >= most_poor || same_ >= most_same);
 }
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
@@ -263,7 +265,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   Advance advance = Advance::made;
   double damping = 1;
-  poor_ = 0;
+  poor_ = same_ = 0;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (factorised && iteration == 0) {
