@@ -119,13 +119,13 @@ bool Newton::accept(double moved_mm, Iterate& at) {
 }
 
 /// Where contacts cut step after step, a way with less to go is shorter; where what slides has nothing to stop it, step
-/// after step is as long as the last.
+/// after whole step is as long as the last.
 bool Newton::labours(double damping) {
   constexpr double poor = 0.2, same = 0.9;
   constexpr int most_poor = 8, most_same = 12;  // in a row
   poor_ = damping < poor ? poor_ + 1 : 0;
-  same_ = next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
-  return system_.contact() && (poor_ >= most_poor || same_ >= most_same);
+  same_ = damping == 1 && next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
+  return system_.contact() && (poor_ >= most_poor || (system_.friction() && same_ >= most_same));
 }
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
@@ -135,7 +135,9 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   if (!std::isfinite(step_.size.mean)) return Advance::none;
   damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
-  const double slope = system_.contact() ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
+  // forces that follow their normal forces have none
+  const bool potential = system_.contact() && !work_.friction_follows;
+  const double slope = potential ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {

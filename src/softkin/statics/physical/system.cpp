@@ -85,6 +85,7 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
   balance.energy += surroundings_.add_gradient(demand.actuation, at.positions, work.gradient);
   if (contacts_ && !balance.forbidden) {
     contacts_->find(at.positions, *work.contacts, team);
+    if (work.friction_follows) contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
     balance.energy += contacts_->energy(at.positions, *work.contacts);
     balance.forbidden = !std::isfinite(balance.energy);
     if (!balance.forbidden) contacts_->add_gradient(at.positions, *work.contacts, work.gradient);
@@ -309,6 +310,12 @@ double System::renew_friction(const Points& from, Iterate& at, Workspace& work, 
   const Friction::Holds before = work.contacts->holds;
   contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
   return contacts_->friction().disagreement(at.positions, before, work.contacts->holds);
+}
+
+double System::slipping_share(const Iterate& at, Workspace& work, Team& team) const {
+  if (!friction()) return 0;
+  hold_friction(at, work, team);
+  return contacts_->friction().slipping_share(at.positions, work.contacts->holds);
 }
 
 void System::slide_friction(Iterate& at, Workspace& work, Team& team) const {

@@ -56,6 +56,7 @@ class System {
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
     std::unique_ptr<Contacts::Scratch> contacts;      // where there is contact
+    bool friction_follows = false;                    // are its normal forces those of the shape, not those held
     std::shared_ptr<const Layout> layout;             // of the slots
     std::shared_ptr<const Layout> factorised_layout;  // of the factor
     LargeVector<double> slots, blocks, values;
@@ -164,6 +165,8 @@ class System {
   ///
   /// returns  how far the friction at the iterate was by other normal forces, over the largest force on a vertex [-]
   double renew_friction(const Points& from, Iterate& at, Workspace& work, Team& team) const;
+  /// Share of what rubs that slips, or nearly [-].
+  [[nodiscard]] double slipping_share(const Iterate& at, Workspace& work, Team& team) const;
   /// Lets what slips at an equilibrium go on from there.
   void slide_friction(Iterate& at, Workspace& work, Team& team) const;
 
