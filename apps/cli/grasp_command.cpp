@@ -35,8 +35,9 @@ struct GraspOptions : SolveOptions {
 
 void add_options(CLI::App& command, GraspOptions& options) {
   add_scene(command, options);
-  add_value(command, "--path", options.path, "F.csv",
-            "How the gripper closes, as for fk: a column per actuator, a\nrow per step; bodies are held where they are");
+  add_value(
+      command, "--path", options.path, "F.csv",
+      "How the gripper closes, as for fk: a column per actuator, a\nrow per step; bodies are held where they are");
   add_repeated(command, "--set", options.settings, "A=V", "ACTUATOR=VALUE, as for fk; repeatable");
   add_value(command, "--body", options.body, "NAME", "Which body is released and pulled (default: the only one)");
   add_repeated(command, "--pull", options.pulls, "DIR",
@@ -167,8 +168,9 @@ class GraspRun {
     row.emplace_back(slipping ? Cell(*slipping) : Cell());
     const std::string reason = pull.status == Status::limit ? pull.last.report.remark : "";
     row.emplace_back(pull.status == Status::converged ? "holds more"
-                     : pull.status == Status::limit   ? (reason.find("slips") != std::string::npos ? "slips" : "gives way")
-                                                      : name_of(pull.status));
+                     : pull.status == Status::limit
+                         ? (reason.find("slips") != std::string::npos ? "slips" : "gives way")
+                         : name_of(pull.status));
     return row;
   }
 
@@ -177,8 +179,8 @@ class GraspRun {
     if (!options_.json) print(table.header() + "\n");
     bool stopped = false, lost = false;
     const double most = options_.most_N.value_or(most_pull(model_, body_));
-    for (const std::string& text : options_.pulls.empty() ? std::vector<std::string>{"x", "-x", "y", "-y", "z", "-z"}
-                                                          : options_.pulls) {
+    for (const std::string& text :
+         options_.pulls.empty() ? std::vector<std::string>{"x", "-x", "y", "-y", "z", "-z"} : options_.pulls) {
       const Pull found = largest_pull(model_, statics_, grasp, body_, direction_of(text), most, options_.statics(),
                                       shown("pulling along " + text));
       line_.clear();
@@ -191,7 +193,8 @@ class GraspRun {
     if (!options_.table.empty()) write_file(options_.table, table.csv());
     if (options_.json) print(table.json() + "\n");
     if (!options_.json)
-      for (const Output& output : options_.outputs()) print(output.option.substr(2) + ": " + output.file.string() + "\n");
+      for (const Output& output : options_.outputs())
+        print(output.option.substr(2) + ": " + output.file.string() + "\n");
     if (stopped) std::fprintf(stderr, "softkin: interrupted after %zu pulls\n", table.rows.size());
     return stopped || lost ? not_converged : done;
   }
@@ -229,12 +232,13 @@ int run_grasp(const GraspOptions& options) {
 }  // namespace
 
 void add_grasp(CLI::App& app, Run& run) {
-  add_command(
-      app, run, "grasp", "Grasping: how far a body can be pulled out of a closed gripper",
-      "Closes the gripper with the scene's bodies held, releases one, and pulls it until it slips or no equilibrium is\n"
-      "left (docs/contact.md). Forces are in N. Exit code: 0 done, 1 an equilibrium was not found or interrupted, 2 bad\n"
-      "usage or bad input.",
-      add_options, run_grasp);
+  add_command(app, run, "grasp", "Grasping: how far a body can be pulled out of a closed gripper",
+              "Closes the gripper with the scene's bodies held, releases one, and pulls it until it slips or no "
+              "equilibrium is\n"
+              "left (docs/contact.md). Forces are in N. Exit code: 0 done, 1 an equilibrium was not found or "
+              "interrupted, 2 bad\n"
+              "usage or bad input.",
+              add_options, run_grasp);
 }
 
 }  // namespace softkin::cli

@@ -6,9 +6,9 @@ namespace softkin {
 
 namespace {
 
-constexpr double growth = 4;         // of the pull from try to try
+constexpr double growth = 4;          // of the pull from try to try
 constexpr double least_share = 1e-4;  // of the largest that may be commanded, to begin with
-constexpr double gravity = 9.81;     // m/s^2
+constexpr double gravity = 9.81;      // m/s^2
 
 const FreeBody& body_at(const Model& model, Index body) {
   if (body < 0 || body >= static_cast<Index>(model.bodies.size()))
@@ -48,8 +48,8 @@ Pull largest_pull(const Model& model, const Statics& statics, const State& grasp
   pull.last.actuation = grasp.actuation;
   double force = std::min(most_N, std::max(gravity * held.mass_kg, least_share * most_pull(model, body)));
   for (;;) {
-    Equilibrium found = statics.solve(pulled(model, grasp.actuation, body, pull.direction, force), pull.last.state,
-                                      options, progress);
+    Equilibrium found =
+        statics.solve(pulled(model, grasp.actuation, body, pull.direction, force), pull.last.state, options, progress);
     pull.status = found.report.status;
     const double before = pull.force_N;
     if (pull.status == Status::converged)

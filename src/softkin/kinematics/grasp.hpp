@@ -7,11 +7,11 @@ namespace softkin {
 
 /// How far a body can be pulled out of what holds it.
 struct Pull {
-  Vec3 direction{0, 0, 0};      // of length 1
+  Vec3 direction{0, 0, 0};                // of length 1
   Status status = Status::not_converged;  // limit: it was found; converged: more than was asked; interrupted
-  double force_N = 0;           // the largest at which there is an equilibrium
-  double moved_mm = 0;          // the center of mass of the body from where it was without the pull
-  Equilibrium last;             // at that force
+  double force_N = 0;                     // the largest at which there is an equilibrium
+  double moved_mm = 0;                    // the center of mass of the body from where it was without the pull
+  Equilibrium last;                       // at that force
 };
 
 /// The actuation with a body released and pulled.
