@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <softkin/statics/physical/system.hpp>
 
 #include "statics/physical_samples.hpp"
@@ -156,6 +158,50 @@ TEST(Friction, JacobianOfWhatLeansOnAFloor) {
                             : at.state.positions;
     const Points difference = (back - further) / (friction == 0 ? 2 * step : step);
     EXPECT_LT((slopes.positions[1] - difference).norm(), (friction == 0 ? 1e-4 : 1e-2) * difference.norm()) << friction;
+  }
+}
+
+namespace {
+
+constexpr double drum = 40, ends = 10;  // radius and length of what lies straight on either side [mm]
+
+/// A strip of 4 x 0.5 mm, without stress, around a quarter of a drum; pulled at its high end by so much.
+RobotSpec strip_over_drum(double friction, double pull) {
+  constexpr double gap = 0.06, arc = M_PI / 2;
+  const double radius = drum + gap, length = 2 * ends + arc * radius;
+  RobotSpec spec = physical_robot(block_mesh({48, 1, 1}, {length, 4, 0.5}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v) {
+    const double s = spec.mesh.vertices(v, 0) - ends, out = radius + spec.mesh.vertices(v, 2);
+    const double angle = std::clamp(s / radius, 0.0, arc), beyond = s - angle * radius;
+    spec.mesh.vertices.row(v) << out * std::sin(angle) + beyond * std::cos(angle), spec.mesh.vertices(v, 1),
+        out * std::cos(angle) - beyond * std::sin(angle);
+  }
+  spec.quadratic = true;
+  spec.materials[0].elastic->youngs_modulus = 10;
+  spec.fixed = {{{std::string("x_low"), {}}, {true, true, true}, {0, 0, 0}},
+                {{std::string("x_high"), {}}, {true, true, true}, {0, 0, -pull}}};
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.05;
+  spec.contact->friction = friction;
+  spec.contact->self = false;
+  spec.contact->obstacles.push_back({"drum", Cylinder{{0, -5, 0}, {0, 9, 0}, drum}, {}, {}});
+  return spec;
+}
+
+}  // namespace
+
+/// Where all of the strip slips its tensions are in the ratio of Euler and Eytelwein.
+TEST(Friction, OfAStripOverADrum) {
+  for (const double friction : {0.2, 0.4}) {
+    const Model model = compile(strip_over_drum(friction, 3));
+    const Statics statics(model);
+    const Equilibrium found = moved(model, statics, 1);
+    const Points all = statics.measured(found.state).reactions;
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+    for (Index v = 0; v < model.robot_vertices(); ++v) (model.rest(v, 0) < 0 ? low : high) += all.row(v).transpose();
+    EXPECT_NEAR(-high.z() / -low.x(), std::exp(friction * M_PI / 2), 0.03 * std::exp(friction * M_PI / 2));
+    std::printf("friction %.1f: T2 / T1 %.4f, Eytelwein %.4f\n", friction, high.z() / low.x(),
+                std::exp(friction * M_PI / 2));
   }
 }
 

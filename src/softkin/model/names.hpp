@@ -13,7 +13,8 @@ namespace softkin {
 [[nodiscard]] const char* control_name(const Actuator& actuator);
 /// "ratio", "pressure" or "tension".
 [[nodiscard]] const char* command_name(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N" or "mm"; as a table has it: "[-]", "[kPa]", "[N]" or "[mm]".
+/// The unit of what the user commands, bare: "", "kPa", "N" or "mm"; as a table has it: "[-]", "[kPa]", "[N]" or
+/// "[mm]".
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
 /// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa".

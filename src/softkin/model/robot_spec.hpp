@@ -67,8 +67,8 @@ struct FixedSpec {
   Vec3 displacement{0, 0, 0};  // where it is held, from its place at rest [mm]; 0 along axes that are not held
 };
 
-/// The last three are no drives of the robot but what is done to its surroundings: the motion of an obstacle, a force on
-/// a body, and how firmly a body is held.
+/// The last three are no drives of the robot but what is done to its surroundings: the motion of an obstacle, a force
+/// on a body, and how firmly a body is held.
 enum class ActuatorKind { cable, dea, pneumatic, motion, force, hold };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure

@@ -94,8 +94,8 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
                                      deformation.multipliers[static_cast<Index>(a)]);
 }
 
-/// Adds the bodies and obstacles, each as a region, after all fields: whatever is known of elements is 0 in them. Half-spaces stay
-/// without cells: their triangles would dwarf the robot.
+/// Adds the bodies and obstacles, each as a region, after all fields: whatever is known of elements is 0 in them.
+/// Half-spaces stay without cells: their triangles would dwarf the robot.
 void add_surroundings(const Model& model, VtuContent& content) {
   const ContactModel& contact = model.contact;
   std::vector<Index> regions(contact.parts.size(), -1);

@@ -61,7 +61,7 @@ double ContactSurfaces::area(Index vertex, Index triangle) const {
 }
 
 double ContactSurfaces::area_of_edges(Index a, Index b) const {
-  const double own = 0.5 * (edge_area[static_cast<std::size_t>(a)] + edge_area[static_cast<std::size_t>(b)]);
+  const double own = std::sqrt(edge_area[static_cast<std::size_t>(a)] * edge_area[static_cast<std::size_t>(b)]);
   if (rules == nullptr) return own;
   return rules->pair(edge_part[static_cast<std::size_t>(a)], edge_part[static_cast<std::size_t>(b)]).touch ? own : 0;
 }

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <softkin/contact/collision.hpp>
@@ -13,6 +14,10 @@ namespace {
 /// Area of a vertex's guard and of edges, over the mean area of a robot's vertices: it changes a pressure by as much,
 /// and yet nothing passes.
 constexpr double guard_share = 0.01;
+/// Of the square of edges' spacing, over that mean: finer surfaces have as much at each crossing of edges.
+constexpr double least_spacing = 1e-4;
+/// Edges whose triangles' normals are so close have this share of what sharp ones have.
+constexpr double smooth_cosine = 0.87, smooth_share = 0.01;
 /// A motion may shrink gaps to this share.
 constexpr double kept_gap = 0.1;
 /// Pairs within so many reaches stand in the pattern.
@@ -64,17 +69,41 @@ void Contacts::find_parts() {
   for (std::size_t e = 0; e < surface.edges.size(); ++e) surfaces_.edge_part[e] = last(surface.edge_triangles, e);
 }
 
+/// Of an edge of a body or obstacle, over what edges of the robot have: facets may be far finer than its elements, and
+/// where they stand for something smooth their edges are none; they do not rub.
+double Contacts::share_of_edge(std::size_t edge, double mean_area) const {
+  const contact::Surface& surface = surfaces_.surface;
+  const contact::Ends& ends = surface.edges[edge];
+  const double length = (vertex_at(model_.rest, ends[1]) - vertex_at(model_.rest, ends[0])).norm();
+  std::vector<Vec3> normals;
+  double spacing = 0;  // how far edges like this one are from the next, about: the mean height of the triangles
+  for (Index i = surface.edge_triangles.begin[edge]; i < surface.edge_triangles.begin[edge + 1]; ++i) {
+    const auto& [a, b, c] =
+        surface.triangles[static_cast<std::size_t>(surface.edge_triangles.items[static_cast<std::size_t>(i)])];
+    const Vec3 from = vertex_at(model_.rest, a);
+    normals.push_back((vertex_at(model_.rest, b) - from).cross(vertex_at(model_.rest, c) - from));
+    spacing += normals.back().norm() / length;
+  }
+  spacing /= static_cast<double>(normals.size());
+  const bool smooth = normals.size() == 2 && normals[0].normalized().dot(normals[1].normalized()) > smooth_cosine;
+  return std::clamp(spacing * spacing / mean_area, least_spacing, 1.0) * (smooth ? smooth_share : 1);
+}
+
 void Contacts::choose_areas() {
+  const auto rank_of = [&](Index part) { return surfaces_.rules->parts[static_cast<std::size_t>(part)].rank; };
   double sum = 0;
   Index count = 0;
   for (std::size_t v = 0; v < surfaces_.surface.vertices.size(); ++v) {
     surfaces_.vertex_area.push_back(surfaces_.rules->area[static_cast<std::size_t>(surfaces_.surface.vertices[v])]);
-    if (surfaces_.rules->parts[static_cast<std::size_t>(surfaces_.vertex_part[v])].rank != ContactRank::robot) continue;
+    if (rank_of(surfaces_.vertex_part[v]) != ContactRank::robot) continue;
     sum += surfaces_.vertex_area.back();
     ++count;
   }
   surfaces_.guard_area = guard_share * sum / std::max<Index>(1, count);
-  surfaces_.edge_area.assign(surfaces_.surface.edges.size(), surfaces_.guard_area);
+  const double mean = sum / std::max<Index>(1, count);
+  for (std::size_t e = 0; e < surfaces_.surface.edges.size(); ++e)
+    surfaces_.edge_area.push_back(guard_share * mean *
+                                  (rank_of(surfaces_.edge_part[e]) == ContactRank::robot ? 1 : share_of_edge(e, mean)));
 }
 
 /// Obstacles do not touch each other, nor a body itself, nor a robot where that is not asked for.

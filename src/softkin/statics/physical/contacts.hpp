@@ -72,6 +72,7 @@ class Contacts {
   [[nodiscard]] static double moved(const Points& from, const Points& to);
   void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
   void find_parts();
+  [[nodiscard]] double share_of_edge(std::size_t edge, double mean_area) const;
   void choose_areas();
   [[nodiscard]] contact::Exclusions exclusions() const;
 

@@ -365,8 +365,8 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   return outcome;
 }
 
-/// Newton with friction that follows the normal forces by which it is limited; else, where that leads nowhere, again and
-/// again with those that it led to.
+/// Newton with friction that follows the normal forces by which it is limited; else, where that leads nowhere, again
+/// and again with those that it led to.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   constexpr int most_rounds = 40;
   if (system_.friction()) {

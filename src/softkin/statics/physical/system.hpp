@@ -148,7 +148,7 @@ class System {
   /// order, and far better where a step bends the robot.
   void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
 
-  /// Puts what is fixed or commanded to move where a demand has it, and rigid regions into the pose that fits them best.
+  /// Puts what is fixed or commanded to move where a demand has it, and rigid regions into the pose that fits best.
   void hold(const Demand& demand, Points& positions) const;
 
   /// How far an obstacle is from where it stands at rest, along its command's axis [mm].
