@@ -18,6 +18,9 @@ class Continuation {
   Status follow(const Demand& from, const Demand& to, Iterate& at);
 
  private:
+  /// Friction and the normal forces that it leads to agree where it changes by less than this share.
+  static constexpr double frictions_agree = 1e-4;
+
   /// What Newton's method says of the shape that it came to.
   struct Judgement {
     System::Imbalance forces;

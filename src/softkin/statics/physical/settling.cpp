@@ -1,0 +1,116 @@
+#include <softkin/statics/physical/continuation.hpp>
+#include <utility>
+
+namespace softkin::physical {
+
+/// Newton at once, where the start is as near to the equilibrium asked for as any prediction from it.
+Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
+  const std::vector<bool> before = active_;
+  Iterate trial = at;
+  auto outcome = settle(demand, Newton::Policy::descend, trial);
+  if (newton_.inverted() || (system_.any_body() && !newton_.balanced())) outcome = Newton::Outcome::stuck;
+  if (outcome == Newton::Outcome::converged) {
+    take(at, std::move(trial));
+    last_ = judged();
+    ++report_.continuation_steps;
+    report_.reached = 1;
+  } else {
+    active_ = before;
+  }
+  return outcome;
+}
+
+/// Newton with friction that follows the normal forces by which it is limited; else, where that leads nowhere, again
+/// and again with those that it led to.
+Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
+  constexpr int most_rounds = 40;
+  if (system_.friction()) {
+    Iterate trial = at;
+    const auto outcome = settle_following(demand, policy, trial, factorised);
+    if (outcome == Newton::Outcome::interrupted) return outcome;
+    if (outcome == Newton::Outcome::converged || outcome == Newton::Outcome::unstable) {
+      at = std::move(trial);
+      return outcome;
+    }
+    system_.hold_friction(at, work_, team_);
+    factorised = false;
+  }
+  auto outcome = settle_constraints(demand, policy, at, factorised);
+  rounds_ = 1;
+  for (int round = 0; system_.friction() && round < most_rounds; ++round) {
+    if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
+    report_.friction_change = system_.renew_friction(from_, at, work_, team_);
+    if (report_.friction_change <= frictions_agree) break;
+    ++rounds_;
+    outcome = settle_constraints(demand, policy, at, factorised_nearby(at.positions) && factor_holds_active());
+  }
+  return outcome;
+}
+
+/// With friction that follows its normal forces, until nothing begins to touch any more.
+Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Policy policy, Iterate& at,
+                                               bool factorised) {
+  constexpr int most_rounds = 5;
+  const std::vector<bool> before = active_;
+  rounds_ = 1;
+  for (int round = 0; round < most_rounds; ++round) {
+    work_.friction_follows = true;
+    const auto outcome = settle_constraints(demand, policy, at, factorised);
+    work_.friction_follows = false;
+    if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) {
+      active_ = before;
+      return outcome;
+    }
+    report_.friction_change = system_.renew_friction(from_, at, work_, team_);
+    if (report_.friction_change <= frictions_agree) return outcome;
+    factorised = factorised_nearby(at.positions) && factor_holds_active();
+  }
+  active_ = before;
+  return Newton::Outcome::stuck;
+}
+
+/// Another equilibrium instead of the one at hand: what slips goes on from there.
+void Continuation::take(Iterate& at, Iterate&& found) {
+  at = std::move(found);
+  system_.slide_friction(at, work_, team_);
+  from_ = at.positions;
+}
+
+/// Newton, with cables released where they would push and taken up where they are too long.
+Newton::Outcome Continuation::settle_constraints(const Demand& demand, Newton::Policy policy, Iterate& at,
+                                                 bool factorised) {
+  const std::vector<bool> before = active_;
+  for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
+    const auto outcome = newton_.solve(demand, active_, policy, factorised && change == 0, at);
+    if (outcome == Newton::Outcome::unmet) {
+      if (release(demand, at, true)) continue;
+      break;
+    }
+    if (outcome == Newton::Outcome::stuck || outcome == Newton::Outcome::interrupted) {
+      active_ = before;
+      return outcome;
+    }
+    if (!change_active(demand, at)) return outcome;
+  }
+  active_ = before;
+  return Newton::Outcome::stuck;
+}
+
+bool Continuation::change_active(const Demand& demand, Iterate& at) {
+  bool changed = false;
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!system_.constrains(a) || system_.sign(a) < 0) continue;  // a chamber pushes and pulls
+    const double target = system_.target(a, demand);
+    if (active_[a] && at.multipliers[a] < 0) {
+      active_[a] = false;
+      at.multipliers[a] = 0;
+      changed = true;
+    } else if (!active_[a] && system_.measures().value(a, at.positions) > target * (1 + 1e-12)) {
+      active_[a] = true;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+}  // namespace softkin::physical
