@@ -20,50 +20,51 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   return outcome;
 }
 
-/// Newton with friction that follows the normal forces by which it is limited; else, where that leads nowhere, again
-/// and again with those that it led to.
+/// Newton with friction that follows the normal forces by which it is limited; where that leads nowhere, with those that
+/// it led to, and again from there.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   constexpr int most_rounds = 40;
-  if (system_.friction()) {
-    Iterate trial = at;
-    const auto outcome = settle_following(demand, policy, trial, factorised);
-    if (outcome == Newton::Outcome::interrupted) return outcome;
-    if (outcome == Newton::Outcome::converged || outcome == Newton::Outcome::unstable) {
-      at = std::move(trial);
-      return outcome;
-    }
-    system_.hold_friction(at, work_, team_);
-    factorised = false;
-  }
-  auto outcome = settle_constraints(demand, policy, at, factorised);
-  rounds_ = 1;
-  for (int round = 0; system_.friction() && round < most_rounds; ++round) {
+  if (!system_.friction()) return settle_constraints(demand, policy, at, factorised);
+  auto outcome = settle_following(demand, policy, at, factorised);
+  if (outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::unmet) return outcome;
+  system_.hold_friction(at, work_, team_);
+  for (int round = 1; round <= most_rounds; ++round) {
+    const bool near = round > 1 && factorised_nearby(at.positions) && factor_holds_active();
+    outcome = settle_constraints(demand, policy, at, near);
+    rounds_ = round;
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
     report_.friction_change = system_.renew_friction(from_, at, work_, team_);
     if (report_.friction_change <= frictions_agree) break;
-    ++rounds_;
-    outcome = settle_constraints(demand, policy, at, factorised_nearby(at.positions) && factor_holds_active());
+    if (round > 8 || (round & (round - 1)) != 0) continue;  // 1, 2, 4, 8
+    const auto followed = settle_following(demand, policy, at, false);
+    if (followed != Newton::Outcome::stuck && followed != Newton::Outcome::unmet) return followed;
+    system_.hold_friction(at, work_, team_);
   }
   return outcome;
 }
 
-/// With friction that follows its normal forces, until nothing begins to touch any more.
+/// With friction that follows its normal forces, until nothing begins to touch any more. Where it is stuck nothing has
+/// changed.
 Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Policy policy, Iterate& at,
                                                bool factorised) {
   constexpr int most_rounds = 5;
   const std::vector<bool> before = active_;
+  Iterate trial = at;
   rounds_ = 1;
   for (int round = 0; round < most_rounds; ++round) {
     work_.friction_follows = true;
-    const auto outcome = settle_constraints(demand, policy, at, factorised);
+    const auto outcome = settle_constraints(demand, policy, trial, factorised);
     work_.friction_follows = false;
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) {
       active_ = before;
       return outcome;
     }
-    report_.friction_change = system_.renew_friction(from_, at, work_, team_);
-    if (report_.friction_change <= frictions_agree) return outcome;
-    factorised = factorised_nearby(at.positions) && factor_holds_active();
+    report_.friction_change = system_.renew_friction(from_, trial, work_, team_);
+    if (report_.friction_change <= frictions_agree) {
+      at = std::move(trial);
+      return outcome;
+    }
+    factorised = factorised_nearby(trial.positions) && factor_holds_active();
   }
   active_ = before;
   return Newton::Outcome::stuck;
