@@ -47,13 +47,13 @@ const std::map<std::string, std::string>& known_scenes() {
   return scenes;
 }
 
-RobotSpec scene(const std::string& text) {
+RobotSpec scene_of_robots(const std::string& text) {
   return parse_scene("softkin: 1\n" + text, "robots/pair.yaml", files_with(known_scenes()));
 }
 
-std::string refusal_of(const std::string& text) {
+std::string refusal_of_robots(const std::string& text) {
   try {
-    (void)scene(text);
+    (void)scene_of_robots(text);
   } catch (const InvalidInput& error) {
     return error.what();
   }
@@ -61,7 +61,7 @@ std::string refusal_of(const std::string& text) {
 }
 
 TEST(SceneRobots, EachIsReadFromItsOwnSceneAndPlaced) {
-  const RobotSpec spec = scene(
+  const RobotSpec spec = scene_of_robots(
       "units: {length: m}\nrobots:\n"
       "  - {name: left, scene: finger.yaml, place: {translate: [0, -0.02, 0]}}\n"
       "  - name: right\n"
@@ -84,7 +84,7 @@ TEST(SceneRobots, EachIsReadFromItsOwnSceneAndPlaced) {
   EXPECT_EQ(spec.rigid.at(1).name, "right.low");
   EXPECT_EQ(spec.actuators.at(2).name, "right.air");
   EXPECT_EQ(spec.actuators.at(2).region, "right");
-  EXPECT_EQ(spec.actuators.at(2).origin.text(), "robots/finger.yaml:9");
+  EXPECT_EQ(spec.actuators.at(2).origin.text(), "robots/finger.yaml:10");
   EXPECT_LT((spec.actuators.at(3).surface->vertices.row(2) - Eigen::RowVector3d(0, 15, 0)).norm(), 1e-12);
   EXPECT_EQ(spec.markers.at(2).name, "right.tip");
   EXPECT_LT((std::get<Vec3>(spec.markers.at(2).at.point) - Vec3(10, 0, -30)).norm(), 1e-12);
@@ -96,7 +96,7 @@ TEST(SceneRobots, EachIsReadFromItsOwnSceneAndPlaced) {
 }
 
 TEST(SceneRobots, WhatIsSaidOfTheWhole) {
-  const RobotSpec spec = scene(
+  const RobotSpec spec = scene_of_robots(
       "robots: [{name: a, scene: plain.yaml}, {name: b, scene: plain.yaml}]\n"
       "formulation: physical\ngravity: [0, 0, -5]\n"
       "regions: [{name: last, vertices: [9]}]\nmaterials: [{region: a, youngs_modulus: 1, poisson_ratio: 0.3}]\n"
@@ -116,10 +116,10 @@ TEST(SceneRobots, WhatIsSaidOfTheWhole) {
 }
 
 TEST(SceneRobots, TheFormulationIsTheirs) {
-  EXPECT_EQ(scene("robots: [{name: a, scene: physical.yaml}]\n").formulation, Formulation::physical);
-  EXPECT_EQ(scene("robots: [{name: a, scene: physical.yaml}]\nformulation: target-shape\n").formulation,
+  EXPECT_EQ(scene_of_robots("robots: [{name: a, scene: physical.yaml}]\n").formulation, Formulation::physical);
+  EXPECT_EQ(scene_of_robots("robots: [{name: a, scene: physical.yaml}]\nformulation: target-shape\n").formulation,
             Formulation::target_shape);
-  EXPECT_EQ(scene("robots: [{name: a, scene: heavy.yaml}]\n").gravity, Vec3(0, 0, -9.81));
+  EXPECT_EQ(scene_of_robots("robots: [{name: a, scene: heavy.yaml}]\n").gravity, Vec3(0, 0, -9.81));
 }
 
 TEST(SceneRobots, Refusals) {
@@ -174,7 +174,7 @@ TEST(SceneRobots, Refusals) {
       {"robots: [{name: b, scene: heavy.yaml}]\ngravity: [0, 0, -1]\n",
        "2: robot 'b': as it stands, its gravity is (0, 0, -9.81) m/s^2 (robots/heavy.yaml:3), but that of the whole is "
        "(0, 0, -1) m/s^2 (robots/pair.yaml:3): leave 'gravity' out of the robots' scenes and give it in this one"}};
-  for (const auto& [text, message] : cases) EXPECT_EQ(refusal_of(text), place + message) << text;
+  for (const auto& [text, message] : cases) EXPECT_EQ(refusal_of_robots(text), place + message) << text;
 }
 
 /// A command's outputs must not replace any of them.
