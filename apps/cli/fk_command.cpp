@@ -164,7 +164,7 @@ class FkRun {
       StepRecord last;
     };
     std::map<Status, Ended> all;
-    OverlapTally overlaps;
+    OverlapTally overlaps(model_);
     std::vector<std::size_t> unstable;
     run_.log().each([&](std::size_t number, const StepRecord& step) {
       if (number + 1 < run_.done()) {  // the findings tell of the last one

@@ -126,7 +126,8 @@ std::string missed_text(const std::vector<WaypointRecord>& done) {
 class ShownTrajectory {
  public:
   ShownTrajectory(const Model& model, const FollowOptions& options, double reach_mm, runs::FollowRun& follow)
-      : options_(options),
+      : model_(model),
+        options_(options),
         reach_mm_(reach_mm),
         follow_(follow),
         run_(follow.run()),
@@ -155,7 +156,7 @@ class ShownTrajectory {
 
   [[nodiscard]] int tell(const std::vector<WaypointRecord>& done) const {
     say(summary_of(done, reach_mm_));
-    OverlapTally overlaps;
+    OverlapTally overlaps(model_);
     for (std::size_t i = 0; i < done.size(); ++i) overlaps.add(i, done[i]);
     if (const std::string text = overlaps.text("waypoint"); !text.empty()) say(text);
     const runs::FollowFolder files = options_.files();
@@ -171,6 +172,7 @@ class ShownTrajectory {
     return not_converged;
   }
 
+  const Model& model_;
   const FollowOptions& options_;
   double reach_mm_;
   runs::FollowRun& follow_;

@@ -55,10 +55,21 @@ std::string reached_text(const Model& model, const StepRecord& step) {
   return percent(step.reached_share.value_or(0)) + " of the loads and displacements were reached";
 }
 
-constexpr const char* no_contact =
-    "; parts that meet do not stop each other here, so what lies beyond the first touch is not what the robot does: "
-    "ask "
-    "for less";
+/// share  of the normal force, that slips
+std::string slipping_text(double share) {
+  if (share <= 0) return "; it sticks";
+  return share >= 1 ? "; it slips" : "; " + number(100 * share, 3) + " % of it slips";
+}
+
+/// Why parts of the robot can be in each other.
+std::string overlap_cause(const Model& model) {
+  const bool stopped = model.contact.any() && model.contact.pair(0, 0).touch;
+  return (stopped ? "; parts that are closer at rest than " + number(2 * model.contact.distance_mm, 3) +
+                        " mm, twice the contact distance, do not stop each other"
+                  : std::string("; parts that meet do not stop each other here")) +
+         ", so what lies beyond the first touch is not what the robot does: ask for less";
+}
+
 constexpr const char* units_text = " (mm, MPa, kPa, N, kg/m^3, m/s^2)";
 
 std::string depth_text(double deepest_mm, const Vec3& where) {
@@ -71,7 +82,7 @@ std::string point_text(const double* xyz) {
   return softkin::point_text({xyz[0], xyz[1], xyz[2]}, 4, 1e-6);
 }
 
-std::string finding_text(const runs::Finding& finding) {
+std::string finding_text(const Model& model, const runs::Finding& finding) {
   using Kind = runs::Finding::Kind;
   const std::vector<double>& v = finding.values;
   switch (finding.kind) {
@@ -90,7 +101,7 @@ std::string finding_text(const runs::Finding& finding) {
     case Kind::self_overlap:
       return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
              " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +
-             depth_text(v[1], {v[2], v[3], v[4]}) + no_contact;
+             depth_text(v[1], {v[2], v[3], v[4]}) + overlap_cause(model);
     case Kind::motionless:
       return "warning: nothing moved: the largest displacement is " + number(v[0], 2) +
              " mm; are what is asked for and the moduli in the right units?" + units_text;
@@ -112,6 +123,15 @@ std::string finding_text(const runs::Finding& finding) {
     case Kind::reaction:
       return "support '" + finding.name + "' exerts " + point_text(&v[0]) + " N and " + point_text(&v[3]) +
              " N mm about " + point_text(&v[6]) + " mm";
+    case Kind::contact:
+      return finding.name +
+             (finding.other.empty() ? " presses on itself with " + number(v[9], 4) + " N"
+                                    : " exerts " + point_text(&v[0]) + " N and " + point_text(&v[3]) + " N mm") +
+             " about " + point_text(&v[6]) + " mm" + (finding.other.empty() ? "" : " on " + finding.other) +
+             ", at most " + number(v[10], 4) + " kPa over " + number(v[11], 4) + " mm^2; least gap " +
+             number(v[12], 3) + " mm" + (v.size() > 13 ? slipping_text(v[13]) : "");
+    case Kind::untouched:
+      return "nothing touches";
     case Kind::unstable:
       return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
              ": the robot would buckle or snap away from it; --stable looks for the shape that it goes to";
@@ -207,7 +227,7 @@ std::string summary(const Model& model, const std::string& solver) {
 std::string findings_text(const Model& model, const StepRecord& step) {
   std::string text;
   for (const runs::Finding& finding : runs::findings(model, step))
-    text += (text.empty() ? "" : "\n") + finding_text(finding);
+    text += (text.empty() ? "" : "\n") + finding_text(model, finding);
   return text;
 }
 
@@ -223,7 +243,7 @@ std::string OverlapTally::text(const std::string& what) const {
   if (numbers_.empty()) return "";
   return "warning: the shape passes through itself in " + what + (numbers_.size() == 1 ? " " : "s ") +
          list_text(numbers_) + ", the deepest " + depth_text(deepest_.deepest_mm, deepest_.where) +
-         (numbers_.size() == 1 ? "" : " in " + what + " " + std::to_string(at_)) + no_contact;
+         (numbers_.size() == 1 ? "" : " in " + what + " " + std::to_string(at_)) + overlap_cause(model_);
 }
 
 std::string unstable_text(const std::string& what, const std::vector<std::size_t>& numbers) {

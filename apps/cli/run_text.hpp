@@ -106,12 +106,15 @@ runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std:
 /// The records of a run whose shapes pass through themselves.
 class OverlapTally {
  public:
+  explicit OverlapTally(const Model& model) : model_(model) {}
+
   void add(std::size_t number, const StepRecord& record);
 
   /// "warning: the shape passes through itself in steps 3 to 5, the deepest ..."; "" where none does. what: "step"
   [[nodiscard]] std::string text(const std::string& what) const;
 
  private:
+  const Model& model_;
   std::vector<std::size_t> numbers_;
   SelfOverlap deepest_;
   std::size_t at_ = 0;

@@ -99,7 +99,7 @@ class ShownWalk {
 
  private:
   void tell() {
-    OverlapTally overlaps;
+    OverlapTally overlaps(model_);
     std::size_t number = 0;
     for (const WalkRecord& record : walk_.records()) overlaps.add(number++, record);
     print(stride_text(walk_.note_strides()) + "\n");

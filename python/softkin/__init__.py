@@ -12,7 +12,7 @@ from .inverse import Answer
 from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
 from .session import Session
-from .shape import ActuatorState, Deformation, Reaction, SelfOverlap, Shape
+from .shape import ActuatorState, Contact, Deformation, Reaction, SelfOverlap, Shape
 from .table import Table
 from .walk import WalkRun, WalkStep
 from .workspace import Hull, Workspace
@@ -21,6 +21,7 @@ __all__ = [
     "ActuatorInfo",
     "ActuatorState",
     "Answer",
+    "Contact",
     "Deformation",
     "FollowRun",
     "Hull",

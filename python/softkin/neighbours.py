@@ -84,6 +84,8 @@ def fields_of(shape: Shape) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[
     if len(deformation.von_mises_MPa):
         elements["von_mises_MPa"] = deformation.von_mises_MPa
         points["reaction_N"] = shape.vertex_reactions
+    if len(shape.contact_pressure_kPa):
+        points["contact_pressure_kPa"] = shape.contact_pressure_kPa
     return points, elements
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from .robot import Robot
 
-__all__ = ["ActuatorState", "Deformation", "Reaction", "SelfOverlap", "Shape", "Views"]
+__all__ = ["ActuatorState", "Contact", "Deformation", "Reaction", "SelfOverlap", "Shape", "Views"]
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,30 @@ class Reaction:
     """(3,) about the centre [N mm]"""
     center_mm: Floats
     """(3,) mean of the vertices that it holds [mm]"""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What presses on a part of a robot; physical formulation."""
+
+    on: str
+    """'robot', or a region that `contact` names"""
+    by: str
+    """an obstacle, another such part, or the part itself"""
+    force_N: Floats
+    """(3,) that it exerts [N]; of a part on itself 0"""
+    moment_Nmm: Floats
+    """(3,) about the centre [N mm]"""
+    center_mm: Floats
+    """(3,) mean of the places that are pressed, by their normal force [mm]"""
+    normal_N: float
+    """sum of the magnitudes of all normal forces [N]"""
+    pressure_kPa: float
+    """the largest on a vertex [kPa]"""
+    area_mm2: float
+    """[mm^2]"""
+    gap_mm: float
+    """the least [mm]"""
 
 
 @dataclass(frozen=True)
@@ -272,6 +296,19 @@ class Shape(Saving):
     def vertex_reactions(self) -> Floats:
         """(n, 3) what supports push and pull at the vertices that they hold [N]; physical formulation."""
         return self._core.vertex_reactions
+
+    @cached_property
+    def contacts(self) -> list[Contact]:
+        """Every pair of parts that touch; physical formulation, with `contact` or `obstacles`."""
+        return [
+            Contact(on, by, np.array(force), np.array(moment), np.array(center), *measures)
+            for on, by, force, moment, center, measures in self._core.contacts
+        ]
+
+    @property
+    def contact_pressure_kPa(self) -> Floats:
+        """(n,) on the vertices [kPa], 0 on obstacles; empty where nothing may touch."""
+        return self._core.contact_pressure
 
     @cached_property
     def self_overlap(self) -> SelfOverlap:

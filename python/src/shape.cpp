@@ -89,6 +89,29 @@ void bind_fields(nb::class_<Shape>& type) {
             return all;
           },
           "Force [N], moment [N mm] and centre [mm] of every support.")
+      .def_prop_ro(
+          "contacts",
+          [](const Shape& s) {
+            using Three = std::array<double, 3>;
+            std::vector<std::tuple<std::string, std::string, Three, Three, Three, std::array<double, 4>>> all;
+            if (!s.record().contacts) return all;
+            const auto name = [&](Index part) { return s.model().contact.parts[static_cast<std::size_t>(part)].name; };
+            for (const PairForces& pair : *s.record().contacts)
+              all.emplace_back(name(pair.a), name(pair.b), array_of(pair.force), array_of(pair.moment),
+                               array_of(pair.center),
+                               std::array{pair.normal_N, pair.pressure_kPa, pair.area_mm2, pair.gap_mm});
+            return all;
+          },
+          "What touches: names, force [N], moment [N mm], centre [mm]; normal force [N], pressure [kPa], area [mm^2], "
+          "gap [mm].")
+      .def_prop_ro(
+          "contact_pressure",
+          [](const Shape& s) {
+            const auto& contacts = s.deformation().contacts;
+            return contacts ? list_of(contacts->pressure_kPa.data(), contacts->pressure_kPa.size())
+                            : list_of(static_cast<const double*>(nullptr), 0);
+          },
+          nb::rv_policy::automatic)
       .def_prop_ro("self_overlap", [](const Shape& s) {
         const SelfOverlap& overlap = s.record().self_overlap;
         return std::tuple(overlap.points, overlap.deepest_mm, array_of(overlap.where));

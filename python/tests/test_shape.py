@@ -67,6 +67,23 @@ def test_reactions_balance(shape: softkin.Shape) -> None:
     assert base.moment_Nmm.shape == base.center_mm.shape == (3,)
 
 
+def test_what_touches(shape: softkin.Shape) -> None:
+    assert shape.contacts == [] and shape.contact_pressure_kPa.shape == (0,)
+    floor = {"name": "floor", "halfspace": {"point": [0, 0, -0.1], "normal": [0, 0, 1]}}
+    load = {"name": "load", "region": "end", "force": [0, 0, -0.5]}
+    robot = beam(2, 2, actuators=[], forces=[load], obstacles=[floor])
+    pressed = robot.solve()
+    (contact,) = pressed.require().contacts
+    assert (contact.on, contact.by) == ("robot", "floor")
+    np.testing.assert_allclose(contact.force_N + pressed.reactions["base"].force_N, [0, 0, 0.5], atol=1e-6)
+    assert contact.normal_N == pytest.approx(contact.force_N[2], rel=1e-9) and contact.normal_N > 0.1
+    assert contact.moment_Nmm.shape == contact.center_mm.shape == (3,) and -0.1 < contact.center_mm[2] < 0.1
+    assert contact.area_mm2 > 0 and 0 < contact.gap_mm < 0.1
+    pressures = pressed.contact_pressure_kPa
+    assert pressures.shape == (len(robot.rest),) and pressures.max() == contact.pressure_kPa
+    assert pressed.report["steps"][0]["contacts"][0]["pressure_kPa"] == contact.pressure_kPa
+
+
 def test_overlap(shape: softkin.Shape) -> None:
     assert shape.self_overlap.points == 0 and shape.self_overlap.deepest_mm == 0
     assert shape.self_overlap.at_mm.shape == (3,)

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
@@ -113,6 +114,50 @@ TEST(FkPhysical, SaysWhatHoldsTheRobotAndHowItIsStressed) {
   ASSERT_NE(at, std::string::npos);
   EXPECT_EQ(std::stod(shape.substr(at + pressure.size())), step["actuators"]["air"]["pressure_kPa"]);
   EXPECT_EQ(softkin::read_mesh(folder / "shape.vtu").tetrahedra.size(), 252u) << "it is read as before";
+}
+
+/// A block that a load bends onto a floor: on the terminal, in the report and in the shape.
+TEST(FkPhysical, SaysWhatTouches) {
+  const std::string held = replaced(physical_scene(), "force: [0, 0, 0]", "force: [0, 0, -5]");
+  const auto above = [&](const char* height) {
+    return held + "obstacles: [{name: floor, halfspace: {point: [0, 0, " + height + "], normal: [0, 0, 1]}}]\n";
+  };
+  const BlockFolder folder(above("-0.1"));
+  const ProgramResult result = run_fk(
+      folder.scene, {"-o", folder / "shape.vtu", "--report", folder / "report.json", "--image", folder / "shape.png"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const json step = json::parse(read_text(folder / "report.json"))["steps"][0];
+  ASSERT_EQ(step["contacts"].size(), 1u);
+  const json &floor = step["contacts"][0], &base = step["reactions"][0];
+  EXPECT_EQ(floor["on"], "robot");
+  EXPECT_EQ(floor["by"], "floor");
+  const double load = floor["force_N"][2];
+  EXPECT_GT(load, 0.1);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(floor["force_N"][axis].get<double>() + base["force_N"][axis].get<double>(), axis == 2 ? 5 : 0, 5e-6);
+  EXPECT_NEAR(floor["normal_N"], load, 1e-9 * load);
+  const auto digits = [](const json& value, int count) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", count, value.get<double>());
+    return std::string(text);
+  };
+  for (const std::string& text :
+       {"obstacle 'floor' exerts (0, 0, " + digits(floor["force_N"][2], 4) + ") N and (0, 0, 0) N mm about (",
+        " mm on the robot, at most " + digits(floor["pressure_kPa"], 4) + " kPa over " + digits(floor["area_mm2"], 4) +
+            " mm^2; least gap " + digits(floor["gap_mm"], 3) + " mm\n"})
+    EXPECT_NE(result.output.find(text), std::string::npos) << text << "\n" << result.output;
+  EXPECT_EQ(result.output.find("passes through itself"), std::string::npos) << result.output;
+  EXPECT_EQ(result.output.find("nothing touches"), std::string::npos) << result.output;
+  EXPECT_NE(read_text(folder / "shape.vtu").find("Name=\"contact_pressure_kPa\""), std::string::npos);
+
+  const BlockFolder far(above("-30")), without(held);
+  const ProgramResult apart = run_fk(far.scene, {"--report", far / "report.json"}),
+                      bare = run_fk(without.scene, {"--report", without / "report.json", "-o", without / "shape.vtu"});
+  EXPECT_NE(apart.output.find("\nnothing touches\n"), std::string::npos) << apart.output;
+  EXPECT_EQ(json::parse(read_text(far / "report.json"))["steps"][0]["contacts"], json::array());
+  EXPECT_EQ(bare.output.find("touches"), std::string::npos) << bare.output;
+  EXPECT_FALSE(json::parse(read_text(without / "report.json"))["steps"][0].contains("contacts"));
+  EXPECT_EQ(read_text(without / "shape.vtu").find("contact_pressure"), std::string::npos);
 }
 
 TEST(FkPhysical, TellsWhereItIsUnstableAndLeavesThatIfAsked) {

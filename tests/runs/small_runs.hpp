@@ -51,6 +51,18 @@ inline Model walking_model() {
       "feet: [{marker: heel, forward: 0.02, backward: 9}, {marker: toe, forward: 0.02, backward: 9}]\n");
 }
 
+/// A block that its support pushes 0.5 mm down onto a floor at that height.
+inline Model leaning_model(double height) {
+  return block_model(
+      "softkin: 1\nmesh: {file: block.msh}\n"
+      "materials: [{youngs_modulus: 1, poisson_ratio: 0.3}]\n"
+      "fixed: [{region: base}]\nforces: [{name: load, region: tip, force: [0, 0, -1]}]\n"
+      "markers: [{name: tip, region: tip}]\n"
+      "contact: {distance: 0.1}\n"
+      "obstacles: [{name: floor, halfspace: {point: [0, 0, " +
+      std::to_string(height) + "], normal: [0, 0, 1]}}]\n");
+}
+
 /// A way through the ranges that does not come back to where it was.
 inline std::vector<ActuationStep> steps_of(const Model& model, std::size_t count) {
   std::vector<ActuationStep> steps;

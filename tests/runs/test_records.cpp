@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <softkin/runs/records_json.hpp>
@@ -44,6 +45,20 @@ void expect_same(const StepRecord& a, const StepRecord& b) {
     EXPECT_EQ(a.reactions[i].force, b.reactions[i].force);
     EXPECT_EQ(a.reactions[i].moment, b.reactions[i].moment);
     EXPECT_EQ(a.reactions[i].center, b.reactions[i].center);
+  }
+  ASSERT_EQ(a.contacts.has_value(), b.contacts.has_value());
+  for (std::size_t i = 0; a.contacts && i < a.contacts->size(); ++i) {
+    const PairForces &one = a.contacts->at(i), &other = b.contacts->at(i);
+    EXPECT_EQ(one.a, other.a);
+    EXPECT_EQ(one.b, other.b);
+    EXPECT_EQ(one.force, other.force);
+    EXPECT_EQ(one.moment, other.moment);
+    EXPECT_EQ(one.center, other.center);
+    EXPECT_EQ(one.normal_N, other.normal_N);
+    EXPECT_EQ(one.pressure_kPa, other.pressure_kPa);
+    EXPECT_EQ(one.area_mm2, other.area_mm2);
+    EXPECT_EQ(one.gap_mm, other.gap_mm);
+    EXPECT_EQ(one.slipping, other.slipping);
   }
   ASSERT_EQ(a.actuators.size(), b.actuators.size());
   for (std::size_t i = 0; i < a.actuators.size(); ++i) {
@@ -142,6 +157,75 @@ TEST_F(Steps, OfAPathAreReadBack) {
     records[2].shape_fingerprint = "0123456789abcdef";
     (void)read_back(job.codec(), records[2]);
     expect_damage_refused(job.codec(), records[2], step_keys);
+  }
+}
+
+/// Friction goes on from where it was.
+TEST_F(Steps, OfWhatRubsKeepWhereItSticks) {
+  const Model model = testing::block_model(
+      "softkin: 1\nmesh: {file: block.msh}\nmaterials: [{youngs_modulus: 1, poisson_ratio: 0.3}]\n"
+      "fixed: [{region: base}]\nactuators:\n"
+      "  - {name: air, kind: pneumatic, region: chamber, control: volume, range: [0.5, 3]}\n"
+      "markers: [{name: tip, region: tip}]\ncontact: {distance: 0.1, friction: 0.4}\n"
+      "obstacles: [{name: floor, halfspace: {point: [0, 0, -0.05], normal: [0, 0, 1]}}]\n");
+  const Statics statics(model);
+  const auto steps = testing::steps_of(model, 3);
+  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+  const auto records = made(job);
+  const StepRecord& last = records.back();
+  ASSERT_EQ(last.status, Status::converged);
+  ASSERT_FALSE(last.anchors.empty());
+  const State known = state_of(model, read_back(job.codec(), last), model.rest);
+  ASSERT_EQ(known.anchors.size(), last.anchors.size());
+  for (std::size_t i = 0; i < known.anchors.size(); ++i) {
+    EXPECT_EQ(known.anchors[i].vertex, last.anchors[i].vertex);
+    EXPECT_EQ(known.anchors[i].part, last.anchors[i].part);
+    EXPECT_EQ(known.anchors[i].triangle, last.anchors[i].triangle);
+    EXPECT_EQ(known.anchors[i].weights, last.anchors[i].weights);
+    EXPECT_EQ(known.anchors[i].slipped_mm, last.anchors[i].slipped_mm);
+  }
+  for (const char* other :
+       {"[]", "[[0, 0, 99999, 1, 0, 0, 0]]", "[[-1, 1, 0, 1, 0, 0, 0]]", "[[0, 9, 0, 1, 0, 0, 0]]"}) {
+    Json json = Json::parse(job.codec().write(last));
+    json["anchors"] = Json::parse(other);
+    if (json["anchors"].empty())
+      EXPECT_TRUE(job.codec().read(json.dump()).anchors.empty());
+    else
+      EXPECT_THROW((void)job.codec().read(json.dump()), InvalidInput) << other;
+  }
+}
+
+TEST_F(Steps, KeepWhatTouches) {
+  for (const double height : {-0.1, -2.0}) {
+    const Model model = testing::leaning_model(height);
+    const Statics statics(model);
+    const std::vector<ActuationStep> steps{{model.rest_actuation()}};
+    PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+    auto records = made(job);
+    ASSERT_TRUE(records[0].contacts.has_value());
+    ASSERT_EQ(records[0].contacts->size(), height > -1 ? 1u : 0u);
+    const Json json = Json::parse(job.codec().write(records[0]));
+    (void)read_back(job.codec(), records[0]);
+    const auto count = [&](Finding::Kind kind) {
+      const std::vector<Finding> all = findings(model, records[0]);
+      return std::count_if(all.begin(), all.end(), [&](const Finding& each) { return each.kind == kind; });
+    };
+    EXPECT_EQ(count(Finding::Kind::contact), height > -1 ? 1 : 0);
+    EXPECT_EQ(count(Finding::Kind::untouched), height > -1 ? 0 : 1);
+    if (height < -1) {
+      EXPECT_EQ(json.at("contacts"), Json::array());
+      continue;
+    }
+    EXPECT_EQ(json.at("/contacts/0/on"_json_pointer), "robot");
+    EXPECT_EQ(json.at("/contacts/0/by"_json_pointer), "floor");
+    EXPECT_FALSE(json.at("/contacts/0"_json_pointer).contains("slipping"));
+    EXPECT_EQ(json.at("/contacts/0/pressure_kPa"_json_pointer), records[0].contacts->at(0).pressure_kPa);
+    expect_damage_refused(job.codec(), records[0],
+                          {"/contacts", "/contacts/0/on", "/contacts/0/by", "/contacts/0/force_N",
+                           "/contacts/0/moment_N_mm", "/contacts/0/center_mm", "/contacts/0/normal_N",
+                           "/contacts/0/pressure_kPa", "/contacts/0/area_mm2", "/contacts/0/gap_mm"});
+    records[0].contacts->at(0).slipping = 0.25;
+    (void)read_back(job.codec(), records[0]);
   }
 }
 

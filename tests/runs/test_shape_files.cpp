@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <softkin/io/mesh/vtk.hpp>
+#include <softkin/runs/obstacle_picture.hpp>
 #include <softkin/runs/shape_files.hpp>
 #include <softkin/statics/deformation.hpp>
 
@@ -50,10 +52,46 @@ TEST(ShapeFiles, ObstaclesAreTrianglesOfTheirName) {
   }
 }
 
-TEST(ShapeFiles, PicturesAreOfTheRobotAlone) {
+double area_of(const PictureLayer& layer) {
+  double sum = 0;
+  for (const auto& [a, b, c] : layer.triangles) {
+    const Vec3 at = vertex_at(layer.points, a);
+    sum += 0.5 * (vertex_at(layer.points, b) - at).cross(vertex_at(layer.points, c) - at).norm();
+  }
+  return sum;
+}
+
+TEST(ShapeFiles, PicturesShowObstaclesNearTheRobot) {
+  const Bounds robot(Vec3::Zero(), Vec3(12, 12, 12));  // its diagonal is 20.8 mm
+  const auto layer_of = [&](const std::string& obstacle) {
+    return obstacle_layer(block_model(surrounded_scene("obstacles: [" + obstacle + "]\n")), robot);
+  };
+  const auto box = layer_of("{name: a, box: [[14, 0, 0], [15, 10, 10]]}");
+  ASSERT_TRUE(box.has_value());
+  EXPECT_LT(box->opacity, 1);
+  EXPECT_NEAR(area_of(*box), 2 * 100 + 4 * 10, 1e-9);
+  // a bar of 1000 mm is cut off half a diagonal away from the robot
+  const auto bar = layer_of("{name: a, box: [[14, 0, 0], [1014, 10, 10]]}");
+  ASSERT_TRUE(bar.has_value());
+  const double end = 12 + robot.diagonal().norm() / 2;
+  EXPECT_NEAR(bar->points.col(0).maxCoeff(), end, 1e-9);
+  EXPECT_NEAR(area_of(*bar), 100 + 4 * 10 * (end - 14), 1e-9);
+  // a square with half a side of 1.2 times that of the robot
+  const auto floor = layer_of("{name: a, halfspace: {point: [500, 300, -1], normal: [0, 0, 1]}}");
+  ASSERT_TRUE(floor.has_value());
+  EXPECT_NEAR(area_of(*floor), std::pow(1.2 * 12, 2), 1e-9);
+  EXPECT_TRUE((floor->points.col(2).array() == -1).all());
+  EXPECT_NEAR(floor->points.col(0).mean(), 6, 1e-9);
+  const auto slope = layer_of("{name: a, halfspace: {point: [0, 0, -6], normal: [1, 0, 2]}}");
+  ASSERT_TRUE(slope.has_value());
+  for (Index i = 0; i < slope->points.rows(); ++i)
+    EXPECT_NEAR(vertex_at(slope->points, i).dot(Vec3(1, 0, 2)), -12, 1e-9);
+  EXPECT_FALSE(layer_of("{name: a, box: [[50, 0, 0], [60, 10, 10]]}").has_value());
+  EXPECT_FALSE(layer_of("{name: a, halfspace: {point: [0, 0, -40], normal: [0, 0, 1]}}").has_value());
+
   const Model bare = block_model(surrounded_scene("")), model = block_model(surrounded_scene(floor_and_box));
-  EXPECT_GT(model.rest.rows(), bare.rest.rows());
-  EXPECT_EQ(image_png(model, model.rest, {}, "robot"), image_png(bare, bare.rest, {}, "robot"));
+  EXPECT_FALSE(obstacle_layer(bare, robot).has_value());
+  EXPECT_NE(image_png(model, model.rest, {}, "robot"), image_png(bare, bare.rest, {}, "robot"));
 }
 
 }  // namespace

@@ -105,26 +105,45 @@ double safe_edge_edge(const FourPoints& from, const FourPoints& to, double keep,
   return safe_share(from, to, keep, until, of_edges, edge_edge);
 }
 
-double safe_motion(const Surface& surface, const Candidates& candidates, const Points& from, const Points& to,
-                   double keep, Team& team) {
-  std::atomic<double> least{1};
-  const auto lower = [&](double share) {
+namespace {
+
+/// The least value of all candidates, from a value that none exceeds; value(nodes, is of edges, the least so far)
+template <class Value>
+double least_of(const Surface& surface, const Candidates& candidates, double most, Team& team, const Value& value) {
+  std::atomic<double> least{most};
+  const auto lower = [&](double found) {
     double before = least.load(std::memory_order_relaxed);
-    while (share < before && !least.compare_exchange_weak(before, share, std::memory_order_relaxed)) {
+    while (found < before && !least.compare_exchange_weak(before, found, std::memory_order_relaxed)) {
     }
   };
-  const auto look = [&](const std::vector<Pair>& pairs, auto nodes_of, auto safe) {
+  const auto look = [&](const std::vector<Pair>& pairs, auto nodes_of, bool edges) {
     team.pieces(static_cast<Index>(pairs.size()), [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) {
-        const Nodes nodes = nodes_of(surface, pairs[static_cast<std::size_t>(i)]);
-        // a pair that is safe beyond what others are stops there: the least does not depend on who was first
-        lower(safe(points_of(from, nodes), points_of(to, nodes), keep, least.load(std::memory_order_relaxed)));
-      }
+      for (Index i = begin; i < end; ++i)
+        lower(
+            value(nodes_of(surface, pairs[static_cast<std::size_t>(i)]), edges, least.load(std::memory_order_relaxed)));
     });
   };
-  look(candidates.vertex_triangle, nodes_of_vertex_triangle, safe_vertex_triangle);
-  look(candidates.edge_edge, nodes_of_edge_edge, safe_edge_edge);
+  look(candidates.vertex_triangle, nodes_of_vertex_triangle, false);
+  look(candidates.edge_edge, nodes_of_edge_edge, true);
   return least.load();
+}
+
+}  // namespace
+
+double safe_motion(const Surface& surface, const Candidates& candidates, const Points& from, const Points& to,
+                   double keep, Team& team) {
+  // a pair that is safe beyond what others are stops there: the least does not depend on who was first
+  return least_of(surface, candidates, 1, team, [&](const Nodes& nodes, bool edges, double least) {
+    return (edges ? safe_edge_edge : safe_vertex_triangle)(points_of(from, nodes), points_of(to, nodes), keep, least);
+  });
+}
+
+double least_squared_distance(const Surface& surface, const Candidates& candidates, const Points& positions,
+                              Team& team) {
+  return least_of(surface, candidates, HUGE_VAL, team, [&](const Nodes& nodes, bool edges, double) {
+    const FourPoints x = points_of(positions, nodes);
+    return edges ? edge_edge(x).squared : vertex_triangle(x).squared;
+  });
 }
 
 }  // namespace softkin::contact

@@ -26,4 +26,8 @@ namespace softkin::contact {
 [[nodiscard]] double safe_motion(const Surface& surface, const Candidates& candidates, const Points& from,
                                  const Points& to, double keep, Team& team);
 
+/// The least squared distance of the candidates [mm^2]; infinite without any.
+[[nodiscard]] double least_squared_distance(const Surface& surface, const Candidates& candidates,
+                                            const Points& positions, Team& team);
+
 }  // namespace softkin::contact

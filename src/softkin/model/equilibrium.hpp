@@ -13,6 +13,7 @@ struct Anchor {
   Index vertex = -1, part = -1;  // the vertex by its place among those of ContactModel's triangles, ascending
   Index triangle = -1;           // of ContactModel, of that part
   Vec3 weights = Vec3::Zero();   // of its corners; their sum is 1
+  double slipped_mm = 0;         // way that it slipped since it touches [mm]
 };
 
 /// Where a search begins or ended.

@@ -54,6 +54,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
     record.shape_actuation = found.state.actuation;
     record.shape_load_share = found.state.share;
   }
+  record.anchors = found.state.anchors;
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   record.largest_displacement_mm = largest_move(model.rest, found.state.positions);
@@ -64,6 +65,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
     record.worst = worst_place(model, found.state.positions, deformation);
   record.stress = stress_extremes(model, found.state.positions, deformation);
   record.reactions = reactions(model, found.state.positions, deformation);
+  if (deformation.contacts) record.contacts = deformation.contacts->pairs;
   return record;
 }
 
@@ -98,6 +100,7 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
   state.share = record.shape_actuation ? record.shape_load_share : -1;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     state.multipliers[static_cast<Index>(a)] = record.actuators[a].multiplier;
+  state.anchors = record.anchors;
   return state;
 }
 
@@ -135,6 +138,40 @@ void add_implausible(const Model& model, const StepRecord& record, std::vector<F
 
 using Kind = Finding::Kind;
 
+/// least: of what is more than rounding
+void add_vector(const Vec3& vector, double least, Finding& finding) {
+  for (const double value : vector) finding.values.push_back(vector.norm() > least ? value : 0);
+}
+
+/// "the robot", "region 'skin'", "obstacle 'floor'"
+std::string label(const ContactPart& part, bool whole) {
+  if (whole) return "the robot";
+  const char* kinds[] = {"region", "body", "obstacle"};
+  return std::string(kinds[static_cast<std::size_t>(part.rank)]) + " '" + part.name + "'";
+}
+
+void add_contacts(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  if (!record.contacts) return;
+  const auto label_of = [&](Index part) {
+    return label(model.contact.parts[static_cast<std::size_t>(part)], part == 0);
+  };
+  bool any = false;
+  for (const PairForces& pair : *record.contacts) {
+    const double rounding = 1e-9 * record.pull_N;
+    if (!(pair.normal_N > rounding)) continue;
+    any = true;
+    Finding& contact = found.emplace_back(Finding{Kind::contact, label_of(pair.b)});
+    if (pair.a != pair.b) contact.other = label_of(pair.a);
+    add_vector(pair.force, rounding, contact);
+    add_vector(pair.moment, rounding * model.diagonal_mm, contact);
+    add_vector(pair.center, 0, contact);
+    for (const double value : {pair.normal_N, pair.pressure_kPa, pair.area_mm2, pair.gap_mm})
+      contact.values.push_back(value);
+    if (pair.slipping) contact.values.push_back(*pair.slipping);
+  }
+  if (!any) found.push_back({Kind::untouched});
+}
+
 void add_forces(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   if (record.stress) {
     const auto& [most, greatest, least] = *record.stress;
@@ -145,13 +182,11 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
     Finding& reaction = found.emplace_back(Finding{Kind::reaction, model.supports[s].name});
     const auto& [force, moment, center] = record.reactions[s];
     const double rounding = 1e-9 * record.pull_N;
-    const auto add = [&reaction](const Vec3& vector, double least) {
-      for (const double value : vector) reaction.values.push_back(vector.norm() > least ? value : 0);
-    };
-    add(force, rounding);
-    add(moment, rounding * model.diagonal_mm);
-    add(center, 0);
+    add_vector(force, rounding, reaction);
+    add_vector(moment, rounding * model.diagonal_mm, reaction);
+    add_vector(center, 0, reaction);
   }
+  add_contacts(model, record, found);
   if (record.buckled > 0)
     found.push_back({Kind::buckled, "", {static_cast<double>(record.buckled), record.buckled_mm}});
   if (record.snapped_mm > 0) found.push_back({Kind::snapped, "", {record.snapped_mm, record.snapped_from}});

@@ -33,16 +33,18 @@ struct StepRecord : SolveReport {
   std::optional<double> reached_share{};       // of the way from the step before [-]; none: not known
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
   double shape_load_share = 1;
+  std::vector<Anchor> anchors{};  // of friction
   std::size_t inverted_elements = 0;
   double largest_displacement_mm = 0;  // of a vertex from its place at rest
   SelfOverlap self_overlap;            // of the shape, set by who makes the record
   std::vector<Vec3> markers;           // [mm]
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
-  std::optional<StressExtremes> stress{};  // physical; of a walk none
-  std::vector<Reaction> reactions{};       // the same, per support
-  std::optional<WorstPlace> worst{};       // physical, where status is limit
-  std::vector<int> history_iterations;     // from 1, per entry of history; empty: all
+  std::optional<StressExtremes> stress{};             // physical; of a walk none
+  std::vector<Reaction> reactions{};                  // the same, per support
+  std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything; of a walk none
+  std::optional<WorstPlace> worst{};                  // physical, where status is limit
+  std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
@@ -96,6 +98,10 @@ struct Finding {
     stress,       // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
                   // least principal stress [MPa]
     reaction,     // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
+    contact,      // name: what presses on the other, which is empty where it is itself; values: force [N] (3), moment
+                  // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm],
+                  // with friction the share of the normal force that slips [-]
+    untouched,    // nothing touches what it might
     unstable,     // values: in how many ways
     buckled,      // values: how often, the largest move [mm]
     snapped,      // values: the longest move [mm], share of the way at which its step began [-]
@@ -104,6 +110,7 @@ struct Finding {
   Kind kind;
   std::string name{};
   std::vector<double> values{};
+  std::string other{};
 };
 
 [[nodiscard]] std::vector<Finding> findings(const Model& model, const StepRecord& record);

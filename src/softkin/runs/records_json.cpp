@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/contacts_json.hpp>
 #include <softkin/runs/record_log.hpp>
 #include <softkin/runs/records_json.hpp>
 #include <stdexcept>
@@ -42,10 +43,6 @@ void read_number(const Json& json, double& value) {
 template <class Count>
 void read_number(const Json& json, Count& value) {
   value = json.get<Count>();
-}
-
-Vec3 point_of(const Json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
 Json strain_json(const StrainHistogram& histogram) {
@@ -161,10 +158,12 @@ Json physical_json(const Model& model, const StepRecord& record) {
   json["reactions"] = Json::array();
   for (std::size_t s = 0; s < record.reactions.size(); ++s)
     json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
+  if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
+  if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
   return json;
 }
 
-void read_physical(const Json& json, StepRecord& record) {
+void read_physical(const Model& model, const Json& json, StepRecord& record) {
   record.shape_load_share = json.at("shape_load_share").get<double>();
   forces(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   if (const Json& stress = json.at("stress"); !stress.is_null()) record.stress = stress_of(stress);
@@ -172,6 +171,9 @@ void read_physical(const Json& json, StepRecord& record) {
   for (const Json& each : json.at("reactions"))
     record.reactions.push_back(
         {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});
+  if (!model.contact.any()) return;
+  if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);
+  if (json.contains("anchors")) record.anchors = anchors_of(model, json.at("anchors"));
 }
 
 /// As many digits as a curve needs.
@@ -297,6 +299,10 @@ double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
+Vec3 point_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
 Status status_of(const std::string& name) {
   return named(statuses, name);
 }
@@ -354,7 +360,7 @@ void from_json(const Model& model, const Json& json, StepRecord& record) {
   record.remark = json.at("remark").get<std::string>();
   if (const Json& shape = json.at("shape_actuation"); !shape.is_null())
     record.shape_actuation = by_actuator(model, shape);
-  if (model.formulation == Formulation::physical) read_physical(json, record);
+  if (model.formulation == Formulation::physical) read_physical(model, json, record);
   counts_and_measures(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   for (const Marker& marker : model.markers) record.markers.push_back(point_of(json.at("markers").at(marker.name)));
   for (const Actuator& actuator : model.actuators)

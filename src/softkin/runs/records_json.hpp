@@ -22,6 +22,8 @@ void from_json(const Model& model, const Json& json, WalkRecord& record);
 /// JSON knows no NaN: what a diverged solve does not know is null.
 [[nodiscard]] Json known(double value);
 [[nodiscard]] double number_or_nan(const Json& json);
+/// Of a list of three numbers.
+[[nodiscard]] Vec3 point_of(const Json& json);
 /// throws  std::out_of_range where it is none
 [[nodiscard]] Status status_of(const std::string& name);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <softkin/runs/obstacle_picture.hpp>
 #include <softkin/runs/shape_files.hpp>
 #include <utility>
 
@@ -81,6 +82,10 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
   content.cell_fields.push_back(std::move(principal));
   content.point_fields.push_back({"reaction_N", 3, {forces.data(), forces.data() + forces.size()}});
   content.point_fields.push_back(std::move(support));
+  if (deformation.contacts)
+    content.point_fields.push_back({"contact_pressure_kPa", 1, deformation.contacts->pressure_kPa});
+  if (deformation.contacts && !deformation.contacts->slip_mm.empty())
+    content.point_fields.push_back({"slip_mm", 1, deformation.contacts->slip_mm});
   for (std::size_t s = 0; s < model.supports.size(); ++s)
     content.constants.emplace_back("support_" + model.supports[s].name, static_cast<double>(s));
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
@@ -166,7 +171,12 @@ Image image_of(const Model& model, const Points& positions, const std::vector<do
   if (options.view.head<2>().norm() < 1e-6) options.up = Vec3::UnitY();  // from above or below
   options.title = title;
   options.value_label = "displacement [mm]";
-  return {{shape, ghost}, options, marks_of(model, positions, goals)};
+  Image image{{shape, ghost}, options, marks_of(model, positions, goals)};
+  Bounds drawn;
+  for (const Triangle& t : surface)
+    for (const Index v : t) drawn.extend(vertex_at(positions, v)).extend(vertex_at(model.rest, v));
+  if (const auto obstacles = obstacle_layer(model, drawn)) image.layers.push_back(*obstacles);
+  return image;
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ namespace softkin::runs {
 void write_shape(const std::filesystem::path& path, const Model& model, const Points& positions,
                  const ElementDeformation& deformation, bool converged);
 
-/// The body coloured by displacement before a ghost of its rest shape, with cables, markers, and crosses where goals
-/// want markers to be. view: three numbers, not all zero, from the robot to the eye, y upwards where it looks along z;
-/// empty: from the front, left and above.
+/// The body coloured by displacement before a ghost of its rest shape, with obstacles near by (obstacle_picture.hpp),
+/// cables, markers, and crosses where goals want markers to be. view: three numbers, not all zero, from the robot to
+/// the eye, y upwards where it looks along z; empty: from the front, left and above.
 void write_image(const std::filesystem::path& path, const Model& model, const Points& positions,
                  const std::vector<double>& view, const std::string& title, const std::vector<Goal>& goals = {});
 

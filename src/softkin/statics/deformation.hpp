@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/contact_forces.hpp>
 
 namespace softkin {
 
@@ -29,6 +30,7 @@ struct ElementDeformation {
   ElementStress stress;
   Eigen::VectorXd multipliers;  // m: tension [N] or gauge pressure [kPa], 0 for a dea
   Points reactions;  // #V by 3: what supports push and pull at the vertices that they hold [N]; 0 along free axes
+  std::optional<ContactForces> contacts;  // where the robot may touch anything
 };
 [[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
 

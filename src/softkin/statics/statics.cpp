@@ -34,6 +34,13 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
     if (!values->allFinite())
       throw InvalidInput(std::string("the start's ") + name + " holds a value that is not finite");
   }
+  const auto lies_on_model = [&](const Anchor& anchor) {
+    return anchor.vertex >= 0 && anchor.vertex < static_cast<Index>(model.contact.area.size()) &&
+           anchor.triangle >= 0 && anchor.triangle < static_cast<Index>(model.contact.triangles.size()) &&
+           anchor.weights.allFinite();
+  };
+  if (!std::all_of(start.anchors.begin(), start.anchors.end(), lies_on_model))
+    throw InvalidInput("the start's friction is of another robot");
   if (!(options.step_tolerance_mm >= 0) || options.max_iterations < 1 || options.anderson < 0 ||
       options.anderson > 20 || options.threads < 0)
     throw InvalidInput(

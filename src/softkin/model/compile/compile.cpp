@@ -19,20 +19,18 @@ void check_friction(const FootSpec& spec, double friction, const char* direction
                                         " must be 0 N or more, not " + number(friction));
 }
 
-EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const PointRef& reference, const std::string& what) {
-  const Origin& origin = reference.origin;
-  const Body& body = body_of(c, reference.robot);
+EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& origin, const std::string& what) {
   if (!point.allFinite()) throw InvalidInput(origin, what + " is not finite");
-  if (body.embedder.empty())
+  if (c.embedder->empty())
     throw InvalidInput(origin, what + " needs a body to lie in, but every element belongs to a chamber");
   EmbeddedPoint embedded;
   try {
-    embedded = body.embedder.embed(point);
+    embedded = c.embedder->embed(point);
   } catch (const InvalidInput& error) {
     throw InvalidInput(origin, what + ": " + error.what());
   }
   const std::string distance = number(embedded.distance_mm);
-  if (const double most = most_outside(body, point); embedded.distance_mm > most)
+  if (const double most = most_outside(c, point); embedded.distance_mm > most)
     throw InvalidInput(origin, what + " is " + distance + " mm from the mesh, " + too_far_text(most) +
                                    ": move it to the body, mesh what holds it, or check the unit");
   if (embedded.distance_mm > 1e-6 * c.model.diagonal_mm)
@@ -42,8 +40,8 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const PointRef& re
 
 }  // namespace
 
-double most_outside(const Body& body, const Vec3& point) {
-  return std::min(0.5 * body.embedder.edge_near(point), 0.1 * body.diagonal_mm);
+double most_outside(const Compilation& c, const Vec3& point) {
+  return std::min(0.5 * c.embedder->edge_near(point), 0.1 * c.model.diagonal_mm);
 }
 
 std::string too_far_text(double most_mm) {
@@ -51,7 +49,7 @@ std::string too_far_text(double most_mm) {
 }
 
 EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what) {
-  if (const auto* point = std::get_if<Vec3>(&reference.point)) return embed_inside(c, *point, reference, what);
+  if (const auto* point = std::get_if<Vec3>(&reference.point)) return embed_inside(c, *point, reference.origin, what);
   const auto& name = std::get<std::string>(reference.point);
   const Region& region = c.regions.find(name, reference.origin);
   EmbeddedPoint mean;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
@@ -8,14 +7,6 @@
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
-
-/// What carries points along: the elements with a material and those of dielectric elastomers, of all or of one robot.
-struct Body {
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<Prism> prisms;
-  Embedder embedder;
-  double diagonal_mm = 0;  // of all of its elements
-};
 
 /// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
 struct Compilation {
@@ -40,13 +31,11 @@ struct Compilation {
   // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
   std::optional<std::vector<EmptySpace>> empty_spaces;
   std::vector<Index> space_actuators;  // -1: no actuator's
-  std::map<std::string, Body> bodies;  // by robot, made when they are first asked for; "": of all
+  // the body: elements with a material and those of dielectric elastomers, where points are embedded
+  std::vector<Tetrahedron> solid_tetrahedra;
+  std::vector<Prism> solid_prisms;
+  std::optional<Embedder> embedder;
 };
-
-/// ", of robot 'left'" where the description is of several robots, for messages that number a vertex or an element.
-///
-/// first  RobotPart's first of what is numbered
-[[nodiscard]] std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index number);
 
 /// Drops void elements, orients the others, measures them and names their regions. Physical: sets the elements of
 /// chambers apart.
@@ -88,17 +77,8 @@ void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
 /// Physical, after the supports: refuses chambers that are open.
 void check_openings(const Compilation& c);
 
-/// Gives the elements their materials (target-shape: those of no actuator).
+/// Gives the elements their materials (target-shape: those of no actuator), and prepares embedding in them.
 void compile_materials(Compilation& c);
-
-/// After the materials. robot  of several; empty: all
-[[nodiscard]] const Body& body_of(Compilation& c, const std::string& robot);
-
-/// Which vertices are a robot's: from the first to before the second.
-[[nodiscard]] std::pair<Index, Index> vertices_of(const Compilation& c, const std::string& robot);
-
-/// Of the bounding box of a robot's used vertices [mm].
-[[nodiscard]] double diagonal_of(const Compilation& c, const std::string& robot);
 
 /// The constants of a law from those that the user gives.
 ///
@@ -113,9 +93,6 @@ void compile_materials(Compilation& c);
 void compile_actuator_points(Compilation& c);
 /// The elements of Eq. (6): a triangle over each gap; none in the physical formulation.
 void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
-
-/// What a support is called: its name, that of a region that no other entry holds, or "fixed_N", N counted from 1.
-[[nodiscard]] std::string support_name(const std::vector<FixedSpec>& fixed, std::size_t entry);
 
 /// Fixed vertices and rigid regions.
 void compile_supports(Compilation& c);
@@ -160,7 +137,7 @@ void doubt_units(Compilation& c);
 
 /// How far outside the body a point may be to be carried along by its nearest element [mm]: half that element's longest
 /// edge, and a tenth of the body's diagonal.
-[[nodiscard]] double most_outside(const Body& body, const Vec3& point);
+[[nodiscard]] double most_outside(const Compilation& c, const Vec3& point);
 /// "farther than 5.2 mm, to which its nearest element can carry it", of a point that is farther.
 [[nodiscard]] std::string too_far_text(double most_mm);
 

@@ -165,7 +165,7 @@ void refuse_crossings(RestingSurfaces& at) {
   const auto still = [](const contact::Box& box) { return contact::MovingBox{box, contact::Box(Vec3::Zero())}; };
   tree.refit([&](Index t) { return still(box_of(t)); }, at.team);
   for (std::size_t e = 0; e < surface.edges.size(); ++e) {
-    const auto& [p, q] = surface.edges[e];
+    const Index p = surface.edges[e][0], q = surface.edges[e][1];
     const Index own = at.at_edge(static_cast<Index>(e));
     contact::Box box(at.rest(p));
     box.extend(at.rest(q));
@@ -173,7 +173,7 @@ void refuse_crossings(RestingSurfaces& at) {
       for (unsigned bits = tree.boxes(group).may_meet(still(box)); bits != 0; bits &= bits - 1) {
         const Index t = tree.item(group, __builtin_ctz(bits));
         const contact::Corners& c = at.corners(t);
-        const bool shared = std::any_of(c.begin(), c.end(), [p = p, q = q](Index v) { return v == p || v == q; });
+        const bool shared = std::any_of(c.begin(), c.end(), [p, q](Index v) { return v == p || v == q; });
         if (shared || !at.may_touch(own, t)) continue;
         if (const auto place = crossing(at.rest(p), at.rest(q), at.rest(c[0]), at.rest(c[1]), at.rest(c[2])))
           refuse_crossing(at, own, t, *place);

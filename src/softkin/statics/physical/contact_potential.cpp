@@ -248,19 +248,24 @@ double ContactPotential::energy(const Points& positions, const std::vector<Term>
   return sum;
 }
 
+contact::Gradient ContactPotential::gradient(const Points& positions, const Term& term) const {
+  const double gap = std::sqrt(term.separation.squared);
+  const energy::LengthLaw law = energy::barrier(gap, surfaces_.reach_mm);
+  contact::Gradient of_term = law.slope * length_gradient(term.separation, term.separation.vector / gap);
+  if (term.threshold > 0) {
+    contact::Gradient of_mollifier;
+    contact::Hessian unused;
+    of_term *= contact::mollifier(points_of(positions, term.nodes), term.threshold, of_mollifier, unused);
+    of_term += law.value * of_mollifier;
+  }
+  return term.weight * of_term;
+}
+
 void ContactPotential::add_gradient(const Points& positions, const std::vector<Term>& terms, Points& gradient) const {
-  contact::Gradient of_term, of_mollifier;
-  contact::Hessian unused;
   for (const Term& term : terms) {
-    const double gap = std::sqrt(term.separation.squared);
-    const energy::LengthLaw law = energy::barrier(gap, surfaces_.reach_mm);
-    of_term = law.slope * length_gradient(term.separation, term.separation.vector / gap);
-    if (term.threshold > 0) {
-      of_term *= contact::mollifier(points_of(positions, term.nodes), term.threshold, of_mollifier, unused);
-      of_term += law.value * of_mollifier;
-    }
+    const contact::Gradient of_term = this->gradient(positions, term);
     for (int i = 0; i < 4; ++i)
-      gradient.row(term.nodes[static_cast<std::size_t>(i)]) += term.weight * of_term.segment<3>(3 * i).transpose();
+      gradient.row(term.nodes[static_cast<std::size_t>(i)]) += of_term.segment<3>(3 * i).transpose();
   }
 }
 

@@ -67,6 +67,9 @@ class ContactPotential {
   /// Adds the gradient of the energy [N].
   void add_gradient(const Points& positions, const std::vector<Term>& terms, Points& gradient) const;
 
+  /// That of one term in its nodes [N].
+  [[nodiscard]] contact::Gradient gradient(const Points& positions, const Term& term) const;
+
   /// Second derivative of a term in its nodes [N/mm]; projected: a positive semidefinite part of it.
   void stiffness(const Points& positions, const Term& term, bool projected, contact::Hessian& out) const;
 

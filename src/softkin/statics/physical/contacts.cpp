@@ -17,6 +17,8 @@ constexpr double guard_share = 0.01;
 constexpr double kept_gap = 0.1;
 /// Pairs within so many reaches stand in the pattern.
 constexpr double foresight = 2;
+/// Pairs are looked for in a margin of so many reaches, so that small motions need no new search.
+constexpr double margin_share = 1;
 /// Slots of four vertices.
 constexpr Index clique_slots = 10;
 
@@ -38,6 +40,7 @@ ContactSurfaces surfaces_of(const Model& model) {
 Contacts::Contacts(const Model& model) : model_(model), surfaces_(surfaces_of(model)), friction_(surfaces_) {
   find_parts();
   choose_areas();
+  margin_mm_ = margin_share * surfaces_.reach_mm;
   Team alone(1);
   leave_out_neighbours(model.rest, make_scratch()->broad, alone, surfaces_);
   potential_ = std::make_unique<ContactPotential>(surfaces_, model.rest);
@@ -97,7 +100,7 @@ contact::Exclusions Contacts::exclusions() const {
 
 std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
   return std::make_unique<Scratch>(
-      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, {}, {}, {}});
+      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, -1, {}, {}, {}});
 }
 
 /// Of candidates those that are so close and feel each other; sorted.
@@ -115,12 +118,20 @@ void Contacts::keep_close(const Points& positions, double reach, Candidates& pai
   sort_candidates(pairs);
 }
 
+/// The longest way of a vertex [mm].
+double Contacts::moved(const Points& from, const Points& to) {
+  return from.rows() == to.rows() ? std::sqrt((to - from).rowwise().squaredNorm().maxCoeff()) : HUGE_VAL;
+}
+
+void Contacts::search(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
+  scratch.broad.find(from, to, surfaces_.reach_mm + margin_mm_, team, scratch.around);
+  scratch.center = to;
+  scratch.least = -1;
+}
+
 void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const {
-  if (scratch.searched.rows() == 0 || scratch.searched != positions) {
-    scratch.broad.find(positions, surfaces_.reach_mm, team, scratch.passing);
-    scratch.searched = positions;
-  }
-  scratch.close = scratch.passing;
+  if (!(2 * moved(scratch.center, positions) <= margin_mm_)) search(positions, positions, scratch, team);
+  scratch.close = scratch.around;
   keep_close(positions, surfaces_.reach_mm, scratch.close);
   potential_->find(positions, scratch.close, scratch.terms);
 }
@@ -201,9 +212,16 @@ double Contacts::largest_turn(const Points& from, const Points& to) const {
 }
 
 double Contacts::safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
-  scratch.broad.find(from, to, surfaces_.reach_mm, team, scratch.passing);  // what touches in the end is among them
-  scratch.searched = to;
-  return contact::safe_motion(surfaces_.surface, scratch.passing, from, to, kept_gap, team);
+  const double way = std::max(moved(scratch.center, from), moved(scratch.center, to));
+  if (!(2 * way <= margin_mm_)) {
+    search(from, to, scratch, team);
+  } else {
+    if (scratch.least < 0)
+      scratch.least =
+          std::sqrt(contact::least_squared_distance(surfaces_.surface, scratch.around, scratch.center, team));
+    if (2 * way < (1 - kept_gap) * scratch.least) return 1;
+  }
+  return contact::safe_motion(surfaces_.surface, scratch.around, from, to, kept_gap, team);
 }
 
 }  // namespace softkin::physical

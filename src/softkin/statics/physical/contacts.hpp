@@ -18,9 +18,11 @@ class Contacts {
   /// What changes with the shape; one per thread of control.
   struct Scratch {
     contact::BroadPhase broad;
-    contact::Candidates passing;                // what may be within reach on the way to a shape
-    Points searched;                            // that shape
-    contact::Candidates close;                  // what is within reach
+    // what is within reach on the way to a shape, or after any motion around it of at most half the margin
+    contact::Candidates around;
+    Points center;                              // that shape
+    double least = -1;                          // distance of those pairs there [mm]; negative: not known
+    contact::Candidates close;                  // what is within reach of the shape that was found last
     std::vector<ContactPotential::Term> terms;  // of the shape that was found last
     Friction::Holds holds;                      // of normal forces that were held last
   };
@@ -48,6 +50,12 @@ class Contacts {
   void stiffness(const Points& positions, bool projected, const Scratch& scratch, const contact::Candidates& pairs,
                  double* slots) const;
 
+  /// Adds what friction's normal forces change of the gradient with moves; see Friction::add_response.
+  void add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
+                             Points& gradient) const {
+    friction_.add_response(*potential_, positions, scratch.terms, scratch.holds, moves, gradient);
+  }
+
   /// The share in [0, 1] of a motion, every vertex on its straight way, in which nothing passes through anything and no
   /// gap shrinks to less than a tenth.
   [[nodiscard]] double safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
@@ -57,8 +65,11 @@ class Contacts {
   [[nodiscard]] double largest_turn(const Points& from, const Points& to) const;
 
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
+  [[nodiscard]] const ContactPotential& potential() const { return *potential_; }
 
  private:
+  void search(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
+  [[nodiscard]] static double moved(const Points& from, const Points& to);
   void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
   void find_parts();
   void choose_areas();
@@ -67,6 +78,7 @@ class Contacts {
   const Model& model_;
   ContactSurfaces surfaces_;
   Friction friction_;
+  double margin_mm_ = 0;
   std::unique_ptr<ContactPotential> potential_;
 };
 

@@ -34,6 +34,8 @@ constexpr double least_jump = 0.9, finest = 0.02;
 constexpr double climb_below = 0.2;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
+/// Friction and the normal forces that it leads to are found in turn until it changes by less than this share.
+constexpr double frictions_agree = 1e-4;
 
 Demand between(const Demand& from, const Demand& to, double share) {
   if (share == 1) return to;
@@ -149,7 +151,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     take(at, std::move(trial));
     if (!come_to(there, next, unstable, at)) return Status::interrupted;
     const int used = (report_.iterations - before) / rounds_;  // those for new normal forces are as many each
-    way_.advance *= used <= 5 ? 2 : used <= 9 ? 1.4 : 0.8;
+    const int more = system_.contact() ? 5 : 0;                // something begins to touch in most steps
+    way_.advance *= used <= 5 + more ? 2 : used <= 9 + more ? 1.4 : 0.8;
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
   }
   return end ? end : out_of_patience();
@@ -300,6 +303,11 @@ Status Continuation::arrive(const Demand& demand, Iterate& at) {
   if (stable_ && !buckle(demand, at)) return Status::interrupted;
   if (last_.modes > 0) tell_stability(demand, at);
   tell_balance();
+  if (report_.friction_change > frictions_agree) {
+    report_.remark = "friction and the normal forces that limit it do not agree: it changed by " +
+                     number(100 * report_.friction_change, 2) + " % when they were found anew";
+    return Status::not_converged;
+  }
   if (last_.balanced) return Status::converged;
   report_.remark = "the steps have become small, but " + number(last_.forces.residual, 2) +
                    " N are out of balance, where elements pull with at most " + number(last_.forces.pull, 2) +
@@ -344,14 +352,13 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
 
 /// Newton, again and again with the normal forces that it leads to, by which friction is limited.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
-  constexpr double agree = 1e-4;
   constexpr int most_rounds = 40;
   auto outcome = settle_constraints(demand, policy, at, factorised);
   rounds_ = 1;
   for (int round = 0; system_.friction() && round < most_rounds; ++round) {
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
     report_.friction_change = system_.renew_friction(from_, at, work_, team_);
-    if (report_.friction_change <= agree) break;
+    if (report_.friction_change <= frictions_agree) break;
     ++rounds_;
     outcome = settle_constraints(demand, policy, at, factorised_nearby(at.positions) && factor_holds_active());
   }

@@ -9,6 +9,8 @@ namespace {
 
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with that.
 constexpr int most_rounds = 8, exact_rounds = 3;
+/// With friction, of which no factor holds all.
+constexpr int friction_rounds = 40;
 /// What rounding may add to a solution with the factor of the stiffness itself: more, and that is singular.
 constexpr double singular = 1e-6;
 /// A cable without tension that is as long as it may be but for this share is held.
@@ -100,10 +102,11 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
   };
   Eigen::MatrixXd left(size + count, found_.moves.cols()), x;
   join(found_, left);
-  const linear::Remainder remainder =
-      linear::conjugate_residuals(product, accuracy_, exact_factor ? exact_rounds : most_rounds, left, x);
-  if (!(remainder.left <= accuracy_) || (exact_factor && !(remainder.apart <= singular)) || !x.allFinite())
-    return false;
+  const bool symmetric = !system_.friction();
+  const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : most_rounds;
+  const linear::Remainder remainder = linear::conjugate_residuals(product, accuracy_, rounds, left, x);
+  const bool rounded = exact_factor && symmetric && !(remainder.apart <= singular);
+  if (!(remainder.left <= accuracy_) || rounded || !x.allFinite()) return false;
   found_ = split(x);
   return true;
 }

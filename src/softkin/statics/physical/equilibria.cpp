@@ -8,7 +8,7 @@ namespace {
 /// What the start is an equilibrium of, as far as it tells.
 Demand demand_of(const System& system, const Model& model, const State& start) {
   if (start.actuation.size() > 0) return {start.actuation, start.share};
-  Demand demand{model.rest_actuation(), start.positions == model.rest ? 0.0 : 1.0};
+  Demand demand{model.rest_actuation(), start.positions == model.rest ? 0.0 : start.share >= 0 ? start.share : 1.0};
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.constrains(a))
       demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
@@ -31,6 +31,12 @@ void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) c
 void Equilibria::forget() const {
   const std::lock_guard lock(mutex_);
   idle_.clear();
+}
+
+bool Equilibria::comes_to(const Points& from, const Points& to, System::Workspace& work, Team& team) const {
+  Points end;
+  const System::Way straight = [&](double share, Points& out) { out = from + share * (to - from); };
+  return system_.clear_share(from, straight, 1, work, end, team) >= 1;
 }
 
 /// From a start that is no equilibrium no path may lead away; from rest one may.
@@ -68,7 +74,13 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   system_.freedoms().hold(from.share, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
-  report.status = Continuation(system_, lease.work(), team, options, progress, report).follow(from, to, at);
+  // a start whose supports are elsewhere may have no way there
+  const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
+                     comes_to(start.positions, at.positions, lease.work(), team);
+  if (clear)
+    report.status = Continuation(system_, lease.work(), team, options, progress, report).follow(from, to, at);
+  else
+    report.status = Status::limit;
   if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest)
     begin_again(to, options, progress, team, lease.work(), at, report);
   if (report.status == Status::converged) lease.work().home = at.positions;

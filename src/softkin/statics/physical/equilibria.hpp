@@ -40,6 +40,8 @@ class Equilibria {
   [[nodiscard]] const System& system() const { return system_; }
 
  private:
+  /// Without that anything passes through anything, every vertex on its straight way.
+  bool comes_to(const Points& from, const Points& to, System::Workspace& work, Team& team) const;
   void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
                    System::Workspace& work, Iterate& at, SolveReport& report) const;
 

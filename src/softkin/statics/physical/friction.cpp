@@ -131,6 +131,7 @@ void Friction::slide(const Points& positions, const Terms& terms, const Holds& h
     const auto touch = std::find_if(all.begin(), all.end(),
                                     [&](const Touch& t) { return t.vertex == hold.pair.first && t.part == part; });
     if (anchor == anchors.end() || touch == all.end()) continue;
+    anchor->slipped_mm += length - creep_mm_;
     anchor->triangle = touch->term->pair.second;
     const contact::FourPoints x =
         contact::points_of(positions, nodes_of_vertex_triangle(surfaces_.surface, {hold.pair.first, anchor->triangle}));
@@ -138,7 +139,6 @@ void Friction::slide(const Points& positions, const Terms& terms, const Holds& h
   }
 }
 
-/// On the vertex [N].
 Vec3 Friction::force(const Points& positions, const Hold& hold) const {
   const Vec3 way = slip(positions, hold);
   const double length = way.norm();
@@ -188,6 +188,51 @@ void Friction::stiffness(const Points& positions, const Hold& hold, contact::Hes
   }
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) out.block<3, 3>(3 * i, 3 * j) = hold.weights[i] * hold.weights[j] * block;
+}
+
+namespace {
+
+/// Change of friction's force when the normal force on a vertex changes.
+///
+/// way  of the vertex from its anchor
+Vec3 change_of_force(double coefficient, double creep, const Vec3& way, const Vec3& pressed, const Vec3& change) {
+  const double size = pressed.norm();
+  const Vec3 normal = pressed / size;
+  const double more = normal.dot(change);
+  const Vec3 turned = (change - more * normal) / size;
+  const Vec3 slip = way - way.dot(normal) * normal, slip_change = -way.dot(turned) * normal - way.dot(normal) * turned;
+  const double length = slip.norm();
+  if (!(length > 0)) return -coefficient * size * energy::friction(0, creep).curvature * slip_change;
+  const energy::LengthLaw law = energy::friction(length, creep);
+  const double share = law.slope / length, bend = (law.curvature - share) / (length * length);
+  return -coefficient * (more * share * slip + size * (share * slip_change + bend * slip.dot(slip_change) * slip));
+}
+
+}  // namespace
+
+void Friction::add_response(const ContactPotential& potential, const Points& positions, const Terms& terms,
+                            const Holds& holds, const Points& moves, Points& gradient) const {
+  const auto end = std::find_if(terms.begin(), terms.end(), [](const auto& term) { return term.threshold > 0; });
+  contact::Hessian block;
+  for (const Hold& hold : holds) {
+    Vec3 pressed = Vec3::Zero(), change = Vec3::Zero();
+    auto term = std::lower_bound(terms.begin(), end, hold.pair.first,
+                                 [](const auto& of, Index vertex) { return of.pair.first < vertex; });
+    for (; term != end && term->pair.first == hold.pair.first; ++term) {
+      if (surfaces_.triangle_part[static_cast<std::size_t>(term->pair.second)] != hold.part) continue;
+      const double gap = std::sqrt(term->separation.squared);
+      pressed -= term->weight * energy::barrier(gap, surfaces_.reach_mm).slope / gap * term->separation.vector;
+      potential.stiffness(positions, *term, false, block);
+      for (int i = 0; i < 4; ++i)
+        change -= block.block<3, 3>(0, 3 * i) * moves.row(term->nodes[static_cast<std::size_t>(i)]).transpose();
+    }
+    const double size = pressed.norm();
+    if (!(size > 0)) continue;
+    const Vec3 way = contact::points_of(positions, hold.nodes) * hold.weights;
+    const Vec3 more = change_of_force(hold.limit / size, creep_mm_, way, pressed, change);
+    for (int i = 0; i < 4; ++i)
+      gradient.row(hold.nodes[static_cast<std::size_t>(i)]) -= hold.weights[i] * more.transpose();
+  }
 }
 
 }  // namespace softkin::physical

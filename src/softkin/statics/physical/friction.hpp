@@ -50,15 +50,21 @@ class Friction {
   /// Second derivative of a hold in its nodes [N/mm]; positive semidefinite.
   void stiffness(const Points& positions, const Hold& hold, contact::Hessian& out) const;
 
+  /// Adds what moves of the vertices change of the gradient by the normal forces that they change, at a shape whose
+  /// normal forces are held. Not symmetric.
+  void add_response(const ContactPotential& potential, const Points& positions, const Terms& terms, const Holds& holds,
+                    const Points& moves, Points& gradient) const;
+
   /// How far a vertex is from its anchor, across the normal [mm].
   [[nodiscard]] static Vec3 slip(const Points& positions, const Hold& hold);
   [[nodiscard]] double creep_mm() const { return creep_mm_; }
+  /// On the vertex; the nodes share it by their weights [N].
+  [[nodiscard]] Vec3 force(const Points& positions, const Hold& hold) const;
 
  private:
   struct Touch;
   [[nodiscard]] std::vector<Touch> touches(const Terms& terms) const;
   [[nodiscard]] Anchor fresh_anchor(const Points& from, const Points& to, const Touch& touch) const;
-  [[nodiscard]] Vec3 force(const Points& positions, const Hold& hold) const;
 
   const ContactSurfaces& surfaces_;
   bool any_ = false;

@@ -11,6 +11,8 @@ namespace {
 constexpr double least_damping = 1e-3;
 /// Of the merit function's slope, that a step must bring.
 constexpr double worthwhile_descent = 1e-4;
+/// By which it may rise, over its value.
+constexpr double most_rise = 1e-8;
 /// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
 /// factorisation.
 constexpr double worthwhile_contraction = 0.6;
@@ -129,17 +131,22 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   system_.first_step(balance_, work_, step_.move, step_.change);
   step_.size = system_.size_of(step_.move, at.positions);
   if (!std::isfinite(step_.size.mean)) return Advance::none;
-  damping = std::min(1.0, 2 * damping);
+  damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   const double slope = system_.contact() ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
       find(trial_balance_, trial_.positions, next_);
-      if (next_.size.mean < step_.size.mean || step_.size.largest < settings_.tolerance_mm) break;
-      // near a singular stiffness the next step may be long although little is left
-      if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
-      if (slope < 0 && merit(trial_balance_) < before + worthwhile_descent * damping * slope) break;
+      if (step_.size.largest < settings_.tolerance_mm) break;
+      const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
+      if (rise < worthwhile_descent * damping * slope) break;
+      // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
+      if (!(rise > most_rise * std::abs(before))) {
+        if (next_.size.mean < step_.size.mean) break;
+        // near a singular stiffness the next step may be long although little is left
+        if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
+      }
       if (!system_.contact() &&
           std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
         const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
@@ -340,14 +347,20 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   };
   double end = 1;
   for (bool first = true;; first = false) {
-    held = std::max(end, least);
+    held = end;
     const double share = system.clear_share(from, way, end, work, at.positions, team);
     if (first) predicted = at.positions;
     if (share >= end) break;
-    if (end == 0) return std::nullopt;
     end = shorter * share;
     if (end < most_cut && largest_move(from, predicted) > long_way * system.model().diagonal_mm) return std::nullopt;
-    if (end < least) end = 0;
+    if (end >= least) continue;
+    end = 0;  // only what is held moves
+    const System::Way alone = [&](double part, Points& out) {
+      out = from;
+      system.freedoms().hold(here.share + part * (there.share - here.share), out);
+    };
+    if (system.clear_share(from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
+    break;
   }
   follow(tangent, end, system, there, active, at.multipliers);
   return largest_move(from, at.positions);

@@ -101,8 +101,8 @@ double predict(const System& system, const Demand& here, const Demand& there, co
 /// The same, less far where otherwise something would pass through something.
 ///
 /// predicted  becomes what predict() gives
-/// returns    the largest move of a vertex [mm]; none where a shorter way is better: supports are in each other's way, or
-///            little of a long one is left
+/// returns    the largest move of a vertex [mm]; none where a shorter way is better: supports are in each other's way,
+///            or little of a long one is left
 std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
                                     const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
                                     Points& predicted);

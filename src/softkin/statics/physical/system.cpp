@@ -3,6 +3,7 @@
 #include <limits>
 #include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/contact_at_rest.hpp>
+#include <softkin/statics/physical/contact_measure.hpp>
 #include <softkin/statics/physical/system.hpp>
 
 namespace softkin::physical {
@@ -262,6 +263,9 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
     for (int axis = 0; axis < 3; ++axis)
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   elastic_.stress(demand.actuation, at.positions, work.elastic, out.stress, team);
+  if (contacts_ && !balance.forbidden)
+    out.contacts = contact_forces(contacts_->surfaces(), contacts_->potential(), at.positions, work.contacts->terms,
+                                  contacts_->friction(), work.contacts->holds, at.anchors);
 }
 
 void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {
@@ -358,6 +362,7 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
   for (Index i = 0; i < vectors.cols(); ++i) {
     freedoms_->expand(vectors.col(i), at.positions, work.moves);
     work.layout->pattern.multiply(work.blocks, work.moves, force, team);
+    if (friction()) contacts_->add_friction_response(at.positions, *work.contacts, work.moves, force);
     freedoms_->reduce(force, at.positions, product.col(i));
     freedoms_->add_turning(work.gradient, at.positions, vectors.col(i), product.col(i));
   }

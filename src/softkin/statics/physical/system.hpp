@@ -115,7 +115,8 @@ class System {
   void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
   /// Makes the stiffness that was assembled or factorised last ready for multiply().
   void gather(Workspace& work, Team& team) const;
-  /// K times every column, over the unknowns, at an iterate that was just evaluated. product: of vectors' size
+  /// K times every column, over the unknowns, at an iterate that was just evaluated, and what the normal forces that
+  /// limit friction add to it, which no factor holds. product: of vectors' size
   void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
                 Team& team) const;
 
@@ -135,7 +136,7 @@ class System {
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
 
-  /// Stress and reactions at an equilibrium.
+  /// Stress, reactions and what touches at an equilibrium.
   void measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out, Team& team) const;
 
   /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <softkin/model/model.hpp>
+#include <softkin/runs/records_json.hpp>
+#include <softkin/statics/contact_forces.hpp>
+#include <vector>
+
+namespace softkin::runs {
+
+/// A list; null where it was not measured.
+[[nodiscard]] Json contacts_json(const Model& model, const std::optional<std::vector<PairForces>>& contacts);
+
+/// throws  std::out_of_range and Json::exception on what contacts_json() does not write
+[[nodiscard]] std::vector<PairForces> contacts_of(const Model& model, const Json& list);
+
+/// Where friction holds: vertex, part, triangle, weights of its corners, and the way that it slipped [mm], of each.
+[[nodiscard]] Json anchors_json(const std::vector<Anchor>& anchors);
+/// throws  std::out_of_range where the model has no such place
+[[nodiscard]] std::vector<Anchor> anchors_of(const Model& model, const Json& list);
+
+}  // namespace softkin::runs

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+#include <softkin/io/picture/picture.hpp>
+#include <softkin/model/mesh/box_tree.hpp>
+#include <softkin/model/model.hpp>
+
+namespace softkin::runs {
+
+/// The obstacles, see-through, so that they hide no robot: what of them is no farther from its box than half of the
+/// box's diagonal. Of a half-space a square of its plane, a little larger than the robot's shadow on it.
+///
+/// robot    around all of it that is drawn [mm]
+/// returns  none where nothing is so near
+[[nodiscard]] std::optional<PictureLayer> obstacle_layer(const Model& model, const Bounds& robot);
+
+}  // namespace softkin::runs

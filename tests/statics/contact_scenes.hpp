@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/statics/statics.hpp>
+
+#include "model/physical_robots.hpp"
+
+namespace softkin::testing {
+
+/// Contact of a robot with itself below a distance.
+inline ContactSpec contact_below(double distance) {
+  ContactSpec contact;
+  contact.distance_mm = distance;
+  return contact;
+}
+
+/// Holds the vertices where an axis has a value, along it alone.
+inline FixedSpec plane_support(const Points& vertices, int axis, double value, double displacement = 0) {
+  VertexList list;
+  for (Index v = 0; v < vertices.rows(); ++v)
+    if (std::abs(vertices(v, axis) - value) < 1e-9) list.vertices.push_back(v);
+  FixedSpec support{{std::move(list), {}}, {axis == 0, axis == 1, axis == 2}, {0, 0, 0}};
+  support.displacement[axis] = displacement;
+  return support;
+}
+
+/// A block of cells of 20 mm edge on another one of other cells, elastic, all neo-Hookean with E 1 MPa, nu 0.4. Planes
+/// of symmetry at x = 0 and y = 0; the lower one stands at z = 0, the top of the upper one moves down by `press`.
+struct StackedBlocks {
+  static constexpr double size = 20;  // [mm]
+  double distance, gap, press;
+  bool quadratic = false;
+
+  [[nodiscard]] RobotSpec robot(const std::array<int, 3>& lower = {3, 3, 2},
+                                const std::array<int, 3>& upper = {4, 4, 2}) const {
+    Mesh mesh = layered_mesh(lower, Vec3::Constant(size), Split::six, Split::six);
+    const Mesh other = layered_mesh(upper, Vec3::Constant(size), Split::six, Split::six);
+    const auto first = static_cast<Index>(mesh.vertices.rows());
+    mesh.vertices.conservativeResize(first + other.vertices.rows(), 3);
+    mesh.vertices.bottomRows(other.vertices.rows()) = other.vertices.rowwise() + Eigen::RowVector3d(0, 0, size + gap);
+    for (Tetrahedron t : other.tetrahedra) {
+      for (Index& v : t) v += first;
+      mesh.tetrahedra.push_back(t);
+    }
+    RobotSpec spec = physical_robot(quadratic ? elevated(mesh) : mesh);
+    const Points& at = spec.mesh.vertices;
+    spec.fixed = {plane_support(at, 2, 0), plane_support(at, 2, 2 * size + gap, -press), plane_support(at, 0, 0),
+                  plane_support(at, 1, 0)};
+    spec.contact = contact_below(distance);
+    return spec;
+  }
+};
+
+/// A block of 20 mm edge over a floor at z = 0, linear or quadratic; the top moves down by `press`, planes of symmetry
+/// at x = 0 and y = 0.
+struct BlockOnFloor {
+  static constexpr double size = 20;  // [mm]
+  double distance, gap, press;
+  bool quadratic = false;
+
+  [[nodiscard]] RobotSpec robot() const {
+    Mesh mesh = block_mesh({3, 3, 3}, Vec3::Constant(size));
+    mesh.vertices.col(2).array() += gap;
+    RobotSpec spec = physical_robot(quadratic ? elevated(mesh) : mesh);
+    const Points& at = spec.mesh.vertices;
+    spec.fixed = {plane_support(at, 2, size + gap, -press), plane_support(at, 0, 0), plane_support(at, 1, 0)};
+    spec.contact = contact_below(distance);
+    spec.contact->obstacles.push_back({"floor", Halfspace{{3, 4, 0}, {0, 0, 1}}, std::nullopt, {}});
+    return spec;
+  }
+};
+
+/// Slope of the barrier -(z - 1)^2 ln z in the gap over the distance, its sign turned: the pressure over the modulus.
+inline double push_of_gap(double z) {
+  if (!(z > 0)) return std::numeric_limits<double>::infinity();
+  return z < 1 ? 2 * (z - 1) * std::log(z) + (z - 1) * (z - 1) / z : 0;
+}
+
+/// What a floor at z = 0 pushes at each of some vertices [N], by the law of the barrier and the model's areas.
+[[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions,
+                                                   const std::vector<Index>& vertices) {
+  Eigen::VectorXd push(static_cast<Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    push[static_cast<Index>(i)] = push_of_gap(positions(vertices[i], 2) / model.contact.distance_mm) *
+                                  model.contact.modulus_MPa * model.contact.area[vertices[i]];
+  return push;
+}
+
+/// Force of a support on the robot [N].
+[[nodiscard]] inline Vec3 reaction_of(const Model& model, const Statics& statics, const Equilibrium& found,
+                                      std::size_t support) {
+  return reactions(model, found.state.positions, statics.measured(found.state))[support].force;
+}
+
+}  // namespace softkin::testing

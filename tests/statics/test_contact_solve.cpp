@@ -1,0 +1,190 @@
+#include <Eigen/Geometry>
+#include <cstdio>
+
+#include "statics/physical_samples.hpp"
+#include "statics/pressed_balls.hpp"
+
+/// Equilibria of robots that touch themselves or obstacles.
+
+namespace softkin {
+namespace {
+
+using namespace testing;
+
+/// Pressure per area at rest of stacked blocks that touch evenly: both are compressed alike, the gap is that at which
+/// the barrier balances them.
+double pressure_by_hand(const StackedBlocks& blocks, const Model& model) {
+  const ElasticLaw& law = model.materials[0].elastic;
+  const auto pressure_at = [&](double stretch) {
+    double low = 1, high = 1.5;  // sideways, where nothing pushes
+    for (int i = 0; i < 100; ++i) {
+      const double side = (low + high) / 2, volume = stretch * side * side;
+      (law.mu / volume * side * side + (law.lambda + law.mu) * (volume - 1) - law.mu > 0 ? high : low) = side;
+    }
+    const double volume = stretch * low * low;
+    const double stress = law.mu / volume * stretch * stretch + (law.lambda + law.mu) * (volume - 1) - law.mu;
+    return -stress * low * low;
+  };
+  double low = 0.5, high = 1;
+  for (int i = 0; i < 100; ++i) {
+    const double stretch = (low + high) / 2;
+    const double left = 2 * StackedBlocks::size * (1 - stretch) + blocks.gap - blocks.press;
+    (push_of_gap(left / blocks.distance) * model.contact.modulus_MPa > pressure_at(stretch) ? high : low) = stretch;
+  }
+  return pressure_at(low);
+}
+
+/// Deviations from a uniform compression.
+struct Unevenness {
+  double force = 0;                   // from what was found by hand
+  double largest = 0, root_mean = 0;  // of von Mises' stress of the elements
+};
+
+Unevenness unevenness_of(const StackedBlocks& blocks) {
+  const Model model = compile(blocks.robot());
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, {});
+  const double force = -reaction_of(model, statics, found, 1).z();
+  Vec3 wide = Vec3::Zero();
+  for (Index v = 0; v < model.robot_vertices(); ++v) wide = wide.cwiseMax(Vec3(found.state.positions.row(v)));
+  Unevenness out;
+  out.force = force / (StackedBlocks::size * StackedBlocks::size * pressure_by_hand(blocks, model)) - 1;
+  const std::vector<double> stresses = statics.measured(found.state).stress.von_mises;
+  for (std::size_t i = 0; i < stresses.size(); ++i) {
+    const double error = stresses[i] / (force / (wide.x() * wide.y())) - 1;
+    out.largest = std::max(out.largest, std::abs(error));
+    out.root_mean += model.tetrahedron_volumes[i] * error * error;
+  }
+  out.root_mean = std::sqrt(out.root_mean / sum(model.tetrahedron_volumes));
+  std::printf("%-9s distance %.5f: force %+.2e, stress %.2e, root mean %.2e, %3d iterations, %.2f s\n",
+              blocks.quadratic ? "quadratic" : "linear", blocks.distance / StackedBlocks::size, out.force, out.largest,
+              out.root_mean, found.report.iterations, found.report.seconds);
+  return out;
+}
+
+Unevenness unevenness_at(double distance, bool quadratic) {
+  const double d = distance * StackedBlocks::size;
+  return unevenness_of({d, 2.5 * d, 2.5 * d + 2, quadratic});
+}
+
+/// Vertices push for areas of their own on surfaces with other vertices: uneven until gaps, which are of the order of
+/// the distance, have made up for it.
+TEST(ContactSolve, BlocksWithOtherMeshesPressEachOtherEvenly) {
+  for (const double distance : {0.02, 0.005, 0.00125}) {
+    const Unevenness found = unevenness_at(distance, false);
+    EXPECT_LT(std::abs(found.force), 0.4 * distance) << distance;
+    EXPECT_LT(found.largest, 0.05) << distance;
+    EXPECT_LT(found.root_mean, 0.015) << distance;
+  }
+  EXPECT_LT(unevenness_at(0.0002, false).largest, 0.01);
+}
+
+/// The nodes of order 2 take other shares of a pressure than the four triangles of a face do, whatever the distance.
+TEST(ContactSolve, BlocksOfOrder2PressEachOther) {
+  for (const double distance : {0.02, 0.005, 0.0005}) {
+    const Unevenness found = unevenness_at(distance, true);
+    EXPECT_LT(std::abs(found.force), 0.01) << distance;
+    EXPECT_LT(found.largest, 0.15) << distance;
+    EXPECT_LT(found.root_mean, 0.07) << distance;
+  }
+}
+
+std::vector<Index> bottom_of(const Model& model, double height) {
+  std::vector<Index> bottom;
+  for (Index v = 0; v < model.robot_vertices(); ++v)
+    if (std::abs(model.rest(v, 2) - height) < 1e-9) bottom.push_back(v);
+  return bottom;
+}
+
+TEST(ContactSolve, AFloorBearsWhatPressesOnIt) {
+  for (const bool quadratic : {false, true}) {
+    const BlockOnFloor block{0.2, 0.1, 1, quadratic};
+    RobotSpec spec = block.robot();
+    const double load = 7;
+    spec.forces = {{"weight", {std::string("z_low"), {}}, {0, 0, -load}}};
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const Equilibrium found = settled(statics, {});
+    const std::vector<Index> bottom = bottom_of(model, block.gap);
+    const Eigen::VectorXd push = push_of_floor(model, found.state.positions, bottom);
+    const double held = -reaction_of(model, statics, found, 0).z();
+    EXPECT_NEAR(push.sum(), held + load, 1e-6 * push.sum());
+    std::printf("floor, %s: bears %.9g N of %.9g\n", quadratic ? "quadratic" : "linear", push.sum(), held + load);
+  }
+}
+
+/// Of the stress under a block on a floor: greatest over least, less 1.
+double unevenness_on_floor(double distance, bool quadratic) {
+  const Model model = compile(BlockOnFloor{distance, 0.5 * distance, 1, quadratic}.robot());
+  const Statics statics(model);
+  const std::vector<double> stresses = statics.measured(settled(statics, {}).state).stress.von_mises;
+  const auto [least, most] = std::minmax_element(stresses.begin(), stresses.end());
+  std::printf("floor, %s, distance %g: stress %.6f to %.6f MPa\n", quadratic ? "quadratic" : "linear", distance, *least,
+              *most);
+  return *most / *least - 1;
+}
+
+/// Edges of the block push for their sides too; gaps make up for it, the more exactly the smaller the distance.
+TEST(ContactSolve, PressureOnAFloorIsUniform) {
+  for (const bool quadratic : {false, true}) {
+    const double coarse = unevenness_on_floor(0.1, quadratic), fine = unevenness_on_floor(0.01, quadratic);
+    EXPECT_LT(coarse, 0.02) << quadratic;
+    EXPECT_LT(fine, 0.15 * coarse) << quadratic;
+  }
+}
+
+/// Clamped at its top, pressed on a floor and pushed aside, all turned and moved.
+RobotSpec turned_block(const Mat3& turn, const Vec3& shift) {
+  Mesh mesh = block_mesh({3, 2, 2}, {24, 20, 16});
+  VertexList top;
+  for (Index v = 0; v < mesh.vertices.rows(); ++v)
+    if (mesh.vertices(v, 2) == 16) top.vertices.push_back(v);
+  const auto moved = [&](const Vec3& p) { return Vec3(turn * p + shift); };
+  for (Index v = 0; v < mesh.vertices.rows(); ++v)
+    mesh.vertices.row(v) = moved(mesh.vertices.row(v).transpose()).transpose();
+  RobotSpec spec = physical_robot(std::move(mesh));
+  spec.fixed = {{{top, {}}, {true, true, true}, turn * Vec3(1, 2, -1.5)}};
+  spec.forces = {{"push", {moved({24, 10, 8}), {}}, turn * Vec3(0.5, 0.3, -1)}};
+  spec.contact = contact_below(0.2);
+  spec.contact->obstacles.push_back({"floor", Halfspace{moved({3, 4, -0.1}), turn * Vec3(0, 0, 1)}, std::nullopt, {}});
+  return spec;
+}
+
+TEST(ContactSolve, TurnsWithEverythingAround) {
+  const auto solved = [](const Mat3& turn, const Vec3& shift) {
+    const Model model = compile(turned_block(turn, shift));
+    const Statics statics(model);
+    return Points(settled(statics, {}, tight(1e-10)).state.positions.topRows(model.robot_vertices()));
+  };
+  const Points straight = solved(Mat3::Identity(), Vec3::Zero());
+  for (const Vec3& axis : {Vec3(1, 2, 3), Vec3(0, 1, 0), Vec3(-3, 1, 0.2)}) {
+    const Mat3 turn = Eigen::AngleAxisd(axis.norm(), axis.normalized()).toRotationMatrix();
+    const Vec3 shift = 10 * axis;
+    const Points turned = solved(turn, shift);
+    const Points back = (turned.rowwise() - shift.transpose()) * turn;
+    const double error = distance(back, straight) / 35;
+    std::printf("turned: %.2e of the diagonal\n", error);
+    EXPECT_LT(error, 1e-9);
+  }
+}
+
+/// A ball on a plane.
+TEST(ContactSolve, Hertz) {
+  for (const double share : {0.01, 0.02}) {
+    const PressedBalls balls{.approach = share * PressedBalls::radius, .distance = 0.02};
+    StaticsOptions options;
+    options.threads = 1;
+    const BallContact found = pressed(balls, options);
+    ASSERT_EQ(found.found.report.status, Status::converged);
+    const HertzRatios ratios = beside_hertz(balls, found);
+    EXPECT_NEAR(ratios.force_of_ball, 1, 0.04) << share;
+    EXPECT_NEAR(ratios.force_of_radius, 1, 0.05) << share;
+    EXPECT_NEAR(ratios.radius, 1, 0.05) << share;
+    std::printf("Hertz, approach %.4f: F/F(d) %.4f, F/F(d') %.4f, F/F(a) %.4f, a/a(d) %.4f, %.1f s\n",
+                found.approach / PressedBalls::radius, ratios.force, ratios.force_of_ball, ratios.force_of_radius,
+                ratios.radius, found.found.report.seconds);
+  }
+}
+
+}  // namespace
+}  // namespace softkin

@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <softkin/statics/physical/system.hpp>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// A block over a floor, held at its top and moved down and sideways with the share of the way.
+RobotSpec pressed_block(double friction, const Vec3& move, int cells = 3) {
+  RobotSpec spec = physical_robot(block_mesh({cells, cells, cells}, {10, 10, 10}));
+  spec.fixed = {{{Box{{-1, -1, 9.999}, {11, 11, 11}}, {}}, {true, true, true}, move}};
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.05;
+  spec.contact->friction = friction;
+  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
+  return spec;
+}
+
+/// Of the top on the block [N].
+Vec3 reaction(const Model& model, const Statics& statics, const State& at) {
+  const Points all = statics.measured(at).reactions;
+  Vec3 sum = Vec3::Zero();
+  for (Index v = 0; v < model.robot_vertices(); ++v) sum += all.row(v).transpose();
+  return sum;
+}
+
+/// In so many steps of as long a way each; without a remark.
+Equilibrium moved(const Model& model, const Statics& statics, int steps) {
+  Equilibrium last;
+  last.state = statics.rest();
+  last.state.actuation = model.rest_actuation();
+  last.state.multipliers = Eigen::VectorXd::Zero(0);
+  for (int i = 1; i <= steps; ++i) last = statics.solve(model.rest_actuation(), last.state, tight(1e-8));
+  EXPECT_EQ(last.report.status, Status::converged) << last.report.remark;
+  return last;
+}
+
+}  // namespace
+
+/// Where all of the floor's contact slips the force along it is the friction coefficient times that across it.
+TEST(Friction, OfWhatSlidesIsItsCoefficient) {
+  for (const double friction : {0.1, 0.25}) {
+    const Model model = compile(pressed_block(friction, {4, 0, -0.5}));
+    const Statics statics(model);
+    const Equilibrium found = moved(model, statics, 1);
+    const Vec3 force = reaction(model, statics, found.state);
+    EXPECT_NEAR(std::hypot(force.x(), force.y()), friction * std::abs(force.z()),
+                0.01 * friction * std::abs(force.z()));
+    EXPECT_GT(force.x(), 0);
+    EXPECT_LE(found.report.friction_change, 1e-4);
+  }
+}
+
+TEST(Friction, NoneLeavesTheFloorSmooth) {
+  const Model model = compile(pressed_block(0, {1, 0, -0.5}));
+  const Statics statics(model);
+  const Vec3 force = reaction(model, statics, moved(model, statics, 1).state);
+  EXPECT_LT(std::hypot(force.x(), force.y()), 1e-8 * std::abs(force.z()));
+}
+
+/// What sticks does not creep: solving again from the equilibrium changes nothing.
+TEST(Friction, WhatSticksStays) {
+  const Model model = compile(pressed_block(2, {0.3, 0, -0.5}));
+  const Statics statics(model);
+  const Equilibrium once = moved(model, statics, 1);
+  Equilibrium again = once;
+  for (int i = 0; i < 5; ++i) again = statics.solve(model.rest_actuation(), again.state, tight(1e-8));
+  EXPECT_LT(distance(again.state.positions, once.state.positions), 1e-5);
+  const Vec3 before = reaction(model, statics, once.state), after = reaction(model, statics, again.state);
+  EXPECT_LT((after - before).norm(), 1e-3 * before.norm());
+  EXPECT_GT(std::abs(before.x()), 0.01 * std::abs(before.z()));
+}
+
+TEST(Friction, GradientAndStiffnessAreDerivatives) {
+  const Model model = compile(pressed_block(0.5, {0.4, 0.1, -0.5}, 2));
+  const Statics statics(model);
+  const State found = moved(model, statics, 1).state;
+  const physical::System system(model);
+  physical::System::Workspace work(system);
+  Team team(1);
+  const physical::Demand demand{model.rest_actuation(), 1};
+  physical::Iterate at = system.iterate(found);
+  at.multipliers = Eigen::VectorXd::Zero(0);
+  physical::System::Balance balance;
+  const std::vector<bool> none;
+  std::mt19937 engine(4);
+  std::normal_distribution<double> normal;
+  const Index size = system.freedoms().size();
+  for (const double shake : {1e-4, 1e-3, 5e-3}) {  // where it sticks, and where it slips
+    physical::Iterate from = at;
+    Eigen::VectorXd move(size);
+    for (Index i = 0; i < size; ++i) move[i] = shake * normal(engine);
+    system.freedoms().move(move, 1, from.positions);
+    system.hold_friction(from, work, team);
+    ASSERT_FALSE(work.contacts->holds.empty());
+    system.evaluate(from, demand, none, work, balance, team);
+    ASSERT_FALSE(balance.forbidden);
+    const Eigen::VectorXd force = balance.force;
+    system.assemble(from, demand, physical::System::Stiffness::exact, work, team);
+    system.gather(work, team);
+    Eigen::VectorXd way(size);
+    for (Index i = 0; i < size; ++i) way[i] = normal(engine);
+    Eigen::MatrixXd product(size, 1);
+    system.multiply(from, way, work, product, team);
+    const double step = 1e-7;
+    const auto beside = [&](double scale, bool held) {
+      physical::Iterate there = from;
+      system.freedoms().move(way, scale, there.positions);
+      system.hold_friction(held ? from : there, work, team);
+      system.evaluate(there, demand, none, work, balance, team);
+      return std::pair(balance.energy, Eigen::VectorXd(balance.force));
+    };
+    EXPECT_NEAR(force.dot(way), (beside(step, true).first - beside(-step, true).first) / (2 * step),
+                1e-6 * force.norm() * way.norm());
+    // with the normal forces of each shape
+    const Eigen::VectorXd force_high = beside(step, false).second, force_low = beside(-step, false).second;
+    EXPECT_LT((product.col(0) - (force_high - force_low) / (2 * step)).norm(), 1e-4 * product.norm()) << shake;
+  }
+}
+
+namespace {
+
+/// A beam bent onto a floor under its end.
+RobotSpec leaning_beam(double friction) {
+  RobotSpec spec = cable_beam();
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.1;
+  spec.contact->friction = friction;
+  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -2}, {0, 0, 1}}, {}, {}});
+  return spec;
+}
+
+}  // namespace
+
+/// Against differences of equilibria: of smooth contact both ways, of one that slips the way on which it does.
+TEST(Friction, JacobianOfWhatLeansOnAFloor) {
+  for (const double friction : {0.0, 0.3}) {
+    const Model model = compile(leaning_beam(friction));
+    const Statics statics(model);
+    Equilibrium at = settled(statics, values({1.1, 0.9}));
+    for (const double length : {0.88, 0.86}) at = statics.solve(values({1.1, length}), at.state, tight(1e-10));
+    ASSERT_EQ(at.report.status, Status::converged);
+    EXPECT_LT(marker_at(model, at).z(), 5);  // of the middle of the end
+    const Sensitivity slopes = statics.sensitivity(at.state);
+    ASSERT_TRUE(slopes.regular);
+    constexpr double step = 2e-5;
+    const Points further = statics.solve(values({1.1, 0.86 - step}), at.state, tight(1e-11)).state.positions;
+    const Points back = friction == 0
+                            ? statics.solve(values({1.1, 0.86 + step}), at.state, tight(1e-11)).state.positions
+                            : at.state.positions;
+    const Points difference = (back - further) / (friction == 0 ? 2 * step : step);
+    EXPECT_LT((slopes.positions[1] - difference).norm(), (friction == 0 ? 1e-4 : 1e-2) * difference.norm()) << friction;
+  }
+}
+
+}  // namespace softkin
