@@ -76,9 +76,11 @@ struct Refused {
 
 void refuse(const Compilation& c, const std::string& one, const std::string& many, const Refused& refused,
             const std::string& what) {
+  const auto first = one == "prism" ? &RobotPart::prisms : &RobotPart::tetrahedra;
   if (refused.count == 0) return;
   throw InvalidInput(c.origin, counted(refused.count, one, many) + " " + what + "; the first is " + one + " " +
-                                   std::to_string(refused.first) + " (from 0)");
+                                   std::to_string(refused.first) + " (from 0" +
+                                   robot_text(c.spec, first, refused.first) + ")");
 }
 
 /// Fills in the elements of a kind and returns how many it reversed.
@@ -191,6 +193,13 @@ void name_regions(Compilation& c) {
 }
 
 }  // namespace
+
+std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index number) {
+  std::string text;
+  for (const RobotPart& robot : spec.robots)
+    if (robot.*first <= number) text = ", of robot '" + robot.name + "'";
+  return text;
+}
 
 void compile_elements(Compilation& c) {
   Model& model = c.model;

@@ -37,6 +37,11 @@ struct Compilation {
   std::optional<Embedder> embedder;
 };
 
+/// ", of robot 'left'" where the description is of several robots, for messages that number a vertex or an element.
+///
+/// first  RobotPart's first of what is numbered
+[[nodiscard]] std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index number);
+
 /// Drops void elements, orients the others, measures them and names their regions. Physical: sets the elements of
 /// chambers apart.
 void compile_elements(Compilation& c);
@@ -93,6 +98,9 @@ void compile_materials(Compilation& c);
 void compile_actuator_points(Compilation& c);
 /// The elements of Eq. (6): a triangle over each gap; none in the physical formulation.
 void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
+
+/// What a support is called: its name, that of a region that no other entry holds, or "fixed_N", N counted from 1.
+[[nodiscard]] std::string support_name(const std::vector<FixedSpec>& fixed, std::size_t entry);
 
 /// Fixed vertices and rigid regions.
 void compile_supports(Compilation& c);
