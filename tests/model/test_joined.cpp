@@ -265,7 +265,7 @@ TEST(Joined, CompilingNamesTheRobot) {
             }).find("since the body of robot 'right' encloses no empty space"),
             std::string::npos);
   const auto doubled = [](RobotSpec& r) { r.mesh.tetrahedra.push_back(r.mesh.tetrahedra[0]); };
-  EXPECT_EQ(of_right(doubled).substr(0, 49), "block.yaml:2: the mesh of robot 'right' has errors");
+  EXPECT_EQ(of_right(doubled).substr(0, 50), "block.yaml:2: the mesh of robot 'right' has errors");
   RobotSpec accepted = good;
   doubled(accepted);
   accepted.accept_mesh_errors = true;

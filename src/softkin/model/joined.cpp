@@ -110,7 +110,7 @@ class Joiner {
   }
   [[nodiscard]] PointRef full(const PointRef& point) const {
     if (const auto* name = std::get_if<std::string>(&point.point)) return {full(*name), point.origin};
-    return {placed_.place(std::get<Vec3>(point.point)), point.origin};
+    return {placed_.place(std::get<Vec3>(point.point)), point.origin, placed_.name};
   }
   void place(Points& points) const {
     points = ((points * placed_.place.rotation.transpose()).rowwise() + placed_.place.translation.transpose()).eval();
@@ -166,8 +166,7 @@ class Joiner {
   void add_actuators() {
     for (ActuatorSpec& actuator : robot_.actuators) {
       actuator.name = placed_.name + "." + actuator.name;
-      if (actuator.kind == ActuatorKind::pneumatic && !actuator.region && !actuator.surface && !actuator.wall)
-        actuator.body = placed_.name;
+      actuator.robot = placed_.name;
       for (auto* region : {&actuator.region, &actuator.wall})
         if (*region) *region = full(**region);
       if (actuator.surface) place(actuator.surface->vertices);
@@ -229,7 +228,7 @@ RobotSpec joined(std::vector<PlacedRobot> robots, const CommonSpec& common) {
   each([&](PlacedRobot& placed) { Joiner(placed, all).add(); });
   all.mesh_origin = all.robots[0].mesh_origin;
   all.accept_mesh_errors =
-      std::all_of(all.robots.begin(), all.robots.end(), [](const RobotPart& part) { return part.accept_mesh_errors; });
+      std::any_of(all.robots.begin(), all.robots.end(), [](const RobotPart& part) { return part.accept_mesh_errors; });
   return all;
 }
 

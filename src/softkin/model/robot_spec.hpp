@@ -35,6 +35,7 @@ struct RegionRef {
 struct PointRef {
   std::variant<Vec3, std::string> point;
   Origin origin;
+  std::string robot{};  // of several: whose elements carry the coordinates along; empty: the nearest
 };
 
 struct RegionSpec {
@@ -85,7 +86,7 @@ struct ActuatorSpec {
   std::optional<std::string> region;       // dea, pneumatic: the volume region of its elements
   std::optional<TriangleSurface> surface;  // pneumatic: cavity surface instead of a region [mm]
   std::optional<std::string> wall;         // pneumatic: region of faces around the cavity, instead of either
-  std::optional<std::string> body;         // pneumatic with none of these: the region whose only empty space it is
+  std::string robot;                       // of several: whose elements, gaps and empty spaces count; empty: all
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
   Control control = Control::ratio;        // load: physical formulation, cable and pneumatic

@@ -49,11 +49,10 @@ std::vector<Triangle> boundary_of_chamber(const Compilation& c, const std::vecto
   return boundary_of(tetrahedra, {}).triangles;
 }
 
-/// Is a space bounded by these elements alone?
-bool lies_in(const EmptySpace& space, const Region& body) {
+/// Is a space bounded by elements of these vertices alone?
+bool lies_in(const EmptySpace& space, const std::pair<Index, Index>& vertices) {
   return std::all_of(space.triangles.begin(), space.triangles.end(), [&](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(),
-                       [&](Index v) { return std::binary_search(body.vertices.begin(), body.vertices.end(), v); });
+    return std::all_of(t.begin(), t.end(), [&](Index v) { return v >= vertices.first && v < vertices.second; });
   });
 }
 
@@ -63,11 +62,11 @@ void take_only_space(Compilation& c, const ActuatorSpec& spec, Actuator& actuato
   std::vector<EmptySpace> spaces;
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (spec.body && !lies_in(all[i], c.regions.find(*spec.body, spec.origin))) continue;
+    if (!lies_in(all[i], vertices_of(c, spec.robot))) continue;
     spaces.push_back(all[i]);
     numbers.push_back(i);
   }
-  const std::string body = spec.body ? "the body of robot '" + *spec.body + "'" : "the body";
+  const std::string body = spec.robot.empty() ? "the body" : "the body of robot '" + spec.robot + "'";
   const std::string cure = ": name its elements (`region`), its wall (`surface: {region: WALL}`) or an STL (`surface`)";
   if (spaces.empty()) refuse(spec, "needs a region or a surface, since " + body + " encloses no empty space" + cure);
   if (spaces.size() > 1) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
@@ -7,6 +8,14 @@
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
+
+/// What carries points along: the elements with a material and those of dielectric elastomers, of all or of one robot.
+struct Body {
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Prism> prisms;
+  Embedder embedder;
+  double diagonal_mm = 0;  // of all of its elements
+};
 
 /// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
 struct Compilation {
@@ -31,10 +40,7 @@ struct Compilation {
   // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
   std::optional<std::vector<EmptySpace>> empty_spaces;
   std::vector<Index> space_actuators;  // -1: no actuator's
-  // the body: elements with a material and those of dielectric elastomers, where points are embedded
-  std::vector<Tetrahedron> solid_tetrahedra;
-  std::vector<Prism> solid_prisms;
-  std::optional<Embedder> embedder;
+  std::map<std::string, Body> bodies;  // by robot, made when they are first asked for; "": of all
 };
 
 /// ", of robot 'left'" where the description is of several robots, for messages that number a vertex or an element.
@@ -82,8 +88,17 @@ void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
 /// Physical, after the supports: refuses chambers that are open.
 void check_openings(const Compilation& c);
 
-/// Gives the elements their materials (target-shape: those of no actuator), and prepares embedding in them.
+/// Gives the elements their materials (target-shape: those of no actuator).
 void compile_materials(Compilation& c);
+
+/// After the materials. robot  of several; empty: all
+[[nodiscard]] const Body& body_of(Compilation& c, const std::string& robot);
+
+/// Which vertices are a robot's: from the first to before the second.
+[[nodiscard]] std::pair<Index, Index> vertices_of(const Compilation& c, const std::string& robot);
+
+/// Of the bounding box of a robot's used vertices [mm].
+[[nodiscard]] double diagonal_of(const Compilation& c, const std::string& robot);
 
 /// The constants of a law from those that the user gives.
 ///
@@ -145,7 +160,7 @@ void doubt_units(Compilation& c);
 
 /// How far outside the body a point may be to be carried along by its nearest element [mm]: half that element's longest
 /// edge, and a tenth of the body's diagonal.
-[[nodiscard]] double most_outside(const Compilation& c, const Vec3& point);
+[[nodiscard]] double most_outside(const Body& body, const Vec3& point);
 /// "farther than 5.2 mm, to which its nearest element can carry it", of a point that is farther.
 [[nodiscard]] std::string too_far_text(double most_mm);
 
