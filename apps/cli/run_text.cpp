@@ -216,9 +216,15 @@ std::string summary(const Model& model, const std::string& solver) {
   text += std::string("; ") + formulation_name(model.formulation) + " formulation";
   if (model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
   text += ", solver " + solver;
+  for (const FreeBody& body : model.bodies)
+    text += "\nbody " + body.name + ": " + number(1000 * body.mass_kg) + " g; held while " + body.name +
+            "_hold is 1, free at 0; forces " + body.name + "_fx, _fy and _fz [N]";
   for (const Actuator& a : model.actuators)
-    text += "\nactuator " + a.name + ": " + kind_name(a) + ", " + number(a.rest_measure) + " " + unit_of_measure(a) +
-            " at rest, " + command_range(a) + curve_text(a);
+    if (a.kind == ActuatorKind::motion) text += "\nobstacle moved by " + a.name + " [mm]";
+  for (const Actuator& a : model.actuators)
+    if (drives(a))
+      text += "\nactuator " + a.name + ": " + kind_name(a) + ", " + number(a.rest_measure) + " " + unit_of_measure(a) +
+              " at rest, " + command_range(a) + curve_text(a);
   for (const std::string& warning : model.warnings) text += "\nwarning: " + warning;
   for (const std::string& note : model.notes) text += "\nnote: " + note;
   return text;

@@ -44,8 +44,7 @@ void check_options(const Model& model, const State& start, const InverseOptions&
 std::vector<Index> free_actuators(const Model& model, const InverseOptions& options) {
   std::vector<Index> free;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if ((options.free.empty() || options.free[a]) && model.actuators[a].high > model.actuators[a].low)
-      free.push_back(static_cast<Index>(a));
+    if ((options.free.empty() || options.free[a]) && varies(model.actuators[a])) free.push_back(static_cast<Index>(a));
   return free;
 }
 

@@ -152,7 +152,7 @@ std::vector<std::uint64_t> hilbert_places(const Model& model, const Actuations& 
 std::vector<Index> varied_actuators(const Model& model) {
   std::vector<Index> varied;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (model.actuators[a].low < model.actuators[a].high) varied.push_back(static_cast<Index>(a));
+    if (varies(model.actuators[a])) varied.push_back(static_cast<Index>(a));
   return varied;
 }
 
@@ -183,8 +183,8 @@ Actuations sample_actuations(const Model& model, const SamplingOptions& options)
   Index d = 0;
   for (Index a = 0; a < actuations.cols(); ++a) {
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
-    if (!(actuator.low < actuator.high)) {
-      actuations.col(a).setConstant(actuator.low);
+    if (!varies(actuator)) {
+      actuations.col(a).setConstant(drives(actuator) ? actuator.low : actuator.rest);
       continue;
     }
     for (Index i = 0; i < actuations.rows(); ++i) actuations(i, a) = between(actuator, shares(i, d));

@@ -20,7 +20,7 @@ Eigen::VectorXd widths(const Model& model) {
   Eigen::VectorXd widths(static_cast<Index>(model.actuators.size()));
   for (Index a = 0; a < widths.size(); ++a) {
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
-    widths[a] = actuator.high - actuator.low;
+    widths[a] = drives(actuator) ? actuator.high - actuator.low : 0;
   }
   return widths;
 }
@@ -106,7 +106,7 @@ Eigen::VectorXd PathFollower::shares_of(const Actuation& actuation) const {
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(actuation.size());
   for (Index a = 0; a < shares.size(); ++a) {
     const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
-    if (actuator.high > actuator.low) shares[a] = (actuation[a] - actuator.low) / (actuator.high - actuator.low);
+    if (varies(actuator)) shares[a] = (actuation[a] - actuator.low) / (actuator.high - actuator.low);
   }
   return shares;
 }
@@ -115,7 +115,10 @@ Actuation PathFollower::actuation_of(const Eigen::VectorXd& shares) const {
   Actuation actuation(shares.size());
   for (Index a = 0; a < shares.size(); ++a) {
     const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
-    actuation[a] = std::clamp(actuator.low + shares[a] * (actuator.high - actuator.low), actuator.low, actuator.high);
+    if (!drives(actuator))
+      actuation[a] = state_.actuation.size() > 0 ? state_.actuation[a] : actuator.rest;
+    else
+      actuation[a] = std::clamp(actuator.low + shares[a] * (actuator.high - actuator.low), actuator.low, actuator.high);
   }
   return actuation;
 }

@@ -35,7 +35,7 @@ struct ContactModel {
   std::vector<std::array<Index, 3>> triangles;  // vertices of the model, normals outwards; faces of order 2 as four
   std::vector<Index> part_of;                   // per triangle
   std::vector<double> area;                     // per vertex of the model: for which it carries pressure [mm^2]
-  Index obstacle_vertices = 0;                  // the last vertices of the model, none of the robot's
+  Index other_vertices = 0;                     // the last vertices of the model: of bodies and obstacles
 
   [[nodiscard]] bool any() const { return distance_mm > 0; }
   [[nodiscard]] const ContactPair& pair(Index a, Index b) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/model/mesh/mesh.hpp>
@@ -13,15 +14,25 @@ namespace softkin {
 /// Shapes of what stands in a robot's way; a surface need not be closed.
 using ObstacleShape = std::variant<Box, Sphere, Cylinder, Capsule, Halfspace, TriangleSurface>;
 
-/// Something rigid that does not move.
+/// Something rigid that stays, or moves as commanded.
 struct ObstacleSpec {
   std::string name;
   ObstacleShape shape;
   std::optional<double> friction;  // Coulomb's coefficient with everything [-], >= 0; none: ContactSpec's
   Origin origin;
+  std::array<bool, 3> motion{false, false, false};  // axes along which it moves, each by a command
 };
 
-/// Overrides the friction of two: obstacles, regions of the robot, or "robot", what is in no region named so.
+/// Something rigid that moves freely: it is held where it is until a command releases it.
+struct BodySpec {
+  std::string name;
+  ObstacleShape shape;             // bounded; a surface is closed
+  std::optional<double> friction;  // Coulomb's coefficient [-], >= 0; none: that of what it touches
+  Origin origin;
+  double density = 0;  // [kg/m^3], >= 0
+};
+
+/// Overrides the friction of two: obstacles, bodies, regions of the robot, or "robot", what is in no region named so.
 struct ContactPairSpec {
   std::string a, b;
   double friction = 0;  // [-], >= 0
@@ -35,6 +46,7 @@ struct ContactSpec {
   bool self = true;                   // may the robot touch itself
   std::vector<ContactPairSpec> pairs;
   std::vector<ObstacleSpec> obstacles;
+  std::vector<BodySpec> bodies;
   Origin origin;
 };
 

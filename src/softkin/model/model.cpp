@@ -71,14 +71,15 @@ class Hash {
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
   void put(const Marker& marker) { add(marker.name, marker.point); }
   void put(const RigidRegion& region) { add(region.name, region.vertices); }
+  void put(const FreeBody& body) { add(body.name, body.vertices, body.center, body.mass_kg); }
   void put(const ContactPart& part) { add(part.name, part.rank, part.halfspace); }
   void put(const ContactPair& pair) { add(pair.touch, pair.friction); }
   void put(const ContactModel& c) {
-    add(c.distance_mm, c.modulus_MPa, c.parts, c.pairs, c.triangles, c.part_of, c.area, c.obstacle_vertices);
+    add(c.distance_mm, c.modulus_MPa, c.parts, c.pairs, c.triangles, c.part_of, c.area, c.other_vertices);
   }
   void put(const Actuator& a) {
     add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.points,
-        a.surface, a.gaps, a.rest_measure);
+        a.surface, a.gaps, a.other, a.axis, a.rest_measure);
   }
 
   std::uint64_t state_ = 0xcbf29ce484222325;
@@ -153,12 +154,29 @@ std::optional<double> spread_by_curve(const Actuator& actuator, double input, Br
   return actuator.rest * ((1 - share) * curve->spread[i - 1] + share * curve->spread[i]);
 }
 
+std::array<Index, 2> Model::vertices_of_part(Index part) const {
+  std::array<Index, 2> range{static_cast<Index>(rest.rows()), 0};
+  for (std::size_t t = 0; t < contact.triangles.size(); ++t)
+    if (contact.part_of[t] == part)
+      for (const Index v : contact.triangles[t]) range = {std::min(range[0], v), std::max(range[1], v + 1)};
+  return range;
+}
+
+bool drives(const Actuator& actuator) {
+  return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
+         actuator.kind == ActuatorKind::pneumatic;
+}
+
+bool varies(const Actuator& actuator) {
+  return drives(actuator) && actuator.low < actuator.high;
+}
+
 std::string fingerprint_of(const Model& model) {
   Hash hash;
   hash.add(model.formulation, model.rest, model.tetrahedra, model.edge_nodes, model.prisms, model.tetrahedron_roles,
            model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
            model.fixed, model.held, model.dead_load);
-  if (model.contact.any()) hash.add(model.contact);
+  if (model.contact.any()) hash.add(model.contact, model.bodies);
   return hash.text();
 }
 

@@ -59,6 +59,8 @@ struct Actuator {
   std::vector<CableGap> gaps;          // cable, target-shape
   std::optional<ActuatorCurve> curve;  // ratio by pressure or voltage
   Branch branch = Branch::loading;     // of the curve, where a command names none
+  Index other = -1;                    // motion: part of ContactModel; force, hold: index into Model::bodies
+  int axis = -1;                       // motion, force
   double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
                                        // a dea's ratio 1
 };
@@ -79,6 +81,14 @@ struct RigidRegion {
   std::vector<Index> vertices;
 };
 
+/// A rigid body without elements, which moves freely but for what holds it.
+struct FreeBody {
+  std::string name;
+  std::vector<Index> vertices;
+  EmbeddedPoint center;  // of mass
+  double mass_kg = 0;
+};
+
 /// Holds vertices where they are told to be: an entry of the description's `fixed`.
 struct Support {
   std::string name;  // of its region, or fixed_N
@@ -97,7 +107,7 @@ struct ElementRole {
 struct Model {
   std::string name;
   Formulation formulation = Formulation::target_shape;
-  Points rest;                          // #V by 3 [mm], every vertex of the mesh, then those of obstacles
+  Points rest;                          // #V by 3 [mm], every vertex of the mesh, then those of bodies and obstacles
   std::vector<Tetrahedron> tetrahedra;  // without void elements (physical: nor those of chambers); positive volume
   std::vector<EdgeNodes> edge_nodes;    // order 2: of every tetrahedron; order 1: empty
   std::vector<Prism> prisms;            // without void elements; positive volume
@@ -107,8 +117,9 @@ struct Model {
   std::vector<Material> materials;
   std::vector<Actuator> actuators;
   std::vector<Marker> markers;
-  std::vector<Foot> feet;                  // none, or the rear one and the front one
-  std::vector<RigidRegion> rigid;          // disjoint
+  std::vector<Foot> feet;          // none, or the rear one and the front one
+  std::vector<RigidRegion> rigid;  // disjoint; bodies, too
+  std::vector<FreeBody> bodies;
   std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
   Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
   std::vector<Support> supports;           // in the order of the description's `fixed`
@@ -123,11 +134,19 @@ struct Model {
   std::vector<std::string> warnings;  // what is probably not meant, a sentence each: units, elements that lock
 
   /// How many vertices are the mesh's: the first ones.
-  [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.obstacle_vertices; }
+  [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.other_vertices; }
+
+  /// Vertices of a bounded part of its surroundings, which follow each other.
+  [[nodiscard]] std::array<Index, 2> vertices_of_part(Index part) const;
 
   /// Values where the user asks for none, in the order of actuators.
   [[nodiscard]] Eigen::VectorXd rest_actuation() const;
 };
+
+/// Is it of the robot: does inverse kinematics choose it, and a workspace vary it.
+[[nodiscard]] bool drives(const Actuator& actuator);
+/// Does it, and has its range more than one value.
+[[nodiscard]] bool varies(const Actuator& actuator);
 
 /// Checks the meaning of a description and compiles it.
 ///

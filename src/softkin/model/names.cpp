@@ -4,11 +4,13 @@
 namespace softkin {
 
 const char* kind_name(const Actuator& actuator) {
-  constexpr const char* names[] = {"cable", "dea", "pneumatic"};  // in the order of ActuatorKind
+  constexpr const char* names[] = {"cable",  "dea",   "pneumatic",
+                                   "motion", "force", "hold"};  // in the order of ActuatorKind
   return names[static_cast<std::size_t>(actuator.kind)];
 }
 
 const char* control_name(const Actuator& actuator) {
+  if (!drives(actuator)) return kind_name(actuator);
   constexpr const char* ratios[] = {"length", "area", "volume"};  // in the order of ActuatorKind
   const bool by_ratio = actuator.control == Control::ratio || actuator.kind == ActuatorKind::dea;
   if (by_ratio) return ratios[static_cast<std::size_t>(actuator.kind)];
@@ -21,7 +23,8 @@ const char* command_name(const Actuator& actuator) {
 
 std::string command_unit(const Actuator& actuator) {
   if (actuator.control == Control::ratio) return "";
-  return actuator.kind == ActuatorKind::cable ? "N" : "kPa";
+  if (actuator.kind == ActuatorKind::motion) return "mm";
+  return actuator.kind == ActuatorKind::pneumatic ? "kPa" : "N";
 }
 
 std::string bracketed_unit(const Actuator& actuator) {
@@ -35,7 +38,7 @@ std::string command_column(const Actuator& actuator) {
 }
 
 std::string multiplier_key(const Actuator& actuator) {
-  if (actuator.kind == ActuatorKind::dea) return "";
+  if (actuator.kind == ActuatorKind::dea || !drives(actuator)) return "";
   return actuator.kind == ActuatorKind::cable ? "tension_N" : "pressure_kPa";
 }
 

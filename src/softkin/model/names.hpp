@@ -6,13 +6,14 @@
 
 namespace softkin {
 
-/// "pneumatic", "cable" or "dea".
+/// "pneumatic", "cable" or "dea"; of what is done to the surroundings "motion", "force" or "hold".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
-/// What the user commands: "volume", "length", "area" (over that at rest), "pressure" or "tension".
+/// What the user commands: "volume", "length", "area" (over that at rest), "pressure" or "tension"; else
+/// its kind.
 [[nodiscard]] const char* control_name(const Actuator& actuator);
 /// "ratio", "pressure" or "tension".
 [[nodiscard]] const char* command_name(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa" or "N"; as a table has it: "[-]", "[kPa]" or "[N]".
+/// The unit of what the user commands, bare: "", "kPa", "N" or "mm"; as a table has it: "[-]", "[kPa]", "[N]" or "[mm]".
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
 /// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa".

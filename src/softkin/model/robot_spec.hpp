@@ -74,7 +74,9 @@ struct FixedSpec {
   std::string name{};          // of the support; empty: its region's, or fixed_N
 };
 
-enum class ActuatorKind { cable, dea, pneumatic };
+/// The last three are no drives of the robot but what is done to its surroundings: the motion of an obstacle, a force on
+/// a body, and how firmly a body is held.
+enum class ActuatorKind { cable, dea, pneumatic, motion, force, hold };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
 /// [kPa].

@@ -54,7 +54,19 @@ std::array<Corners, 2> patch(const Corners& plane, const Bounds& robot) {
 
 }  // namespace
 
-std::optional<PictureLayer> obstacle_layer(const Model& model, const Bounds& robot) {
+std::optional<PictureLayer> body_layer(const Model& model, const Points& positions) {
+  if (model.bodies.empty()) return std::nullopt;
+  PictureLayer layer;
+  layer.color = {0.85, 0.62, 0.30};
+  layer.edges = false;
+  layer.points = positions;
+  for (std::size_t t = 0; t < model.contact.triangles.size(); ++t)
+    if (model.contact.parts[static_cast<std::size_t>(model.contact.part_of[t])].rank == ContactRank::body)
+      layer.triangles.push_back(model.contact.triangles[t]);
+  return layer;
+}
+
+std::optional<PictureLayer> obstacle_layer(const Model& model, const Points& positions, const Bounds& robot) {
   const ContactModel& contact = model.contact;
   const Vec3 more = Vec3::Constant(surroundings * robot.diagonal().norm());
   const Bounds box(robot.min() - more, robot.max() + more);
@@ -67,7 +79,7 @@ std::optional<PictureLayer> obstacle_layer(const Model& model, const Bounds& rob
     const ContactPart& part = contact.parts[static_cast<std::size_t>(contact.part_of[t])];
     if (part.rank != ContactRank::obstacle) continue;
     Corners corners;
-    for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex_at(model.rest, contact.triangles[t][i]);
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex_at(positions, contact.triangles[t][i]);
     if (!part.halfspace) {
       add_within(box, corners, layer, points);
       continue;

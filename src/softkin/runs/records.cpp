@@ -20,7 +20,12 @@ bool is_slack(const Actuator& actuator, double achieved, double length, double t
 ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std::size_t a) {
   const Actuator& actuator = model.actuators[a];
   const auto i = static_cast<Index>(a);
-  ActuatorRecord record{found.actuation[i], achieved_ratio(model, actuator, found.state.positions)};
+  ActuatorRecord record{found.actuation[i], 0};
+  if (drives(actuator))
+    record.achieved = achieved_ratio(model, actuator, found.state.positions);
+  else
+    record.achieved =
+        found.state.actuation.size() > 0 ? found.state.actuation[i] : std::numeric_limits<double>::quiet_NaN();
   if (actuator.curve) record.by_curve = input_by_curve(actuator, found.actuation[i], actuator.branch);
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return record;
   if (found.state.multipliers.size() == 0) return record;  // not known

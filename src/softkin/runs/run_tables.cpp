@@ -60,7 +60,7 @@ std::size_t width_of(const Actuator& actuator) {
 
 /// "pressure [kPa]" or "tension [N]" where the robot answers with one, else "".
 std::string load_title(const Model& model, const Actuator& actuator) {
-  if (model.formulation != Formulation::physical || actuator.kind == ActuatorKind::dea) return "";
+  if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return "";
   return actuator.kind == ActuatorKind::cable ? "tension [N]" : "pressure [kPa]";
 }
 

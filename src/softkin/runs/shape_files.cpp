@@ -94,14 +94,14 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
                                      deformation.multipliers[static_cast<Index>(a)]);
 }
 
-/// Adds the obstacles, each as a region, after all fields: whatever is known of elements is 0 in them. Half-spaces stay
+/// Adds the bodies and obstacles, each as a region, after all fields: whatever is known of elements is 0 in them. Half-spaces stay
 /// without cells: their triangles would dwarf the robot.
-void add_obstacles(const Model& model, VtuContent& content) {
+void add_surroundings(const Model& model, VtuContent& content) {
   const ContactModel& contact = model.contact;
   std::vector<Index> regions(contact.parts.size(), -1);
   for (std::size_t p = 0; p < contact.parts.size(); ++p) {
     const ContactPart& part = contact.parts[p];
-    if (part.rank != ContactRank::obstacle || part.halfspace) continue;
+    if (part.rank == ContactRank::robot || part.halfspace) continue;
     regions[p] = static_cast<Index>(content.region_names.size());
     content.region_names.push_back(part.name);
   }
@@ -141,7 +141,7 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
   content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator, mark};
   content.region_names = model.region_names;
   add_forces(model, deformation, content);
-  add_obstacles(model, content);
+  add_surroundings(model, content);
   write_vtu(path, content);
 }
 
@@ -175,7 +175,10 @@ Image image_of(const Model& model, const Points& positions, const std::vector<do
   Bounds drawn;
   for (const Triangle& t : surface)
     for (const Index v : t) drawn.extend(vertex_at(positions, v)).extend(vertex_at(model.rest, v));
-  if (const auto obstacles = obstacle_layer(model, drawn)) image.layers.push_back(*obstacles);
+  for (const FreeBody& body : model.bodies)
+    for (const Index v : body.vertices) drawn.extend(vertex_at(positions, v));
+  if (const auto bodies = body_layer(model, positions)) image.layers.push_back(*bodies);
+  if (const auto obstacles = obstacle_layer(model, positions, drawn)) image.layers.push_back(*obstacles);
   return image;
 }
 

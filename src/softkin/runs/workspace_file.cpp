@@ -102,7 +102,7 @@ std::string sampling_text(const Model& model, const SamplingOptions& sampling) {
   std::string text;
   for (const Actuator& actuator : model.actuators)
     text += (text.empty() ? "grid of " : " x ") +
-            std::to_string(actuator.low < actuator.high ? nearest_grid(model, sampling.samples) : 1);
+            std::to_string(varies(actuator) ? nearest_grid(model, sampling.samples) : 1);
   return text;
 }
 

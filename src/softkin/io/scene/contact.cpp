@@ -31,10 +31,21 @@ ObstacleShape read_shape(const Context& context, const std::string& key, const N
   return read_obstacle_surface(context, node);
 }
 
+/// "x", "y" and "z".
+std::array<bool, 3> read_axes(const Node& node) {
+  std::array<bool, 3> axes{false, false, false};
+  for (const auto& item : list(node)) {
+    bool& axis = axes[static_cast<std::size_t>(choice(*item, {"x", "y", "z"}))];
+    if (axis) fail(*item, "axis " + item->text + " is given twice");
+    axis = true;
+  }
+  return axes;
+}
+
 std::vector<ObstacleSpec> read_obstacles(const Context& context, const Node& node) {
   const Keys shapes{"box", "sphere", "cylinder", "capsule", "halfspace", "surface"};
   Keys known = shapes;
-  known.insert(known.begin(), {"name", "friction"});
+  known.insert(known.begin(), {"name", "friction", "motion"});
   std::vector<ObstacleSpec> obstacles;
   Names names;
   for (const auto& item : list(node)) {
@@ -44,10 +55,31 @@ std::vector<ObstacleSpec> read_obstacles(const Context& context, const Node& nod
     const Node::Entry& shape = map.one_of(shapes);
     spec.shape = read_shape(context, shape.key, *shape.value);
     if (const Node* friction = map.find("friction")) spec.friction = read_friction(*friction);
+    if (const Node* motion = map.find("motion")) spec.motion = read_axes(*motion);
     spec.origin = item->origin;
     obstacles.push_back(std::move(spec));
   }
   return obstacles;
+}
+
+std::vector<BodySpec> read_bodies(const Context& context, const Node& node) {
+  const Keys shapes{"box", "sphere", "cylinder", "capsule", "surface"};
+  Keys known = shapes;
+  known.insert(known.begin(), {"name", "density", "friction"});
+  std::vector<BodySpec> bodies;
+  Names names;
+  for (const auto& item : list(node)) {
+    const Map map(*item, known);
+    BodySpec spec;
+    spec.name = names.add_label(map.at("name"));
+    const Node::Entry& shape = map.one_of(shapes);
+    spec.shape = read_shape(context, shape.key, *shape.value);
+    if (const Node* density = map.find("density")) spec.density = read_density(*density);
+    if (const Node* friction = map.find("friction")) spec.friction = read_friction(*friction);
+    spec.origin = item->origin;
+    bodies.push_back(std::move(spec));
+  }
+  return bodies;
 }
 
 ContactPairSpec read_pair(const Node& node) {
@@ -69,11 +101,13 @@ void read_contact_keys(const Context& context, const Node& node, ContactSpec& sp
 std::optional<ContactSpec> read_contact(const Context& context, const Map& scene) {
   const Node::Entry* contact = scene.entry("contact");
   const Node::Entry* obstacles = scene.entry("obstacles");
-  if (contact == nullptr && obstacles == nullptr) return std::nullopt;
+  const Node::Entry* bodies = scene.entry("bodies");
+  if (contact == nullptr && obstacles == nullptr && bodies == nullptr) return std::nullopt;
   ContactSpec spec;
-  spec.origin = (contact ? contact : obstacles)->origin;
+  spec.origin = (contact ? contact : obstacles ? obstacles : bodies)->origin;
   if (contact) read_contact_keys(context, *contact->value, spec);
   if (obstacles) spec.obstacles = read_obstacles(context, *obstacles->value);
+  if (bodies) spec.bodies = read_bodies(context, *bodies->value);
   return spec;
 }
 

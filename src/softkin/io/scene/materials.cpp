@@ -87,12 +87,6 @@ std::optional<ElasticSpec> read_elastic(const Map& map) {
   return elastic;
 }
 
-double read_density(const Node& node) {
-  const double density = number(node);
-  if (density < 0) fail(node, node.name + " must not be negative: " + node.text);
-  return density;
-}
-
 std::optional<double> read_shape_ratio(const Map& map) {
   const Node* node = map.find("shape_ratio");
   if (!node) return std::nullopt;
@@ -102,6 +96,12 @@ std::optional<double> read_shape_ratio(const Map& map) {
 }
 
 }  // namespace
+
+double read_density(const Node& node) {
+  const double density = number(node);
+  if (density < 0) fail(node, node.name + " must not be negative: " + node.text);
+  return density;
+}
 
 MaterialSpec read_material(const Node& node) {
   Keys known{"region", "shape_ratio", "weight", "linear_range", "density"};

@@ -65,8 +65,9 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 /// The mesh of a scene, or its meshes as one, in mm.
 void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] std::vector<RegionSpec> read_regions(const Context& context, const Node& node);
-/// Keys `contact` and `obstacles`; none where neither is there.
+/// Keys `contact`, `obstacles` and `bodies`; none where none of them is there.
 [[nodiscard]] std::optional<ContactSpec> read_contact(const Context& context, const Map& scene);
+[[nodiscard]] double read_density(const Node& node);
 /// Target-shape keys, elastic constants, or both.
 [[nodiscard]] MaterialSpec read_material(const Node& node);
 /// Loads are commanded in the physical formulation alone.

@@ -140,7 +140,7 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
   const scene::Map map(
       root, {"softkin", "units", "mesh", "meshes", "robots", "formulation", "regions", "materials", "void", "fixed",
-             "rigid", "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles"});
+             "rigid", "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles", "bodies"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);

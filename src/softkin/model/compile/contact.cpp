@@ -4,103 +4,38 @@
 #include <map>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
-#include <softkin/model/mesh/primitive_surfaces.hpp>
 
 namespace softkin {
 
 namespace {
 
 constexpr double default_distance = 5e-4, most_distance = 0.05;  // over the robot's diagonal
-constexpr double least_area = 0.01;          // of a vertex, over the mean of the robot's: nothing slips past corners
-constexpr double finest_sagitta = 0.1;       // over the distance
-constexpr double halfspace_diagonals = 100;  // that its triangle reaches to every side
-constexpr double most_diagonals = 1e6;       // from the origin
-constexpr const char* robot_name = "robot";
-
-std::string obstacle_label(const ObstacleSpec& spec) {
-  return "obstacle '" + spec.name + "'";
-}
-
-[[noreturn]] void refuse_obstacle(const ObstacleSpec& spec, const std::string& what) {
-  throw InvalidInput(spec.origin, obstacle_label(spec) + ": " + what);
-}
-
-struct ShapeName {
-  const char* operator()(const Box&) const { return "box"; }
-  const char* operator()(const Sphere&) const { return "sphere"; }
-  const char* operator()(const Cylinder&) const { return "cylinder"; }
-  const char* operator()(const Capsule&) const { return "capsule"; }
-  const char* operator()(const Halfspace&) const { return "halfspace"; }
-  const char* operator()(const TriangleSurface&) const { return "surface"; }
-};
-
-/// Of the surface of an obstacle, which need not be closed.
-void check_obstacle_surface(const ObstacleSpec& spec, const TriangleSurface& surface) {
-  if (surface.triangles.empty()) refuse_obstacle(spec, "the surface has no triangle");
-  if (!surface.vertices.allFinite()) refuse_obstacle(spec, "the surface has a vertex that is not finite");
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const std::string triangle = "triangle " + std::to_string(t) + " (from 0) of the surface ";
-    Vec3 p[3];
-    for (int i = 0; i < 3; ++i) {
-      const Index v = surface.triangles[t][i];
-      if (v < 0 || v >= surface.vertices.rows()) refuse_obstacle(spec, triangle + "names a vertex that is not there");
-      p[i] = vertex_at(surface.vertices, v);
-    }
-    const double longest2 =
-        std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
-    if (!((p[1] - p[0]).cross(p[2] - p[0]).norm() > 1e-12 * longest2)) refuse_obstacle(spec, triangle + "has no area");
-  }
-}
-
-void check_obstacle_shape(const ObstacleSpec& spec) {
-  if (const auto* surface = std::get_if<TriangleSurface>(&spec.shape)) return check_obstacle_surface(spec, *surface);
-  const char* complaint = std::visit(
-      [](const auto& shape) -> const char* {
-        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, TriangleSurface>)
-          return nullptr;
-        else
-          return complaint_about(shape);
-      },
-      spec.shape);
-  if (complaint) refuse_obstacle(spec, std::string("the ") + std::visit(ShapeName{}, spec.shape) + " " + complaint);
-  if (const auto* box = std::get_if<Box>(&spec.shape); box && !((box->high - box->low).minCoeff() > 0))
-    refuse_obstacle(spec, "the box has no volume");
-}
-
-void check_coefficient(double friction, const std::string& owner, const Origin& origin) {
-  if (!(friction >= 0) || !std::isfinite(friction))
-    throw InvalidInput(origin, owner + ": friction must be 0 or more, not " + number(friction));
-}
-
-void check_obstacles(const Compilation& c, const ContactSpec& contact) {
-  std::set<std::string> regions{"all"}, names;
-  for (const Region& region : c.regions.regions()) regions.insert(region.name);
-  for (const ObstacleSpec& spec : contact.obstacles) {
-    if (spec.name.empty()) throw InvalidInput(spec.origin, "an obstacle needs a name");
-    if (spec.name == robot_name)
-      throw InvalidInput(spec.origin, "an obstacle cannot be named 'robot', which stands for the robot");
-    if (regions.count(spec.name) > 0)
-      throw InvalidInput(spec.origin,
-                         obstacle_label(spec) + " has the name of a region of the robot: give it another one");
-    if (!names.insert(spec.name).second) throw InvalidInput(spec.origin, "there are two obstacles '" + spec.name + "'");
-    check_obstacle_shape(spec);
-    if (spec.friction) check_coefficient(*spec.friction, obstacle_label(spec), spec.origin);
-  }
-}
+constexpr double least_area = 0.01;  // of a vertex, over the mean of the robot's: nothing slips past corners
+constexpr const char* robot_name = robot_part_name;
 
 bool is_obstacle(const ContactSpec& contact, const std::string& name) {
   return std::any_of(contact.obstacles.begin(), contact.obstacles.end(),
                      [&](const ObstacleSpec& spec) { return spec.name == name; });
 }
 
-/// An obstacle's name, a region's or "robot".
+bool is_body(const ContactSpec& contact, const std::string& name) {
+  return std::any_of(contact.bodies.begin(), contact.bodies.end(),
+                     [&](const BodySpec& spec) { return spec.name == name; });
+}
+
+bool is_beside(const ContactSpec& contact, const std::string& name) {
+  return is_obstacle(contact, name) || is_body(contact, name);
+}
+
+/// An obstacle's or a body's name, a region's or "robot".
 void check_name(const Compilation& c, const ContactSpec& contact, const std::string& name, const Origin& origin) {
-  if (name == robot_name || is_obstacle(contact, name)) return;
+  if (name == robot_name || is_beside(contact, name)) return;
   std::vector<std::string> known{robot_name};
   for (const ObstacleSpec& spec : contact.obstacles) known.push_back(spec.name);
+  for (const BodySpec& spec : contact.bodies) known.push_back(spec.name);
   for (const Region& region : c.regions.regions()) known.push_back(region.name);
   if (name == "all" || std::find(known.begin(), known.end(), name) == known.end())
-    throw InvalidInput(origin, "there is no obstacle or region '" + name + "'" +
+    throw InvalidInput(origin, "there is no obstacle, body or region '" + name + "'" +
                                    (name == "all" ? "; the whole robot is 'robot'" : suggest_name(name, known)));
   (void)c.regions.find(name, origin);
 }
@@ -114,9 +49,10 @@ void check_pairs(const Compilation& c, const ContactSpec& contact) {
     check_name(c, contact, spec.b, spec.origin);
     check_coefficient(spec.friction, owner, spec.origin);
     if (!seen.insert({a, b}).second) throw InvalidInput(spec.origin, owner + " is given twice");
-    const int obstacles = (is_obstacle(contact, a) ? 1 : 0) + (is_obstacle(contact, b) ? 1 : 0);
-    if (obstacles == 2) throw InvalidInput(spec.origin, owner + " never touches: both are obstacles");
-    if (obstacles == 0 && !contact.self)
+    if (is_obstacle(contact, a) && is_obstacle(contact, b))
+      throw InvalidInput(spec.origin, owner + " never touches: both are obstacles");
+    if (a == b && is_body(contact, a)) throw InvalidInput(spec.origin, owner + " never touches: a body is rigid");
+    if (!is_beside(contact, a) && !is_beside(contact, b) && !contact.self)
       throw InvalidInput(spec.origin, owner + " never touches: both are of the robot, and 'self' is false");
   }
 }
@@ -171,7 +107,7 @@ void add_robot_parts(Compilation& c, const ContactSpec& contact) {
   model.parts.push_back({.name = robot_name, .origin = contact.origin});
   for (const ContactPairSpec& spec : contact.pairs)
     for (const std::string& name : {spec.a, spec.b}) {
-      if (is_obstacle(contact, name) ||
+      if (is_beside(contact, name) ||
           std::any_of(model.parts.begin(), model.parts.end(), [&](const auto& part) { return part.name == name; }))
         continue;
       model.parts.push_back({.name = name, .origin = spec.origin});
@@ -192,11 +128,6 @@ void add_robot_parts(Compilation& c, const ContactSpec& contact) {
       throw InvalidInput(model.parts[part].origin, "region '" + model.parts[part].name +
                                                        "' has no face of the robot's surface" +
                                                        " that is in no region which a pair names before it");
-}
-
-double triangle_area(const Points& vertices, const Triangle& t) {
-  const Vec3 a = vertex_at(vertices, t[0]);
-  return (vertex_at(vertices, t[1]) - a).cross(vertex_at(vertices, t[2]) - a).norm() / 2;
 }
 
 /// What a uniform pressure gives to each vertex of the robot, over the pressure; returns the mean.
@@ -221,76 +152,27 @@ double spread_area(Model& model) {
   return mean;
 }
 
-FacetedSurface facets_of(const Compilation& c, const ObstacleSpec& spec) {
-  const double sagitta = finest_sagitta * c.model.contact.distance_mm;
-  if (const auto* surface = std::get_if<TriangleSurface>(&spec.shape)) return {*surface, 0};
-  if (const auto* box = std::get_if<Box>(&spec.shape)) return faceted(*box);
-  if (const auto* sphere = std::get_if<Sphere>(&spec.shape)) return faceted(*sphere, sagitta);
-  if (const auto* cylinder = std::get_if<Cylinder>(&spec.shape)) return faceted(*cylinder, sagitta);
-  if (const auto* capsule = std::get_if<Capsule>(&spec.shape)) return faceted(*capsule, sagitta);
-  Bounds bounds;
-  for (std::size_t v = 0; v < c.model.used.size(); ++v)
-    if (c.model.used[v]) bounds.extend(vertex_at(c.model.rest, static_cast<Index>(v)));
-  return faceted(std::get<Halfspace>(spec.shape), bounds.center(), halfspace_diagonals * c.model.diagonal_mm);
-}
-
-/// Coordinates so far away that their rounding would show beside the robot, or that are no numbers.
-void check_reach(const Compilation& c, const ObstacleSpec& spec, const Points& vertices) {
-  const double most = most_diagonals * c.model.diagonal_mm;
-  if (!(vertices.array().abs() <= most).all())
-    refuse_obstacle(spec, "it reaches farther from the origin than a million of the robot's diagonals, " +
-                              number(most, 3) + " mm: check its numbers and their unit");
-}
-
-/// Vertices of no element, which stay where they are.
-void append_vertices(Model& model, const Points& vertices, double area) {
-  const Index first = static_cast<Index>(model.rest.rows()), rows = first + static_cast<Index>(vertices.rows());
-  for (Points* points : {&model.rest, &model.held, &model.dead_load}) points->conservativeResize(rows, 3);
-  model.rest.bottomRows(vertices.rows()) = vertices;
-  model.held.bottomRows(vertices.rows()) = vertices;
-  model.dead_load.bottomRows(vertices.rows()).setZero();
-  const auto count = static_cast<std::size_t>(rows);
-  model.fixed.resize(count, {true, true, true});
-  model.support_of.resize(count, {-1, -1, -1});
-  model.used.resize(count, false);
-  model.contact.area.resize(count, area);
-  model.contact.obstacle_vertices += static_cast<Index>(vertices.rows());
-}
-
-void add_obstacle(Compilation& c, const ObstacleSpec& spec, double area) {
-  ContactModel& contact = c.model.contact;
-  const FacetedSurface made = facets_of(c, spec);
-  check_reach(c, spec, made.surface.vertices);
-  const auto part = static_cast<Index>(contact.parts.size()), first = static_cast<Index>(c.model.rest.rows());
-  contact.parts.push_back({.name = spec.name,
-                           .rank = ContactRank::obstacle,
-                           .halfspace = std::holds_alternative<Halfspace>(spec.shape),
-                           .origin = spec.origin});
-  for (Triangle triangle : made.surface.triangles) {
-    for (Index& v : triangle) v += first;
-    contact.triangles.push_back(triangle);
-    contact.part_of.push_back(part);
-  }
-  append_vertices(c.model, made.surface.vertices, area);
-  if (made.sagitta_mm > finest_sagitta * contact.distance_mm)
-    c.model.notes.push_back("The " + counted(made.surface.triangles.size(), "facet") + " of " + obstacle_label(spec) +
-                            " lie up to " + number(made.sagitta_mm, 3) + " mm inside its " +
-                            std::visit(ShapeName{}, spec.shape) + ".");
+bool by_rank(const ContactPart* a, const ContactPart* b) {
+  return a->rank < b->rank;
 }
 
 void set_pairs(ContactModel& model, const ContactSpec& contact) {
   const std::size_t count = model.parts.size();
-  std::map<std::string, std::optional<double>> of_obstacle;
+  std::map<std::string, std::optional<double>> own;
+  for (const ObstacleSpec& spec : contact.obstacles) own[spec.name] = spec.friction;
+  for (const BodySpec& spec : contact.bodies) own[spec.name] = spec.friction;
   std::map<std::string, std::size_t> at;
-  for (const ObstacleSpec& spec : contact.obstacles) of_obstacle[spec.name] = spec.friction;
   for (std::size_t a = 0; a < count; ++a) {
     at[model.parts[a].name] = a;
     for (std::size_t b = 0; b < count; ++b) {
+      const ContactPart &one = model.parts[a], &two = model.parts[b];
       ContactPair pair{true, contact.friction};
-      const auto is_solid = [&](std::size_t part) { return model.parts[part].rank == ContactRank::obstacle; };
-      if (is_solid(a) == is_solid(b)) pair.touch = !is_solid(a) && contact.self;
-      for (const std::size_t part : {a, b})
-        if (is_solid(part)) pair.friction = of_obstacle[model.parts[part].name].value_or(contact.friction);
+      if (one.rank == two.rank && one.rank == ContactRank::robot) pair.touch = contact.self;
+      if (one.rank == two.rank && one.rank == ContactRank::obstacle) pair.touch = false;
+      if (a == b && one.rank == ContactRank::body) pair.touch = false;
+      // a body's own goes before an obstacle's
+      for (const ContactPart* part : {std::max(&one, &two, by_rank), std::min(&one, &two, by_rank)})
+        if (part->rank != ContactRank::robot) pair.friction = own[part->name].value_or(pair.friction);
       model.pairs.push_back(pair);
     }
   }
@@ -312,7 +194,7 @@ void check_contact(const Compilation& c) {
   if (contact.distance_mm && !(*contact.distance_mm > 0 && std::isfinite(*contact.distance_mm)))
     throw InvalidInput(contact.origin, "contact distance must be above 0 mm, not " + number(*contact.distance_mm));
   check_coefficient(contact.friction, "contact", contact.origin);
-  check_obstacles(c, contact);
+  check_surroundings(c, contact);
   check_pairs(c, contact);
 }
 
@@ -324,7 +206,7 @@ void compile_contact(Compilation& c) {
   contact.modulus_MPa = softest(c.model);
   add_robot_parts(c, spec);
   const double mean = spread_area(c.model);
-  for (const ObstacleSpec& obstacle : spec.obstacles) add_obstacle(c, obstacle, least_area * mean);
+  add_surroundings(c, spec, least_area * mean);
   set_pairs(contact, spec);
 }
 

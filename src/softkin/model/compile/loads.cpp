@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
@@ -59,7 +60,8 @@ void check_density(Compilation& c) {
   std::vector<bool> has_element(c.model.materials.size());
   for (const auto* roles : {&c.model.tetrahedron_roles, &c.model.prism_roles})
     for (const ElementRole& role : *roles) has_element[role.material] = true;
-  bool any = false;
+  bool any = c.spec.contact && std::any_of(c.spec.contact->bodies.begin(), c.spec.contact->bodies.end(),
+                                           [](const BodySpec& body) { return body.density > 0; });
   for (std::size_t m = 0; m < has_element.size(); ++m)
     any = any || (has_element[m] && c.model.materials[m].density > 0);
   if (!any) throw InvalidInput(c.origin, "there is gravity but no material has a density");

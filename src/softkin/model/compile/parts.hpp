@@ -145,6 +145,17 @@ void check_contact(const Compilation& c);
 /// Last: the surfaces that may touch; appends the obstacles' vertices to the model's.
 void compile_contact(Compilation& c);
 
+/// Stands for all of the robot that no pair names a region of.
+inline constexpr const char* robot_part_name = "robot";
+/// Refuses a friction coefficient that is none; owner: whose it is.
+void check_coefficient(double friction, const std::string& owner, const Origin& origin);
+/// The part of check_contact() that is about obstacles and bodies.
+void check_surroundings(const Compilation& c, const ContactSpec& contact);
+/// Adds bodies, then obstacles, and their commands.
+/// least_area  that a vertex carries pressure for [mm^2]
+void add_surroundings(Compilation& c, const ContactSpec& contact, double least_area);
+[[nodiscard]] double triangle_area(const Points& vertices, const Triangle& t);
+
 /// Of a law at small strain, where all are the same.
 struct StiffnessAtRest {
   double youngs_modulus_MPa = 0;

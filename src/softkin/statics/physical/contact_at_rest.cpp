@@ -28,14 +28,22 @@ class RestingSurfaces {
       : model(of), surface(contact::make_surface(of.contact.triangles, of.rest)), team(1) {
     contact::Exclusions exclusions;
     exclusions.group.assign(static_cast<std::size_t>(model.rest.rows()), -1);
-    std::fill(exclusions.group.begin() + model.robot_vertices(), exclusions.group.end(), 0);
+    for (std::size_t t = 0; t < of.contact.triangles.size(); ++t) {
+      const Index part = of.contact.part_of[t];
+      const ContactRank rank = of.contact.parts[static_cast<std::size_t>(part)].rank;
+      for (const Index v : of.contact.triangles[t])
+        exclusions.group[static_cast<std::size_t>(v)] = rank == ContactRank::robot      ? -1
+                                                        : rank == ContactRank::obstacle ? 0
+                                                                                        : 1 + part;
+    }
     broad.emplace(surface, model.rest, std::move(exclusions));
   }
 
   [[nodiscard]] Index part(Index triangle) const { return model.contact.part_of[static_cast<std::size_t>(triangle)]; }
-  [[nodiscard]] bool of_robot(Index triangle) const {
-    return model.contact.parts[static_cast<std::size_t>(part(triangle))].rank == ContactRank::robot;
+  [[nodiscard]] ContactRank rank(Index triangle) const {
+    return model.contact.parts[static_cast<std::size_t>(part(triangle))].rank;
   }
+  [[nodiscard]] bool of_robot(Index triangle) const { return rank(triangle) == ContactRank::robot; }
   /// A triangle at a vertex or edge, by place.
   [[nodiscard]] static Index first_at(const contact::Lists& triangles, Index i) {
     return triangles.items[static_cast<std::size_t>(triangles.begin[static_cast<std::size_t>(i)])];
@@ -62,8 +70,17 @@ const ContactPart& part_at(const Model& model, Index part) {
 
 std::string name_of_part(const ContactPart& part) {
   if (part.rank == ContactRank::obstacle) return "obstacle '" + part.name + "'";
-  if (part.rank == ContactRank::body) return "'" + part.name + "'";
+  if (part.rank == ContactRank::body) return "body '" + part.name + "'";
   return part.name == "robot" ? "the robot" : "region '" + part.name + "'";
+}
+
+/// Of something that is closed: all of the robot, whichever of its parts it is.
+std::string name_of_solid(const ContactPart& part) {
+  return part.rank == ContactRank::robot ? "the robot" : name_of_part(part);
+}
+
+std::string kind_of(const ContactPart& part) {
+  return part.rank == ContactRank::body ? "body" : "obstacle";
 }
 
 std::string place_text(const Vec3& point) {
@@ -82,7 +99,7 @@ bool is_closed(const Points& vertices, const std::vector<Triangle>& triangles) {
   return std::all_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.closed; });
 }
 
-/// The robot's vertices on the wrong side of half-spaces.
+/// Vertices on the wrong side of half-spaces.
 void refuse_behind_planes(const RestingSurfaces& at) {
   const Model& model = at.model;
   for (std::size_t t = 0; t < at.surface.triangles.size(); ++t) {
@@ -92,19 +109,23 @@ void refuse_behind_planes(const RestingSurfaces& at) {
     const Vec3 normal = (at.rest(b) - at.rest(a)).cross(at.rest(c) - at.rest(a)).normalized();
     double least = std::numeric_limits<double>::infinity();
     Vec3 lowest;
-    for (const Index v : at.surface.vertices) {
-      if (v >= model.robot_vertices()) continue;
+    const ContactPart* deepest = nullptr;
+    for (std::size_t i = 0; i < at.surface.vertices.size(); ++i) {
+      const Index v = at.surface.vertices[i], own = at.at_vertex(static_cast<Index>(i));
+      if (at.rank(own) == ContactRank::obstacle) continue;
       const double height = normal.dot(at.rest(v) - at.rest(a));
       if (!(height < least)) continue;
       least = height;
       lowest = at.rest(v);
+      deepest = &part_at(model, at.part(own));
     }
     if (least > touching * model.diagonal_mm) continue;
     const bool deep = least < -touching * model.diagonal_mm;
-    throw InvalidInput(part.origin,
-                       "the robot " + (deep ? "lies " + number(-least) + " mm deep in " : std::string("touches ")) +
-                           name_of_part(part) + " at rest, " + place_text(lowest) + ": move it by more than " +
-                           number(std::max(0.0, -least)) + " mm against its normal, so that a gap is left");
+    throw InvalidInput(part.origin, name_of_solid(*deepest) + " " +
+                                        (deep ? "lies " + number(-least) + " mm deep in " : std::string("touches ")) +
+                                        name_of_part(part) + " at rest, " + place_text(lowest) +
+                                        ": move it by more than " + number(std::max(0.0, -least)) +
+                                        " mm against its normal, so that a gap is left");
   }
 }
 
@@ -132,7 +153,7 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
 }
 
 [[noreturn]] void refuse_crossing(const RestingSurfaces& at, Index triangle, Index other, const Vec3& place) {
-  if (at.of_robot(other)) std::swap(triangle, other);
+  if (at.rank(other) < at.rank(triangle)) std::swap(triangle, other);
   const ContactPart &one = part_at(at.model, at.part(triangle)), &two = part_at(at.model, at.part(other));
   const std::string where = " at rest, " + place_text(place) + ": ";
   if (at.of_robot(other)) {
@@ -142,13 +163,16 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
                            (same ? " touches or crosses itself" : " and " + name_of_part(two) + " touch or cross") +
                            where + "leave a gap there or join the surfaces in the mesh, or set " + "'self: false'");
   }
-  const Index obstacle = at.part(other);
-  const double depth = depth_of(at.model.rest, triangles_where(at, [&](Index t) { return at.of_robot(t); }),
-                                triangles_where(at, [&](Index t) { return at.part(t) == obstacle; }));
+  const Index first = at.part(triangle), second = at.part(other);
+  const bool robot = at.of_robot(triangle);
+  const double depth = depth_of(
+      at.model.rest, triangles_where(at, [&](Index t) { return robot ? at.of_robot(t) : at.part(t) == first; }),
+      triangles_where(at, [&](Index t) { return at.part(t) == second; }));
+  const std::string kind = kind_of(two);
   throw InvalidInput(two.origin, name_of_part(one) + " and " + name_of_part(two) + " touch or cross" + where +
-                                     (depth > 0 ? "move the obstacle away by about " + number(depth, 2) +
+                                     (depth > 0 ? "move the " + kind + " away by about " + number(depth, 2) +
                                                       " mm or more, so that a gap is left"
-                                                : "move the obstacle away, so that a gap is left"));
+                                                : "move the " + kind + " away, so that a gap is left"));
 }
 
 /// Surfaces that pass through each other: every piece of their common line ends where an edge meets a triangle.
@@ -212,28 +236,41 @@ std::vector<Vec3> one_of_each(const Points& rest, const std::vector<Triangle>& t
   return points;
 }
 
-/// What does not cross is inside with all of a piece or with none.
+/// What does not cross is inside with all of a piece or with none: of two parts, the robot being one.
 void refuse_inside(const RestingSurfaces& at) {
   const Points& rest = at.model.rest;
-  const std::vector<Triangle> robot = triangles_where(at, [&](Index t) { return at.of_robot(t); });
-  const std::vector<Vec3> of_robot = one_of_each(rest, robot);
-  std::optional<SurfaceTree> body;
-  for (std::size_t p = 0; p < at.model.contact.parts.size(); ++p) {
-    const ContactPart& part = at.model.contact.parts[p];
-    if (part.rank != ContactRank::obstacle || part.halfspace) continue;
-    if (!body) body.emplace(rest, robot);
-    const auto triangles = triangles_where(at, [&](Index t) { return at.part(t) == static_cast<Index>(p); });
-    for (const Vec3& point : one_of_each(rest, triangles))
-      if (body->contains(point))
-        throw InvalidInput(part.origin, name_of_part(part) + " lies inside the robot's body at rest, " +
-                                            place_text(point) + ": move it out, so that a gap is left");
-    if (!is_closed(rest, triangles)) continue;
-    const SurfaceTree solid(rest, triangles);
-    for (const Vec3& point : of_robot)
-      if (solid.contains(point))
-        throw InvalidInput(part.origin, "the robot lies inside " + name_of_part(part) + " at rest, " +
-                                            place_text(point) + ": move the obstacle away, so that a gap is left");
-  }
+  struct Solid {
+    const ContactPart* part;
+    std::vector<Triangle> triangles;
+    std::vector<Vec3> points;
+    std::optional<SurfaceTree> tree;  // where it is closed
+  };
+  std::vector<Solid> solids;
+  const auto add = [&](const ContactPart& part, std::vector<Triangle> triangles) {
+    Solid solid{&part, std::move(triangles), {}, {}};
+    solid.points = one_of_each(rest, solid.triangles);
+    if (part.rank == ContactRank::robot || is_closed(rest, solid.triangles)) solid.tree.emplace(rest, solid.triangles);
+    solids.push_back(std::move(solid));
+  };
+  add(part_at(at.model, 0), triangles_where(at, [&](Index t) { return at.of_robot(t); }));
+  for (std::size_t p = 0; p < at.model.contact.parts.size(); ++p)
+    if (const ContactPart& part = at.model.contact.parts[p]; part.rank != ContactRank::robot && !part.halfspace)
+      add(part, triangles_where(at, [&](Index t) { return at.part(t) == static_cast<Index>(p); }));
+  for (const Solid& inner : solids)
+    for (const Solid& outer : solids) {
+      if (&inner == &outer || !outer.tree) continue;
+      if (inner.part->rank == ContactRank::obstacle && outer.part->rank == ContactRank::obstacle) continue;
+      for (const Vec3& point : inner.points) {
+        if (!outer.tree->contains(point)) continue;
+        const bool robot = outer.part->rank == ContactRank::robot;
+        const ContactPart& named = robot ? *inner.part : *outer.part;
+        throw InvalidInput(named.origin, name_of_solid(*inner.part) + " lies inside " +
+                                             (robot ? "the robot's body" : name_of_solid(*outer.part)) + " at rest, " +
+                                             place_text(point) + ": " +
+                                             (robot ? "move it out" : "move the " + kind_of(named) + " away") +
+                                             ", so that a gap is left");
+      }
+    }
 }
 
 /// Unit normals of the robot's vertices, by place: the mean over their triangles, weighted by area.

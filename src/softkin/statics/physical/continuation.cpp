@@ -36,11 +36,8 @@ constexpr double climb_below = 0.2;
 constexpr double most_inverting = 0.01;
 /// Friction and the normal forces that it leads to are found in turn until it changes by less than this share.
 constexpr double frictions_agree = 1e-4;
-
-Demand between(const Demand& from, const Demand& to, double share) {
-  if (share == 1) return to;
-  return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share)};
-}
+/// Share of normal forces whose friction gives way, from which on it is told where the way ends.
+constexpr double worth_telling = 0.5;
 
 }  // namespace
 
@@ -122,7 +119,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   Iterate trial = at;
   if (release(there, at, false)) way_.factorised = false;
   if (!way_.factorised && prepare(way_.here, at) < 0)
-    return limit(way_.done, "the stiffness at the start is not stable");
+    return limit(way_.done, "the stiffness at the start is not stable", at);
   way_.factorised = true;
   const int before = report_.iterations;
   const std::vector<bool> active = active_;
@@ -155,7 +152,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     way_.advance *= used <= 5 + more ? 2 : used <= 9 + more ? 1.4 : 0.8;
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
   }
-  return end ? end : out_of_patience();
+  return end ? end : out_of_patience(at);
 }
 
 /// After a step of this length that led to no equilibrium.
@@ -166,7 +163,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     const Climb end = climb(std::exchange(way_.load, -1), way_.from, way_.here, way_.to, at);
     if (end == Climb::interrupted) return Status::interrupted;
     if (end == Climb::arrived) return arrive(way_.to, at);
-    if (end == Climb::summit) return limit(report_.reached, report_.remark);
+    if (end == Climb::summit) return limit(report_.reached, report_.remark, at);
     active_ = active;
   }
   if (way_.beyond && way_.advance < finest) {
@@ -181,7 +178,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     return std::nullopt;
   }
   if (way_.advance < least_advance || move_mm_ < least_move * tolerance_mm_)
-    return limit(way_.done, "beyond this point no equilibrium follows" + instead_of_loads());
+    return limit(way_.done, "beyond this point no equilibrium follows" + instead_of_loads(), at);
   return std::nullopt;
 }
 
@@ -205,13 +202,15 @@ void Continuation::pass(const Demand& demand, double done) {
   ++report_.continuation_steps;
 }
 
-std::optional<Status> Continuation::out_of_patience() {
+std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
   if (way_.done - way_.marked >= least_progress) {
     way_.marked = way_.done;
     way_.marked_iterations = report_.iterations;
   } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= patience) {
-    return limit(way_.done, "the way there goes on in ever smaller steps: " + std::to_string(patience) +
-                                " iterations brought less than 1 % of it");
+    return limit(way_.done,
+                 "the way there goes on in ever smaller steps: " + std::to_string(patience) +
+                     " iterations brought less than 1 % of it",
+                 at);
   }
   if (way_.done == 1 || report_.iterations < max_iterations_) return std::nullopt;
   tell_balance();
@@ -248,7 +247,9 @@ double Continuation::longest_step(bool snap, bool unstable) const {
 bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   if (system_.any_dead_load() && from.share != to.share) return true;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (system_.measures().measures(a) && !system_.constrains(a) && from.actuation[a] != to.actuation[a]) return true;
+    if (from.actuation[a] != to.actuation[a] &&
+        (system_.loads(a) || (system_.measures().measures(a) && !system_.constrains(a))))
+      return true;
   return false;
 }
 
@@ -257,7 +258,8 @@ std::string Continuation::instead_of_loads() const {
   bool pressures = false, tensions = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     const Actuator& actuator = system_.model().actuators[a];
-    if (actuator.control != Control::load || way_.from.actuation[a] == way_.to.actuation[a]) continue;
+    if (actuator.control != Control::load || !drives(actuator) || way_.from.actuation[a] == way_.to.actuation[a])
+      continue;
     (actuator.kind == ActuatorKind::cable ? tensions : pressures) = true;
   }
   if (!pressures && !tensions) return "";
@@ -271,10 +273,14 @@ void Continuation::tell_balance() {
   report_.pull_N = last_.forces.pull;
 }
 
-Status Continuation::limit(double done, const std::string& why) {
+/// at: the last equilibrium
+Status Continuation::limit(double done, const std::string& why, const Iterate& at) {
   tell_balance();
   report_.reached = done;
   report_.remark = why;
+  const double slipping = system_.slipping_share(at, work_, team_);
+  if (slipping >= worth_telling)
+    report_.remark += "; there " + number(100 * slipping, 3) + " % of what rubs slips, or nearly";
   return Status::limit;
 }
 
@@ -350,9 +356,21 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   return outcome;
 }
 
-/// Newton, again and again with the normal forces that it leads to, by which friction is limited.
+/// Newton with friction that follows the normal forces by which it is limited; else, where that leads nowhere, again and
+/// again with those that it led to.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   constexpr int most_rounds = 40;
+  if (system_.friction()) {
+    Iterate trial = at;
+    const auto outcome = settle_following(demand, policy, trial, factorised);
+    if (outcome == Newton::Outcome::interrupted) return outcome;
+    if (outcome == Newton::Outcome::converged || outcome == Newton::Outcome::unstable) {
+      at = std::move(trial);
+      return outcome;
+    }
+    system_.hold_friction(at, work_, team_);
+    factorised = false;
+  }
   auto outcome = settle_constraints(demand, policy, at, factorised);
   rounds_ = 1;
   for (int round = 0; system_.friction() && round < most_rounds; ++round) {
@@ -363,6 +381,28 @@ Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy
     outcome = settle_constraints(demand, policy, at, factorised_nearby(at.positions) && factor_holds_active());
   }
   return outcome;
+}
+
+/// With friction that follows its normal forces, until nothing begins to touch any more.
+Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Policy policy, Iterate& at,
+                                               bool factorised) {
+  constexpr int most_rounds = 5;
+  const std::vector<bool> before = active_;
+  rounds_ = 1;
+  for (int round = 0; round < most_rounds; ++round) {
+    work_.friction_follows = true;
+    const auto outcome = settle_constraints(demand, policy, at, factorised);
+    work_.friction_follows = false;
+    if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) {
+      active_ = before;
+      return outcome;
+    }
+    report_.friction_change = system_.renew_friction(from_, at, work_, team_);
+    if (report_.friction_change <= frictions_agree) return outcome;
+    factorised = factorised_nearby(at.positions) && factor_holds_active();
+  }
+  active_ = before;
+  return Newton::Outcome::stuck;
 }
 
 /// Another equilibrium instead of the one at hand: what slips goes on from there.

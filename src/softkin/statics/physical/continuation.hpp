@@ -76,12 +76,12 @@ class Continuation {
   [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
   [[nodiscard]] std::string instead_of_loads() const;
   void tell_balance();
-  Status limit(double done, const std::string& why);
+  Status limit(double done, const std::string& why, const Iterate& at);
   std::optional<Status> go_on(Iterate& at);
   std::optional<Status> shorten(double length, Iterate& at);
   bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
   void pass(const Demand& demand, double done);
-  std::optional<Status> out_of_patience();
+  std::optional<Status> out_of_patience(const Iterate& at);
   bool release(const Demand& there, Iterate& at, bool contradicting);
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
   bool jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial);
@@ -94,6 +94,7 @@ class Continuation {
   int prepare(const Demand& here, const Iterate& at);
   Newton::Outcome settle_here(const Demand& demand, Iterate& at);
   Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised = false);
+  Newton::Outcome settle_following(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised);
   Newton::Outcome settle_constraints(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised);
   void take(Iterate& at, Iterate&& found);
   [[nodiscard]] bool factorised_nearby(const Points& shape) const;

@@ -50,9 +50,10 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
   for (Index i = 0; i < slopes_.cols(); ++i)
     right_.multipliers(i, held_[i]) = system_.sign(held_[i]) * system_.measures().rest(held_[i]);
   Points force;
+  moves_.resize(static_cast<std::size_t>(system_.actuators()));
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (system_.constrains(a)) continue;
-    system_.command_force(at, demand, a, work_, force, team_);
+    system_.command_force(at, demand, a, work_, force, moves_[static_cast<std::size_t>(a)], team_);
     system_.freedoms().reduce(-force, at.positions, right_.moves.col(a));
   }
 }
@@ -119,6 +120,7 @@ Sensitivity Derivative::result(const Iterate& at) const {
   result.multipliers.setZero(actuators, actuators);
   for (Index a = 0; a < actuators; ++a) {
     system_.freedoms().expand(found_.moves.col(a), at.positions, result.positions[a]);
+    if (const Points& moves = moves_[static_cast<std::size_t>(a)]; moves.rows() > 0) result.positions[a] += moves;
     for (Index i = 0; i < slopes_.cols(); ++i)
       result.multipliers(held_[i], a) = found_.multipliers(i, a) / system_.unit(held_[i]);
     if (!system_.constrains(a) && system_.measures().measures(a)) result.multipliers(a, a) = 1;

@@ -36,6 +36,7 @@ class Derivative {
   std::vector<Index> held_;
   Eigen::MatrixXd slopes_;  // G
   Columns right_, found_;
+  std::vector<Points> moves_;  // per actuator: of what its command moves itself; no rows: nothing
 };
 
 }  // namespace softkin::physical

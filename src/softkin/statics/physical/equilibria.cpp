@@ -12,6 +12,10 @@ Demand demand_of(const System& system, const Model& model, const State& start) {
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.constrains(a))
       demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
+    else if (model.actuators[a].kind == ActuatorKind::motion)
+      demand.actuation[a] = system.moved(a, start.positions);
+    else if (!drives(model.actuators[a]))
+      continue;
     else if (model.actuators[a].kind == ActuatorKind::dea)
       demand.actuation[a] = 1;
     else
@@ -44,7 +48,7 @@ void Equilibria::begin_again(const Demand& to, const Options& options, const Pro
                              System::Workspace& work, Iterate& at, SolveReport& report) const {
   const std::string remark = report.remark;
   Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators())};
-  system_.freedoms().hold(0, fresh.positions);
+  system_.hold({system_.model().rest_actuation(), 0}, fresh.positions);
   Continuation continuation(system_, work, team, options, progress, report);
   const Status status = continuation.follow({system_.model().rest_actuation(), 0}, to, fresh);
   if (status == Status::converged) {
@@ -71,7 +75,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
 
   const Demand from = demand_of(system_, model, start), to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors};
-  system_.freedoms().hold(from.share, at.positions);
+  system_.hold(from, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
   // a start whose supports are elsewhere may have no way there

@@ -145,6 +145,16 @@ Vec3 Friction::force(const Points& positions, const Hold& hold) const {
   return length > 0 ? Vec3(-hold.limit * energy::friction(length, creep_mm_).slope / length * way) : Vec3::Zero();
 }
 
+double Friction::slipping_share(const Points& positions, const Holds& holds) const {
+  constexpr double nearly = 0.75;  // of the creep: friction is within 6 % of its limit
+  double all = 0, slipping = 0;
+  for (const Hold& hold : holds) {
+    all += hold.limit;
+    if (slip(positions, hold).norm() > nearly * creep_mm_) slipping += hold.limit;
+  }
+  return all > 0 ? slipping / all : 0;
+}
+
 double Friction::disagreement(const Points& positions, const Holds& before, const Holds& after) const {
   double largest = 0, change = 0;
   const auto compare = [&](const Vec3& then, const Vec3& now) {

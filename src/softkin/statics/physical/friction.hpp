@@ -58,6 +58,8 @@ class Friction {
   /// How far a vertex is from its anchor, across the normal [mm].
   [[nodiscard]] static Vec3 slip(const Points& positions, const Hold& hold);
   [[nodiscard]] double creep_mm() const { return creep_mm_; }
+  /// Of the normal forces that are held, the share that slips [-]; 0 without any.
+  [[nodiscard]] double slipping_share(const Points& positions, const Holds& holds) const;
   /// On the vertex; the nodes share it by their weights [N].
   [[nodiscard]] Vec3 force(const Points& positions, const Hold& hold) const;
 

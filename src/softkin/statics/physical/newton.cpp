@@ -118,12 +118,14 @@ bool Newton::accept(double moved_mm, Iterate& at) {
   return goes_on();
 }
 
-/// Where contacts cut step after step, a way with less to go is shorter.
+/// Where contacts cut step after step, a way with less to go is shorter; where what slides has nothing to stop it, step
+/// after whole step is as long as the last.
 bool Newton::labours(double damping) {
-  constexpr double poor = 0.2;
-  constexpr int most_poor = 8;  // in a row
+  constexpr double poor = 0.2, same = 0.9;
+  constexpr int most_poor = 8, most_same = 12;  // in a row
   poor_ = damping < poor ? poor_ + 1 : 0;
-  return system_.contact() && poor_ >= most_poor;
+  same_ = damping == 1 && next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
+  return system_.contact() && (poor_ >= most_poor || (system_.friction() && same_ >= most_same));
 }
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
@@ -133,7 +135,9 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   if (!std::isfinite(step_.size.mean)) return Advance::none;
   damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
-  const double slope = system_.contact() ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
+  // forces that follow their normal forces have none
+  const bool potential = system_.contact() && !work_.friction_follows;
+  const double slope = potential ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
@@ -263,7 +267,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   Advance advance = Advance::made;
   double damping = 1;
-  poor_ = 0;
+  poor_ = same_ = 0;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (factorised && iteration == 0) {
@@ -325,7 +329,7 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   const Tangent tangent(system, here, there, active, work, team, at);
   const Points before = at.positions;
   system.advance(tangent.step, 1, work, at.positions, team);
-  system.freedoms().hold(there.share, at.positions);
+  system.hold(there, at.positions);
   follow(tangent, 1, system, there, active, at.multipliers);
   return largest_move(before, at.positions);
 }
@@ -343,7 +347,7 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   const System::Way way = [&](double share, Points& out) {
     out = from;
     system.advance(tangent.step, share, work, out, team);
-    system.freedoms().hold(here.share + share / held * (there.share - here.share), out);
+    system.hold(between(here, there, share / held), out);
   };
   double end = 1;
   for (bool first = true;; first = false) {
@@ -357,7 +361,7 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
     end = 0;  // only what is held moves
     const System::Way alone = [&](double part, Points& out) {
       out = from;
-      system.freedoms().hold(here.share + part * (there.share - here.share), out);
+      system.hold(between(here, there, part), out);
     };
     if (system.clear_share(from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
     break;

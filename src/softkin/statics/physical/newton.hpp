@@ -87,6 +87,7 @@ class Newton {
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
   Iterate trial_;
   int poor_ = 0;      // steps in a row that were much shorter than Newton's
+  int same_ = 0;      // steps in a row that left as much to go
   int negative_ = 0;  // of the last factorisation
   System::Imbalance imbalance_;
   double missed_ = 0;  // the worst constraint, over its measure at rest [-]

@@ -21,13 +21,20 @@ constexpr double least_turning = 1e-4;
 
 }  // namespace
 
+Demand between(const Demand& from, const Demand& to, double share) {
+  if (share == 1) return to;
+  return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share)};
+}
+
 System::System(const Model& model)
     : model_(model),
       elastic_(model),
       measures_(model),
+      surroundings_(model),
       any_dead_load_(model.dead_load.rows() > 0 && !model.dead_load.isZero(0)) {
   elastic_.add_cliques(cliques_);
   measures_.add_cliques(cliques_);
+  surroundings_.add_cliques(cliques_);
   linear::BlockPattern pattern(static_cast<Index>(model.rest.rows()), cliques_);
   freedoms_ = std::make_unique<supports::Freedoms>(model, pattern);
   supports::ReducedMatrix reduced(*freedoms_, pattern);
@@ -62,7 +69,7 @@ void System::Workspace::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& tea
 
 bool System::constrains(Index actuator) const {
   const Actuator& a = model_.actuators[actuator];
-  return a.kind != ActuatorKind::dea && a.control == Control::ratio;
+  return a.kind != ActuatorKind::dea && drives(a) && a.control == Control::ratio;
 }
 
 void System::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
@@ -75,8 +82,10 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
     balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();
     work.gradient -= demand.share * model_.dead_load;
   }
+  balance.energy += surroundings_.add_gradient(demand.actuation, at.positions, work.gradient);
   if (contacts_ && !balance.forbidden) {
     contacts_->find(at.positions, *work.contacts, team);
+    if (work.friction_follows) contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
     balance.energy += contacts_->energy(at.positions, *work.contacts);
     balance.forbidden = !std::isfinite(balance.energy);
     if (!balance.forbidden) contacts_->add_gradient(at.positions, *work.contacts, work.gradient);
@@ -123,6 +132,7 @@ void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, W
   Eigen::VectorXd scale(actuators());
   for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
   measures_.second_derivatives(at.positions, scale, work.slots, team);
+  surroundings_.stiffness(demand.actuation, work.slots);
   if (contacts_)
     contacts_->stiffness(at.positions, kind == Stiffness::projected, *work.contacts, work.layout->touching,
                          work.slots.data() + 9 * work.layout->first_touching);
@@ -217,7 +227,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
                    Workspace& work, Balance& balance, Team& team) const {
   balance.constraint.setZero(actuators());
   Points moves = at.positions, force;
-  freedoms_->hold(to.share, moves);
+  hold(to, moves);
   moves -= at.positions;
   if (moves.isZero(0)) {
     force.setZero(moves.rows(), 3);
@@ -233,7 +243,11 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
       balance.constraint[a] = target(a, from) - target(a, to);
     } else if (model_.actuators[a].kind == ActuatorKind::dea) {
       layers = true;
-    } else if (!constrains(a)) {
+    } else if (loads(a)) {
+      Points slope;
+      surroundings_.command_force(a, from.actuation, at.positions, slope);
+      force += change * slope;
+    } else if (!constrains(a) && measures_.measures(a)) {
       (void)measures_.value(a, at.positions, &work.slopes[a]);
       force += sign(a) * unit(a) * change * work.slopes[a];
     }
@@ -278,6 +292,11 @@ void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work,
   turning_->step(work.lacking, positions, poses, team);
 }
 
+void System::hold(const Demand& demand, Points& positions) const {
+  freedoms_->hold(demand.share, positions);
+  surroundings_.place(demand.actuation, positions);
+}
+
 void System::hold_friction(const Iterate& at, Workspace& work, Team& team) const {
   if (!friction()) return;
   contacts_->find(at.positions, *work.contacts, team);
@@ -291,6 +310,12 @@ double System::renew_friction(const Points& from, Iterate& at, Workspace& work, 
   const Friction::Holds before = work.contacts->holds;
   contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
   return contacts_->friction().disagreement(at.positions, before, work.contacts->holds);
+}
+
+double System::slipping_share(const Iterate& at, Workspace& work, Team& team) const {
+  if (!friction()) return 0;
+  hold_friction(at, work, team);
+  return contacts_->friction().slipping_share(at.positions, work.contacts->holds);
 }
 
 void System::slide_friction(Iterate& at, Workspace& work, Team& team) const {
@@ -369,8 +394,19 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
 }
 
 void System::command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
-                           Team& team) const {
-  if (model_.actuators[actuator].kind != ActuatorKind::dea) {
+                           Points& moves, Team& team) const {
+  const Actuator& command = model_.actuators[actuator];
+  surroundings_.motion(actuator, moves);
+  if (!drives(command)) {
+    surroundings_.command_force(actuator, demand.actuation, at.positions, force);
+    if (command.kind != ActuatorKind::motion) return;
+    assemble(at, demand, Stiffness::exact, work, team);
+    gather(work, team);
+    work.layout->pattern.multiply(work.blocks, moves, force, team);
+    if (friction()) contacts_->add_friction_response(at.positions, *work.contacts, moves, force);
+    return;
+  }
+  if (command.kind != ActuatorKind::dea) {
     (void)measures_.value(actuator, at.positions, &force);
     force *= sign(actuator) * unit(actuator);
     return;

@@ -7,6 +7,7 @@
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
+#include <softkin/statics/physical/surroundings.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
 #include <softkin/statics/supports/global_step.hpp>
@@ -19,6 +20,9 @@ struct Demand {
   Eigen::VectorXd actuation;  // m, as the user commands it
   double share = 1;           // of dead loads and of the displacement of what is held [-]
 };
+
+/// At a share of the way from one to another.
+[[nodiscard]] Demand between(const Demand& from, const Demand& to, double share);
 
 /// Shape and multipliers; a point of the path that Newton follows.
 struct Iterate {
@@ -52,6 +56,7 @@ class System {
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
     std::unique_ptr<Contacts::Scratch> contacts;      // where there is contact
+    bool friction_follows = false;                    // are its normal forces those of the shape, not those held
     std::shared_ptr<const Layout> layout;             // of the slots
     std::shared_ptr<const Layout> factorised_layout;  // of the factor
     LargeVector<double> slots, blocks, values;
@@ -120,10 +125,10 @@ class System {
   void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
                 Team& team) const;
 
-  /// Derivative of the gradient of the Lagrangian by the command of a load or a dea at fixed positions, #V by 3
-  /// [N per unit of command].
+  /// Derivative of the gradient of the Lagrangian by a command that no measure answers to, at fixed positions of all
+  /// that is free, #V by 3 [N per unit of command]. moves: of what is commanded to move, per unit
   void command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
-                     Team& team) const;
+                     Points& moves, Team& team) const;
 
   /// Newton step of the balance with which the last factorisation was made.
   void first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
@@ -143,6 +148,14 @@ class System {
   /// order, and far better where a step bends the robot.
   void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
 
+  /// Puts what is fixed or commanded to move where a demand has it, and rigid regions into the pose that fits them best.
+  void hold(const Demand& demand, Points& positions) const;
+
+  /// How far an obstacle is from where it stands at rest, along its command's axis [mm].
+  [[nodiscard]] double moved(Index actuator, const Points& positions) const {
+    return surroundings_.moved(actuator, positions);
+  }
+
   [[nodiscard]] bool contact() const { return contacts_ != nullptr; }
   [[nodiscard]] bool friction() const { return contacts_ && contacts_->friction().any(); }
 
@@ -152,6 +165,8 @@ class System {
   ///
   /// returns  how far the friction at the iterate was by other normal forces, over the largest force on a vertex [-]
   double renew_friction(const Points& from, Iterate& at, Workspace& work, Team& team) const;
+  /// Share of what rubs that slips, or nearly [-].
+  [[nodiscard]] double slipping_share(const Iterate& at, Workspace& work, Team& team) const;
   /// Lets what slips at an equilibrium go on from there.
   void slide_friction(Iterate& at, Workspace& work, Team& team) const;
 
@@ -198,6 +213,11 @@ class System {
   [[nodiscard]] double target(Index actuator, const Demand& demand) const {
     return demand.actuation[actuator] * measures_.rest(actuator);
   }
+  /// Does the command of what is no drive load the robot: a force on a body, or what holds it.
+  [[nodiscard]] bool loads(Index actuator) const {
+    const ActuatorKind kind = model_.actuators[actuator].kind;
+    return kind == ActuatorKind::force || kind == ActuatorKind::hold;
+  }
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
 
  private:
@@ -207,6 +227,7 @@ class System {
   const Model& model_;
   Body elastic_;
   supports::ActuatorMeasures measures_;
+  Surroundings surroundings_;
   bool any_dead_load_;
   std::unique_ptr<supports::Freedoms> freedoms_;
   linear::Cliques cliques_;               // of the body

@@ -1,0 +1,112 @@
+#include <cmath>
+#include <softkin/statics/physical/surroundings.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+/// A body that is held is this many times as stiff as the robot about is: modulus times diagonal.
+constexpr double firmness = 1e4;
+/// Share of that at which a body is nearly released.
+constexpr double loosest = 1e-8;
+
+/// Share of the stiffness at a command from 0 to 1, and its derivative.
+double firm_share(double command) {
+  return (std::pow(loosest, 1 - command) - loosest) / (1 - loosest);
+}
+
+double firm_slope(double command) {
+  return -std::log(loosest) * std::pow(loosest, 1 - command) / (1 - loosest);
+}
+
+}  // namespace
+
+Surroundings::Surroundings(const Model& model)
+    : model_(model), stiffest_(firmness * model.contact.modulus_MPa * model.diagonal_mm) {
+  for (const Actuator& actuator : model.actuators)
+    vertices_of_.push_back(actuator.kind == ActuatorKind::motion ? model.vertices_of_part(actuator.other)
+                                                                 : std::array<Index, 2>{0, 0});
+}
+
+void Surroundings::place(const Eigen::VectorXd& actuation, Points& positions) const {
+  for (std::size_t a = 0; a < vertices_of_.size(); ++a)
+    for (Index v = vertices_of_[a][0]; v < vertices_of_[a][1]; ++v)
+      positions(v, model_.actuators[a].axis) += actuation[static_cast<Index>(a)];
+}
+
+double Surroundings::moved(Index actuator, const Points& positions) const {
+  const Index first = vertices_of_[static_cast<std::size_t>(actuator)][0];
+  const int axis = model_.actuators[static_cast<std::size_t>(actuator)].axis;
+  return positions(first, axis) - model_.rest(first, axis);
+}
+
+void Surroundings::add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const {
+  const double each = stiffness / static_cast<double>(body.vertices.size());
+  for (const Index v : body.vertices) gradient.row(v) += each * (positions.row(v) - model_.rest.row(v));
+}
+
+double Surroundings::add_gradient(const Eigen::VectorXd& actuation, const Points& positions, Points& gradient) const {
+  if (!any_body()) return 0;
+  double energy = 0;
+  for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+    const Actuator& actuator = model_.actuators[a];
+    const double command = actuation[static_cast<Index>(a)];
+    if (actuator.kind == ActuatorKind::hold) {
+      const FreeBody& body = model_.bodies[static_cast<std::size_t>(actuator.other)];
+      const double stiffness = stiffest_ * firm_share(command);
+      add_spring(body, stiffness, positions, gradient);
+      for (const Index v : body.vertices)
+        energy += 0.5 * stiffness / static_cast<double>(body.vertices.size()) *
+                  (positions.row(v) - model_.rest.row(v)).squaredNorm();
+    } else if (actuator.kind == ActuatorKind::force && command != 0) {
+      const EmbeddedPoint& at = model_.bodies[static_cast<std::size_t>(actuator.other)].center;
+      for (std::size_t i = 0; i < at.vertices.size(); ++i) {
+        gradient(at.vertices[i], actuator.axis) -= command * at.weights[i];
+        energy -= command * at.weights[i] * (positions - model_.rest)(at.vertices[i], actuator.axis);
+      }
+    }
+  }
+  return energy;
+}
+
+void Surroundings::add_cliques(linear::Cliques& cliques) {
+  first_slot_ = cliques.slots.back();
+  for (const FreeBody& body : model_.bodies)
+    for (const Index v : body.vertices) cliques.add(std::array<Index, 1>{v});
+}
+
+void Surroundings::stiffness(const Eigen::VectorXd& actuation, LargeVector<double>& slots) const {
+  if (!any_body()) return;
+  std::vector<double> of_body(model_.bodies.size());
+  for (std::size_t a = 0; a < model_.actuators.size(); ++a)
+    if (model_.actuators[a].kind == ActuatorKind::hold)
+      of_body[static_cast<std::size_t>(model_.actuators[a].other)] =
+          stiffest_ * firm_share(actuation[static_cast<Index>(a)]);
+  double* slot = slots.data() + 9 * first_slot_;
+  for (std::size_t b = 0; b < of_body.size(); ++b) {
+    const std::size_t count = model_.bodies[b].vertices.size();
+    for (std::size_t i = 0; i < count; ++i, slot += 9)
+      for (int k = 0; k < 9; ++k) slot[k] = k % 4 == 0 ? of_body[b] / static_cast<double>(count) : 0;
+  }
+}
+
+void Surroundings::command_force(Index actuator, const Eigen::VectorXd& actuation, const Points& positions,
+                                 Points& force) const {
+  force.setZero(positions.rows(), 3);
+  const Actuator& command = model_.actuators[static_cast<std::size_t>(actuator)];
+  if (command.kind == ActuatorKind::motion) return;
+  const FreeBody& body = model_.bodies[static_cast<std::size_t>(command.other)];
+  if (command.kind == ActuatorKind::hold)
+    return add_spring(body, stiffest_ * firm_slope(actuation[actuator]), positions, force);
+  for (std::size_t i = 0; i < body.center.vertices.size(); ++i)
+    force(body.center.vertices[i], command.axis) = -body.center.weights[i];
+}
+
+void Surroundings::motion(Index actuator, Points& moves) const {
+  moves.setZero(model_.rest.rows(), 3);
+  const auto& [first, end] = vertices_of_[static_cast<std::size_t>(actuator)];
+  if (end > first)
+    moves.col(model_.actuators[static_cast<std::size_t>(actuator)].axis).segment(first, end - first).setOnes();
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <softkin/statics/statics.hpp>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+constexpr double gravity_m_s2 = 9.81;
+
+/// A small block of rubber beside a floor on which a body stands, a little above it.
+RobotSpec body_on_floor(const Vec3& size, double friction, double slope = 0) {
+  RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {10, 10, 10}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v) spec.mesh.vertices.row(v) += Vec3(60, 0, 1).transpose();
+  spec.fixed = {{{Box{{59.9, -1, -1}, {60.1, 100, 100}}, {}}, {true, true, true}, {0, 0, 0}}};
+  spec.materials[0].density = 1000;
+  spec.gravity = gravity_m_s2 * Vec3(std::sin(slope), 0, -std::cos(slope));
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.05;
+  spec.contact->friction = friction;
+  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
+  spec.contact->bodies.push_back({"cube", Box{{0, 0, 0}, size}, {}, {}, 1000});
+  return spec;
+}
+
+double weight(const Vec3& size) {
+  return 1e-6 * size.prod() * gravity_m_s2;  // of 1000 kg/m^3
+}
+
+/// hold, then forces along x, y and z.
+Equilibrium released(const Statics& statics) {
+  return statics.solve(values({0, 0, 0, 0}), statics.rest(), tight());
+}
+
+}  // namespace
+
+TEST(Bodies, AreHeldUntilReleased) {
+  const Model model = compile(body_on_floor({10, 10, 10}, 0.5));
+  const Statics statics(model);
+  const Equilibrium held = settled(statics, values({1, 0, 0, 0})), free = released(statics);
+  ASSERT_EQ(held.report.status, Status::converged) << held.report.remark;
+  ASSERT_EQ(free.report.status, Status::converged) << free.report.remark;
+  const Index first = model.bodies[0].vertices.front();
+  EXPECT_LT((held.state.positions.row(first) - model.rest.row(first)).norm(), 1e-4);
+  const double drop = model.rest(first, 2) - free.state.positions(first, 2);
+  EXPECT_GT(drop, 0.01);
+  EXPECT_LT(drop, 0.06);
+}
+
+/// A block on a slope of 26.565 degrees: the tangent is 0.5 but for 1.1e-6.
+TEST(Bodies, StickOnASlopeOrSlide) {
+  constexpr double slope = 26.565 * M_PI / 180;
+  const Model rough = compile(body_on_floor({10, 10, 10}, 0.50, slope));
+  const Statics statics(rough);
+  const Equilibrium sticks = released(statics);
+  ASSERT_EQ(sticks.report.status, Status::converged) << sticks.report.remark;
+  const ElementDeformation measured = statics.measured(sticks.state);
+  ASSERT_EQ(measured.contacts->pairs.size(), 1U);
+  const Vec3 force = measured.contacts->pairs[0].force;
+  EXPECT_NEAR(std::abs(force.x()), weight({10, 10, 10}) * std::sin(slope), 0.01 * weight({10, 10, 10}));
+  const Model smooth = compile(body_on_floor({10, 10, 10}, 0.49, slope));
+  const Equilibrium slides = released(Statics(smooth));
+  EXPECT_EQ(slides.report.status, Status::limit);
+  EXPECT_NE(slides.report.remark.find("slips"), std::string::npos) << slides.report.remark;
+}
+
+/// Pulled along the floor a body gives way where friction ends, or where it tips over its edge.
+TEST(Bodies, PulledTheySlideOrTip) {
+  struct Case {
+    Vec3 size;
+    double friction, share;  // of the weight
+  };
+  for (const Case& each : {Case{{10, 10, 10}, 0.3, 0.3}, Case{{10, 10, 40}, 1.0, 0.25}}) {
+    const Model model = compile(body_on_floor(each.size, each.friction));
+    const Statics statics(model);
+    const Equilibrium free = released(statics);
+    ASSERT_EQ(free.report.status, Status::converged) << free.report.remark;
+    const double pull = weight(each.size);
+    const Equilibrium pulled = statics.solve(values({0, pull, 0, 0}), free.state, tight(1e-8));
+    EXPECT_EQ(pulled.report.status, Status::limit);
+    EXPECT_NEAR(pulled.state.actuation[1] / pull, each.share, 0.01 * each.share) << pulled.report.remark;
+  }
+}
+
+}  // namespace softkin
