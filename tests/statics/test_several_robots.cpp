@@ -98,7 +98,7 @@ TEST(SeveralRobots, ChambersThatAreEmptySpaces) {
 
 TEST(SeveralRobots, ChambersOfSurfaces) {
   RobotSpec spec = robot_with_bags({"bag"});
-  spec.actuators[0].surface = box_surface({13.7, 6.1, 12.2}, {23.1, 5.6, 5.3});  // no vertex on a face of elements
+  spec.actuators[0].surface = box_surface({13.9, 6.1, 12.2}, {23.7, 5.8, 5.7});  // no vertex on a face of elements
   expect_alike(spec, three_places(), {values({1.8}), values({2}), values({1.5})});
 }
 

@@ -20,7 +20,7 @@ double diagonal_of(const Compilation& c, const std::string& robot) {
 }
 
 const Body& body_of(Compilation& c, const std::string& robot) {
-  if (const auto known = c.bodies.find(robot); known != c.bodies.end()) return known->second;
+  if (const auto known = c.robot_bodies.find(robot); known != c.robot_bodies.end()) return known->second;
   const Model& model = c.model;
   const auto [begin, end] = vertices_of(c, robot);
   const auto is_of = [begin = begin, end = end](const auto& element) { return element[0] >= begin && element[0] < end; };
@@ -36,7 +36,7 @@ const Body& body_of(Compilation& c, const std::string& robot) {
     if (is_of(prism)) prisms.push_back(prism);
   Embedder embedder(model.rest, tetrahedra, prisms, edge_nodes);
   Body body{std::move(tetrahedra), std::move(prisms), std::move(embedder), diagonal_of(c, robot)};
-  return c.bodies.emplace(robot, std::move(body)).first->second;
+  return c.robot_bodies.emplace(robot, std::move(body)).first->second;
 }
 
 }  // namespace softkin

@@ -194,11 +194,16 @@ void name_regions(Compilation& c) {
 
 }  // namespace
 
+Index robot_of(const RobotSpec& spec, Index RobotPart::*first, Index number) {
+  Index found = 0;
+  for (std::size_t r = 1; r < spec.robots.size(); ++r)
+    if (spec.robots[r].*first <= number) found = static_cast<Index>(r);
+  return found;
+}
+
 std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index number) {
-  std::string text;
-  for (const RobotPart& robot : spec.robots)
-    if (robot.*first <= number) text = ", of robot '" + robot.name + "'";
-  return text;
+  if (spec.robots.empty()) return "";
+  return ", of robot '" + spec.robots[static_cast<std::size_t>(robot_of(spec, first, number))].name + "'";
 }
 
 void compile_elements(Compilation& c) {

@@ -9,7 +9,7 @@
 
 namespace softkin {
 
-/// What carries points along: the elements with a material and those of dielectric elastomers, of all or of one robot.
+/// What carries points of a robot along: the elements with a material and those of dielectric elastomers, of all or of one robot.
 struct Body {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Prism> prisms;
@@ -40,8 +40,11 @@ struct Compilation {
   // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
   std::optional<std::vector<EmptySpace>> empty_spaces;
   std::vector<Index> space_actuators;  // -1: no actuator's
-  std::map<std::string, Body> bodies;  // by robot, made when they are first asked for; "": of all
+  std::map<std::string, Body> robot_bodies;  // by robot, made when they are first asked for; "": of all
 };
+
+/// Which of several robots it is of; 0 where there is one. first: RobotPart's first of what is numbered
+[[nodiscard]] Index robot_of(const RobotSpec& spec, Index RobotPart::*first, Index number);
 
 /// ", of robot 'left'" where the description is of several robots, for messages that number a vertex or an element.
 ///
@@ -145,8 +148,6 @@ void check_contact(const Compilation& c);
 /// Last: the surfaces that may touch; appends the obstacles' vertices to the model's.
 void compile_contact(Compilation& c);
 
-/// Stands for all of the robot that no pair names a region of.
-inline constexpr const char* robot_part_name = "robot";
 /// Refuses a friction coefficient that is none; owner: whose it is.
 void check_coefficient(double friction, const std::string& owner, const Origin& origin);
 /// The part of check_contact() that is about obstacles and bodies.
