@@ -55,6 +55,7 @@ void add_compare(CLI::App& app, Run& run);
 void add_drive(CLI::App& app, Run& run);
 void add_fk(CLI::App& app, Run& run);
 void add_follow(CLI::App& app, Run& run);
+void add_grasp(CLI::App& app, Run& run);
 void add_ik(CLI::App& app, Run& run);
 void add_mesh(CLI::App& app, Run& run);
 void add_measure(CLI::App& app, Run& run);

@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
   app.callback([&app] {
     if (app.get_subcommands().empty())
-      throw CLI::RequiredError("a command (fk, ik, follow, workspace, walk, compare, calibrate, measure, drive, mesh)");
+      throw CLI::RequiredError(
+          "a command (fk, ik, follow, workspace, walk, grasp, compare, calibrate, measure, drive, mesh)");
   });
   cli::Run run;
   cli::add_fk(app, run);
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
   cli::add_calibrate(app, run);
   cli::add_measure(app, run);
   cli::add_walk(app, run);
+  cli::add_grasp(app, run);
   cli::add_workspace(app, run);
   return cli::outcome_of([&] {
     std::string command = "softkin";

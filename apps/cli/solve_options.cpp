@@ -40,6 +40,15 @@ CLI::Validator positive_length() {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator positive_force() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (parse_real(text, value) && value > 0) return "";
+    return "must be a force > 0 in N, not " + text;
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator one_of(const std::vector<std::string>& names) {
   return CLI::IsMember(names).description("");
 }

@@ -72,6 +72,7 @@ void check_solver(const SolveOptions& options);
 [[nodiscard]] CLI::Validator integer_from(std::int64_t low, std::int64_t high);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);
 [[nodiscard]] CLI::Validator positive_length();
+[[nodiscard]] CLI::Validator positive_force();
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& names);
 
 /// By which method inverse kinematics is solved, and how far off it may end.

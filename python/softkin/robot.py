@@ -123,6 +123,7 @@ class Robot(_Walks, _Workspaces):
         feet: Entries = (),
         contact: Mapping[str, Any] | None = None,
         obstacles: Entries = (),
+        bodies: Entries = (),
         formulation: str | None = None,
         units: str = "mm",
         order: int | None = None,
@@ -166,6 +167,7 @@ class Robot(_Walks, _Workspaces):
             "feet": feet if len(feet) else None,
             "contact": contact,
             "obstacles": obstacles if len(obstacles) else None,
+            "bodies": bodies if len(bodies) else None,
         }
         source = _core.Source.of_mesh(name, mesh, _plain(description, "description"), "", [])
         self._take(_core.Robot(source, True))
@@ -234,7 +236,7 @@ class Robot(_Walks, _Workspaces):
 
     @property
     def rest(self) -> Floats:
-        """(n, 3) vertices at rest [mm], read-only; those of obstacles are the last ones."""
+        """(n, 3) vertices at rest [mm], read-only; those of bodies, then of obstacles are the last ones."""
         return self._core.rest
 
     @property

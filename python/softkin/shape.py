@@ -34,7 +34,7 @@ class ActuatorState:
 
     name: str
     kind: str
-    """'pneumatic', 'cable' or 'dea'"""
+    """'pneumatic', 'cable' or 'dea'; 'motion', 'force' or 'hold' of what surrounds the robot"""
     requested: float
     """what was commanded, in `unit`"""
     unit: str
@@ -299,7 +299,7 @@ class Shape(Saving):
 
     @cached_property
     def contacts(self) -> list[Contact]:
-        """Every pair of parts that touch; physical formulation, with `contact` or `obstacles`."""
+        """Every pair of parts that touch; physical formulation, with `contact`, `obstacles` or `bodies`."""
         return [
             Contact(on, by, np.array(force), np.array(moment), np.array(center), *measures)
             for on, by, force, moment, center, measures in self._core.contacts

@@ -48,7 +48,8 @@ void bind_actuator(nb::module_& module) {
   nb::class_<Actuator>(module, "ActuatorInfo", "An actuator of a robot, as it is commanded.")
       .def_ro("name", &Actuator::name)
       .def_prop_ro(
-          "kind", [](const Actuator& a) { return kind_name(a); }, "'pneumatic', 'cable' or 'dea'.")
+          "kind", [](const Actuator& a) { return kind_name(a); },
+          "'pneumatic', 'cable' or 'dea'; of surroundings 'motion', 'force' or 'hold'.")
       .def_prop_ro(
           "control", [](const Actuator& a) { return control_name(a); },
           "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure' or 'tension'.")

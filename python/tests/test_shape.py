@@ -195,3 +195,24 @@ def test_progress(robot: softkin.Robot) -> None:
     with pytest.raises(RuntimeError, match="from within"):
         big.solve(air1=1.5, air2=1.2, progress=fails)
     assert big.solve(air1=1.01).converged
+
+
+def test_bodies_and_motions() -> None:
+    floor = {"name": "floor", "halfspace": {"point": [0, 0, -20.06], "normal": [0, 0, 1]}, "motion": ["z"]}
+    cube = {"name": "cube", "box": [[0, 40, -20], [20, 60, 0]], "density": 1000}
+    contact = {"distance": 0.05, "friction": 0.4}
+    robot = beam(2, 2, actuators=[], gravity=[0, 0, -9.81], contact=contact, obstacles=[floor], bodies=[cube])
+    assert [(a.name, a.kind) for a in robot.actuators] == [
+        ("cube_hold", "hold"),
+        ("cube_fx", "force"),
+        ("cube_fy", "force"),
+        ("cube_fz", "force"),
+        ("floor_z", "motion"),
+    ]
+    freed = robot.solve({"cube_hold": 0})
+    (contacts,) = freed.require().contacts
+    assert (contacts.on, contacts.by) == ("cube", "floor")
+    np.testing.assert_allclose(contacts.force_N, [0, 0, 8e-3 * 9.81], atol=1e-8)
+    lifted = robot.solve({"cube_hold": 0, "floor_z": 1.5}, start=freed).require()
+    rise = lifted.markers["cube"] - freed.markers["cube"]
+    np.testing.assert_allclose(rise, [0, 0, 1.5], atol=1e-6)

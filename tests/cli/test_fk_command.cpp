@@ -409,10 +409,10 @@ TEST(FkHelp, NamesEveryOptionInALine) {
 }
 
 TEST(FkHelp, WithoutACommandOneLineHelps) {
-  EXPECT_EQ(
-      run_program({}).errors,
-      "softkin: a command (fk, ik, follow, workspace, walk, compare, calibrate, measure, drive, mesh) is required "
-      "(softkin --help tells more)\n");
+  EXPECT_EQ(run_program({}).errors,
+            "softkin: a command (fk, ik, follow, workspace, walk, grasp, compare, calibrate, measure, drive, mesh) is "
+            "required "
+            "(softkin --help tells more)\n");
   EXPECT_EQ(run_program({}).exit_code, 2);
 }
 
@@ -441,6 +441,7 @@ TEST(Help, OfEveryCommandFitsAPage) {
                                                                                        {"follow"},
                                                                                        {"workspace"},
                                                                                        {"walk"},
+                                                                                       {"grasp"},
                                                                                        {"compare"},
                                                                                        {"calibrate"},
                                                                                        {"calibrate", "material"},

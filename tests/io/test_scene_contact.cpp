@@ -25,6 +25,29 @@ const Shape& shape_of(const RobotSpec& spec, std::size_t obstacle) {
   return std::get<Shape>(spec.contact->obstacles.at(obstacle).shape);
 }
 
+TEST(SceneContact, BodiesAndMotions) {
+  const RobotSpec spec = scene(
+      "obstacles:\n"
+      "  - {name: ball, sphere: {center: [1, 2, 3], radius: 2}, motion: [z, x]}\n"
+      "bodies:\n"
+      "  - {name: cube, box: [[0, 0, 0], [1, 2, 3]], density: 1200, friction: 0.7}\n"
+      "  - {name: pill, capsule: {start: [0, 0, 1], end: [1, 0, 0], radius: 0.25}}\n");
+  const ContactSpec& contact = *spec.contact;
+  EXPECT_EQ(contact.obstacles.at(0).motion, (std::array<bool, 3>{true, false, true}));
+  ASSERT_EQ(contact.bodies.size(), 2u);
+  EXPECT_EQ(contact.bodies[0].density, 1200);
+  EXPECT_EQ(contact.bodies[0].friction, 0.7);
+  EXPECT_LT((std::get<Box>(contact.bodies[0].shape).high - Vec3(10, 20, 30)).norm(), 1e-12);
+  EXPECT_EQ(contact.bodies[1].density, 0);
+  EXPECT_EQ(contact.bodies[1].origin.text(), "s.yaml:8");
+  EXPECT_NE(refusal_of("bodies:\n  - {name: a, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}\n").find("halfspace"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("bodies:\n  - {name: a, box: [[0, 0, 0], [1, 1, 1]], density: -1}\n").find("s.yaml:5: density"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("obstacles:\n  - {name: a, box: [[0, 0, 0], [1, 1, 1]], motion: [x, x]}\n").find("given twice"),
+            std::string::npos);
+}
+
 TEST(SceneContact, NoneOfIt) {
   EXPECT_FALSE(scene("").contact.has_value());
 }

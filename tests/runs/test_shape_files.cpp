@@ -64,7 +64,8 @@ double area_of(const PictureLayer& layer) {
 TEST(ShapeFiles, PicturesShowObstaclesNearTheRobot) {
   const Bounds robot(Vec3::Zero(), Vec3(12, 12, 12));  // its diagonal is 20.8 mm
   const auto layer_of = [&](const std::string& obstacle) {
-    return obstacle_layer(block_model(surrounded_scene("obstacles: [" + obstacle + "]\n")), robot);
+    const Model model = block_model(surrounded_scene("obstacles: [" + obstacle + "]\n"));
+    return obstacle_layer(model, model.rest, robot);
   };
   const auto box = layer_of("{name: a, box: [[14, 0, 0], [15, 10, 10]]}");
   ASSERT_TRUE(box.has_value());
@@ -90,7 +91,12 @@ TEST(ShapeFiles, PicturesShowObstaclesNearTheRobot) {
   EXPECT_FALSE(layer_of("{name: a, halfspace: {point: [0, 0, -40], normal: [0, 0, 1]}}").has_value());
 
   const Model bare = block_model(surrounded_scene("")), model = block_model(surrounded_scene(floor_and_box));
-  EXPECT_FALSE(obstacle_layer(bare, robot).has_value());
+  EXPECT_FALSE(obstacle_layer(bare, bare.rest, robot).has_value());
+  EXPECT_FALSE(body_layer(model, model.rest).has_value());
+  const Model grasped = block_model(surrounded_scene("bodies: [{name: a, box: [[14, 0, 0], [24, 10, 10]]}]\n"));
+  const auto body = body_layer(grasped, grasped.rest);
+  ASSERT_TRUE(body.has_value());
+  EXPECT_NEAR(area_of(*body), 600, 1e-9);
   EXPECT_NE(image_png(model, model.rest, {}, "robot"), image_png(bare, bare.rest, {}, "robot"));
 }
 

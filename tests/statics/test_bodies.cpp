@@ -87,4 +87,69 @@ TEST(Bodies, PulledTheySlideOrTip) {
   }
 }
 
+namespace {
+
+/// A beam held at its end, above a block that is moved up against it.
+RobotSpec pushed_beam(const Vec3& rest) {
+  RobotSpec spec = physical_robot(block_mesh({8, 2, 2}, {40, 10, 10}));
+  spec.fixed = {{{std::string("x_low"), {}}, {true, true, true}, {0, 0, 0}}};
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.1;
+  spec.contact->obstacles.push_back(
+      {"block", Box{Vec3(30, -5, -20) + rest, Vec3(36, 15, -1) + rest}, {}, {}, {false, false, true}});
+  return spec;
+}
+
+}  // namespace
+
+/// An obstacle that was moved is one that stood there.
+TEST(Bodies, ObstaclesMove) {
+  const Model model = compile(pushed_beam({0, 0, 0}));
+  const Statics statics(model);
+  const Equilibrium low = settled(statics, values({1.5}), tight(1e-10));
+  const Equilibrium moved = statics.solve(values({2.5}), low.state, tight(1e-10));
+  ASSERT_EQ(moved.report.status, Status::converged) << moved.report.remark;
+  EXPECT_GT((moved.state.positions - model.rest).topRows(model.robot_vertices()).col(2).maxCoeff(), 1);
+  // over a lower one of the same place: from a start that has moved less
+  const Model other = compile(pushed_beam({0, 0, -1}));
+  const Statics below(other);
+  const Equilibrium same = settled(below, values({3.5}), tight(1e-10));
+  EXPECT_LT(distance(moved.state.positions.topRows(model.robot_vertices()),
+                     same.state.positions.topRows(model.robot_vertices())),
+            1e-7);
+}
+
+/// By the motion of an obstacle against central differences.
+TEST(Bodies, JacobianByMotions) {
+  const Model model = compile(pushed_beam({0, 0, 0}));
+  const Statics statics(model);
+  const Equilibrium at = settled(statics, values({2.0}), tight(1e-11));
+  const Sensitivity slopes = statics.sensitivity(at.state);
+  ASSERT_TRUE(slopes.regular);
+  constexpr double step = 1e-4;
+  const Points high = statics.solve(values({2.0 + step}), at.state, tight(1e-11)).state.positions;
+  const Points low = statics.solve(values({2.0 - step}), at.state, tight(1e-11)).state.positions;
+  const Points difference = (high - low) / (2 * step);
+  EXPECT_LT((slopes.positions[0] - difference).norm(), 1e-4 * difference.norm());
+}
+
+/// By forces on a body that stands on a floor and by its release.
+TEST(Bodies, JacobianByForcesAndHolds) {
+  RobotSpec spec = body_on_floor({10, 10, 10}, 0.5);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Actuation actuation = values({0.2, 2e-3, 1e-3, -4e-3});
+  const Equilibrium at = settled(statics, actuation, tight(1e-11));
+  const Sensitivity slopes = statics.sensitivity(at.state);
+  ASSERT_TRUE(slopes.regular);
+  for (Index a = 0; a < 4; ++a) {
+    const double step = a == 0 ? 1e-4 : 1e-6;
+    const auto beside = [&](double change) {
+      return statics.solve(actuation + change * Eigen::VectorXd::Unit(4, a), at.state, tight(1e-12)).state.positions;
+    };
+    const Points difference = (beside(step) - beside(-step)) / (2 * step);
+    EXPECT_LT((slopes.positions[static_cast<std::size_t>(a)] - difference).norm(), 1e-3 * difference.norm()) << a;
+  }
+}
+
 }  // namespace softkin

@@ -38,6 +38,8 @@ Column last(const std::string& title) {
   return {.title = title, .left = true};
 }
 
+constexpr std::size_t command_width = 9;  // of what is no drive
+
 /// Where bytes of text hold so many characters.
 std::size_t offset_of(const std::string& text, std::size_t character) {
   std::size_t at = 0;
@@ -182,8 +184,9 @@ Table table_of_steps(const Model& model, std::size_t steps) {
   Table table{{words("step", std::to_string(steps).size())}};
   const auto add = [&table](const Column& column) { table.columns.push_back(column); };
   for (const Actuator& actuator : model.actuators) {
-    const std::size_t width = width_of(actuator);
+    const std::size_t width = drives(actuator) ? width_of(actuator) : command_width;
     add(fixed(short_name(actuator.name) + " " + bracketed_unit(actuator), value_decimals, width));
+    if (!drives(actuator)) continue;
     add(fixed("achieved [-]", value_decimals, width));
     if (const std::string load = load_title(model, actuator); !load.empty())
       add(fixed(load, value_decimals, load_width));
@@ -204,7 +207,9 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     const ActuatorRecord& of = record.actuators[a];
-    row.insert(row.end(), {of.requested, of.achieved});
+    row.emplace_back(of.requested);
+    if (!drives(actuator)) continue;
+    row.emplace_back(of.achieved);
     if (!load_title(model, actuator).empty()) row.push_back(of.slack ? Cell("slack") : Cell(of.multiplier));
     if (actuator.curve) row.push_back(of.by_curve ? Cell(*of.by_curve) : Cell("outside"));
   }

@@ -236,6 +236,9 @@ void add_body(Compilation& c, const BodySpec& spec, double least_area) {
     area[static_cast<std::size_t>(v)] = std::max(area[static_cast<std::size_t>(v)], least_area);
   }
   weigh(c, spec, body, volume);
+  for (const Marker& marker : model.markers)
+    if (marker.name == spec.name) refuse_solid(spec, "a marker has that name, and its center of mass becomes one, too");
+  model.markers.push_back({spec.name, body.center});
   const auto index = static_cast<Index>(model.bodies.size());
   model.rigid.push_back({spec.name, body.vertices});
   model.bodies.push_back(std::move(body));

@@ -17,6 +17,8 @@ bool same_shape(const Points& a, const Points& b) {
 constexpr double least_advance = 1e-4;
 /// A step that moves no vertex farther than so many tolerances and yet fails leads nowhere.
 constexpr double least_move = 1000;
+/// The same where things touch, over the contact distance: what sticks moves by a hundredth of that.
+constexpr double least_contact_move = 1e-4;
 /// A way on which so many iterations bring less than this share of it leads nowhere either.
 constexpr int patience = 500;
 constexpr double least_progress = 0.01;
@@ -95,6 +97,8 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
   way_ = {.from = from, .to = to, .here = from};
   way_.loads_change = change_loads(from, to);
+  for (Index a = 0; a < system_.actuators(); ++a)
+    way_.releases = way_.releases || (system_.holds(a) && from.actuation[a] != to.actuation[a]);
   way_.load = only_load(from, to);
   way_.marked_iterations = report_.iterations;
   (void)release(to, at, false);
@@ -131,6 +135,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
   const bool unstable = outcome == Newton::Outcome::unstable;
   if (newton_.inverted() && !last_.inverted && length > most_inverting) outcome = Newton::Outcome::stuck;
+  // a body that nothing holds has no stiffness, and so no step
+  if (system_.any_body() && !newton_.balanced()) outcome = Newton::Outcome::stuck;
 
   std::optional<Status> end;
   const double longest = longest_step(snap, unstable);
@@ -177,7 +183,10 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     way_.advance = follow_below;
     return std::nullopt;
   }
-  if (way_.advance < least_advance || move_mm_ < least_move * tolerance_mm_)
+  double least = least_move * tolerance_mm_;
+  if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
+  const bool leads_nowhere = !way_.releases && move_mm_ < least;
+  if (way_.advance < least_advance || leads_nowhere)
     return limit(way_.done, "beyond this point no equilibrium follows" + instead_of_loads(), at);
   return std::nullopt;
 }
@@ -344,7 +353,7 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   const std::vector<bool> before = active_;
   Iterate trial = at;
   auto outcome = settle(demand, Newton::Policy::descend, trial);
-  if (newton_.inverted()) outcome = Newton::Outcome::stuck;
+  if (newton_.inverted() || (system_.any_body() && !newton_.balanced())) outcome = Newton::Outcome::stuck;
   if (outcome == Newton::Outcome::converged) {
     take(at, std::move(trial));
     last_ = judged();

@@ -56,6 +56,7 @@ class Continuation {
     double done = 0, advance = 1;  // shares of it: gone, and of the next step
     Index load = -1;               // that alone changes, until it was climbed along what it does
     bool loads_change = false;
+    bool releases = false;    // a body, which hardly moves until it is nearly free
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
     double marked = 0;  // the last share at which it was getting on

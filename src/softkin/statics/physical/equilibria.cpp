@@ -85,7 +85,9 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
     report.status = Continuation(system_, lease.work(), team, options, progress, report).follow(from, to, at);
   else
     report.status = Status::limit;
-  if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest)
+  // what rubs remembers the way to its equilibrium, and from rest comes to another one
+  const bool remembers = system_.friction() && start.knows(system_.actuators());
+  if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest && !remembers)
     begin_again(to, options, progress, team, lease.work(), at, report);
   if (report.status == Status::converged) lease.work().home = at.positions;
   report.estimated_error_mm = report.step_mm;

@@ -218,6 +218,8 @@ class System {
     const ActuatorKind kind = model_.actuators[actuator].kind;
     return kind == ActuatorKind::force || kind == ActuatorKind::hold;
   }
+  [[nodiscard]] bool holds(Index actuator) const { return model_.actuators[actuator].kind == ActuatorKind::hold; }
+  [[nodiscard]] bool any_body() const { return surroundings_.any_body(); }
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
 
  private:
