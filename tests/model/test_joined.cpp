@@ -232,7 +232,7 @@ TEST(Joined, WhatDiffersIsRefused) {
   touching.contact = ContactSpec();
   touching.contact->origin = line(12);
   EXPECT_EQ(refusal_of_pair(good, touching),
-            "pair.yaml:4: robot 'right': robot.yaml:12: a robot among several has no 'contact' and no 'obstacles' of "
+            "pair.yaml:4: robot 'right': robot.yaml:12: a robot among several has no 'contact', 'obstacles' or 'bodies' of "
             "its own: give them in pair.yaml, which joins the robots");
   empty.regions[0].selector = Sphere{{100, 0, 0}, 1};
   EXPECT_EQ(refusal_of_pair(empty, good),

@@ -83,7 +83,7 @@ class Joiner {
   void add() {
     if (robot_.contact)
       throw InvalidInput(robot_.contact->origin,
-                         "a robot among several has no 'contact' and no 'obstacles' of its own: give them in " +
+                         "a robot among several has no 'contact', 'obstacles' or 'bodies' of its own: give them in " +
                              all_.name + ", which joins the robots");
     const Mesh& mesh = all_.mesh;
     all_.robots.push_back({placed_.name, robot_.name, static_cast<Index>(mesh.vertices.rows()),
