@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <map>
 #include <softkin/model/compile/regions.hpp>
 #include <softkin/model/joined.hpp>
 
@@ -141,6 +142,35 @@ TEST(Joined, PointsVectorsAndSurfacesAreTurned) {
   EXPECT_EQ(Vec3(surface.colwise().minCoeff()), Vec3(10, 80, -20));
   EXPECT_EQ(Vec3(surface.colwise().maxCoeff()), Vec3(20, 90, -10));
   EXPECT_NEAR(compile(spec).actuators[2].rest_measure, 1000, 1e-9);
+}
+
+/// A robot's points beyond its surface, where another robot's elements are.
+TEST(Joined, PointsLieInTheirOwnBody) {
+  RobotSpec block = physical_robot(block_mesh({3, 3, 3}, {30, 30, 30}));
+  block.markers = {{"after", at(30.4, 14, 16)}, {"before", at(-0.4, 14, 16)}};
+  block.forces.push_back({"push", at(30.4, 14, 16), Vec3(0, 0, 1)});
+  block.actuators = {actuator("tendon", ActuatorKind::cable, 0.5, 1)};
+  block.actuators[0].points = {at(-0.4, 14, 16), at(12, 14, 16), at(30.4, 14, 16)};
+  Placement beside;
+  beside.translation = Vec3(30, 0, 0);
+  const Model one = compile(block);
+  const Model both =
+      compile(joined({placed("left", block, {}, 3), placed("right", block, beside, 4)}, {"pair.yaml", {}, {}, {}}));
+  const auto vertices = static_cast<Index>(one.rest.rows());
+  const auto expect_own = [&](const EmbeddedPoint& point, const EmbeddedPoint& alone, Index robot) {
+    std::map<Index, double> weights;
+    for (std::size_t i = 0; i < point.vertices.size(); ++i) weights[point.vertices[i]] += point.weights[i];
+    for (std::size_t i = 0; i < alone.vertices.size(); ++i)
+      weights[alone.vertices[i] + robot * vertices] -= alone.weights[i];
+    for (const auto& [vertex, weight] : weights) EXPECT_NEAR(weight, 0, 1e-9) << vertex << " of robot " << robot;
+  };
+  for (const Index robot : {0, 1}) {
+    for (std::size_t m = 0; m < 2; ++m)
+      expect_own(both.markers[static_cast<std::size_t>(2 * robot) + m].point, one.markers[m].point, robot);
+    for (std::size_t p = 0; p < 3; ++p)
+      expect_own(both.actuators[static_cast<std::size_t>(robot)].points[p], one.actuators[0].points[p], robot);
+    EXPECT_LT((both.dead_load.middleRows(robot * vertices, vertices) - one.dead_load).norm(), 1e-9);
+  }
 }
 
 TEST(Joined, WhatIsSaidOfTheWholeComesLast) {
