@@ -70,8 +70,7 @@ TEST(SeveralRobotsCommand, PathsNameTheRobotsActuators) {
   const RobotsFolder folder;
   const std::string pair = folder.pair("100");
   const std::string path = folder.write("path.csv", "right.air, left.air\n1, 1\n1.1, 1.2\n");
-  const json steps =
-      report_of(run_fk(pair, {"--path", path, "--json", "-o", folder / "pair.pvd"})).at("steps");
+  const json steps = report_of(run_fk(pair, {"--path", path, "--json", "-o", folder / "pair.pvd"})).at("steps");
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_NEAR(steps[1].at("actuators").at("left.air").at("achieved").get<double>(), 1.2, 1e-6);
   EXPECT_NEAR(steps[1].at("actuators").at("right.air").at("achieved").get<double>(), 1.1, 1e-6);

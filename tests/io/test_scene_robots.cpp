@@ -157,7 +157,8 @@ TEST(SceneRobots, Refusals) {
       {"robots: [{name: a, scene: none.yaml}]\n",
        "2: robot 'a': robots/none.yaml:4: region 'far' holds no vertex and no element"},
       {"robots: [{name: a, scene: touching.yaml}]\n",
-       "2: robot 'a': robots/touching.yaml:4: a robot among several has no 'contact', 'obstacles' or 'bodies' of its own: "
+       "2: robot 'a': robots/touching.yaml:4: a robot among several has no 'contact', 'obstacles' or 'bodies' of its "
+       "own: "
        "give them in robots/pair.yaml, which joins the robots"},
       {"robots: [{name: a, scene: half.yaml, place: {rotate: {axis: [0, 0, 1], degrees: 30}}}]\n",
        "2: robot 'a': robots/half.yaml:3: region 'base' is fixed along some axes, which the turn of the robot takes to "

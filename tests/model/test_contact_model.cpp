@@ -144,9 +144,10 @@ TEST(ContactModel, RobotsTouchEachOtherWhateverTheyDoToThemselves) {
   spec.contact->self = true;
   spec.regions.push_back({"upper", Halfspace{{0, 0, 6}, {0, 0, 1}}, line(3)});
   spec.contact->pairs = {{"upper", "ball", 0.8, line(7)}};
-  EXPECT_EQ(refusal(spec),
-            "robot.yaml:7: region 'upper' is of robot 'left' and of robot 'right': what touches is of one of them; name "
-            "a region of each");
+  EXPECT_EQ(
+      refusal(spec),
+      "robot.yaml:7: region 'upper' is of robot 'left' and of robot 'right': what touches is of one of them; name "
+      "a region of each");
 }
 
 TEST(ContactModel, FacesOfARegion) {

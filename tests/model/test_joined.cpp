@@ -261,9 +261,10 @@ TEST(Joined, WhatDiffersIsRefused) {
             "one order, such as 'order: 2' of 'mesh'");
   touching.contact = ContactSpec();
   touching.contact->origin = line(12);
-  EXPECT_EQ(refusal_of_pair(good, touching),
-            "pair.yaml:4: robot 'right': robot.yaml:12: a robot among several has no 'contact', 'obstacles' or 'bodies' of "
-            "its own: give them in pair.yaml, which joins the robots");
+  EXPECT_EQ(
+      refusal_of_pair(good, touching),
+      "pair.yaml:4: robot 'right': robot.yaml:12: a robot among several has no 'contact', 'obstacles' or 'bodies' of "
+      "its own: give them in pair.yaml, which joins the robots");
   empty.regions[0].selector = Sphere{{100, 0, 0}, 1};
   EXPECT_EQ(refusal_of_pair(empty, good),
             "pair.yaml:3: robot 'left': robot.yaml:4: region 'ball' holds no vertex and no element");
