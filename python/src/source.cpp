@@ -49,7 +49,7 @@ void members(A& archive, scene::Node& n) {
 }
 template <class A>
 void members(A& archive, Source& s) {
-  archive(s.name, s.tree, s.formulation, s.forces, s.meshes, s.surfaces, s.sidecars, s.curves);
+  archive(s.name, s.tree, s.formulation, s.forces, s.meshes, s.surfaces, s.sidecars, s.curves, s.scenes);
 }
 
 namespace {
@@ -93,7 +93,8 @@ RobotSpec Source::spec(bool read) {
   const auto curve = [&](const Path& path) {
     return curve_of(kept(curves, path, read, [](const Path& file) { return data_of(read_actuator_curve(file)); }));
   };
-  RobotSpec result = parse_scene(*tree, name, {mesh, surface, sidecar, curve});
+  const auto scene = [&](const Path& path) { return kept(scenes, path, read, read_file); };
+  RobotSpec result = parse_scene(*tree, name, {mesh, surface, sidecar, curve, scene});
   change(result, {name, formulation, forces}, "forces");
   return result;
 }

@@ -33,6 +33,7 @@ struct Source {
   std::map<std::string, TriangleSurface> surfaces;
   std::map<std::string, Sidecar> sidecars;
   std::map<std::string, CurveData> curves;
+  std::map<std::string, std::string> scenes;  // texts of those that the scene's `robots` name
 
   /// The description with its files: those known here, and where `read` is set, others from disk, which are kept here.
   ///

@@ -152,6 +152,30 @@ def test_pickle_of_a_scene_needs_no_files(examples: Path, tmp_path: Path) -> Non
     assert pickle.loads(state) is again
 
 
+def test_several_robots_are_read_from_their_scenes(examples: Path, tmp_path: Path) -> None:
+    for file in (examples / "cable_gripper").glob("cable_gripper.*"):
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    place = "place: {rotate: {axis: [1, 0, 0], degrees: 180}, translate: [0, 0, -100]}"
+    (tmp_path / "pair.yaml").write_text(
+        "softkin: 1\nrobots:\n  - {name: upper, scene: cable_gripper.yaml}\n"
+        f"  - {{name: lower, scene: cable_gripper.yaml, {place}}}\n"
+    )
+    alone = softkin.load(tmp_path / "cable_gripper.yaml", formulation="target-shape")
+    pair = softkin.load(tmp_path / "pair.yaml", formulation="target-shape")
+    state = pickle.dumps(pair)
+    for file in tmp_path.iterdir():
+        file.unlink()
+    again = pickle.loads(state)
+    assert again.fingerprint == pair.fingerprint
+    assert pair.actuators == ["upper.cable", "lower.cable"]
+    assert pair.markers == ["upper.tip", "upper.top", "lower.tip", "lower.top"]
+    np.testing.assert_allclose(pair.rest[: len(alone.rest)], alone.rest)
+    tip = alone.solve({"cable": 0.95}).require()["tip"]
+    placed = again.solve({"lower.cable": 0.95}).require()["lower.tip"]
+    np.testing.assert_allclose(placed, tip * (1, -1, -1) + (0, 0, -100), atol=1e-2)
+    assert abs(tip[2]) > 1
+
+
 def test_damaged_pickles_are_refused(robot: softkin.Robot) -> None:
     from softkin import _core
 

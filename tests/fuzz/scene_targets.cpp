@@ -53,8 +53,14 @@ Mesh small_mesh() {
   return mesh;
 }
 
+/// A robot of several.
+constexpr const char* small_finger =
+    "{softkin: 1, mesh: {file: block.msh}, materials: [{youngs_modulus: 1, poisson_ratio: 0.3, shape_ratio: 1}], "
+    "fixed: [{region: x_low}], actuators: [{name: air, kind: pneumatic, region: chamber, range: [1, 2]}], "
+    "markers: [{name: tip, region: x_high}]}\n";
+
 /// Files that a scene may name: meshes and a surface that are there, and the second part as a mesh, the third as a
-/// curve, the fourth as a sidecar.
+/// curve, the fourth as a sidecar, the fifth as a robot's scene.
 SceneFiles files_of(const Input& input) {
   static const Mesh block = small_mesh();
   static const Mesh sheet = testing::block_mesh({2, 1, 1}, {20, 10, 1}, testing::Split::prisms);
@@ -73,6 +79,11 @@ SceneFiles files_of(const Input& input) {
   };
   files.curve = [&input](const std::filesystem::path&) { return read_actuator_curve(input.file("curve.yaml", 2)); };
   files.sidecar = [&input](const std::filesystem::path&) { return read_sidecar(input.file("sidecar.txt", 3)); };
+  files.scene = [&input, absent](const std::filesystem::path& path) {
+    if (path == "finger.yaml") return std::string(small_finger);
+    if (path == "robot.yaml") return input.part(4);
+    throw absent(path);
+  };
   return files;
 }
 

@@ -39,6 +39,7 @@ inline softkin::SceneFiles fake_files() {
     if (path.filename() == "odd.txt") return Sidecar{3, {{0}}};
     throw InvalidInput({path.string()}, "no such file");
   };
+  files.scene = [](const fs::path& path) -> std::string { throw InvalidInput({path.string()}, "no such file"); };
   return files;
 }
 

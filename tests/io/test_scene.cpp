@@ -353,19 +353,27 @@ TEST(Scene, SidecarOfEqualCountsNeedsOf) {
 
 TEST(Scene, ExamplesOfTheManualAreScenes) {
   const std::string manual = read_file(SOFTKIN_SOURCE_DIR "/docs/scene.md"), fence = "```yaml\n";
+  SceneFiles files = fake_files();
+  files.scene = [](const std::filesystem::path& path) -> std::string {
+    EXPECT_EQ(path.string(), "robots/finger.yaml");
+    return "softkin: 1\nmesh: {file: parts.msh}\nmaterials: [{youngs_modulus: 12, poisson_ratio: 0.4}]\n";
+  };
   std::vector<RobotSpec> specs;
   for (std::size_t begin = manual.find(fence); begin != std::string::npos; begin = manual.find(fence, begin)) {
     begin += fence.size();
-    specs.push_back(parse(manual.substr(begin, manual.find("```", begin) - begin)));
+    const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
+    specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 4u);
+  ASSERT_EQ(specs.size(), 5u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
   EXPECT_EQ(specs[1].formulation, Formulation::physical);
   EXPECT_EQ(specs[1].actuators.at(0).control, Control::load);
   EXPECT_EQ(specs[1].forces.size(), 1u);
-  EXPECT_EQ(specs[3].contact.value().obstacles.size(), 2u);
+  ASSERT_EQ(specs[3].robots.size(), 2u);
+  EXPECT_EQ(specs[3].robots[1].name, "right");
+  EXPECT_EQ(specs[4].contact.value().obstacles.size(), 2u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
+#include <softkin/model/joined.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"
@@ -86,6 +87,67 @@ TEST(ContactModel, PartsAndTheirFriction) {
   EXPECT_FALSE(alone.pair(0, 1).touch);
   EXPECT_FALSE(alone.pair(1, 1).touch);
   EXPECT_TRUE(alone.pair(2, 1).touch);
+}
+
+/// Two beams, each with a floor below it that is told of the whole.
+RobotSpec two_beams() {
+  RobotSpec one = robot();
+  one.contact.reset();
+  Placement beside;
+  beside.translation = Vec3(0, 100, 0);
+  RobotSpec both = joined({{"left", one, {}, {}}, {"right", one, beside, {}}}, {"pair.yaml", {}, {}, {}});
+  both.contact = robot().contact;
+  return both;
+}
+
+TEST(ContactModel, RobotsAreParts) {
+  RobotSpec spec = two_beams();
+  spec.contact->pairs = {
+      {"right.end", "ball", 0.8, line(7)}, {"robot", "floor", 0.1, line(7)}, {"left", "right", 0.2, line(7)}};
+  const Model model = compile(spec);
+  const ContactModel& contact = model.contact;
+  std::vector<std::string> labels;
+  for (Index part = 0; part < static_cast<Index>(contact.parts.size()); ++part) labels.push_back(contact.label(part));
+  EXPECT_EQ(labels, (std::vector<std::string>{"robot 'left'", "robot 'right'", "region 'right.end'", "obstacle 'floor'",
+                                              "obstacle 'ball'"}));
+  EXPECT_EQ(contact.label_of_solid(2), "robot 'right'");
+  EXPECT_EQ(contact.label_of_solid(4), "obstacle 'ball'");
+  const double whole = 2 * (40 * 20 + 40 * 10 + 20 * 10), end = 2 * 10 * 10 + 2 * 10 * 20 + 20 * 10;
+  const double areas[] = {whole, whole - end, end};
+  for (Index part = 0; part < 3; ++part) {
+    EXPECT_EQ(contact.parts[static_cast<std::size_t>(part)].robot, part == 0 ? 0 : 1);
+    double area = 0;
+    for (const Triangle& t : triangles_of(contact, part)) {
+      area += area_of(model.rest, t);
+      for (const Index v : t) EXPECT_EQ(model.rest(v, 1) >= 100, part > 0);
+    }
+    EXPECT_NEAR(area, areas[part], 1e-9) << part;
+  }
+  const double friction[5][5] = {{0.4, 0.2, 0.4, 0.1, 0.4}, {0.2, 0.4, 0.4, 0.1, 0.4}, {0.4, 0.4, 0.4, 0.3, 0.8}};
+  for (Index a = 0; a < 3; ++a)
+    for (Index b = 0; b < 5; ++b) EXPECT_EQ(contact.pair(a, b).friction, friction[a][b]) << a << b;
+}
+
+TEST(ContactModel, RobotsTouchEachOtherWhateverTheyDoToThemselves) {
+  RobotSpec spec = two_beams();
+  spec.contact->self = false;
+  spec.contact->pairs = {{"right.end", "left", 0.8, line(7)}};
+  const ContactModel contact = compile(spec).contact;
+  for (Index a = 0; a < 3; ++a)
+    for (Index b = 0; b < 3; ++b) EXPECT_EQ(contact.pair(a, b).touch, (a == 0) != (b == 0)) << a << b;
+  spec.contact->pairs = {{"robot", "robot", 0.8, line(7)}};
+  EXPECT_EQ(compile(spec).contact.pair(0, 1).friction, 0.8);
+  spec.contact->pairs = {{"right.end", "right", 0.8, line(7)}};
+  EXPECT_EQ(refusal(spec),
+            "robot.yaml:7: the pair of 'right.end' and 'right' never touches: both are of the robot, and 'self' is "
+            "false");
+  spec.contact->self = true;
+  spec.regions.push_back({"upper", Halfspace{{0, 0, 6}, {0, 0, 1}}, line(3)});
+  spec.contact->pairs = {{"upper", "ball", 0.8, line(7)}};
+  EXPECT_EQ(
+      refusal(spec),
+      "robot.yaml:7: region 'upper' is of robot 'left' and of robot 'right': what touches is of one of them; name "
+      "a region of each");
 }
 
 TEST(ContactModel, FacesOfARegion) {

@@ -8,14 +8,18 @@
 
 namespace softkin {
 
+/// Stands for all of the robots that no pair names a region of.
+inline constexpr const char* robot_part_name = "robot";
+
 /// Of two that touch, which carries the potential between them: the vertices of the one that stands first here; both by
 /// halves where they are alike.
 enum class ContactRank { robot, body, obstacle };
 
 /// A surface that may touch others, and itself.
 struct ContactPart {
-  std::string name;  // of the robot: "robot", or a region; of an obstacle or body its own
+  std::string name;  // of the robot: "robot", of several its own, or a region; of an obstacle or body its own
   ContactRank rank = ContactRank::robot;
+  Index robot = -1;        // which of the robots it is of, 0 where there is one; -1: an obstacle or body
   bool halfspace = false;  // all behind the plane of its only triangle is solid
   Origin origin;
 };
@@ -30,7 +34,7 @@ struct ContactPair {
 struct ContactModel {
   double distance_mm = 0;  // below which surfaces repel each other; 0: nothing touches anything
   double modulus_MPa = 0;  // > 0: of that repulsion
-  std::vector<ContactPart> parts;
+  std::vector<ContactPart> parts;               // the robots; their regions; bodies and obstacles
   std::vector<ContactPair> pairs;               // of parts a, b and b, a alike, at a * #parts + b
   std::vector<std::array<Index, 3>> triangles;  // vertices of the model, normals outwards; faces of order 2 as four
   std::vector<Index> part_of;                   // per triangle
@@ -41,6 +45,10 @@ struct ContactModel {
   [[nodiscard]] const ContactPair& pair(Index a, Index b) const {
     return pairs[static_cast<std::size_t>(a) * parts.size() + static_cast<std::size_t>(b)];
   }
+  /// "the robot", "robot 'left'", "region 'skin'", "body 'pen'", "obstacle 'floor'"
+  [[nodiscard]] std::string label(Index part) const;
+  /// The same of all of the robot whose region it is.
+  [[nodiscard]] std::string label_of_solid(Index part) const;
 };
 
 }  // namespace softkin

@@ -18,7 +18,12 @@ struct VertexList {
 struct ElementList {
   std::vector<Index> tetrahedra;  // from 0
 };
-using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList>;
+/// What a selector chose of a robot before joined() placed it among others.
+struct Chosen {
+  std::string kind;  // for messages: "box of robot 'left'"
+  Region region;
+};
+using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList, Chosen>;
 
 /// A region by name, or a shape in its place.
 struct RegionRef {
@@ -30,6 +35,7 @@ struct RegionRef {
 struct PointRef {
   std::variant<Vec3, std::string> point;
   Origin origin;
+  std::string robot{};  // of several: whose elements carry the coordinates along; empty: the nearest
 };
 
 struct RegionSpec {
@@ -65,6 +71,7 @@ struct FixedSpec {
   RegionRef where;
   std::array<bool, 3> axes{true, true, true};
   Vec3 displacement{0, 0, 0};  // where it is held, from its place at rest [mm]; 0 along axes that are not held
+  std::string name{};          // of the support; empty: its region's, or fixed_N
 };
 
 /// The last three are no drives of the robot but what is done to its surroundings: the motion of an obstacle, a force
@@ -81,6 +88,7 @@ struct ActuatorSpec {
   std::optional<std::string> region;       // dea, pneumatic: the volume region of its elements
   std::optional<TriangleSurface> surface;  // pneumatic: cavity surface instead of a region [mm]
   std::optional<std::string> wall;         // pneumatic: region of faces around the cavity, instead of either
+  std::string robot;                       // of several: whose elements, gaps and empty spaces count; empty: all
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
   Control control = Control::ratio;        // load: physical formulation, cable and pneumatic
@@ -118,6 +126,15 @@ struct ForceSpec {
   Vec3 force{0, 0, 0};  // [N]
 };
 
+/// One of several robots that are described as one.
+struct RobotPart {
+  std::string name;
+  std::string scene;                               // file
+  Index vertices = 0, tetrahedra = 0, prisms = 0;  // where its own begin in the mesh
+  Origin mesh_origin;
+  bool accept_mesh_errors = false;
+};
+
 /// A robot as the user describes it: plain data, lengths in mm. compile() turns it into a Model.
 struct RobotSpec {
   std::string name;  // the scene's file name, for messages
@@ -127,6 +144,7 @@ struct RobotSpec {
   bool accept_mesh_errors = false;  // take doubled or overlapping elements, with a note
   bool quadratic = false;           // physical: elevate a mesh of order 1 to order 2
   Vec3 gravity{0, 0, 0};            // [m/s^2]; physical
+  Origin gravity_origin;            // no file: none is given
   std::vector<ForceSpec> forces;    // physical
   std::vector<RegionSpec> regions;
   std::vector<MaterialSpec> materials;
@@ -137,6 +155,7 @@ struct RobotSpec {
   std::vector<MarkerSpec> markers;
   std::vector<FootSpec> feet;          // none, or the rear one and the front one
   std::optional<ContactSpec> contact;  // physical; none: everything passes through everything
+  std::vector<RobotPart> robots;       // none, or those that joined() made this of, in the mesh's order
 };
 
 }  // namespace softkin

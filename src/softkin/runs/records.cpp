@@ -148,25 +148,15 @@ void add_vector(const Vec3& vector, double least, Finding& finding) {
   for (const double value : vector) finding.values.push_back(vector.norm() > least ? value : 0);
 }
 
-/// "the robot", "region 'skin'", "obstacle 'floor'"
-std::string label(const ContactPart& part, bool whole) {
-  if (whole) return "the robot";
-  const char* kinds[] = {"region", "body", "obstacle"};
-  return std::string(kinds[static_cast<std::size_t>(part.rank)]) + " '" + part.name + "'";
-}
-
 void add_contacts(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   if (!record.contacts) return;
-  const auto label_of = [&](Index part) {
-    return label(model.contact.parts[static_cast<std::size_t>(part)], part == 0);
-  };
   bool any = false;
   for (const PairForces& pair : *record.contacts) {
     const double rounding = 1e-9 * record.pull_N;
     if (!(pair.normal_N > rounding)) continue;
     any = true;
-    Finding& contact = found.emplace_back(Finding{Kind::contact, label_of(pair.b)});
-    if (pair.a != pair.b) contact.other = label_of(pair.a);
+    Finding& contact = found.emplace_back(Finding{Kind::contact, model.contact.label(pair.b)});
+    if (pair.a != pair.b) contact.other = model.contact.label(pair.a);
     add_vector(pair.force, rounding, contact);
     add_vector(pair.moment, rounding * model.diagonal_mm, contact);
     add_vector(pair.center, 0, contact);

@@ -1,8 +1,8 @@
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <numbers>
 #include <softkin/core/error.hpp>
 #include <softkin/io/scene/parts.hpp>
+#include <softkin/model/mesh/mesh_joining.hpp>
 
 namespace softkin::scene {
 
@@ -22,11 +22,8 @@ struct MeshFile {
 
 void rotate(const Context& context, const Node& node, Points& vertices) {
   const Map map(node, {"axis", "degrees", "about"});
-  const Vec3 axis = read_vector(map.at("axis"));
-  if (!(axis.stableNorm() > 0)) fail(map.at("axis"), "'axis' has no direction");
+  const Mat3 matrix = read_turn(map);
   const Vec3 about = map.find("about") ? read_position(context, map.at("about")) : Vec3::Zero();
-  const Eigen::AngleAxisd turn(number(map.at("degrees")) * std::numbers::pi / 180, axis.stableNormalized());
-  const Mat3 matrix = turn.toRotationMatrix();
   vertices = ((vertices.rowwise() - about.transpose()) * matrix.transpose()).rowwise() + about.transpose();
 }
 
@@ -45,45 +42,6 @@ MeshFile read_file_of(const Context& context, const Map& map) {
   return read;
 }
 
-template <class Cell>
-void append(std::vector<Cell>& all, const std::vector<Cell>& part, Index first) {
-  for (Cell cell : part) {
-    for (Index& vertex : cell) vertex += first;
-    all.push_back(cell);
-  }
-}
-
-void append(std::vector<Index>& all, const std::vector<Index>& part, std::size_t first) {
-  for (const Index i : part) all.push_back(i + static_cast<Index>(first));
-}
-
-/// Appends a mesh; its regions join those of the same name.
-void append(Mesh& all, const Mesh& part) {
-  const auto first = static_cast<Index>(all.vertices.rows());
-  for (const Region& region : part.regions) {
-    auto found = std::find_if(all.regions.begin(), all.regions.end(), [&](const Region& known) {
-      return known.name == region.name && known.dimension == region.dimension;
-    });
-    if (found == all.regions.end()) {
-      found = all.regions.emplace(all.regions.end());
-      found->name = region.name;
-      found->dimension = region.dimension;
-    }
-    append(found->tetrahedra, region.tetrahedra, all.tetrahedra.size());
-    append(found->prisms, region.prisms, all.prisms.size());
-    append(found->triangles, region.triangles, all.triangles.size());
-    append(found->quads, region.quads, all.quads.size());
-    append(found->vertices, region.vertices, static_cast<std::size_t>(first));
-  }
-  append(all.tetrahedra, part.tetrahedra, first);
-  append(all.edge_nodes, part.edge_nodes, first);
-  append(all.prisms, part.prisms, first);
-  append(all.triangles, part.triangles, first);
-  append(all.quads, part.quads, first);
-  all.vertices.conservativeResize(first + part.vertices.rows(), 3);
-  all.vertices.bottomRows(part.vertices.rows()) = part.vertices;
-}
-
 /// Where the first file is named; whether errors are accepted, of any.
 void note_origin(const Map& map, RobotSpec& spec) {
   if (spec.mesh_origin.file.empty()) spec.mesh_origin = map.at("file").origin;
@@ -100,6 +58,15 @@ void check_joinable(const Node& node, const MeshFile& first, const MeshFile& nex
 }
 
 }  // namespace
+
+Mat3 read_turn(const Map& map) {
+  const Vec3 axis = read_vector(map.at("axis"));
+  if (!(axis.stableNorm() > 0)) fail(map.at("axis"), "'axis' has no direction");
+  const Eigen::AngleAxisd turn(number(map.at("degrees")) * std::numbers::pi / 180, axis.stableNormalized());
+  const Mat3 matrix = turn.toRotationMatrix();
+  const Mat3 whole = matrix.array().round();
+  return (matrix - whole).cwiseAbs().maxCoeff() < 1e-12 ? whole : matrix;
+}
 
 void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
   const Node* several = scene.find("meshes");

@@ -12,7 +12,8 @@ struct Context {
   std::filesystem::path folder;
   const SceneFiles& files;
   double to_mm = 1;
-  std::int64_t vertices = 0, tetrahedra = 0;  // of the mesh
+  std::optional<Formulation> formulation = std::nullopt;  // that of the robots, where the scene has several
+  std::int64_t vertices = 0, tetrahedra = 0;              // of the mesh
 };
 
 /// Names that must differ; a second use fails and names the place of the first.
@@ -53,6 +54,13 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 [[nodiscard]] const Keys& place_keys();
 [[nodiscard]] RegionRef read_place(const Context& context, const Map& map);
 [[nodiscard]] RegionRef read_region_name(const Node& node);
+
+/// A turn by the keys `axis` and `degrees`; exact where it takes axes to axes.
+[[nodiscard]] Mat3 read_turn(const Map& map);
+[[nodiscard]] Formulation read_formulation(const Node& node);
+
+/// The robots of a scene that has several, joined. Key `robots` must be there.
+[[nodiscard]] RobotSpec read_robots(const Context& context, const Map& scene, const std::string& file_name);
 
 /// The mesh of a scene, or its meshes as one, in mm.
 void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);

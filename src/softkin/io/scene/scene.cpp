@@ -9,6 +9,7 @@
 #include <softkin/io/scene/parts.hpp>
 #include <softkin/io/scene/scene.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
+#include <softkin/model/joined.hpp>
 #include <string>
 #include <variant>
 
@@ -24,9 +25,9 @@ double read_length_unit(const Node& node) {
   return length ? mm_per(length_units()[choice(*length, length_units())]) : 1;
 }
 
-Formulation read_formulation(const Map& map, const std::vector<MaterialSpec>& materials) {
-  if (const Node* node = map.find("formulation"))
-    return choice(*node, {"target-shape", "physical"}) == 0 ? Formulation::target_shape : Formulation::physical;
+Formulation formulation_of(const Context& context, const Map& map, const std::vector<MaterialSpec>& materials) {
+  if (context.formulation) return *context.formulation;
+  if (const Node* node = map.find("formulation")) return read_formulation(*node);
   const bool elastic = std::any_of(materials.begin(), materials.end(),
                                    [](const MaterialSpec& material) { return material.elastic.has_value(); });
   return elastic ? Formulation::physical : Formulation::target_shape;
@@ -95,8 +96,11 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   Names forces, markers;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   each("materials", [&](const Node& item) { spec.materials.push_back(read_material(item)); });
-  spec.formulation = read_formulation(map, spec.materials);
-  if (const Node* node = map.find("gravity")) spec.gravity = read_vector(*node);
+  spec.formulation = formulation_of(context, map, spec.materials);
+  if (const Node::Entry* gravity = map.entry("gravity")) {
+    spec.gravity = read_vector(*gravity->value);
+    spec.gravity_origin = gravity->origin;
+  }
   each("void", [&](const Node& item) { spec.voids.push_back(read_region_name(item)); });
   each("fixed", [&](const Node& item) { spec.fixed.push_back(read_fixed(context, item)); });
   each("rigid", [&](const Node& item) { spec.rigid.push_back(read_rigid(context, item, spec.rigid.size() + 1)); });
@@ -108,7 +112,22 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   spec.contact = read_contact(context, map);
 }
 
+RobotSpec read_several(Context& context, const Map& map, const std::string& file_name) {
+  (void)map.one_of({"mesh", "meshes", "robots"});  // fails where there are two of them
+  RobotSpec robots = read_robots(context, map, file_name), common;
+  context.formulation = robots.formulation;
+  context.vertices = robots.mesh.vertices.rows();
+  context.tetrahedra = static_cast<std::int64_t>(robots.mesh.tetrahedra.size());
+  read_parts(context, map, common);
+  add_common(robots, std::move(common));
+  return robots;
+}
+
 }  // namespace
+
+Formulation read_formulation(const Node& node) {
+  return choice(node, {"target-shape", "physical"}) == 0 ? Formulation::target_shape : Formulation::physical;
+}
 
 }  // namespace scene
 
@@ -120,10 +139,11 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
   const scene::Map map(
-      root, {"softkin", "units", "mesh", "meshes", "formulation", "regions", "materials", "void", "fixed", "rigid",
-             "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles", "bodies"});
+      root, {"softkin", "units", "mesh", "meshes", "robots", "formulation", "regions", "materials", "void", "fixed",
+             "rigid", "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles", "bodies"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
+  if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);
   RobotSpec spec;
   spec.name = file_name;
   scene::read_mesh_of(context, map, spec);
@@ -148,8 +168,9 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const std::string& scene
       return read(path);
     };
   };
-  return parse_scene(read_file(scene), scene,
-                     {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve)});
+  return parse_scene(
+      read_file(scene), scene,
+      {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve), noting(read_file)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <softkin/io/file.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/model/robot_spec.hpp>
@@ -24,6 +25,7 @@ struct SceneFiles {
   std::function<TriangleSurface(const std::filesystem::path&)> surface;
   std::function<Sidecar(const std::filesystem::path&)> sidecar;
   std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;
+  std::function<std::string(const std::filesystem::path&)> scene = read_file;  // the text of one of `robots`
 };
 
 /// As read_scene, from a text in memory. file_name is for messages; the paths given to `files` are relative to its

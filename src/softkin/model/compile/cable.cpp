@@ -29,17 +29,17 @@ std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, Actuato
 }
 
 /// Segments that run free outside the body; every one where none does.
-std::vector<Index> free_segments(const Compilation& c, const std::vector<Vec3>& points) {
+std::vector<Index> free_segments(const Compilation& c, const Body& body, const std::vector<Vec3>& points) {
   std::vector<Index> gaps, every;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Vec3 middle = 0.5 * (points[i] + points[i + 1]);
     every.push_back(static_cast<Index>(i));
-    if (c.embedder->embed(middle).distance_mm > 1e-9 * c.model.diagonal_mm) gaps.push_back(static_cast<Index>(i));
+    if (body.embedder.embed(middle).distance_mm > 1e-9 * c.model.diagonal_mm) gaps.push_back(static_cast<Index>(i));
   }
   return gaps.empty() ? every : gaps;
 }
 
-Vec3 body_centroid(const Compilation& c) {
+Vec3 body_centroid(const Compilation& c, const Body& body) {
   double total = 0;
   Vec3 sum = Vec3::Zero();
   const auto add = [&](const auto& elements) {
@@ -49,8 +49,8 @@ Vec3 body_centroid(const Compilation& c) {
       total += volume;
     }
   };
-  add(c.solid_tetrahedra);
-  add(c.solid_prisms);
+  add(body.tetrahedra);
+  add(body.prisms);
   return sum / total;
 }
 
@@ -76,10 +76,11 @@ Vec3 find_apex(const Compilation& c, const ActuatorSpec& spec, const SurfaceTree
 }
 
 void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, Actuator& cable) {
-  const SurfaceTree boundary(c.model.rest, triangulated(boundary_of(c.solid_tetrahedra, c.solid_prisms)));
-  const Vec3 centroid = body_centroid(c);
+  const Body& body = body_of(c, spec.robot);
+  const SurfaceTree boundary(c.model.rest, triangulated(boundary_of(body.tetrahedra, body.prisms)));
+  const Vec3 centroid = body_centroid(c, body);
   for (CableGap& gap : cable.gaps)
-    gap.apex = c.embedder->embed(find_apex(c, spec, boundary, centroid, points, gap.segment));
+    gap.apex = body.embedder.embed(find_apex(c, spec, boundary, centroid, points, gap.segment));
 }
 
 void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, Actuator& cable) {
@@ -103,7 +104,7 @@ void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) cable.rest_measure += (points[i + 1] - points[i]).norm();
   // physical: a constraint on its length, without actuation elements
   if (c.spec.formulation == Formulation::physical) return;
-  for (const Index segment : free_segments(c, points)) cable.gaps.push_back({segment, {}});
+  for (const Index segment : free_segments(c, body_of(c, spec.robot), points)) cable.gaps.push_back({segment, {}});
   if (spec.apexes.empty())
     find_apexes(c, spec, points, cable);
   else

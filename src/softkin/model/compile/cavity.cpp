@@ -49,22 +49,37 @@ std::vector<Triangle> boundary_of_chamber(const Compilation& c, const std::vecto
   return boundary_of(tetrahedra, {}).triangles;
 }
 
+/// Is a space bounded by elements of these vertices alone?
+bool lies_in(const EmptySpace& space, const std::pair<Index, Index>& vertices) {
+  return std::all_of(space.triangles.begin(), space.triangles.end(), [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](Index v) { return v >= vertices.first && v < vertices.second; });
+  });
+}
+
 void take_only_space(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   constexpr std::size_t most_named = 5;
-  const std::vector<EmptySpace>& spaces = empty_spaces(c);
+  const std::vector<EmptySpace>& all = empty_spaces(c);
+  std::vector<EmptySpace> spaces;
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!lies_in(all[i], vertices_of(c, spec.robot))) continue;
+    spaces.push_back(all[i]);
+    numbers.push_back(i);
+  }
+  const std::string body = spec.robot.empty() ? "the body" : "the body of robot '" + spec.robot + "'";
   const std::string cure = ": name its elements (`region`), its wall (`surface: {region: WALL}`) or an STL (`surface`)";
-  if (spaces.empty()) refuse(spec, "needs a region or a surface, since the body encloses no empty space" + cure);
+  if (spaces.empty()) refuse(spec, "needs a region or a surface, since " + body + " encloses no empty space" + cure);
   if (spaces.size() > 1) {
     std::string text;
     for (std::size_t i = 0; i < std::min(spaces.size(), most_named); ++i)
       text += (i == 0 ? "" : ", ") + text_of(spaces[i]);
     if (spaces.size() > most_named) text += " and " + std::to_string(spaces.size() - most_named) + " more";
-    refuse(spec, "needs a region or a surface, since the body encloses " + std::to_string(spaces.size()) +
+    refuse(spec, "needs a region or a surface, since " + body + " encloses " + std::to_string(spaces.size()) +
                      " empty spaces, " + text + cure);
   }
-  take_empty_space(c, spec, 0, actuator);
-  c.model.notes.push_back("Actuator '" + spec.name + "' is the only empty space in the body, " + text_of(spaces[0]) +
-                          ".");
+  take_empty_space(c, spec, numbers[0], actuator);
+  c.model.notes.push_back("Actuator '" + spec.name + "' is the only empty space in " + body + ", " +
+                          text_of(spaces[0]) + ".");
 }
 
 std::array<Index, 3> sorted(Triangle corners) {

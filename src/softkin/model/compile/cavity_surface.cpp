@@ -114,10 +114,10 @@ std::vector<Match> matching_spaces(Compilation& c, const TriangleSurface& surfac
 void check_size(const Compilation& c, const ActuatorSpec& spec) {
   Bounds bounds;
   for (Index v = 0; v < spec.surface->vertices.rows(); ++v) bounds.extend(vertex_at(spec.surface->vertices, v));
-  const double diagonal = bounds.diagonal().norm(), ratio = diagonal / c.model.diagonal_mm;
+  const double body = diagonal_of(c, spec.robot), diagonal = bounds.diagonal().norm(), ratio = diagonal / body;
   if (ratio < least_size || ratio > most_size)
     refuse(spec, "has a surface of " + number(diagonal) + " mm from corner to corner, " + number(ratio, 3) +
-                     " times the body's " + number(c.model.diagonal_mm) +
+                     " times the body's " + number(body) +
                      " mm: it is of another unit; name that of its file, `surface: {file: F, unit: mm}`");
 }
 
@@ -219,11 +219,12 @@ void select_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
 
 void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   const bool physical = c.spec.formulation == Formulation::physical;
+  const Body& body = body_of(c, spec.robot);
   TriangleSurface surface{spec.surface->vertices, actuator.surface};
   if (physical) {
     try {
       surface = refined(
-          std::move(surface), [&](const Vec3& middle) { return finest * c.embedder->edge_near(middle); },
+          std::move(surface), [&](const Vec3& middle) { return finest * body.embedder.edge_near(middle); },
           most_triangles);
     } catch (const InvalidInput& error) {
       refuse(spec, std::string("has a surface that cuts through too many elements: ") + error.what() +
@@ -237,7 +238,7 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
   for (Index i = 0; i < surface.vertices.rows(); ++i) {
     const Vec3 vertex = vertex_at(surface.vertices, i);
     try {
-      actuator.points.push_back(c.embedder->embed(vertex));
+      actuator.points.push_back(body.embedder.embed(vertex));
     } catch (const InvalidInput& error) {
       refuse(spec, "has a surface whose point " + point_text(vertex) + " mm cannot be embedded: " + error.what());
     }
@@ -245,7 +246,7 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
     if (!(distance > 1e-6 * c.model.diagonal_mm)) continue;
     farthest = std::max(farthest, distance);
     ++outside;
-    if (const double most = most_outside(c, vertex); distance > most)
+    if (const double most = most_outside(body, vertex); distance > most)
       refuse(spec, "has a surface whose point " + point_text(vertex) + " mm is " + number(distance) +
                        " mm from the body, " + too_far_text(most) +
                        ": let the surface run along the body, or check its unit");

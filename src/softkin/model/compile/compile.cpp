@@ -19,18 +19,20 @@ void check_friction(const FootSpec& spec, double friction, const char* direction
                                         " must be 0 N or more, not " + number(friction));
 }
 
-EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& origin, const std::string& what) {
+EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const PointRef& reference, const std::string& what) {
+  const Origin& origin = reference.origin;
+  const Body& body = body_of(c, reference.robot);
   if (!point.allFinite()) throw InvalidInput(origin, what + " is not finite");
-  if (c.embedder->empty())
+  if (body.embedder.empty())
     throw InvalidInput(origin, what + " needs a body to lie in, but every element belongs to a chamber");
   EmbeddedPoint embedded;
   try {
-    embedded = c.embedder->embed(point);
+    embedded = body.embedder.embed(point);
   } catch (const InvalidInput& error) {
     throw InvalidInput(origin, what + ": " + error.what());
   }
   const std::string distance = number(embedded.distance_mm);
-  if (const double most = most_outside(c, point); embedded.distance_mm > most)
+  if (const double most = most_outside(body, point); embedded.distance_mm > most)
     throw InvalidInput(origin, what + " is " + distance + " mm from the mesh, " + too_far_text(most) +
                                    ": move it to the body, mesh what holds it, or check the unit");
   if (embedded.distance_mm > 1e-6 * c.model.diagonal_mm)
@@ -40,8 +42,8 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const Origin& orig
 
 }  // namespace
 
-double most_outside(const Compilation& c, const Vec3& point) {
-  return std::min(0.5 * c.embedder->edge_near(point), 0.1 * c.model.diagonal_mm);
+double most_outside(const Body& body, const Vec3& point) {
+  return std::min(0.5 * body.embedder.edge_near(point), 0.1 * body.diagonal_mm);
 }
 
 std::string too_far_text(double most_mm) {
@@ -49,7 +51,7 @@ std::string too_far_text(double most_mm) {
 }
 
 EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what) {
-  if (const auto* point = std::get_if<Vec3>(&reference.point)) return embed_inside(c, *point, reference.origin, what);
+  if (const auto* point = std::get_if<Vec3>(&reference.point)) return embed_inside(c, *point, reference, what);
   const auto& name = std::get<std::string>(reference.point);
   const Region& region = c.regions.find(name, reference.origin);
   EmbeddedPoint mean;

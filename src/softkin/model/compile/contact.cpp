@@ -27,6 +27,19 @@ bool is_beside(const ContactSpec& contact, const std::string& name) {
   return is_obstacle(contact, name) || is_body(contact, name);
 }
 
+/// Whose a region is, of one robot or several.
+Index robot_of_region(const Compilation& c, const std::string& region, const Origin& origin) {
+  const std::vector<Index>& vertices = c.regions.find(region, origin).vertices;
+  if (vertices.empty()) return 0;
+  const auto of = [&](Index v) { return robot_of(c.spec, &RobotPart::vertices, v); };
+  const Index first = of(vertices.front()), last = of(vertices.back());
+  if (first != last)
+    throw InvalidInput(origin, "region '" + region + "' is of robot '" + c.spec.robots[static_cast<std::size_t>(first)].name +
+                                   "' and of robot '" + c.spec.robots[static_cast<std::size_t>(last)].name +
+                                   "': what touches is of one of them; name a region of each");
+  return first;
+}
+
 /// An obstacle's or a body's name, a region's or "robot".
 void check_name(const Compilation& c, const ContactSpec& contact, const std::string& name, const Origin& origin) {
   if (name == robot_name || is_beside(contact, name)) return;
@@ -37,7 +50,14 @@ void check_name(const Compilation& c, const ContactSpec& contact, const std::str
   if (name == "all" || std::find(known.begin(), known.end(), name) == known.end())
     throw InvalidInput(origin, "there is no obstacle, body or region '" + name + "'" +
                                    (name == "all" ? "; the whole robot is 'robot'" : suggest_name(name, known)));
-  (void)c.regions.find(name, origin);
+  (void)robot_of_region(c, name, origin);
+}
+
+/// May surfaces of two names touch, by all that is said but friction?
+bool may_touch(const Compilation& c, const ContactSpec& contact, const ContactPairSpec& pair) {
+  if (contact.self || is_beside(contact, pair.a) || is_beside(contact, pair.b)) return true;
+  const bool any = pair.a == robot_name || pair.b == robot_name;
+  return any ? c.spec.robots.size() > 1 : robot_of_region(c, pair.a, pair.origin) != robot_of_region(c, pair.b, pair.origin);
 }
 
 void check_pairs(const Compilation& c, const ContactSpec& contact) {
@@ -52,7 +72,7 @@ void check_pairs(const Compilation& c, const ContactSpec& contact) {
     if (is_obstacle(contact, a) && is_obstacle(contact, b))
       throw InvalidInput(spec.origin, owner + " never touches: both are obstacles");
     if (a == b && is_body(contact, a)) throw InvalidInput(spec.origin, owner + " never touches: a body is rigid");
-    if (!is_beside(contact, a) && !is_beside(contact, b) && !contact.self)
+    if (!may_touch(c, contact, spec))
       throw InvalidInput(spec.origin, owner + " never touches: both are of the robot, and 'self' is false");
   }
 }
@@ -100,30 +120,34 @@ class FaceRegion {
   std::vector<bool> held_;
 };
 
-/// The robot, then the regions that pairs name, as they come.
+/// The robots, then the regions that pairs name, as they come.
 void add_robot_parts(Compilation& c, const ContactSpec& contact) {
   ContactModel& model = c.model.contact;
   std::vector<FaceRegion> regions;
-  model.parts.push_back({.name = robot_name, .origin = contact.origin});
+  for (const RobotPart& robot : c.spec.robots)
+    model.parts.push_back({robot.name, ContactRank::robot, static_cast<Index>(model.parts.size()), false, contact.origin});
+  if (model.parts.empty()) model.parts.push_back({.name = robot_name, .robot = 0, .origin = contact.origin});
+  const std::size_t robots = model.parts.size();
   for (const ContactPairSpec& spec : contact.pairs)
     for (const std::string& name : {spec.a, spec.b}) {
-      if (is_beside(contact, name) ||
+      if (name == robot_name || is_beside(contact, name) ||
           std::any_of(model.parts.begin(), model.parts.end(), [&](const auto& part) { return part.name == name; }))
         continue;
-      model.parts.push_back({.name = name, .origin = spec.origin});
+      model.parts.push_back({.name = name, .robot = robot_of_region(c, name, spec.origin), .origin = spec.origin});
       regions.emplace_back(c, c.regions.find(name, spec.origin));
     }
   std::vector<Index> owners;
   model.triangles = boundary_triangles(c.model.tetrahedra, c.model.edge_nodes, c.model.prisms, &owners);
   std::vector<bool> any(model.parts.size());
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    std::size_t part = 1;
-    while (part <= regions.size() && !regions[part - 1].has(model.triangles[t], owners[t])) ++part;
-    if (part > regions.size()) part = 0;
+    std::size_t part = robots;
+    while (part < model.parts.size() && !regions[part - robots].has(model.triangles[t], owners[t])) ++part;
+    if (part == model.parts.size())
+      part = static_cast<std::size_t>(robot_of(c.spec, &RobotPart::vertices, model.triangles[t][0]));
     model.part_of.push_back(static_cast<Index>(part));
     any[part] = true;
   }
-  for (std::size_t part = 1; part < any.size(); ++part)
+  for (std::size_t part = robots; part < any.size(); ++part)
     if (!any[part])
       throw InvalidInput(model.parts[part].origin, "region '" + model.parts[part].name +
                                                        "' has no face of the robot's surface" +
@@ -161,13 +185,16 @@ void set_pairs(ContactModel& model, const ContactSpec& contact) {
   std::map<std::string, std::optional<double>> own;
   for (const ObstacleSpec& spec : contact.obstacles) own[spec.name] = spec.friction;
   for (const BodySpec& spec : contact.bodies) own[spec.name] = spec.friction;
-  std::map<std::string, std::size_t> at;
+  std::map<std::string, std::vector<std::size_t>> at;
   for (std::size_t a = 0; a < count; ++a) {
-    at[model.parts[a].name] = a;
+    const bool whole = model.parts[a].robot == static_cast<Index>(a);
+    at[model.parts[a].name].push_back(a);
+    if (whole && model.parts[a].name != robot_name) at[robot_name].push_back(a);
     for (std::size_t b = 0; b < count; ++b) {
       const ContactPart &one = model.parts[a], &two = model.parts[b];
       ContactPair pair{true, contact.friction};
-      if (one.rank == two.rank && one.rank == ContactRank::robot) pair.touch = contact.self;
+      if (one.rank == two.rank && one.rank == ContactRank::robot)
+        pair.touch = contact.self || one.robot != two.robot;
       if (one.rank == two.rank && one.rank == ContactRank::obstacle) pair.touch = false;
       if (a == b && one.rank == ContactRank::body) pair.touch = false;
       // a body's own goes before an obstacle's
@@ -177,8 +204,9 @@ void set_pairs(ContactModel& model, const ContactSpec& contact) {
     }
   }
   for (const ContactPairSpec& spec : contact.pairs) {
-    const std::size_t a = at.at(spec.a), b = at.at(spec.b);
-    model.pairs[a * count + b].friction = model.pairs[b * count + a].friction = spec.friction;
+    for (const std::size_t a : at.at(spec.a))
+      for (const std::size_t b : at.at(spec.b))
+        model.pairs[a * count + b].friction = model.pairs[b * count + a].friction = spec.friction;
   }
 }
 

@@ -76,9 +76,11 @@ struct Refused {
 
 void refuse(const Compilation& c, const std::string& one, const std::string& many, const Refused& refused,
             const std::string& what) {
+  const auto first = one == "prism" ? &RobotPart::prisms : &RobotPart::tetrahedra;
   if (refused.count == 0) return;
   throw InvalidInput(c.origin, counted(refused.count, one, many) + " " + what + "; the first is " + one + " " +
-                                   std::to_string(refused.first) + " (from 0)");
+                                   std::to_string(refused.first) + " (from 0" +
+                                   robot_text(c.spec, first, refused.first) + ")");
 }
 
 /// Fills in the elements of a kind and returns how many it reversed.
@@ -191,6 +193,18 @@ void name_regions(Compilation& c) {
 }
 
 }  // namespace
+
+Index robot_of(const RobotSpec& spec, Index RobotPart::*first, Index number) {
+  Index found = 0;
+  for (std::size_t r = 1; r < spec.robots.size(); ++r)
+    if (spec.robots[r].*first <= number) found = static_cast<Index>(r);
+  return found;
+}
+
+std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index number) {
+  if (spec.robots.empty()) return "";
+  return ", of robot '" + spec.robots[static_cast<std::size_t>(robot_of(spec, first, number))].name + "'";
+}
 
 void compile_elements(Compilation& c) {
   Model& model = c.model;

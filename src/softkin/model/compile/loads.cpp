@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 
@@ -95,7 +96,12 @@ void compile_loads(Compilation& c) {
     check_density(c);
     add_weight(c);
   }
-  for (const ForceSpec& spec : c.spec.forces) add_force(c, spec);
+  std::set<std::string> names;
+  for (const ForceSpec& spec : c.spec.forces) {
+    if (!spec.name.empty() && !names.insert(spec.name).second)
+      throw InvalidInput(spec.at.origin, "there are two forces '" + spec.name + "'");
+    add_force(c, spec);
+  }
 }
 
 }  // namespace softkin

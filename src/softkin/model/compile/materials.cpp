@@ -172,10 +172,6 @@ void compile_materials(Compilation& c) {
                                           "to actuators, or it is not a volume");
   }
   refuse_bare_elements(c);
-  for (std::size_t i = 0; i < model.tetrahedra.size(); ++i)
-    if (model.tetrahedron_roles[i].material >= 0) c.solid_tetrahedra.push_back(model.tetrahedra[i]);
-  c.solid_prisms = model.prisms;
-  c.embedder.emplace(model.rest, c.solid_tetrahedra, c.solid_prisms, model.edge_nodes);
 }
 
 }  // namespace softkin

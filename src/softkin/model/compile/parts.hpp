@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
@@ -7,6 +8,14 @@
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
+
+/// What carries points of a robot along: the elements with a material and those of dielectric elastomers, of all or of one robot.
+struct Body {
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Prism> prisms;
+  Embedder embedder;
+  double diagonal_mm = 0;  // of all of its elements
+};
 
 /// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
 struct Compilation {
@@ -31,11 +40,16 @@ struct Compilation {
   // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
   std::optional<std::vector<EmptySpace>> empty_spaces;
   std::vector<Index> space_actuators;  // -1: no actuator's
-  // the body: elements with a material and those of dielectric elastomers, where points are embedded
-  std::vector<Tetrahedron> solid_tetrahedra;
-  std::vector<Prism> solid_prisms;
-  std::optional<Embedder> embedder;
+  std::map<std::string, Body> robot_bodies;  // by robot, made when they are first asked for; "": of all
 };
+
+/// Which of several robots it is of; 0 where there is one. first: RobotPart's first of what is numbered
+[[nodiscard]] Index robot_of(const RobotSpec& spec, Index RobotPart::*first, Index number);
+
+/// ", of robot 'left'" where the description is of several robots, for messages that number a vertex or an element.
+///
+/// first  RobotPart's first of what is numbered
+[[nodiscard]] std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index number);
 
 /// Drops void elements, orients the others, measures them and names their regions. Physical: sets the elements of
 /// chambers apart.
@@ -77,8 +91,17 @@ void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
 /// Physical, after the supports: refuses chambers that are open.
 void check_openings(const Compilation& c);
 
-/// Gives the elements their materials (target-shape: those of no actuator), and prepares embedding in them.
+/// Gives the elements their materials (target-shape: those of no actuator).
 void compile_materials(Compilation& c);
+
+/// After the materials. robot  of several; empty: all
+[[nodiscard]] const Body& body_of(Compilation& c, const std::string& robot);
+
+/// Which vertices are a robot's: from the first to before the second.
+[[nodiscard]] std::pair<Index, Index> vertices_of(const Compilation& c, const std::string& robot);
+
+/// Of the bounding box of a robot's used vertices [mm].
+[[nodiscard]] double diagonal_of(const Compilation& c, const std::string& robot);
 
 /// The constants of a law from those that the user gives.
 ///
@@ -93,6 +116,9 @@ void compile_materials(Compilation& c);
 void compile_actuator_points(Compilation& c);
 /// The elements of Eq. (6): a triangle over each gap; none in the physical formulation.
 void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
+
+/// What a support is called: its name, that of a region that no other entry holds, or "fixed_N", N counted from 1.
+[[nodiscard]] std::string support_name(const std::vector<FixedSpec>& fixed, std::size_t entry);
 
 /// Fixed vertices and rigid regions.
 void compile_supports(Compilation& c);
@@ -122,8 +148,6 @@ void check_contact(const Compilation& c);
 /// Last: the surfaces that may touch; appends the obstacles' vertices to the model's.
 void compile_contact(Compilation& c);
 
-/// Stands for all of the robot that no pair names a region of.
-inline constexpr const char* robot_part_name = "robot";
 /// Refuses a friction coefficient that is none; owner: whose it is.
 void check_coefficient(double friction, const std::string& owner, const Origin& origin);
 /// The part of check_contact() that is about obstacles and bodies.
@@ -148,7 +172,7 @@ void doubt_units(Compilation& c);
 
 /// How far outside the body a point may be to be carried along by its nearest element [mm]: half that element's longest
 /// edge, and a tenth of the body's diagonal.
-[[nodiscard]] double most_outside(const Compilation& c, const Vec3& point);
+[[nodiscard]] double most_outside(const Body& body, const Vec3& point);
 /// "farther than 5.2 mm, to which its nearest element can carry it", of a point that is farther.
 [[nodiscard]] std::string too_far_text(double most_mm);
 

@@ -32,6 +32,7 @@ struct HoldsPoint {
   }
   bool operator()(const VertexList&) const { return false; }
   bool operator()(const ElementList&) const { return false; }
+  bool operator()(const Chosen&) const { return false; }
 };
 
 // The complaint about a shape, or nothing.
@@ -42,11 +43,13 @@ struct Complaint {
   }
   const char* operator()(const VertexList&) const { return nullptr; }
   const char* operator()(const ElementList&) const { return nullptr; }
+  const char* operator()(const Chosen&) const { return nullptr; }
 };
 
 /// "box", "sphere", ...
 std::string kind_of(const Selector& selector) {
-  static const std::array<const char*, std::variant_size_v<Selector>> kinds{
+  if (const auto* chosen = std::get_if<Chosen>(&selector)) return chosen->kind;
+  static const std::array<const char*, std::variant_size_v<Selector> - 1> kinds{
       "box", "sphere", "cylinder", "halfspace", "list of vertices", "list of elements"};
   return kinds[selector.index()];
 }
@@ -81,13 +84,16 @@ void check_indices(const std::vector<Index>& indices, std::size_t count, const s
                                      std::to_string(count) + " (counted from 0)");
 }
 
-Region complete(Region region, const Mesh& mesh, const EdgeTable& edges, const Origin& origin) {
-  const std::string owner = "region '" + region.name + "' of the mesh";
+void check_region_indices(const Region& region, const Mesh& mesh, const std::string& owner, const Origin& origin) {
   check_indices(region.tetrahedra, mesh.tetrahedra.size(), owner, "tetrahedron", origin);
   check_indices(region.prisms, mesh.prisms.size(), owner, "prism", origin);
   check_indices(region.triangles, mesh.triangles.size(), owner, "triangle", origin);
   check_indices(region.quads, mesh.quads.size(), owner, "quad", origin);
   check_indices(region.vertices, static_cast<std::size_t>(mesh.vertices.rows()), owner, "vertex", origin);
+}
+
+Region complete(Region region, const Mesh& mesh, const EdgeTable& edges, const Origin& origin) {
+  check_region_indices(region, mesh, "region '" + region.name + "' of the mesh", origin);
   add_element_vertices(mesh, region);
   add_vertices(mesh.triangles, region.triangles, region.vertices);
   add_vertices(mesh.quads, region.quads, region.vertices);
@@ -171,6 +177,9 @@ RegionTable::RegionTable(const RobotSpec& spec, const Mesh& mesh)
   if (mesh_.vertices.rows() > 0)
     tolerance_ = 1e-9 * (mesh_.vertices.colwise().maxCoeff() - mesh_.vertices.colwise().minCoeff()).norm();
   all_ = every_element(mesh_);
+  if (mesh_.edge_nodes.empty())
+    for (const EdgeNodes& nodes : spec.mesh.edge_nodes) lost_.insert(lost_.end(), nodes.begin(), nodes.end());
+  sort_unique(lost_);
   std::set<std::string> names{"all"};
   for (const Region& region : mesh_.regions) {
     regions_.push_back(complete(region, mesh_, edges_, origin));
@@ -233,6 +242,11 @@ Region RegionTable::select(const Selector& selector, const std::string& name, co
     sort_unique(region.tetrahedra);
     add_element_vertices(mesh_, region);
     sort_unique(region.vertices);
+  } else if (const auto* chosen = std::get_if<Chosen>(&selector)) {
+    region = chosen->region;
+    region.name = name;
+    check_region_indices(region, mesh_, owner, origin);
+    std::erase_if(region.vertices, [&](Index v) { return std::binary_search(lost_.begin(), lost_.end(), v); });
   } else {
     const auto accept = [&](const auto& cell) { return holds(selector, centroid(mesh_.vertices, cell), tolerance_); };
     for (Index i = 0; i < mesh_.vertices.rows(); ++i)

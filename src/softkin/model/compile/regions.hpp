@@ -38,6 +38,7 @@ class RegionTable {
   double tolerance_ = 0;
   std::vector<Region> regions_;
   Region all_;
+  std::vector<Index> lost_;  // edge nodes of the description's mesh that this one does without
 };
 
 /// "region 'base'" or "the box", for messages.

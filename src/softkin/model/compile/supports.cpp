@@ -17,23 +17,13 @@ namespace {
 void hold(Compilation& c, const FixedSpec& spec, Index v, int axis) {
   const double place = c.model.rest(v, axis) + spec.displacement[axis];
   if (c.model.used[v] && c.model.fixed[v][axis] && c.model.held(v, axis) != place)
-    throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) +
-                                              " (from 0) along " + "xyz"[axis] + " elsewhere than an earlier entry");
+    throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) + " (from 0" +
+                                              robot_text(c.spec, &RobotPart::vertices, v) + ") along " + "xyz"[axis] +
+                                              " elsewhere than an earlier entry");
   c.model.fixed[v][axis] = true;
   c.model.held(v, axis) = place;
   Index& bearer = c.model.support_of[v][axis];
   if (c.model.used[v] && bearer < 0) bearer = static_cast<Index>(c.model.supports.size()) - 1;
-}
-
-/// Of a region that no other entry holds, its name.
-std::string support_name(const Compilation& c, const FixedSpec& spec) {
-  const auto* name = std::get_if<std::string>(&spec.where.region);
-  const auto holds = [&](const FixedSpec& other) {
-    const auto* region = std::get_if<std::string>(&other.where.region);
-    return name && region && *region == *name;
-  };
-  if (std::count_if(c.spec.fixed.begin(), c.spec.fixed.end(), holds) == 1) return *name;
-  return "fixed_" + std::to_string(&spec - c.spec.fixed.data() + 1);
 }
 
 void fix(Compilation& c, const FixedSpec& spec) {
@@ -43,7 +33,7 @@ void fix(Compilation& c, const FixedSpec& spec) {
     throw InvalidInput(spec.where.origin, label(spec.where) + " is displaced by a number that is not finite");
   const Region region = c.regions.resolve(spec.where);
   Support& support = c.model.supports.emplace_back();
-  support.name = support_name(c, spec);
+  support.name = support_name(c.spec.fixed, static_cast<std::size_t>(&spec - c.spec.fixed.data()));
   std::copy_if(region.vertices.begin(), region.vertices.end(), std::back_inserter(support.vertices),
                [&](Index v) { return static_cast<bool>(c.model.used[v]); });
   if (support.vertices.empty())
@@ -213,6 +203,17 @@ std::string freedom_of(const Model& model, const std::vector<Index>& vertices) {
 }
 
 }  // namespace
+
+std::string support_name(const std::vector<FixedSpec>& fixed, std::size_t entry) {
+  if (!fixed[entry].name.empty()) return fixed[entry].name;
+  const auto* name = std::get_if<std::string>(&fixed[entry].where.region);
+  const auto holds = [&](const FixedSpec& other) {
+    const auto* region = std::get_if<std::string>(&other.where.region);
+    return name && ((region && *region == *name) || other.name == *name);
+  };
+  if (std::count_if(fixed.begin(), fixed.end(), holds) == 1) return *name;
+  return "fixed_" + std::to_string(entry + 1);
+}
 
 void compile_supports(Compilation& c) {
   c.model.support_of.assign(c.model.used.size(), {-1, -1, -1});

@@ -44,6 +44,11 @@ class RestingSurfaces {
     return model.contact.parts[static_cast<std::size_t>(part(triangle))].rank;
   }
   [[nodiscard]] bool of_robot(Index triangle) const { return rank(triangle) == ContactRank::robot; }
+  /// The robot, body or obstacle whose triangle it is: the first of its parts.
+  [[nodiscard]] Index solid(Index triangle) const {
+    const ContactPart& of = model.contact.parts[static_cast<std::size_t>(part(triangle))];
+    return of.rank == ContactRank::robot ? of.robot : part(triangle);
+  }
   /// A triangle at a vertex or edge, by place.
   [[nodiscard]] static Index first_at(const contact::Lists& triangles, Index i) {
     return triangles.items[static_cast<std::size_t>(triangles.begin[static_cast<std::size_t>(i)])];
@@ -68,15 +73,10 @@ const ContactPart& part_at(const Model& model, Index part) {
   return model.contact.parts[static_cast<std::size_t>(part)];
 }
 
-std::string name_of_part(const ContactPart& part) {
-  if (part.rank == ContactRank::obstacle) return "obstacle '" + part.name + "'";
-  if (part.rank == ContactRank::body) return "body '" + part.name + "'";
-  return part.name == "robot" ? "the robot" : "region '" + part.name + "'";
-}
-
-/// Of something that is closed: all of the robot, whichever of its parts it is.
-std::string name_of_solid(const ContactPart& part) {
-  return part.rank == ContactRank::robot ? "the robot" : name_of_part(part);
+/// "the robot's body", "the body of robot 'left'"
+std::string of_robot_text(const Model& model, Index robot, const std::string& what) {
+  const std::string label = model.contact.label(robot);
+  return part_at(model, robot).name == robot_part_name ? label + "'s " + what : "the " + what + " of " + label;
 }
 
 std::string kind_of(const ContactPart& part) {
@@ -103,13 +103,14 @@ bool is_closed(const Points& vertices, const std::vector<Triangle>& triangles) {
 void refuse_behind_planes(const RestingSurfaces& at) {
   const Model& model = at.model;
   for (std::size_t t = 0; t < at.surface.triangles.size(); ++t) {
-    const ContactPart& part = part_at(model, at.part(static_cast<Index>(t)));
+    const Index plane = at.part(static_cast<Index>(t));
+    const ContactPart& part = part_at(model, plane);
     if (!part.halfspace) continue;
     const auto& [a, b, c] = at.surface.triangles[t];
     const Vec3 normal = (at.rest(b) - at.rest(a)).cross(at.rest(c) - at.rest(a)).normalized();
     double least = std::numeric_limits<double>::infinity();
     Vec3 lowest;
-    const ContactPart* deepest = nullptr;
+    Index deepest = -1;
     for (std::size_t i = 0; i < at.surface.vertices.size(); ++i) {
       const Index v = at.surface.vertices[i], own = at.at_vertex(static_cast<Index>(i));
       if (at.rank(own) == ContactRank::obstacle) continue;
@@ -117,13 +118,13 @@ void refuse_behind_planes(const RestingSurfaces& at) {
       if (!(height < least)) continue;
       least = height;
       lowest = at.rest(v);
-      deepest = &part_at(model, at.part(own));
+      deepest = at.part(own);
     }
     if (least > touching * model.diagonal_mm) continue;
     const bool deep = least < -touching * model.diagonal_mm;
-    throw InvalidInput(part.origin, name_of_solid(*deepest) + " " +
+    throw InvalidInput(part.origin, model.contact.label_of_solid(deepest) + " " +
                                         (deep ? "lies " + number(-least) + " mm deep in " : std::string("touches ")) +
-                                        name_of_part(part) + " at rest, " + place_text(lowest) +
+                                        model.contact.label(plane) + " at rest, " + place_text(lowest) +
                                         ": move it by more than " + number(std::max(0.0, -least)) +
                                         " mm against its normal, so that a gap is left");
   }
@@ -154,25 +155,21 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
 
 [[noreturn]] void refuse_crossing(const RestingSurfaces& at, Index triangle, Index other, const Vec3& place) {
   if (at.rank(other) < at.rank(triangle)) std::swap(triangle, other);
-  const ContactPart &one = part_at(at.model, at.part(triangle)), &two = part_at(at.model, at.part(other));
-  const std::string where = " at rest, " + place_text(place) + ": ";
-  if (at.of_robot(other)) {
-    const bool same = at.part(triangle) == at.part(other);
-    throw InvalidInput(one.origin,
-                       name_of_part(one) +
-                           (same ? " touches or crosses itself" : " and " + name_of_part(two) + " touch or cross") +
-                           where + "leave a gap there or join the surfaces in the mesh, or set " + "'self: false'");
-  }
   const Index first = at.part(triangle), second = at.part(other);
-  const bool robot = at.of_robot(triangle);
-  const double depth = depth_of(
-      at.model.rest, triangles_where(at, [&](Index t) { return robot ? at.of_robot(t) : at.part(t) == first; }),
-      triangles_where(at, [&](Index t) { return at.part(t) == second; }));
-  const std::string kind = kind_of(two);
-  throw InvalidInput(two.origin, name_of_part(one) + " and " + name_of_part(two) + " touch or cross" + where +
-                                     (depth > 0 ? "move the " + kind + " away by about " + number(depth, 2) +
-                                                      " mm or more, so that a gap is left"
-                                                : "move the " + kind + " away, so that a gap is left"));
+  const ContactModel& contact = at.model.contact;
+  const Origin& origin = part_at(at.model, second).origin;
+  const std::string where = " at rest, " + place_text(place) + ": ";
+  const std::string both = contact.label(first) + " and " + contact.label(second) + " touch or cross";
+  if (at.solid(triangle) == at.solid(other))
+    throw InvalidInput(part_at(at.model, first).origin,
+                       (first == second ? contact.label(first) + " touches or crosses itself" : both) + where +
+                           "leave a gap there or join the surfaces in the mesh, or set " + "'self: false'");
+  const auto all_of = [&](Index solid) { return triangles_where(at, [&](Index t) { return at.solid(t) == solid; }); };
+  const double depth = depth_of(at.model.rest, all_of(at.solid(triangle)), all_of(at.solid(other)));
+  throw InvalidInput(origin, both + where + "move " +
+                                 (at.of_robot(other) ? "one of the robots" : "the " + kind_of(part_at(at.model, second))) +
+                                 " away" + (depth > 0 ? " by about " + number(depth, 2) + " mm or more" : "") +
+                                 ", so that a gap is left");
 }
 
 /// Surfaces that pass through each other: every piece of their common line ends where an edge meets a triangle.
@@ -236,37 +233,37 @@ std::vector<Vec3> one_of_each(const Points& rest, const std::vector<Triangle>& t
   return points;
 }
 
-/// What does not cross is inside with all of a piece or with none: of two parts, the robot being one.
+/// What does not cross is inside with all of a piece or with none.
 void refuse_inside(const RestingSurfaces& at) {
   const Points& rest = at.model.rest;
   struct Solid {
-    const ContactPart* part;
+    Index part;
+    ContactRank rank;
     std::vector<Triangle> triangles;
     std::vector<Vec3> points;
     std::optional<SurfaceTree> tree;  // where it is closed
   };
   std::vector<Solid> solids;
-  const auto add = [&](const ContactPart& part, std::vector<Triangle> triangles) {
-    Solid solid{&part, std::move(triangles), {}, {}};
+  for (Index p = 0; p < static_cast<Index>(at.model.contact.parts.size()); ++p) {
+    const ContactPart& part = part_at(at.model, p);
+    if (part.halfspace || (part.rank == ContactRank::robot && part.robot != p)) continue;
+    Solid solid{p, part.rank, triangles_where(at, [&](Index t) { return at.solid(t) == p; }), {}, {}};
     solid.points = one_of_each(rest, solid.triangles);
     if (part.rank == ContactRank::robot || is_closed(rest, solid.triangles)) solid.tree.emplace(rest, solid.triangles);
     solids.push_back(std::move(solid));
-  };
-  add(part_at(at.model, 0), triangles_where(at, [&](Index t) { return at.of_robot(t); }));
-  for (std::size_t p = 0; p < at.model.contact.parts.size(); ++p)
-    if (const ContactPart& part = at.model.contact.parts[p]; part.rank != ContactRank::robot && !part.halfspace)
-      add(part, triangles_where(at, [&](Index t) { return at.part(t) == static_cast<Index>(p); }));
+  }
   for (const Solid& inner : solids)
     for (const Solid& outer : solids) {
       if (&inner == &outer || !outer.tree) continue;
-      if (inner.part->rank == ContactRank::obstacle && outer.part->rank == ContactRank::obstacle) continue;
+      if (inner.rank == ContactRank::obstacle && outer.rank == ContactRank::obstacle) continue;
       for (const Vec3& point : inner.points) {
         if (!outer.tree->contains(point)) continue;
-        const bool robot = outer.part->rank == ContactRank::robot;
-        const ContactPart& named = robot ? *inner.part : *outer.part;
-        throw InvalidInput(named.origin, name_of_solid(*inner.part) + " lies inside " +
-                                             (robot ? "the robot's body" : name_of_solid(*outer.part)) + " at rest, " +
-                                             place_text(point) + ": " +
+        const bool robot = outer.rank == ContactRank::robot;
+        const ContactPart& named = part_at(at.model, robot ? inner.part : outer.part);
+        throw InvalidInput(named.origin, at.model.contact.label(inner.part) + " lies inside " +
+                                             (robot ? of_robot_text(at.model, outer.part, "body")
+                                                    : at.model.contact.label(outer.part)) +
+                                             " at rest, " + place_text(point) + ": " +
                                              (robot ? "move it out" : "move the " + kind_of(named) + " away") +
                                              ", so that a gap is left");
       }
@@ -332,10 +329,11 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
   const std::vector<Vec3> normals = vertex_normals(at);
   std::optional<SurfaceWalk> walk;
   double gap = too_close * distance;
+  Index robot = 0;
   std::optional<Vec3> where;
   for (const contact::Pair& pair : near.vertex_triangle) {
     const Index own = at.at_vertex(pair.first);
-    if (!at.of_robot(own) || !at.of_robot(pair.second) || !at.may_touch(own, pair.second)) continue;
+    if (!at.of_robot(own) || at.solid(own) != at.solid(pair.second) || !at.may_touch(own, pair.second)) continue;
     const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
     const contact::FourPoints x = contact::points_of(at.model.rest, nodes);
     const contact::Separation separation = contact::vertex_triangle(x);
@@ -352,11 +350,12 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
       continue;
     gap = apart;
     where = x.col(0);
+    robot = at.solid(own);
   }
   if (where)
     throw InvalidInput(at.model.contact.parts[0].origin,
-                       "contact distance " + number(distance) + " mm is too large: " + place_text(*where) +
-                           " the robot's surfaces are only " + number(gap, 3) + " mm apart; choose at most " +
+                       "contact distance " + number(distance) + " mm is too large: " + place_text(*where) + " " +
+                           of_robot_text(at.model, robot, "surfaces") + " are only " + number(gap, 3) + " mm apart; choose at most " +
                            number(gap / advised, 3) + " mm");
 }
 

@@ -35,10 +35,10 @@ contact::Lists lists_of(std::size_t count, std::vector<Pair>& pairs) {
 bool same_robot(const ContactSurfaces& surfaces, const std::vector<Index>& a_parts, Index a,
                 const std::vector<Index>& b_parts, Index b) {
   if (surfaces.rules == nullptr) return true;
-  const auto rank = [&](const std::vector<Index>& parts, Index item) {
-    return surfaces.rules->parts[static_cast<std::size_t>(parts[static_cast<std::size_t>(item)])].rank;
+  const auto robot = [&](const std::vector<Index>& parts, Index item) {
+    return surfaces.rules->parts[static_cast<std::size_t>(parts[static_cast<std::size_t>(item)])].robot;
   };
-  return rank(a_parts, a) == ContactRank::robot && rank(b_parts, b) == ContactRank::robot;
+  return robot(a_parts, a) >= 0 && robot(a_parts, a) == robot(b_parts, b);
 }
 
 /// Of n, how the separation's length changes with the points.

@@ -116,8 +116,8 @@ contact::Exclusions Contacts::exclusions() const {
     const bool untouched = rank == ContactRank::obstacle || !rules.pair(part, part).touch;
     group_of_part.push_back(rank == ContactRank::obstacle ? 0
                             : !untouched                  ? -1
-                            : rank == ContactRank::robot  ? 1
-                                                          : 2 + part);
+                            : rank == ContactRank::robot  ? 1 + rules.parts[static_cast<std::size_t>(part)].robot
+                                                          : 1 + part);
   }
   contact::Exclusions out;
   out.group.assign(static_cast<std::size_t>(model_.rest.rows()), -1);
