@@ -28,7 +28,7 @@ struct RobotsFolder : BlockFolder {
   }
 };
 
-json report_of(const ProgramResult& result) {
+json printed_report(const ProgramResult& result) {
   EXPECT_EQ(result.exit_code, 0) << result.errors << result.output;
   return json::parse(result.output);
 }
@@ -41,9 +41,9 @@ Vec3 vector_of(const json& at) {
 TEST(SeveralRobotsCommand, EachMovesAsItDoesAlone) {
   const RobotsFolder folder;
   const std::string pair = folder.pair("100");
-  const json alone = report_of(run_fk(folder.scene, {"--set", "air=1.2", "--json"})).at("steps").at(0);
-  const json both = report_of(run_fk(pair, {"--set", "left.air=1.1", "--set", "right.air=1.2", "--json", "-o",
-                                            folder / "pair.vtu", "--image", folder / "pair.png"}));
+  const json alone = printed_report(run_fk(folder.scene, {"--set", "air=1.2", "--json"})).at("steps").at(0);
+  const json both = printed_report(run_fk(pair, {"--set", "left.air=1.1", "--set", "right.air=1.2", "--json", "-o",
+                                                 folder / "pair.vtu", "--image", folder / "pair.png"}));
   EXPECT_EQ(both.at("formulation"), "physical");
   const json& step = both.at("steps").at(0);
   for (const char* marker : {"tip", "corner"}) {
@@ -70,7 +70,7 @@ TEST(SeveralRobotsCommand, PathsNameTheRobotsActuators) {
   const RobotsFolder folder;
   const std::string pair = folder.pair("100");
   const std::string path = folder.write("path.csv", "right.air, left.air\n1, 1\n1.1, 1.2\n");
-  const json steps = report_of(run_fk(pair, {"--path", path, "--json", "-o", folder / "pair.pvd"})).at("steps");
+  const json steps = printed_report(run_fk(pair, {"--path", path, "--json", "-o", folder / "pair.pvd"})).at("steps");
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_NEAR(steps[1].at("actuators").at("left.air").at("achieved").get<double>(), 1.2, 1e-6);
   EXPECT_NEAR(steps[1].at("actuators").at("right.air").at("achieved").get<double>(), 1.1, 1e-6);
@@ -88,7 +88,7 @@ TEST(SeveralRobotsCommand, WhatTouchesIsNamed) {
   const ProgramResult text = run_fk(pair, grown);
   EXPECT_EQ(text.exit_code, 0) << text.errors;
   expect_words(text.output, {"robot 'left'", "robot 'right'"});
-  const json step = report_of(run_fk(pair, {"--set", "left.air=1.6", "--json"})).at("steps").at(0);
+  const json step = printed_report(run_fk(pair, {"--set", "left.air=1.6", "--json"})).at("steps").at(0);
   const json touching = step.at("contacts");
   const auto of = [&](const std::string& on, const std::string& by) {
     const auto found = std::find_if(touching.begin(), touching.end(),
