@@ -180,9 +180,17 @@ TEST(SeveralRobots, ThatStandCloseToEachOtherPressFromTheStart) {
   const Statics statics(model);
   const Equilibrium found = settled(statics, {}, tight());
   const double load = reaction_of(model, statics, found, 0).z();
-  const double gap = found.state.positions.row(model.robot_vertices() - 1).z() - StackedBlocks::size;
+  double below = 0, above = 2 * StackedBlocks::size;
+  for (Index v = 0; v < model.rest.rows(); ++v) {
+    const double height = found.state.positions(v, 2);
+    if (model.rest(v, 2) > StackedBlocks::size)
+      above = std::min(above, height);
+    else
+      below = std::max(below, height);
+  }
   EXPECT_GT(load, 0.1);
-  EXPECT_GT(gap, 0.05);
+  EXPECT_GT(above - below, blocks.gap);
+  EXPECT_LT(above - below, blocks.distance);
   EXPECT_THROW((void)Statics(compile(blocks.robot())), InvalidInput);
 }
 

@@ -154,7 +154,7 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
 }
 
 [[noreturn]] void refuse_crossing(const RestingSurfaces& at, Index triangle, Index other, const Vec3& place) {
-  if (at.rank(other) < at.rank(triangle)) std::swap(triangle, other);
+  if (at.part(other) < at.part(triangle)) std::swap(triangle, other);  // robots, bodies, obstacles
   const Index first = at.part(triangle), second = at.part(other);
   const ContactModel& contact = at.model.contact;
   const Origin& origin = part_at(at.model, second).origin;
