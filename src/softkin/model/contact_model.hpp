@@ -32,8 +32,8 @@ struct ContactPair {
 
 /// Which surfaces of a robot and its surroundings may touch; physical.
 struct ContactModel {
-  double distance_mm = 0;  // below which surfaces repel each other; 0: nothing touches anything
-  double modulus_MPa = 0;  // > 0: of that repulsion
+  double distance_mm = 0;                       // below which surfaces repel each other; 0: nothing touches anything
+  double modulus_MPa = 0;                       // > 0: of that repulsion
   std::vector<ContactPart> parts;               // the robots; their regions; bodies and obstacles
   std::vector<ContactPair> pairs;               // of parts a, b and b, a alike, at a * #parts + b
   std::vector<std::array<Index, 3>> triangles;  // vertices of the model, normals outwards; faces of order 2 as four

@@ -211,7 +211,8 @@ void compile_actuator_points(Compilation& c) {
     Actuator& actuator = c.model.actuators[i];
     if (spec.kind == ActuatorKind::cable) compile_cable(c, spec, actuator);
     if (!spec.surface || !actuator.cavity.empty()) continue;
-    if (body_of(c, spec.robot).embedder.empty()) refuse(spec, "has a surface but the robot has no body that could hold it");
+    if (body_of(c, spec.robot).embedder.empty())
+      refuse(spec, "has a surface but the robot has no body that could hold it");
     embed_surface(c, spec, actuator);
   }
 }

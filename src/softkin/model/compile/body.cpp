@@ -23,7 +23,9 @@ const Body& body_of(Compilation& c, const std::string& robot) {
   if (const auto known = c.robot_bodies.find(robot); known != c.robot_bodies.end()) return known->second;
   const Model& model = c.model;
   const auto [begin, end] = vertices_of(c, robot);
-  const auto is_of = [begin = begin, end = end](const auto& element) { return element[0] >= begin && element[0] < end; };
+  const auto is_of = [begin = begin, end = end](const auto& element) {
+    return element[0] >= begin && element[0] < end;
+  };
   std::vector<Tetrahedron> tetrahedra;
   std::vector<EdgeNodes> edge_nodes;
   std::vector<Prism> prisms;

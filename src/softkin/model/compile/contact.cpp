@@ -34,8 +34,9 @@ Index robot_of_region(const Compilation& c, const std::string& region, const Ori
   const auto of = [&](Index v) { return robot_of(c.spec, &RobotPart::vertices, v); };
   const Index first = of(vertices.front()), last = of(vertices.back());
   if (first != last)
-    throw InvalidInput(origin, "region '" + region + "' is of robot '" + c.spec.robots[static_cast<std::size_t>(first)].name +
-                                   "' and of robot '" + c.spec.robots[static_cast<std::size_t>(last)].name +
+    throw InvalidInput(origin, "region '" + region + "' is of robot '" +
+                                   c.spec.robots[static_cast<std::size_t>(first)].name + "' and of robot '" +
+                                   c.spec.robots[static_cast<std::size_t>(last)].name +
                                    "': what touches is of one of them; name a region of each");
   return first;
 }
@@ -57,7 +58,8 @@ void check_name(const Compilation& c, const ContactSpec& contact, const std::str
 bool may_touch(const Compilation& c, const ContactSpec& contact, const ContactPairSpec& pair) {
   if (contact.self || is_beside(contact, pair.a) || is_beside(contact, pair.b)) return true;
   const bool any = pair.a == robot_name || pair.b == robot_name;
-  return any ? c.spec.robots.size() > 1 : robot_of_region(c, pair.a, pair.origin) != robot_of_region(c, pair.b, pair.origin);
+  return any ? c.spec.robots.size() > 1
+             : robot_of_region(c, pair.a, pair.origin) != robot_of_region(c, pair.b, pair.origin);
 }
 
 void check_pairs(const Compilation& c, const ContactSpec& contact) {
@@ -125,7 +127,8 @@ void add_robot_parts(Compilation& c, const ContactSpec& contact) {
   ContactModel& model = c.model.contact;
   std::vector<FaceRegion> regions;
   for (const RobotPart& robot : c.spec.robots)
-    model.parts.push_back({robot.name, ContactRank::robot, static_cast<Index>(model.parts.size()), false, contact.origin});
+    model.parts.push_back(
+        {robot.name, ContactRank::robot, static_cast<Index>(model.parts.size()), false, contact.origin});
   if (model.parts.empty()) model.parts.push_back({.name = robot_name, .robot = 0, .origin = contact.origin});
   const std::size_t robots = model.parts.size();
   for (const ContactPairSpec& spec : contact.pairs)
@@ -193,8 +196,7 @@ void set_pairs(ContactModel& model, const ContactSpec& contact) {
     for (std::size_t b = 0; b < count; ++b) {
       const ContactPart &one = model.parts[a], &two = model.parts[b];
       ContactPair pair{true, contact.friction};
-      if (one.rank == two.rank && one.rank == ContactRank::robot)
-        pair.touch = contact.self || one.robot != two.robot;
+      if (one.rank == two.rank && one.rank == ContactRank::robot) pair.touch = contact.self || one.robot != two.robot;
       if (one.rank == two.rank && one.rank == ContactRank::obstacle) pair.touch = false;
       if (a == b && one.rank == ContactRank::body) pair.touch = false;
       // a body's own goes before an obstacle's

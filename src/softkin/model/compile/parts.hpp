@@ -9,7 +9,7 @@
 
 namespace softkin {
 
-/// What carries points of a robot along: the elements with a material and those of dielectric elastomers, of all or of one robot.
+/// What carries points along: elements with a material and those of dielectric elastomers, of all robots or of one.
 struct Body {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Prism> prisms;
@@ -39,7 +39,7 @@ struct Compilation {
   std::vector<Index> chamber_at, chamber_of;  // as tetrahedron_at and tetrahedron_of
   // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
   std::optional<std::vector<EmptySpace>> empty_spaces;
-  std::vector<Index> space_actuators;  // -1: no actuator's
+  std::vector<Index> space_actuators;        // -1: no actuator's
   std::map<std::string, Body> robot_bodies;  // by robot, made when they are first asked for; "": of all
 };
 

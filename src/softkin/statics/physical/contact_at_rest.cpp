@@ -154,7 +154,7 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
 }
 
 [[noreturn]] void refuse_crossing(const RestingSurfaces& at, Index triangle, Index other, const Vec3& place) {
-  if (at.rank(other) < at.rank(triangle)) std::swap(triangle, other);
+  if (at.part(other) < at.part(triangle)) std::swap(triangle, other);  // robots, bodies, obstacles
   const Index first = at.part(triangle), second = at.part(other);
   const ContactModel& contact = at.model.contact;
   const Origin& origin = part_at(at.model, second).origin;
@@ -166,10 +166,10 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
                            "leave a gap there or join the surfaces in the mesh, or set " + "'self: false'");
   const auto all_of = [&](Index solid) { return triangles_where(at, [&](Index t) { return at.solid(t) == solid; }); };
   const double depth = depth_of(at.model.rest, all_of(at.solid(triangle)), all_of(at.solid(other)));
-  throw InvalidInput(origin, both + where + "move " +
-                                 (at.of_robot(other) ? "one of the robots" : "the " + kind_of(part_at(at.model, second))) +
-                                 " away" + (depth > 0 ? " by about " + number(depth, 2) + " mm or more" : "") +
-                                 ", so that a gap is left");
+  throw InvalidInput(
+      origin, both + where + "move " +
+                  (at.of_robot(other) ? "one of the robots" : "the " + kind_of(part_at(at.model, second))) + " away" +
+                  (depth > 0 ? " by about " + number(depth, 2) + " mm or more" : "") + ", so that a gap is left");
 }
 
 /// Surfaces that pass through each other: every piece of their common line ends where an edge meets a triangle.
@@ -260,12 +260,12 @@ void refuse_inside(const RestingSurfaces& at) {
         if (!outer.tree->contains(point)) continue;
         const bool robot = outer.rank == ContactRank::robot;
         const ContactPart& named = part_at(at.model, robot ? inner.part : outer.part);
-        throw InvalidInput(named.origin, at.model.contact.label(inner.part) + " lies inside " +
-                                             (robot ? of_robot_text(at.model, outer.part, "body")
-                                                    : at.model.contact.label(outer.part)) +
-                                             " at rest, " + place_text(point) + ": " +
-                                             (robot ? "move it out" : "move the " + kind_of(named) + " away") +
-                                             ", so that a gap is left");
+        throw InvalidInput(
+            named.origin,
+            at.model.contact.label(inner.part) + " lies inside " +
+                (robot ? of_robot_text(at.model, outer.part, "body") : at.model.contact.label(outer.part)) +
+                " at rest, " + place_text(point) + ": " +
+                (robot ? "move it out" : "move the " + kind_of(named) + " away") + ", so that a gap is left");
       }
     }
 }
@@ -355,8 +355,8 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
   if (where)
     throw InvalidInput(at.model.contact.parts[0].origin,
                        "contact distance " + number(distance) + " mm is too large: " + place_text(*where) + " " +
-                           of_robot_text(at.model, robot, "surfaces") + " are only " + number(gap, 3) + " mm apart; choose at most " +
-                           number(gap / advised, 3) + " mm");
+                           of_robot_text(at.model, robot, "surfaces") + " are only " + number(gap, 3) +
+                           " mm apart; choose at most " + number(gap / advised, 3) + " mm");
 }
 
 }  // namespace
