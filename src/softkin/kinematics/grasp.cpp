@@ -7,13 +7,23 @@ namespace softkin {
 namespace {
 
 constexpr double growth = 4;          // of the pull from try to try
-constexpr double least_share = 1e-4;  // of the largest that may be commanded, to begin with
+constexpr double least_share = 1e-6;  // of the largest that may be commanded, to begin with
 constexpr double gravity = 9.81;      // m/s^2
 
 const FreeBody& body_at(const Model& model, Index body) {
   if (body < 0 || body >= static_cast<Index>(model.bodies.size()))
     throw InvalidInput("the robot has no body " + std::to_string(body) + " (from 0)");
   return model.bodies[static_cast<std::size_t>(body)];
+}
+
+/// What presses on a body, the magnitudes of all normal forces [N].
+double pressed(const Model& model, const FreeBody& body, const ElementDeformation& shape) {
+  double sum = 0;
+  if (!shape.contacts) return sum;
+  for (const PairForces& pair : shape.contacts->pairs)
+    for (const Index part : {pair.a, pair.b})
+      if (model.contact.parts[static_cast<std::size_t>(part)].name == body.name) sum += pair.normal_N;
+  return sum;
 }
 
 }  // namespace
@@ -46,7 +56,8 @@ Pull largest_pull(const Model& model, const Statics& statics, const State& grasp
   pull.direction = direction.normalized();
   pull.last.state = grasp;
   pull.last.actuation = grasp.actuation;
-  double force = std::min(most_N, std::max(gravity * held.mass_kg, least_share * most_pull(model, body)));
+  const double first = std::max(gravity * held.mass_kg, pressed(model, held, statics.measured(grasp)));
+  double force = std::min(most_N, std::max(first, least_share * most_pull(model, body)));
   for (;;) {
     Equilibrium found =
         statics.solve(pulled(model, grasp.actuation, body, pull.direction, force), pull.last.state, options, progress);

@@ -23,7 +23,7 @@ struct Pull {
                                double force_N);
 
 /// The largest force on a body along a direction before it slips or no equilibrium is left: the pull grows fourfold
-/// from the body's weight, or a ten-thousandth of what may be commanded, until an equilibrium cannot be followed.
+/// from the body's weight, or from what presses on it if that is more, until an equilibrium cannot be followed.
 ///
 /// grasp    an equilibrium that solve() returned, the body free
 /// most_N   > 0: no larger force is tried
