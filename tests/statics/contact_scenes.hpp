@@ -78,12 +78,15 @@ inline double push_of_gap(double z) {
   return z < 1 ? 2 * (z - 1) * std::log(z) + (z - 1) * (z - 1) / z : 0;
 }
 
-/// What a floor at z = 0 pushes at each of some vertices [N], by the law of the barrier and the model's areas.
+/// What a floor at z = 0 pushes at the points of some vertices [N], by the law of the barrier and the model's areas; on
+/// edges of order 2 they are a third of the edge's height beyond the nodes.
 [[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions,
                                                    const std::vector<Index>& vertices) {
-  Eigen::VectorXd push(static_cast<Index>(vertices.size()));
+  Eigen::VectorXd push(static_cast<Index>(vertices.size())), height = positions.col(2);
+  for (const auto& [a, b, node] : model.contact.edges)
+    height[node] = 4 * positions(node, 2) / 3 - (positions(a, 2) + positions(b, 2)) / 6;
   for (std::size_t i = 0; i < vertices.size(); ++i)
-    push[static_cast<Index>(i)] = push_of_gap(positions(vertices[i], 2) / model.contact.distance_mm) *
+    push[static_cast<Index>(i)] = push_of_gap(height[vertices[i]] / model.contact.distance_mm) *
                                   model.contact.modulus_MPa * model.contact.area[vertices[i]];
   return push;
 }

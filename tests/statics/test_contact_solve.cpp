@@ -3,6 +3,7 @@
 
 #include "statics/physical_samples.hpp"
 #include "statics/pressed_balls.hpp"
+#include "statics/pressed_blocks.hpp"
 
 /// Equilibria of robots that touch themselves or obstacles.
 
@@ -11,60 +12,14 @@ namespace {
 
 using namespace testing;
 
-/// Pressure per area at rest of stacked blocks that touch evenly: both are compressed alike, the gap is that at which
-/// the barrier balances them.
-double pressure_by_hand(const StackedBlocks& blocks, const Model& model) {
-  const ElasticLaw& law = model.materials[0].elastic;
-  const auto pressure_at = [&](double stretch) {
-    double low = 1, high = 1.5;  // sideways, where nothing pushes
-    for (int i = 0; i < 100; ++i) {
-      const double side = (low + high) / 2, volume = stretch * side * side;
-      (law.mu / volume * side * side + (law.lambda + law.mu) * (volume - 1) - law.mu > 0 ? high : low) = side;
-    }
-    const double volume = stretch * low * low;
-    const double stress = law.mu / volume * stretch * stretch + (law.lambda + law.mu) * (volume - 1) - law.mu;
-    return -stress * low * low;
-  };
-  double low = 0.5, high = 1;
-  for (int i = 0; i < 100; ++i) {
-    const double stretch = (low + high) / 2;
-    const double left = 2 * StackedBlocks::size * (1 - stretch) + blocks.gap - blocks.press;
-    (push_of_gap(left / blocks.distance) * model.contact.modulus_MPa > pressure_at(stretch) ? high : low) = stretch;
-  }
-  return pressure_at(low);
-}
-
-/// Deviations from a uniform compression.
-struct Unevenness {
-  double force = 0;                   // from what was found by hand
-  double largest = 0, root_mean = 0;  // of von Mises' stress of the elements
-};
-
-Unevenness unevenness_of(const StackedBlocks& blocks) {
-  const Model model = compile(blocks.robot());
-  const Statics statics(model);
-  const Equilibrium found = settled(statics, {});
-  const double force = -reaction_of(model, statics, found, 1).z();
-  Vec3 wide = Vec3::Zero();
-  for (Index v = 0; v < model.robot_vertices(); ++v) wide = wide.cwiseMax(Vec3(found.state.positions.row(v)));
-  Unevenness out;
-  out.force = force / (StackedBlocks::size * StackedBlocks::size * pressure_by_hand(blocks, model)) - 1;
-  const std::vector<double> stresses = statics.measured(found.state).stress.von_mises;
-  for (std::size_t i = 0; i < stresses.size(); ++i) {
-    const double error = stresses[i] / (force / (wide.x() * wide.y())) - 1;
-    out.largest = std::max(out.largest, std::abs(error));
-    out.root_mean += model.tetrahedron_volumes[i] * error * error;
-  }
-  out.root_mean = std::sqrt(out.root_mean / sum(model.tetrahedron_volumes));
-  std::printf("%-9s distance %.5f: force %+.2e, stress %.2e, root mean %.2e, %3d iterations, %.2f s\n",
-              blocks.quadratic ? "quadratic" : "linear", blocks.distance / StackedBlocks::size, out.force, out.largest,
-              out.root_mean, found.report.iterations, found.report.seconds);
-  return out;
-}
-
 Unevenness unevenness_at(double distance, bool quadratic) {
-  const double d = distance * StackedBlocks::size;
-  return unevenness_of({d, 2.5 * d, 2.5 * d + 2, quadratic});
+  const StackedBlocks blocks = blocks_at(distance, quadratic);
+  const Unevenness found = unevenness_of(blocks, {3, 3, 2}, {4, 4, 2}, tight());
+  EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+  std::printf("%-9s distance %.5f: force %+.2e, stress %.2e, root mean %.2e, %3d iterations, %.2f s\n",
+              quadratic ? "quadratic" : "linear", distance, found.force, found.largest, found.root_mean,
+              found.report.iterations, found.report.seconds);
+  return found;
 }
 
 /// Vertices push for areas of their own on surfaces with other vertices: uneven until gaps, which are of the order of

@@ -11,7 +11,7 @@ namespace softkin {
 namespace {
 
 constexpr double default_distance = 5e-4, most_distance = 0.05;  // over the robot's diagonal
-constexpr double least_area = 0.01;          // of a vertex, over the mean of the robot's: nothing slips past corners
+constexpr double least_area = 0.01;          // of a vertex, over the mean of the robot's: nothing slips past small ones
 constexpr double finest_sagitta = 0.1;       // over the distance
 constexpr double halfspace_diagonals = 100;  // that its triangle reaches to every side
 constexpr double most_diagonals = 1e6;       // from the origin
@@ -199,20 +199,30 @@ double triangle_area(const Points& vertices, const Triangle& t) {
   return (vertex_at(vertices, t[1]) - a).cross(vertex_at(vertices, t[2]) - a).norm() / 2;
 }
 
-/// What a uniform pressure gives to each vertex of the robot, over the pressure; returns the mean.
+/// Edges of faces whose triangles come by fours, corners with the nodes beside them before the nodes.
+std::vector<EdgeWithNode> edges_of_faces(const std::vector<Triangle>& triangles) {
+  std::vector<EdgeWithNode> edges;
+  for (std::size_t t = 0; t < triangles.size(); t += 4) {
+    const auto& [a, ab, ca] = triangles[t];
+    const Index b = triangles[t + 1][1], bc = triangles[t + 1][2], c = triangles[t + 2][2];
+    for (const auto& [one, other, node] : {EdgeWithNode{a, b, ab}, EdgeWithNode{b, c, bc}, EdgeWithNode{c, a, ca}})
+      edges.push_back({std::min(one, other), std::max(one, other), node});
+  }
+  std::ranges::sort(edges, {}, [](const EdgeWithNode& edge) { return edge[2]; });
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+/// What a uniform pressure on the triangles gives to each vertex of the robot, over the pressure; returns the mean.
 double spread_area(Model& model) {
   ContactModel& contact = model.contact;
   contact.area.assign(static_cast<std::size_t>(model.rest.rows()), 0);
-  const std::size_t each = model.edge_nodes.empty() ? 1 : 4;  // triangles of a face; the last one has the edges' nodes
   double total = 0;
   std::vector<Index> vertices;
-  for (std::size_t t = 0; t < contact.triangles.size(); t += each) {
-    double area = 0;
-    for (std::size_t i = t; i < t + each; ++i) {
-      area += triangle_area(model.rest, contact.triangles[i]);
-      vertices.insert(vertices.end(), contact.triangles[i].begin(), contact.triangles[i].end());
-    }
-    for (const Index v : contact.triangles[t + each - 1]) contact.area[v] += area / 3;
+  for (const Triangle& t : contact.triangles) {
+    const double area = triangle_area(model.rest, t);
+    for (const Index v : t) contact.area[v] += area / 3;
+    vertices.insert(vertices.end(), t.begin(), t.end());
     total += area;
   }
   sort_unique(vertices);
@@ -323,6 +333,7 @@ void compile_contact(Compilation& c) {
   contact.distance_mm = distance_of(spec, c.model.diagonal_mm);
   contact.modulus_MPa = softest(c.model);
   add_robot_parts(c, spec);
+  if (!c.model.edge_nodes.empty()) contact.edges = edges_of_faces(contact.triangles);
   const double mean = spread_area(c.model);
   for (const ObstacleSpec& obstacle : spec.obstacles) add_obstacle(c, obstacle, least_area * mean);
   set_pairs(contact, spec);
