@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
+#include <set>
 #include <softkin/model/joined.hpp>
 
 #include "model/compile_testing.hpp"
@@ -213,27 +214,37 @@ TEST(ContactModel, AreasAreThoseOfAUniformPressure) {
   }
 }
 
-TEST(ContactModel, OrderTwoGivesThePressureToTheEdges) {
+TEST(ContactModel, FacesOfOrderTwoAreFourTriangles) {
   RobotSpec spec = physical_robot(quadratic_block({1, 1, 1}, {10, 10, 10}));
   spec.contact = ContactSpec{};
   const Model model = compile(spec);
   const ContactModel& contact = model.contact;
   ASSERT_EQ(contact.triangles.size(), 48u);
-  const double mean = 600 / 26.0;  // 8 corners, 12 edges, 6 diagonals
   double volume = 0;
   for (const auto& [a, b, c] : contact.triangles)
     volume += vertex_at(model.rest, a).dot(vertex_at(model.rest, b).cross(vertex_at(model.rest, c))) / 6;
   EXPECT_NEAR(volume, 1000, 1e-9);  // normals outwards
-  for (Index v = 0; v < 8; ++v) EXPECT_NEAR(contact.area[v], 0.01 * mean, 1e-12);
-  double edges = 0;
-  for (Index v = 8; v < model.rest.rows(); ++v) {
-    const Vec3 p = vertex_at(model.rest, v);
-    const int middles = static_cast<int>((p.array() == 5).count());
-    // a third of 50 mm^2 from either of two faces
-    EXPECT_NEAR(contact.area[v], middles == 3 ? 0 : 100 / 3.0, 1e-9) << p.transpose();
-    edges += contact.area[v];
+  std::vector<double> area(static_cast<std::size_t>(model.rest.rows()));
+  for (const Triangle& t : contact.triangles)
+    for (const Index v : t) area[v] += 12.5 / 3;
+  for (std::size_t v = 0; v < area.size(); ++v) EXPECT_NEAR(contact.area[v], area[v], 1e-9);
+}
+
+TEST(ContactModel, EdgesOfFacesOfOrderTwoAreThereOnceWithTheirNodes) {
+  RobotSpec spec = physical_robot(quadratic_block({1, 1, 1}, {10, 10, 10}));
+  spec.contact = ContactSpec{};
+  const Model model = compile(spec);
+  const std::vector<EdgeWithNode>& edges = model.contact.edges;
+  EXPECT_EQ(edges.size(), 18u);  // of the block, and diagonals of its sides
+  std::set<Index> nodes;
+  for (const auto& [a, b, node] : edges) {
+    EXPECT_LT(a, b);
+    EXPECT_TRUE(nodes.insert(node).second);
+    EXPECT_LT((vertex_at(model.rest, node) - (vertex_at(model.rest, a) + vertex_at(model.rest, b)) / 2).norm(), 1e-9);
   }
-  EXPECT_NEAR(edges, 600, 1e-9);
+  spec = physical_robot(block_mesh({1, 1, 1}, {10, 10, 10}));
+  spec.contact = ContactSpec{};
+  EXPECT_TRUE(compile(spec).contact.edges.empty());
 }
 
 TEST(ContactModel, WallsOfChambersTakePart) {

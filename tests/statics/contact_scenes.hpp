@@ -27,16 +27,18 @@ inline FixedSpec plane_support(const Points& vertices, int axis, double value, d
 }
 
 /// A block of cells of 20 mm edge on another one of other cells, elastic, all neo-Hookean with E 1 MPa, nu 0.4. Planes
-/// of symmetry at x = 0 and y = 0; the lower one stands at z = 0, the top of the upper one moves down by `press`.
+/// of symmetry at x = 0 and y = 0, and at the sides across where there are walls; the lower one stands at z = 0, the top
+/// of the upper one moves down by `press`. Uneven: vertices of the upper one lie shifted along x and y.
 struct StackedBlocks {
   static constexpr double size = 20;  // [mm]
   double distance, gap, press;
-  bool quadratic = false;
+  bool quadratic = false, walls = false, uneven = false;
 
   [[nodiscard]] RobotSpec robot(const std::array<int, 3>& lower = {3, 3, 2},
                                 const std::array<int, 3>& upper = {4, 4, 2}) const {
     Mesh mesh = layered_mesh(lower, Vec3::Constant(size), Split::six, Split::six);
-    const Mesh other = layered_mesh(upper, Vec3::Constant(size), Split::six, Split::six);
+    Mesh other = layered_mesh(upper, Vec3::Constant(size), Split::six, Split::six);
+    if (uneven) shift_inside(other.vertices);
     const auto first = static_cast<Index>(mesh.vertices.rows());
     mesh.vertices.conservativeResize(first + other.vertices.rows(), 3);
     mesh.vertices.bottomRows(other.vertices.rows()) = other.vertices.rowwise() + Eigen::RowVector3d(0, 0, size + gap);
@@ -48,8 +50,19 @@ struct StackedBlocks {
     const Points& at = spec.mesh.vertices;
     spec.fixed = {plane_support(at, 2, 0), plane_support(at, 2, 2 * size + gap, -press), plane_support(at, 0, 0),
                   plane_support(at, 1, 0)};
+    for (const int axis : {0, 1})
+      if (walls) spec.fixed.push_back(plane_support(at, axis, size));
     spec.contact = contact_below(distance);
     return spec;
+  }
+
+  /// By less than 0.4 mm, along the sides at these.
+  static void shift_inside(Points& at) {
+    for (Index v = 0; v < at.rows(); ++v) {
+      const double x = at(v, 0), y = at(v, 1);
+      at(v, 0) += 0.4 * std::sin(M_PI * x / size) * std::cos(0.7 * x + 1.3 * y + 0.3);
+      at(v, 1) += 0.4 * std::sin(M_PI * y / size) * std::sin(1.1 * x - 0.9 * y + 0.5);
+    }
   }
 };
 
@@ -78,12 +91,15 @@ inline double push_of_gap(double z) {
   return z < 1 ? 2 * (z - 1) * std::log(z) + (z - 1) * (z - 1) / z : 0;
 }
 
-/// What a floor at z = 0 pushes at each of some vertices [N], by the law of the barrier and the model's areas.
+/// What a floor at z = 0 pushes at the points of some vertices [N], by the law of the barrier and the model's areas; on
+/// edges of order 2 they are a third of the edge's height beyond the nodes.
 [[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions,
                                                    const std::vector<Index>& vertices) {
-  Eigen::VectorXd push(static_cast<Index>(vertices.size()));
+  Eigen::VectorXd push(static_cast<Index>(vertices.size())), height = positions.col(2);
+  for (const auto& [a, b, node] : model.contact.edges)
+    height[node] = 4 * positions(node, 2) / 3 - (positions(a, 2) + positions(b, 2)) / 6;
   for (std::size_t i = 0; i < vertices.size(); ++i)
-    push[static_cast<Index>(i)] = push_of_gap(positions(vertices[i], 2) / model.contact.distance_mm) *
+    push[static_cast<Index>(i)] = push_of_gap(height[vertices[i]] / model.contact.distance_mm) *
                                   model.contact.modulus_MPa * model.contact.area[vertices[i]];
   return push;
 }

@@ -3,6 +3,7 @@
 
 #include "statics/physical_samples.hpp"
 #include "statics/pressed_balls.hpp"
+#include "statics/pressed_blocks.hpp"
 
 /// Equilibria of robots that touch themselves or obstacles.
 
@@ -11,81 +12,52 @@ namespace {
 
 using namespace testing;
 
-/// Pressure per area at rest of stacked blocks that touch evenly: both are compressed alike, the gap is that at which
-/// the barrier balances them.
-double pressure_by_hand(const StackedBlocks& blocks, const Model& model) {
-  const ElasticLaw& law = model.materials[0].elastic;
-  const auto pressure_at = [&](double stretch) {
-    double low = 1, high = 1.5;  // sideways, where nothing pushes
-    for (int i = 0; i < 100; ++i) {
-      const double side = (low + high) / 2, volume = stretch * side * side;
-      (law.mu / volume * side * side + (law.lambda + law.mu) * (volume - 1) - law.mu > 0 ? high : low) = side;
-    }
-    const double volume = stretch * low * low;
-    const double stress = law.mu / volume * stretch * stretch + (law.lambda + law.mu) * (volume - 1) - law.mu;
-    return -stress * low * low;
-  };
-  double low = 0.5, high = 1;
-  for (int i = 0; i < 100; ++i) {
-    const double stretch = (low + high) / 2;
-    const double left = 2 * StackedBlocks::size * (1 - stretch) + blocks.gap - blocks.press;
-    (push_of_gap(left / blocks.distance) * model.contact.modulus_MPa > pressure_at(stretch) ? high : low) = stretch;
-  }
-  return pressure_at(low);
+Unevenness unevenness_at(const StackedBlocks& blocks) {
+  const Unevenness found = unevenness_of(blocks, {3, 3, 2}, {4, 4, 2}, tight());
+  EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+  std::printf("%-9s %-5s distance %.5f: force %+.2e, stress %.2e, root mean %.2e, %3d iterations, %.2f s\n",
+              blocks.quadratic ? "quadratic" : "linear", blocks.walls ? "walls" : "free",
+              blocks.distance / StackedBlocks::size, found.force, found.largest, found.root_mean,
+              found.report.iterations, found.report.seconds);
+  return found;
 }
 
-/// Deviations from a uniform compression.
-struct Unevenness {
-  double force = 0;                   // from what was found by hand
-  double largest = 0, root_mean = 0;  // of von Mises' stress of the elements
-};
-
-Unevenness unevenness_of(const StackedBlocks& blocks) {
-  const Model model = compile(blocks.robot());
-  const Statics statics(model);
-  const Equilibrium found = settled(statics, {});
-  const double force = -reaction_of(model, statics, found, 1).z();
-  Vec3 wide = Vec3::Zero();
-  for (Index v = 0; v < model.robot_vertices(); ++v) wide = wide.cwiseMax(Vec3(found.state.positions.row(v)));
-  Unevenness out;
-  out.force = force / (StackedBlocks::size * StackedBlocks::size * pressure_by_hand(blocks, model)) - 1;
-  const std::vector<double> stresses = statics.measured(found.state).stress.von_mises;
-  for (std::size_t i = 0; i < stresses.size(); ++i) {
-    const double error = stresses[i] / (force / (wide.x() * wide.y())) - 1;
-    out.largest = std::max(out.largest, std::abs(error));
-    out.root_mean += model.tetrahedron_volumes[i] * error * error;
-  }
-  out.root_mean = std::sqrt(out.root_mean / sum(model.tetrahedron_volumes));
-  std::printf("%-9s distance %.5f: force %+.2e, stress %.2e, root mean %.2e, %3d iterations, %.2f s\n",
-              blocks.quadratic ? "quadratic" : "linear", blocks.distance / StackedBlocks::size, out.force, out.largest,
-              out.root_mean, found.report.iterations, found.report.seconds);
-  return out;
-}
-
-Unevenness unevenness_at(double distance, bool quadratic) {
-  const double d = distance * StackedBlocks::size;
-  return unevenness_of({d, 2.5 * d, 2.5 * d + 2, quadratic});
+StackedBlocks free_blocks(double distance, bool quadratic) {
+  StackedBlocks blocks = blocks_at(distance, quadratic);
+  blocks.walls = blocks.uneven = false;
+  return blocks;
 }
 
 /// Vertices push for areas of their own on surfaces with other vertices: uneven until gaps, which are of the order of
 /// the distance, have made up for it.
 TEST(ContactSolve, BlocksWithOtherMeshesPressEachOtherEvenly) {
   for (const double distance : {0.02, 0.005, 0.00125}) {
-    const Unevenness found = unevenness_at(distance, false);
+    const Unevenness found = unevenness_at(free_blocks(distance, false));
     EXPECT_LT(std::abs(found.force), 0.4 * distance) << distance;
     EXPECT_LT(found.largest, 0.05) << distance;
     EXPECT_LT(found.root_mean, 0.015) << distance;
   }
-  EXPECT_LT(unevenness_at(0.0002, false).largest, 0.01);
+  EXPECT_LT(unevenness_at(free_blocks(0.0002, false)).largest, 0.01);
 }
 
-/// The nodes of order 2 take other shares of a pressure than the four triangles of a face do, whatever the distance.
 TEST(ContactSolve, BlocksOfOrder2PressEachOther) {
-  for (const double distance : {0.02, 0.005, 0.0005}) {
-    const Unevenness found = unevenness_at(distance, true);
-    EXPECT_LT(std::abs(found.force), 0.01) << distance;
-    EXPECT_LT(found.largest, 0.15) << distance;
-    EXPECT_LT(found.root_mean, 0.07) << distance;
+  for (const double distance : {0.005, 0.00125}) {
+    const Unevenness found = unevenness_at(free_blocks(distance, true));
+    EXPECT_LT(std::abs(found.force), 0.4 * distance) << distance;
+    EXPECT_LT(found.largest, 0.08) << distance;
+    EXPECT_LT(found.root_mean, 0.015) << distance;
+  }
+}
+
+/// The patch test: in the limit of small distances the stress is uniform, of either order.
+TEST(ContactSolve, WhatIsUnevenShrinksWithTheDistance) {
+  for (const bool quadratic : {false, true}) {
+    const Unevenness coarse = unevenness_at(blocks_at(0.0005, quadratic)),
+                     fine = unevenness_at(blocks_at(0.00005, quadratic));
+    EXPECT_LT(coarse.largest, 0.02) << quadratic;
+    EXPECT_LT(fine.largest, 0.3 * coarse.largest) << quadratic;
+    EXPECT_LT(fine.root_mean, 0.3 * coarse.root_mean) << quadratic;
+    EXPECT_LT(std::abs(fine.force), 1e-5) << quadratic;
   }
 }
 

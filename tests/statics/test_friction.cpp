@@ -14,8 +14,9 @@ namespace {
 using namespace testing;
 
 /// A block over a floor, held at its top and moved down and sideways with the share of the way.
-RobotSpec pressed_block(double friction, const Vec3& move, int cells = 3) {
+RobotSpec pressed_block(double friction, const Vec3& move, int cells = 3, bool quadratic = false) {
   RobotSpec spec = physical_robot(block_mesh({cells, cells, cells}, {10, 10, 10}));
+  spec.quadratic = quadratic;
   spec.fixed = {{{Box{{-1, -1, 9.999}, {11, 11, 11}}, {}}, {true, true, true}, move}};
   spec.contact.emplace();
   spec.contact->distance_mm = 0.05;
@@ -79,8 +80,9 @@ TEST(Friction, WhatSticksStays) {
   EXPECT_GT(std::abs(before.x()), 0.01 * std::abs(before.z()));
 }
 
-TEST(Friction, GradientAndStiffnessAreDerivatives) {
-  const Model model = compile(pressed_block(0.5, {0.4, 0.1, -0.5}, 2));
+namespace {
+
+void expect_derivatives(const Model& model) {
   const Statics statics(model);
   const State found = moved(model, statics, 1).state;
   const physical::System system(model);
@@ -124,6 +126,13 @@ TEST(Friction, GradientAndStiffnessAreDerivatives) {
     const Eigen::VectorXd force_high = beside(step, false).second, force_low = beside(-step, false).second;
     EXPECT_LT((product.col(0) - (force_high - force_low) / (2 * step)).norm(), 1e-4 * product.norm()) << shake;
   }
+}
+
+}  // namespace
+
+TEST(Friction, GradientAndStiffnessAreDerivatives) {
+  expect_derivatives(compile(pressed_block(0.5, {0.4, 0.1, -0.5}, 2)));
+  expect_derivatives(compile(pressed_block(0.5, {0.4, 0.1, -0.5}, 1, true)));
 }
 
 namespace {

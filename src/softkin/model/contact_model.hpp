@@ -3,6 +3,7 @@
 #include <array>
 #include <softkin/core/error.hpp>
 #include <softkin/core/types.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct ContactModel {
   std::vector<ContactPart> parts;               // the robots; their regions; bodies and obstacles
   std::vector<ContactPair> pairs;               // of parts a, b and b, a alike, at a * #parts + b
   std::vector<std::array<Index, 3>> triangles;  // vertices of the model, normals outwards; faces of order 2 as four
+  std::vector<EdgeWithNode> edges;              // of faces of order 2, by their nodes
   std::vector<Index> part_of;                   // per triangle
   std::vector<double> area;                     // per vertex of the model: for which it carries pressure [mm^2]
   Index other_vertices = 0;                     // the last vertices of the model: of bodies and obstacles

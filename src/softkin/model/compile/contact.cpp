@@ -10,7 +10,7 @@ namespace softkin {
 namespace {
 
 constexpr double default_distance = 5e-4, most_distance = 0.05;  // over the robot's diagonal
-constexpr double least_area = 0.01;  // of a vertex, over the mean of the robot's: nothing slips past corners
+constexpr double least_area = 0.01;  // of a vertex, over the mean of the robot's: nothing slips past small ones
 constexpr const char* robot_name = robot_part_name;
 
 bool is_obstacle(const ContactSpec& contact, const std::string& name) {
@@ -157,20 +157,30 @@ void add_robot_parts(Compilation& c, const ContactSpec& contact) {
                                                        " that is in no region which a pair names before it");
 }
 
-/// What a uniform pressure gives to each vertex of the robot, over the pressure; returns the mean.
+/// Edges of faces whose triangles come by fours, corners with the nodes beside them before the nodes.
+std::vector<EdgeWithNode> edges_of_faces(const std::vector<Triangle>& triangles) {
+  std::vector<EdgeWithNode> edges;
+  for (std::size_t t = 0; t < triangles.size(); t += 4) {
+    const auto& [a, ab, ca] = triangles[t];
+    const Index b = triangles[t + 1][1], bc = triangles[t + 1][2], c = triangles[t + 2][2];
+    for (const auto& [one, other, node] : {EdgeWithNode{a, b, ab}, EdgeWithNode{b, c, bc}, EdgeWithNode{c, a, ca}})
+      edges.push_back({std::min(one, other), std::max(one, other), node});
+  }
+  std::ranges::sort(edges, {}, [](const EdgeWithNode& edge) { return edge[2]; });
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+/// What a uniform pressure on the triangles gives to each vertex of the robot, over the pressure; returns the mean.
 double spread_area(Model& model) {
   ContactModel& contact = model.contact;
   contact.area.assign(static_cast<std::size_t>(model.rest.rows()), 0);
-  const std::size_t each = model.edge_nodes.empty() ? 1 : 4;  // triangles of a face; the last one has the edges' nodes
   double total = 0;
   std::vector<Index> vertices;
-  for (std::size_t t = 0; t < contact.triangles.size(); t += each) {
-    double area = 0;
-    for (std::size_t i = t; i < t + each; ++i) {
-      area += triangle_area(model.rest, contact.triangles[i]);
-      vertices.insert(vertices.end(), contact.triangles[i].begin(), contact.triangles[i].end());
-    }
-    for (const Index v : contact.triangles[t + each - 1]) contact.area[v] += area / 3;
+  for (const Triangle& t : contact.triangles) {
+    const double area = triangle_area(model.rest, t);
+    for (const Index v : t) contact.area[v] += area / 3;
+    vertices.insert(vertices.end(), t.begin(), t.end());
     total += area;
   }
   sort_unique(vertices);
@@ -235,6 +245,7 @@ void compile_contact(Compilation& c) {
   contact.distance_mm = distance_of(spec, c.model.diagonal_mm);
   contact.modulus_MPa = softest(c.model);
   add_robot_parts(c, spec);
+  if (!c.model.edge_nodes.empty()) contact.edges = edges_of_faces(contact.triangles);
   const double mean = spread_area(c.model);
   add_surroundings(c, spec, least_area * mean);
   set_pairs(contact, spec);

@@ -10,6 +10,7 @@
 #include <softkin/model/mesh/shells.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 #include <softkin/statics/physical/contact_at_rest.hpp>
+#include <softkin/statics/physical/contact_points.hpp>
 
 namespace softkin::physical {
 
@@ -25,7 +26,10 @@ constexpr double facing_cosine = 0.5;  // between the way across and the normals
 class RestingSurfaces {
  public:
   explicit RestingSurfaces(const Model& of)
-      : model(of), surface(contact::make_surface(of.contact.triangles, of.rest)), team(1) {
+      : model(of),
+        points(ContactPoints::at_rest(of)),
+        surface(contact::make_surface(of.contact.triangles, points)),
+        team(1) {
     contact::Exclusions exclusions;
     exclusions.group.assign(static_cast<std::size_t>(model.rest.rows()), -1);
     for (std::size_t t = 0; t < of.contact.triangles.size(); ++t) {
@@ -36,7 +40,7 @@ class RestingSurfaces {
                                                         : rank == ContactRank::obstacle ? 0
                                                                                         : 1 + part;
     }
-    broad.emplace(surface, model.rest, std::move(exclusions));
+    broad.emplace(surface, points, std::move(exclusions));
   }
 
   [[nodiscard]] Index part(Index triangle) const { return model.contact.part_of[static_cast<std::size_t>(triangle)]; }
@@ -58,12 +62,13 @@ class RestingSurfaces {
   [[nodiscard]] const contact::Corners& corners(Index triangle) const {
     return surface.triangles[static_cast<std::size_t>(triangle)];
   }
-  [[nodiscard]] Vec3 rest(Index vertex) const { return vertex_at(model.rest, vertex); }
+  [[nodiscard]] Vec3 rest(Index vertex) const { return vertex_at(points, vertex); }
   [[nodiscard]] bool may_touch(Index triangle, Index other) const {
     return model.contact.pair(part(triangle), part(other)).touch;
   }
 
   const Model& model;
+  Points points;
   contact::Surface surface;
   Team team;
   std::optional<contact::BroadPhase> broad;
@@ -165,7 +170,7 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
                        (first == second ? contact.label(first) + " touches or crosses itself" : both) + where +
                            "leave a gap there or join the surfaces in the mesh, or set " + "'self: false'");
   const auto all_of = [&](Index solid) { return triangles_where(at, [&](Index t) { return at.solid(t) == solid; }); };
-  const double depth = depth_of(at.model.rest, all_of(at.solid(triangle)), all_of(at.solid(other)));
+  const double depth = depth_of(at.points, all_of(at.solid(triangle)), all_of(at.solid(other)));
   throw InvalidInput(
       origin, both + where + "move " +
                   (at.of_robot(other) ? "one of the robots" : "the " + kind_of(part_at(at.model, second))) + " away" +
@@ -207,18 +212,18 @@ void refuse_crossings(RestingSurfaces& at) {
 void refuse_touching(RestingSurfaces& at) {
   const double least = touching * at.model.diagonal_mm;
   contact::Candidates near;
-  at.broad->find(at.model.rest, least, at.team, near);
+  at.broad->find(at.points, least, at.team, near);
   for (const contact::Pair& pair : near.vertex_triangle) {
     const Index own = at.at_vertex(pair.first);
     if (!at.may_touch(own, pair.second)) continue;
     const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
-    if (contact::vertex_triangle(contact::points_of(at.model.rest, nodes)).squared <= least * least)
+    if (contact::vertex_triangle(contact::points_of(at.points, nodes)).squared <= least * least)
       refuse_crossing(at, own, pair.second, at.rest(nodes[0]));
   }
   for (const contact::Pair& pair : near.edge_edge) {
     const Index own = at.at_edge(pair.first), other = at.at_edge(pair.second);
     if (!at.may_touch(own, other)) continue;
-    const auto x = contact::points_of(at.model.rest, contact::nodes_of_edge_edge(at.surface, pair));
+    const auto x = contact::points_of(at.points, contact::nodes_of_edge_edge(at.surface, pair));
     const contact::Separation separation = contact::edge_edge(x);
     if (separation.squared <= least * least)
       refuse_crossing(at, own, other, separation.weights[0] * x.col(0) + separation.weights[1] * x.col(1));
@@ -235,7 +240,7 @@ std::vector<Vec3> one_of_each(const Points& rest, const std::vector<Triangle>& t
 
 /// What does not cross is inside with all of a piece or with none.
 void refuse_inside(const RestingSurfaces& at) {
-  const Points& rest = at.model.rest;
+  const Points& rest = at.points;
   struct Solid {
     Index part;
     ContactRank rank;
@@ -288,7 +293,7 @@ std::vector<Vec3> vertex_normals(const RestingSurfaces& at) {
 class SurfaceWalk {
  public:
   explicit SurfaceWalk(const RestingSurfaces& at)
-      : at_(at), next_(contact::neighbours_of(at.surface, static_cast<Index>(at.model.rest.rows()), 1)) {}
+      : at_(at), next_(contact::neighbours_of(at.surface, static_cast<Index>(at.points.rows()), 1)) {}
 
   /// Is the point of a triangle at most so far from the vertex, along edges to a corner and from there straight [mm]?
   [[nodiscard]] bool reaches(Index vertex, const contact::Corners& corners, const Vec3& point, double length) const {
@@ -325,7 +330,7 @@ class SurfaceWalk {
 void refuse_narrow_gaps(RestingSurfaces& at) {
   const double distance = at.model.contact.distance_mm;
   contact::Candidates near;
-  at.broad->find(at.model.rest, too_close * distance, at.team, near);
+  at.broad->find(at.points, too_close * distance, at.team, near);
   const std::vector<Vec3> normals = vertex_normals(at);
   std::optional<SurfaceWalk> walk;
   double gap = too_close * distance;
@@ -335,7 +340,7 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
     const Index own = at.at_vertex(pair.first);
     if (!at.of_robot(own) || at.solid(own) != at.solid(pair.second) || !at.may_touch(own, pair.second)) continue;
     const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
-    const contact::FourPoints x = contact::points_of(at.model.rest, nodes);
+    const contact::FourPoints x = contact::points_of(at.points, nodes);
     const contact::Separation separation = contact::vertex_triangle(x);
     const double apart = std::sqrt(separation.squared);
     if (!(apart < gap)) continue;

@@ -25,15 +25,11 @@ constexpr double foresight = 2;
 /// Pairs are looked for in a margin of so many reaches, so that small motions need no new search.
 constexpr double margin_share = 1;
 /// Slots of four vertices.
-constexpr Index clique_slots = 10;
+constexpr std::int64_t clique_slots = 10;
 
-}  // namespace
-
-namespace {
-
-ContactSurfaces surfaces_of(const Model& model) {
+ContactSurfaces surfaces_of(const Model& model, const Points& rest) {
   ContactSurfaces surfaces;
-  surfaces.surface = contact::make_surface(model.contact.triangles, model.rest);
+  surfaces.surface = contact::make_surface(model.contact.triangles, rest);
   surfaces.reach_mm = model.contact.distance_mm;
   surfaces.modulus_MPa = model.contact.modulus_MPa;
   surfaces.rules = &model.contact;
@@ -42,13 +38,18 @@ ContactSurfaces surfaces_of(const Model& model) {
 
 }  // namespace
 
-Contacts::Contacts(const Model& model) : model_(model), surfaces_(surfaces_of(model)), friction_(surfaces_) {
+Contacts::Contacts(const Model& model)
+    : model_(model),
+      points_(model),
+      rest_(ContactPoints::at_rest(model)),
+      surfaces_(surfaces_of(model, rest_)),
+      friction_(surfaces_) {
   find_parts();
   choose_areas();
   margin_mm_ = margin_share * surfaces_.reach_mm;
   Team alone(1);
-  leave_out_neighbours(model.rest, make_scratch()->broad, alone, surfaces_);
-  potential_ = std::make_unique<ContactPotential>(surfaces_, model.rest);
+  leave_out_neighbours(rest_, make_scratch()->broad, alone, surfaces_);
+  potential_ = std::make_unique<ContactPotential>(surfaces_, rest_);
 }
 
 /// A vertex where parts of the robot meet is of the last of them.
@@ -129,7 +130,7 @@ contact::Exclusions Contacts::exclusions() const {
 
 std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
   return std::make_unique<Scratch>(
-      Scratch{contact::BroadPhase(surfaces_.surface, model_.rest, exclusions()), {}, {}, -1, {}, {}, {}});
+      Scratch{contact::BroadPhase(surfaces_.surface, rest_, exclusions()), {}, {}, -1, {}, {}, {}});
 }
 
 /// Of candidates those that are so close and feel each other; sorted.
@@ -159,19 +160,59 @@ void Contacts::search(const Points& from, const Points& to, Scratch& scratch, Te
 }
 
 void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const {
-  if (!(2 * moved(scratch.center, positions) <= margin_mm_)) search(positions, positions, scratch, team);
+  Points room;
+  const Points& points = points_.of(positions, room);
+  if (!(2 * moved(scratch.center, points) <= margin_mm_)) search(points, points, scratch, team);
   scratch.close = scratch.around;
-  keep_close(positions, surfaces_.reach_mm, scratch.close);
-  potential_->find(positions, scratch.close, scratch.terms);
+  keep_close(points, surfaces_.reach_mm, scratch.close);
+  potential_->find(points, scratch.close, scratch.terms);
+}
+
+/// Adds the gradient in the points that add(out) adds to out.
+void Contacts::add_of_points(Points& gradient, const auto& add) const {
+  if (points_.are_nodes()) return add(gradient);
+  Points on_points = Points::Zero(gradient.rows(), 3);
+  add(on_points);
+  points_.add_forces(on_points, gradient);
 }
 
 double Contacts::energy(const Points& positions, const Scratch& scratch) const {
-  return potential_->energy(positions, scratch.terms) + friction_.energy(positions, scratch.holds);
+  Points room;
+  const Points& points = points_.of(positions, room);
+  return potential_->energy(points, scratch.terms) + friction_.energy(points, scratch.holds);
 }
 
 void Contacts::add_gradient(const Points& positions, const Scratch& scratch, Points& gradient) const {
-  potential_->add_gradient(positions, scratch.terms, gradient);
-  friction_.add_gradient(positions, scratch.holds, gradient);
+  Points room;
+  const Points& points = points_.of(positions, room);
+  add_of_points(gradient, [&](Points& out) {
+    potential_->add_gradient(points, scratch.terms, out);
+    friction_.add_gradient(points, scratch.holds, out);
+  });
+}
+
+void Contacts::add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
+                                     Points& gradient) const {
+  Points room, room_of_moves;
+  const Points &points = points_.of(positions, room), &of_points = points_.of(moves, room_of_moves);
+  add_of_points(gradient, [&](Points& out) {
+    friction_.add_response(*potential_, points, scratch.terms, scratch.holds, of_points, out);
+  });
+}
+
+void Contacts::renew(const Points& from, const Points& to, const Scratch& scratch, std::vector<Anchor>& anchors) const {
+  Points room, room_of_end;
+  friction_.renew(points_.of(from, room), points_.of(to, room_of_end), scratch.terms, anchors);
+}
+
+void Contacts::slide(const Points& nodes, const Scratch& scratch, std::vector<Anchor>& anchors) const {
+  Points room;
+  friction_.slide(points_.of(nodes, room), scratch.terms, scratch.holds, anchors);
+}
+
+double Contacts::disagreement(const Points& nodes, const Friction::Holds& before, const Friction::Holds& after) const {
+  Points room;
+  return friction_.disagreement(points_.of(nodes, room), before, after);
 }
 
 namespace {
@@ -195,52 +236,118 @@ bool Contacts::holds(const Candidates& pairs, const Scratch& scratch) {
 }
 
 void Contacts::find_pairs(const Points& positions, Scratch& scratch, Team& team, Candidates& pairs) const {
+  Points room;
+  const Points& points = points_.of(positions, room);
   const double reach = foresight * surfaces_.reach_mm;
-  scratch.broad.find(positions, reach, team, pairs);
-  keep_close(positions, reach, pairs);
+  scratch.broad.find(points, reach, team, pairs);
+  keep_close(points, reach, pairs);
   for (const Friction::Hold& hold : scratch.holds) pairs.vertex_triangle.push_back(hold.pair);
   sort_candidates(pairs);
   pairs.vertex_triangle.erase(std::unique(pairs.vertex_triangle.begin(), pairs.vertex_triangle.end()),
                               pairs.vertex_triangle.end());
 }
 
+contact::Nodes Contacts::nodes_of(const Pair& pair, bool edges) const {
+  return edges ? nodes_of_edge_edge(surfaces_.surface, pair) : nodes_of_vertex_triangle(surfaces_.surface, pair);
+}
+
+namespace {
+
+/// visit(pair, edges) in the order of place_of.
+void each_of(const Candidates& pairs, const auto& visit) {
+  for (const Pair& pair : pairs.vertex_triangle) visit(pair, false);
+  for (const Pair& pair : pairs.edge_edge) visit(pair, true);
+}
+
+void add_to_slots(const contact::Hessian& block, double* slot) {
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b <= a; ++b, slot += 9)
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(3 * a + r, 3 * b + c);
+}
+
+/// The same of points that nodes carry.
+void add_to_slots(const contact::Hessian& block, const ContactPoints::Carriers& by, double* slot) {
+  for (int a = 0; a < by.count; ++a) {
+    Eigen::Matrix<double, 3, 12> row = Eigen::Matrix<double, 3, 12>::Zero();
+    for (int i = 0; i < 4; ++i)
+      if (by.shares(i, a) != 0) row += by.shares(i, a) * block.middleRows<3>(3 * i);
+    for (int b = 0; b <= a; ++b, slot += 9) {
+      Mat3 of_nodes = Mat3::Zero();
+      for (int i = 0; i < 4; ++i)
+        if (by.shares(i, b) != 0) of_nodes += by.shares(i, b) * row.middleCols<3>(3 * i);
+      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{slot} += of_nodes;
+    }
+  }
+}
+
+}  // namespace
+
 void Contacts::add_cliques(const Candidates& pairs, linear::Cliques& cliques) const {
-  for (const Pair& pair : pairs.vertex_triangle) cliques.add(nodes_of_vertex_triangle(surfaces_.surface, pair));
-  for (const Pair& pair : pairs.edge_edge) cliques.add(nodes_of_edge_edge(surfaces_.surface, pair));
+  each_of(pairs, [&](const Pair& pair, bool edges) {
+    const contact::Nodes points = nodes_of(pair, edges);
+    if (points_.are_nodes()) return cliques.add(points);
+    const ContactPoints::Carriers by = points_.carriers(points);
+    cliques.add({by.nodes.data(), static_cast<std::size_t>(by.count)});
+  });
+}
+
+/// First slot of each pair, then their number; none where every pair has as many.
+std::vector<std::int64_t> Contacts::slots_of(const Candidates& pairs) const {
+  std::vector<std::int64_t> slots;
+  if (points_.are_nodes()) return slots;
+  slots.push_back(0);
+  each_of(pairs, [&](const Pair& pair, bool edges) {
+    const int count = points_.carriers(nodes_of(pair, edges)).count;
+    slots.push_back(slots.back() + count * (count + 1) / 2);
+  });
+  return slots;
 }
 
 void Contacts::stiffness(const Points& positions, bool projected, const Scratch& scratch, const Candidates& pairs,
                          double* slots) const {
-  const std::size_t count = pairs.vertex_triangle.size() + pairs.edge_edge.size();
-  std::fill_n(slots, 9 * clique_slots * count, 0.0);
+  Points room;
+  const Points& points = points_.of(positions, room);
+  const std::vector<std::int64_t> starts = slots_of(pairs);
+  const auto slot_of = [&](Index place) {
+    return starts.empty() ? clique_slots * static_cast<std::int64_t>(place) : starts[static_cast<std::size_t>(place)];
+  };
+  std::fill_n(slots, 9 * slot_of(static_cast<Index>(pairs.vertex_triangle.size() + pairs.edge_edge.size())), 0.0);
   contact::Hessian block;
   const auto add = [&](const Pair& pair, bool edges) {
-    double* slot = slots + static_cast<std::ptrdiff_t>(9 * clique_slots) * place_of(pairs, pair, edges);
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b <= a; ++b, slot += 9)
-        for (int r = 0; r < 3; ++r)
-          for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(3 * a + r, 3 * b + c);
+    double* slot = slots + 9 * slot_of(place_of(pairs, pair, edges));
+    if (points_.are_nodes())
+      add_to_slots(block, slot);
+    else
+      add_to_slots(block, points_.carriers(nodes_of(pair, edges)), slot);
   };
   for (const ContactPotential::Term& term : scratch.terms) {
-    potential_->stiffness(positions, term, projected, block);
+    potential_->stiffness(points, term, projected, block);
     add(term.pair, term.threshold > 0);
   }
   for (const Friction::Hold& hold : scratch.holds) {
-    friction_.stiffness(positions, hold, block);
+    friction_.stiffness(points, hold, block);
     add(hold.pair, false);
   }
 }
 
 double Contacts::largest_turn(const Points& from, const Points& to) const {
+  Points room, room_of_end;
+  const Points &start = points_.of(from, room), &end = points_.of(to, room_of_end);
   double most = 0;
   for (const auto& [a, b] : surfaces_.surface.edges) {
-    const auto before = from.row(b) - from.row(a), after = to.row(b) - to.row(a);
+    const auto before = start.row(b) - start.row(a), after = end.row(b) - end.row(a);
     most = std::max(most, (after - before).squaredNorm() / before.squaredNorm());
   }
   return std::sqrt(most);
 }
 
 double Contacts::safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
+  Points room, room_of_end;
+  return safe_share_of_points(points_.of(from, room), points_.of(to, room_of_end), scratch, team);
+}
+
+double Contacts::safe_share_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
   const double way = std::max(moved(scratch.center, from), moved(scratch.center, to));
   if (!(2 * way <= margin_mm_)) {
     search(from, to, scratch, team);

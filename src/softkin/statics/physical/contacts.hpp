@@ -3,13 +3,15 @@
 #include <memory>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/physical/contact_points.hpp>
 #include <softkin/statics/physical/contact_potential.hpp>
 #include <softkin/statics/physical/friction.hpp>
 
 namespace softkin::physical {
 
 /// What touches in the shapes of a robot: the potential between its surfaces and those around it, what it adds to the
-/// pattern of the stiffness, and how far the robot may move before anything passes through anything.
+/// pattern of the stiffness, and how far the robot may move before anything passes through anything. Positions, moves
+/// and forces are of nodes; what touches are flat triangles between the ContactPoints.
 class Contacts {
  public:
   /// model must outlive the object, and have contact.
@@ -20,10 +22,10 @@ class Contacts {
     contact::BroadPhase broad;
     // what is within reach on the way to a shape, or after any motion around it of at most half the margin
     contact::Candidates around;
-    Points center;                              // that shape
+    Points center;                              // the points of that shape
     double least = -1;                          // distance of those pairs there [mm]; negative: not known
     contact::Candidates close;                  // what is within reach of the shape that was found last
-    std::vector<ContactPotential::Term> terms;  // of the shape that was found last
+    std::vector<ContactPotential::Term> terms;  // of the points of the shape that was found last
     Friction::Holds holds;                      // of normal forces that were held last
   };
   [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const;
@@ -32,6 +34,12 @@ class Contacts {
   void find(const Points& positions, Scratch& scratch, Team& team) const;
 
   [[nodiscard]] const Friction& friction() const { return friction_; }
+  // Of the terms that were found: see Friction.
+  /// from, to: the way to the shape that was found
+  void renew(const Points& from, const Points& to, const Scratch& scratch, std::vector<Anchor>& anchors) const;
+  void slide(const Points& positions, const Scratch& scratch, std::vector<Anchor>& anchors) const;
+  [[nodiscard]] double disagreement(const Points& positions, const Friction::Holds& before,
+                                    const Friction::Holds& after) const;
 
   // Of the terms that were found, at the same positions, and of the holds.
   /// [mJ]; infinite where a pair touches.
@@ -43,7 +51,7 @@ class Contacts {
   [[nodiscard]] static bool holds(const contact::Candidates& pairs, const Scratch& scratch);
   /// Pairs that are close enough to come within reach soon; sorted.
   void find_pairs(const Points& positions, Scratch& scratch, Team& team, contact::Candidates& pairs) const;
-  /// Adds every pair as a clique of four vertices.
+  /// Adds every pair as a clique: its four vertices, or the nodes that carry them.
   void add_cliques(const contact::Candidates& pairs, linear::Cliques& cliques) const;
   /// Second derivatives of the terms into the slots of the cliques of pairs that hold them, the first of which is
   /// given; 9 values each [N/mm].
@@ -52,9 +60,7 @@ class Contacts {
 
   /// Adds what friction's normal forces change of the gradient with moves; see Friction::add_response.
   void add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
-                             Points& gradient) const {
-    friction_.add_response(*potential_, positions, scratch.terms, scratch.holds, moves, gradient);
-  }
+                             Points& gradient) const;
 
   /// The share in [0, 1] of a motion, every vertex on its straight way, in which nothing passes through anything and no
   /// gap shrinks to less than a tenth.
@@ -66,8 +72,10 @@ class Contacts {
 
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
   [[nodiscard]] const ContactPotential& potential() const { return *potential_; }
+  [[nodiscard]] const ContactPoints& points() const { return points_; }
 
  private:
+  [[nodiscard]] double safe_share_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
   void search(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
   [[nodiscard]] static double moved(const Points& from, const Points& to);
   void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
@@ -75,8 +83,13 @@ class Contacts {
   [[nodiscard]] double share_of_edge(std::size_t edge, double mean_area) const;
   void choose_areas();
   [[nodiscard]] contact::Exclusions exclusions() const;
+  void add_of_points(Points& gradient, const auto& add) const;
+  [[nodiscard]] contact::Nodes nodes_of(const contact::Pair& pair, bool edges) const;
+  [[nodiscard]] std::vector<std::int64_t> slots_of(const contact::Candidates& pairs) const;
 
   const Model& model_;
+  ContactPoints points_;
+  Points rest_;  // of the points
   ContactSurfaces surfaces_;
   Friction friction_;
   double margin_mm_ = 0;

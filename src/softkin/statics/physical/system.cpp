@@ -277,9 +277,12 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
     for (int axis = 0; axis < 3; ++axis)
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   elastic_.stress(demand.actuation, at.positions, work.elastic, out.stress, team);
-  if (contacts_ && !balance.forbidden)
-    out.contacts = contact_forces(contacts_->surfaces(), contacts_->potential(), at.positions, work.contacts->terms,
-                                  contacts_->friction(), work.contacts->holds, at.anchors);
+  if (contacts_ && !balance.forbidden) {
+    Points room;
+    out.contacts =
+        contact_forces(contacts_->surfaces(), contacts_->potential(), contacts_->points().of(at.positions, room),
+                       work.contacts->terms, contacts_->friction(), work.contacts->holds, at.anchors);
+  }
 }
 
 void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {
@@ -306,10 +309,10 @@ void System::hold_friction(const Iterate& at, Workspace& work, Team& team) const
 double System::renew_friction(const Points& from, Iterate& at, Workspace& work, Team& team) const {
   if (!friction()) return 0;
   contacts_->find(at.positions, *work.contacts, team);
-  contacts_->friction().renew(from, at.positions, work.contacts->terms, at.anchors);
+  contacts_->renew(from, at.positions, *work.contacts, at.anchors);
   const Friction::Holds before = work.contacts->holds;
   contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
-  return contacts_->friction().disagreement(at.positions, before, work.contacts->holds);
+  return contacts_->disagreement(at.positions, before, work.contacts->holds);
 }
 
 double System::slipping_share(const Iterate& at, Workspace& work, Team& team) const {
@@ -321,7 +324,7 @@ double System::slipping_share(const Iterate& at, Workspace& work, Team& team) co
 void System::slide_friction(Iterate& at, Workspace& work, Team& team) const {
   if (!friction()) return;
   contacts_->find(at.positions, *work.contacts, team);
-  contacts_->friction().slide(at.positions, work.contacts->terms, work.contacts->holds, at.anchors);
+  contacts_->slide(at.positions, *work.contacts, at.anchors);
   contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
 }
 
