@@ -20,7 +20,7 @@ constexpr int most_updates = 8;
 /// The first step with a factor from nearby must be followed by one so much shorter.
 constexpr double nearby_contraction = 0.1;
 /// By which a stiffness that is hardly unstable is made positive, over its mean diagonal.
-constexpr double slight_shift = 1e-7, clear_shift = 1e-3;
+constexpr double slight_shift = 1e-7, clear_shift = 1;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
 constexpr double worthwhile_balance = 0.7;
 
@@ -65,7 +65,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
        shift *= 8) {
     ++report_.shifts;
     end = attempted(Stiffness::exact, shift);
-    last_shift_ = shift / 8;
+    last_shift_ = shift / 3;
   }
   if (end != Advance::none) return end;
   ++report_.projections;
