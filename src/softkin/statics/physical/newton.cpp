@@ -19,6 +19,8 @@ constexpr double worthwhile_contraction = 0.6;
 constexpr int most_updates = 8;
 /// The first step with a factor from nearby must be followed by one so much shorter.
 constexpr double nearby_contraction = 0.1;
+/// By which a stiffness that is hardly unstable is made positive, over its mean diagonal.
+constexpr double slight_shift = 1e-7, clear_shift = 1;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
 constexpr double worthwhile_balance = 0.7;
 
@@ -44,8 +46,8 @@ bool Newton::goes_on() const {
   return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
 }
 
-/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, then by
-/// a shift. none: no shift makes it positive.
+/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, or by a
+/// shift where that is slow, then by both. none: no shift makes it positive.
 Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = System::Stiffness;
   int negative = 0;
@@ -59,6 +61,13 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   if (end == Advance::interrupted) return end;
   negative_ = negative;
   if (end == Advance::made || policy == Policy::follow) return Advance::made;
+  for (double shift = std::max(slight_shift, last_shift_); slow_ && end == Advance::none && shift < clear_shift;
+       shift *= 8) {
+    ++report_.shifts;
+    end = attempted(Stiffness::exact, shift);
+    last_shift_ = shift / 3;
+  }
+  if (end != Advance::none) return end;
   ++report_.projections;
   end = attempted(Stiffness::projected, 0);
   for (double shift = 1e-4; end == Advance::none && shift < 100; shift *= 10) {
@@ -128,6 +137,17 @@ bool Newton::labours(double damping) {
   return system_.contact() && (poor_ >= most_poor || (system_.friction() && same_ >= most_same));
 }
 
+/// Where hardly anything is unstable, a stiffness that was made positive element by element is far too stiff along it:
+/// steps are many, each nearly as long as the one before.
+void Newton::note_pace(double damping) {
+  constexpr double slow = 0.5;
+  constexpr int few = 2;
+  if (negative_ == 0)
+    slow_ = false;
+  else if (system_.contact() && negative_ <= few && damping == 1)
+    slow_ |= next_.size.mean > slow * step_.size.mean;
+}
+
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   system_.first_step(balance_, work_, step_.move, step_.change);
@@ -160,6 +180,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     damping *= factor;
     if (!(damping >= least_damping)) return Advance::none;
   }
+  note_pace(damping);
   if (labours(damping)) return Advance::none;
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
@@ -268,6 +289,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   Advance advance = Advance::made;
   double damping = 1;
   poor_ = same_ = 0;
+  slow_ = false;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (factorised && iteration == 0) {

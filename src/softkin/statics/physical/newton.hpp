@@ -59,6 +59,7 @@ class Newton {
   bool attempt(const Step& step, double& damping, const Iterate& from);
   bool attempt_whole(const Step& step, const Iterate& from);
   bool labours(double damping);
+  void note_pace(double damping);
   [[nodiscard]] double merit(const System::Balance& balance) const;
   [[nodiscard]] double weigh_constraints(const Iterate& at);
   bool accept(double moved_mm, Iterate& at);
@@ -88,6 +89,8 @@ class Newton {
   Iterate trial_;
   int poor_ = 0;      // steps in a row that were much shorter than Newton's
   int same_ = 0;      // steps in a row that left as much to go
+  bool slow_ = false;  // are steps of a stiffness that was made positive element by element
+  double last_shift_ = 0;
   int negative_ = 0;  // of the last factorisation
   System::Imbalance imbalance_;
   double missed_ = 0;  // the worst constraint, over its measure at rest [-]
