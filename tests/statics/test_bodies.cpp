@@ -119,6 +119,27 @@ TEST(Bodies, ObstaclesMove) {
             1e-7);
 }
 
+/// What lies on the other side already would be kept there.
+TEST(Bodies, AStartThatPassesThroughAnObstacleIsRefused) {
+  const Model model = compile(pushed_beam({0, 0, 0}));
+  const Statics statics(model);
+  State start;
+  start.positions = model.rest;
+  for (Index v = 0; v < model.robot_vertices(); ++v)
+    if (model.rest(v, 0) > 20) start.positions(v, 2) -= 4;
+  try {
+    (void)statics.solve(values({0}), start);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("the robot and obstacle 'block' pass through each other at ("),
+              std::string::npos)
+        << error.what();
+  }
+  for (Index v = 0; v < model.robot_vertices(); ++v)
+    if (model.rest(v, 0) > 20) start.positions(v, 2) += 3.5;
+  EXPECT_EQ(statics.solve(values({0}), start).report.status, Status::converged);
+}
+
 /// By the motion of an obstacle against central differences.
 TEST(Bodies, JacobianByMotions) {
   const Model model = compile(pushed_beam({0, 0, 0}));

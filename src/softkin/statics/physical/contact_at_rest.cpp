@@ -22,12 +22,17 @@ constexpr double advised = 2.2;        // gap over the distance to choose
 constexpr double neighbourhood = 6;    // along the surface, over the contact distance
 constexpr double facing_cosine = 0.5;  // between the way across and the normals
 
-/// What the checks share: the surfaces at rest, and which part each of their vertices and triangles is of.
+Points contact_points(const Model& model, const Points& nodes) {
+  Points room;
+  return ContactPoints(model).of(nodes, room);
+}
+
+/// What the checks share: the surfaces in a shape, at rest mostly, and which part each of their vertices and triangles is of.
 class RestingSurfaces {
  public:
-  explicit RestingSurfaces(const Model& of)
+  RestingSurfaces(const Model& of, const Points& nodes)
       : model(of),
-        points(ContactPoints::at_rest(of)),
+        points(contact_points(of, nodes)),
         surface(contact::make_surface(of.contact.triangles, points)),
         team(1) {
     contact::Exclusions exclusions;
@@ -177,8 +182,14 @@ double depth_of(const Points& rest, const std::vector<Triangle>& one, const std:
                   (depth > 0 ? " by about " + number(depth, 2) + " mm or more" : "") + ", so that a gap is left");
 }
 
-/// Surfaces that pass through each other: every piece of their common line ends where an edge meets a triangle.
-void refuse_crossings(RestingSurfaces& at) {
+struct Crossing {
+  Index triangle, other;
+  Vec3 place;
+};
+
+/// Where surfaces pass through each other: every piece of their common line ends where an edge meets a triangle.
+std::optional<Crossing> find_crossing(RestingSurfaces& at) {
+  std::optional<Crossing> found;
   const contact::Surface& surface = at.surface;
   Points centres(static_cast<Index>(surface.triangles.size()), 3);
   const auto box_of = [&](Index t) {
@@ -190,7 +201,7 @@ void refuse_crossings(RestingSurfaces& at) {
   contact::WideTree tree(centres);
   const auto still = [](const contact::Box& box) { return contact::MovingBox{box, contact::Box(Vec3::Zero())}; };
   tree.refit([&](Index t) { return still(box_of(t)); }, at.team);
-  for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+  for (std::size_t e = 0; e < surface.edges.size() && !found; ++e) {
     const Index p = surface.edges[e][0], q = surface.edges[e][1];
     const Index own = at.at_edge(static_cast<Index>(e));
     contact::Box box(at.rest(p));
@@ -200,12 +211,13 @@ void refuse_crossings(RestingSurfaces& at) {
         const Index t = tree.item(group, __builtin_ctz(bits));
         const contact::Corners& c = at.corners(t);
         const bool shared = std::any_of(c.begin(), c.end(), [p, q](Index v) { return v == p || v == q; });
-        if (shared || !at.may_touch(own, t)) continue;
+        if (shared || found || !at.may_touch(own, t)) continue;
         if (const auto place = crossing(at.rest(p), at.rest(q), at.rest(c[0]), at.rest(c[1]), at.rest(c[2])))
-          refuse_crossing(at, own, t, *place);
+          found = Crossing{own, t, *place};
       }
     });
   }
+  return found;
 }
 
 /// Surfaces without a gap that do not pass through each other.
@@ -368,12 +380,25 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
 
 void check_contact_at_rest(const Model& model) {
   if (!model.contact.any()) return;
-  RestingSurfaces at(model);
+  RestingSurfaces at(model, model.rest);
   refuse_behind_planes(at);
-  refuse_crossings(at);
+  if (const auto found = find_crossing(at)) refuse_crossing(at, found->triangle, found->other, found->place);
   refuse_touching(at);
   refuse_inside(at);
   refuse_narrow_gaps(at);
+}
+
+void check_contact_of_start(const Model& model, const Points& positions) {
+  if (!model.contact.any()) return;
+  RestingSurfaces at(model, positions);
+  const auto found = find_crossing(at);
+  if (!found) return;
+  const Index first = at.part(found->triangle), second = at.part(found->other);
+  const ContactModel& contact = model.contact;
+  throw InvalidInput("the start " + (first == second ? "has " + contact.label(first) + " pass through itself"
+                                                     : "has " + contact.label(first) + " and " + contact.label(second) +
+                                                           " pass through each other") +
+                     " " + place_text(found->place) + ": contact keeps apart what is apart; start from another shape");
 }
 
 }  // namespace softkin::physical

@@ -19,4 +19,9 @@ namespace softkin::physical {
 /// throws     InvalidInput at the part's origin with the place [mm] and a cure
 void check_contact_at_rest(const Model& model);
 
+/// Refuses a shape to start from whose surfaces pass through each other.
+///
+/// throws  InvalidInput with the place [mm]
+void check_contact_of_start(const Model& model, const Points& positions);
+
 }  // namespace softkin::physical

@@ -1,3 +1,4 @@
+#include <softkin/statics/physical/contact_at_rest.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 #include <softkin/statics/physical/lease.hpp>
 
@@ -71,6 +72,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   report.solver = "newton";
   report.tolerance_mm = options.tolerance_mm;
   report.reached = 0;
+  if (start.actuation.size() == 0 && start.positions != model.rest) check_contact_of_start(model, start.positions);
   Lease lease(*this, start.positions, options.reuse_factor);
 
   const Demand from = demand_of(system_, model, start), to{actuation, 1};
