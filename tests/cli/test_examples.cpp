@@ -4,6 +4,7 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <softkin/io/scene/scene.hpp>
 #include <softkin/io/table/csv.hpp>
@@ -23,11 +24,14 @@ fs::path examples() {
   return fs::path(SOFTKIN_SOURCE_DIR) / "examples";
 }
 
-/// Every examples/NAME/SCENE.yaml, sorted.
+/// Of what closes on something: the ends of its ranges are far inside of that, and target shapes touch nothing.
+const fs::path gripper = "two_finger_gripper";
+
+/// Every examples/NAME/SCENE.yaml but the gripper's, sorted.
 std::vector<fs::path> scenes() {
   std::vector<fs::path> found;
   for (const auto& folder : fs::directory_iterator(examples())) {
-    if (!folder.is_directory()) continue;
+    if (!folder.is_directory() || folder.path().filename() == gripper) continue;
     for (const auto& file : fs::directory_iterator(folder))
       if (file.path().extension() == ".yaml" && file.path().stem().extension() != ".hardware")
         found.push_back(file.path());
@@ -156,7 +160,8 @@ TEST(Examples, EveryFolderHasAScene) {
   for (const fs::path& scene : scenes()) with_scene.push_back(scene.parent_path());
   std::size_t folders = 0;
   for (const auto& entry : fs::directory_iterator(examples())) {
-    if (!entry.is_directory() || entry.path().filename() == "cpp" || entry.path().filename() == "python") continue;
+    const fs::path name = entry.path().filename();
+    if (!entry.is_directory() || name == "cpp" || name == "python" || name == gripper) continue;
     ++folders;
     EXPECT_NE(std::find(with_scene.begin(), with_scene.end(), entry.path()), with_scene.end()) << entry.path();
   }
@@ -209,6 +214,23 @@ TEST(Examples, TwoLayoutsOfMaterialBendDifferently) {
     }
     EXPECT_GT(heights[0], 1.9 * heights[1]);  // behind the knuckle at the base, stiff in layout b
   }
+}
+
+/// Both fingers press on the cube, which is held where it is, alike and from both sides; robot and support are told apart.
+TEST(Examples, GripperHoldsItsCubeBetweenItsFingers) {
+  const json step = solved_step(examples() / gripper / "two_finger_gripper.yaml",
+                                {"--set", "left.air=1.2", "--set", "right.air=1.2"});
+  EXPECT_EQ(step["status"], "converged");
+  EXPECT_EQ(step["inverted_elements"], 0);
+  std::map<std::string, double> across;  // force on the cube along z, by robot [N]
+  for (const json& pair : step["contacts"]) {
+    const double force = pair["force_N"][2];
+    if (pair["by"] == "cube") across[pair["on"]] -= force;
+    if (pair["on"] == "cube") across[pair["by"]] += force;
+  }
+  ASSERT_EQ(across.size(), 2u) << step["contacts"];
+  EXPECT_LT(across["left"], -0.1);
+  EXPECT_NEAR(across["right"], -across["left"], 0.05 * std::abs(across["left"]));
 }
 
 /// A weight at the tip of the bent finger pulls it down, and its chamber, of the same volume, answers with another
