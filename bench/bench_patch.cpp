@@ -10,7 +10,7 @@ using namespace softkin;
 using softkin::testing::StackedBlocks;
 
 struct Options {
-  std::vector<double> distances{0.02, 0.005, 0.00125, 0.0005, 0.0002, 0.0001};
+  std::vector<double> distances{0.005, 0.0005, 0.0002, 0.00005};
   std::vector<int> cells{3, 6}, orders{1, 2};
 };
 
