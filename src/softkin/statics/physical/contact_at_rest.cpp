@@ -395,10 +395,11 @@ void check_contact_of_start(const Model& model, const Points& positions) {
   if (!found) return;
   const Index first = at.part(found->triangle), second = at.part(found->other);
   const ContactModel& contact = model.contact;
-  throw InvalidInput("the start " + (first == second ? "has " + contact.label(first) + " pass through itself"
-                                                     : "has " + contact.label(first) + " and " + contact.label(second) +
-                                                           " pass through each other") +
-                     " " + place_text(found->place) + ": contact keeps apart what is apart; start from another shape");
+  throw InvalidInput(
+      "the start " +
+      (first == second ? "has " + contact.label(first) + " pass through itself"
+                       : "has " + contact.label(first) + " and " + contact.label(second) + " pass through each other") +
+      " " + place_text(found->place) + ": contact keeps apart what is apart; start from another shape");
 }
 
 }  // namespace softkin::physical

@@ -87,8 +87,8 @@ class Newton {
   std::vector<Step> made_;              // with the last factor
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
   Iterate trial_;
-  int poor_ = 0;      // steps in a row that were much shorter than Newton's
-  int same_ = 0;      // steps in a row that left as much to go
+  int poor_ = 0;       // steps in a row that were much shorter than Newton's
+  int same_ = 0;       // steps in a row that left as much to go
   bool slow_ = false;  // are steps of a stiffness that was made positive element by element
   double last_shift_ = 0;
   int negative_ = 0;  // of the last factorisation
