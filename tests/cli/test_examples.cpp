@@ -216,7 +216,8 @@ TEST(Examples, TwoLayoutsOfMaterialBendDifferently) {
   }
 }
 
-/// Both fingers press on the cube, which is held where it is, alike and from both sides; robot and support are told apart.
+/// Both fingers press on the cube, which is held where it is, alike and from both sides; robot and support are told
+/// apart.
 TEST(Examples, GripperHoldsItsCubeBetweenItsFingers) {
   const json step = solved_step(examples() / gripper / "two_finger_gripper.yaml",
                                 {"--set", "left.air=1.2", "--set", "right.air=1.2"});

@@ -43,7 +43,7 @@ TEST(SceneContact, BodiesAndMotions) {
   EXPECT_NE(refusal_of("bodies:\n  - {name: a, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}\n").find("halfspace"),
             std::string::npos);
   EXPECT_NE(refusal_of("bodies:\n  - {name: a, box: [[0, 0, 0], [1, 1, 1]], density: -1}\n")
-                .find("density must not be negative"),
+                .find("'density' must not be negative"),
             std::string::npos);
   EXPECT_NE(refusal_of("obstacles:\n  - {name: a, box: [[0, 0, 0], [1, 1, 1]], motion: [x, x]}\n").find("given twice"),
             std::string::npos);

@@ -27,8 +27,8 @@ inline FixedSpec plane_support(const Points& vertices, int axis, double value, d
 }
 
 /// A block of cells of 20 mm edge on another one of other cells, elastic, all neo-Hookean with E 1 MPa, nu 0.4. Planes
-/// of symmetry at x = 0 and y = 0, and at the sides across where there are walls; the lower one stands at z = 0, the top
-/// of the upper one moves down by `press`. Uneven: vertices of the upper one lie shifted along x and y.
+/// of symmetry at x = 0 and y = 0, and at the sides across where there are walls; the lower one stands at z = 0, the
+/// top of the upper one moves down by `press`. Uneven: vertices of the upper one lie shifted along x and y.
 struct StackedBlocks {
   static constexpr double size = 20;  // [mm]
   double distance, gap, press;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <softkin/statics/physical/contact_points.hpp>
 #include <softkin/statics/statics.hpp>
 #include <string>
 #include <vector>
@@ -65,7 +66,9 @@ struct PressedDrop {
       else
         state.share *= static_cast<double>(step - 1) / step;
       const Equilibrium found = statics.solve(Actuation::Zero(cable ? 1 : 0), state, options);
-      out.shapes.push_back({found.report, crossings(found.state.positions, model.contact.triangles).size()});
+      Points room;
+      const Points& points = physical::ContactPoints(model).of(found.state.positions, room);
+      out.shapes.push_back({found.report, crossings(points, model.contact.triangles).size()});
       state = found.state;
       if (state.share < 0) break;
     }

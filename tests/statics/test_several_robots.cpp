@@ -29,8 +29,9 @@ RobotSpec together(const RobotSpec& spec, const std::vector<Placement>& places) 
   return joined(robots, {"all", {}, {}, {}});
 }
 
-/// Solves a robot alone with each actuation and as many of it together, one at each place.
-void expect_alike(const RobotSpec& spec, const std::vector<Placement>& places, const std::vector<Actuation>& asked) {
+/// Solves a robot alone with each actuation and as many of it together, one at each place. close: over the diagonal
+void expect_alike(const RobotSpec& spec, const std::vector<Placement>& places, const std::vector<Actuation>& asked,
+                  double close = 1e-9) {
   const Model alone = compile(spec), all = compile(together(spec, places));
   const Statics one(alone), whole(all);
   Actuation every(static_cast<Index>(alone.actuators.size() * places.size()));
@@ -47,7 +48,7 @@ void expect_alike(const RobotSpec& spec, const std::vector<Placement>& places, c
     EXPECT_GT((shape - alone.rest).rowwise().norm().maxCoeff(), 0.02 * alone.diagonal_mm);
     const Points moved = (shape * places[i].rotation.transpose()).rowwise() + places[i].translation.transpose();
     const Points there = found.state.positions.middleRows(static_cast<Index>(i) * count, count);
-    EXPECT_LT((there - moved).rowwise().norm().maxCoeff(), 1e-9 * alone.diagonal_mm) << "robot " << i;
+    EXPECT_LT((there - moved).rowwise().norm().maxCoeff(), close * alone.diagonal_mm) << "robot " << i;
   }
 }
 
@@ -100,7 +101,8 @@ TEST(SeveralRobots, ChambersThatAreEmptySpaces) {
 TEST(SeveralRobots, ChambersOfSurfaces) {
   RobotSpec spec = robot_with_bags({"bag"});
   spec.actuators[0].surface = box_surface({13.9, 6.1, 12.2}, {23.7, 5.8, 5.6});  // no vertex on a face of elements
-  expect_alike(spec, three_places(), {values({1.8}), values({2}), values({1.5})});
+  // how finely a surface is cut where it passes through elements goes by the size of all
+  expect_alike(spec, three_places(), {values({1.8}), values({2}), values({1.5})}, 1e-4);
 }
 
 /// With prisms of a dea, a chamber and a cable.

@@ -27,7 +27,8 @@ Points contact_points(const Model& model, const Points& nodes) {
   return ContactPoints(model).of(nodes, room);
 }
 
-/// What the checks share: the surfaces in a shape, at rest mostly, and which part each of their vertices and triangles is of.
+/// What the checks share: the surfaces in a shape, at rest mostly, and which part each of their vertices and
+/// triangles is of.
 class RestingSurfaces {
  public:
   RestingSurfaces(const Model& of, const Points& nodes)

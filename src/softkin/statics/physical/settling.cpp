@@ -20,8 +20,8 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   return outcome;
 }
 
-/// Newton with friction that follows the normal forces by which it is limited; where that leads nowhere, with those that
-/// it led to, and again from there.
+/// Newton with friction that follows the normal forces by which it is limited; where that leads nowhere, with those
+/// that it led to, and again from there.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   constexpr int most_rounds = 40;
   if (!system_.friction()) return settle_constraints(demand, policy, at, factorised);
