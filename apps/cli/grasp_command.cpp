@@ -3,6 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
+#include <softkin/io/plain_text.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/kinematics/grasp.hpp>
 #include <softkin/model/names.hpp>
