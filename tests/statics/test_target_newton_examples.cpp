@@ -11,12 +11,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Contact is physical, and materials without a shape ratio are.
+bool can_be_of_target_shapes(const fs::path& scene) {
+  const RobotSpec spec = read_scene(scene);
+  return !spec.contact && std::all_of(spec.materials.begin(), spec.materials.end(),
+                                      [](const MaterialSpec& material) { return material.shape_ratio.has_value(); });
+}
+
 std::vector<fs::path> scenes() {
   std::vector<fs::path> found;
   for (const auto& folder : fs::directory_iterator(fs::path(SOFTKIN_SOURCE_DIR) / "examples")) {
     if (!folder.is_directory()) continue;
     for (const auto& file : fs::directory_iterator(folder))
-      if (file.path().extension() == ".yaml" && file.path().stem().extension() != ".hardware")
+      if (file.path().extension() == ".yaml" && file.path().stem().extension() != ".hardware" &&
+          can_be_of_target_shapes(file.path()))
         found.push_back(file.path());
   }
   std::sort(found.begin(), found.end());
