@@ -51,6 +51,33 @@ double gap(const std::vector<Index>& a, const std::vector<Index>& b, const std::
   return largest;
 }
 
+/// Do the points of the one stay farther along than those of the other, along a direction?
+bool apart(const Vec3& along, const std::vector<Index>& a, const std::vector<Index>& b,
+           const std::vector<Points>& instants, double distance) {
+  for (const Points* x : {&instants.front(), &instants.back()})
+    for (const Index v : a)
+      for (const Index w : b)
+        if (!(along.normalized().dot(x->row(v).transpose() - x->row(w).transpose()) > distance)) return false;
+  return true;
+}
+
+/// Along the way between the middles, and along the shortest at the end.
+bool clearly_apart(const std::vector<Index>& a, const std::vector<Index>& b, const std::vector<Points>& instants,
+                   double distance) {
+  const auto middle = [](const Points& x, const std::vector<Index>& of) -> Vec3 {
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : of) sum += x.row(v).transpose() / static_cast<double>(of.size());
+    return sum;
+  };
+  Vec3 along = Vec3::Zero();
+  for (const Points* x : {&instants.front(), &instants.back()}) along += middle(*x, a) - middle(*x, b);
+  FourPoints end;
+  for (std::size_t i = 0; i < 4; ++i)
+    end.col(static_cast<Index>(i)) = instants.back().row(i < a.size() ? a[i] : b[i - a.size()]).transpose();
+  const Kind kind = a.size() == 1 ? Kind::vertex_triangle : Kind::edge_edge;
+  return apart(along, a, b, instants, distance) || apart(separation(kind, end).vector, a, b, instants, distance);
+}
+
 /// By all pairs: of vertices and triangles (3), of edges (2).
 PairSet all_within(const Surface& s, const std::vector<Points>& instants, double reach, int of, const Keeps& keeps) {
   PairSet found;
@@ -60,7 +87,8 @@ PairSet all_within(const Surface& s, const std::vector<Points>& instants, double
       const auto a = vertices_in(s, static_cast<Index>(i), of == 3 ? 1 : 2);
       const auto b = vertices_in(s, static_cast<Index>(j), of);
       const bool meet = std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
-      if (!meet && gap(a, b, instants) <= reach && keeps(a, b)) found.emplace(i, j);
+      if (!meet && gap(a, b, instants) <= reach && keeps(a, b) && !clearly_apart(a, b, instants, reach))
+        found.emplace(i, j);
     }
   return found;
 }

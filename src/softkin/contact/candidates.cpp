@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <softkin/contact/apart.hpp>
 #include <softkin/contact/candidates.hpp>
 #include <utility>
 
@@ -46,13 +48,6 @@ MovingBox enlarged(MovingBox box, double reach) {
   return box;
 }
 
-bool share(const Index* a, int of_a, const Index* b, int of_b) {
-  bool any = false;
-  for (int i = 0; i < of_a; ++i)
-    for (int j = 0; j < of_b; ++j) any |= a[i] == b[j];
-  return any;
-}
-
 }  // namespace
 
 Lists neighbours_of(const Surface& surface, Index rows, int edges) {
@@ -80,12 +75,23 @@ Lists neighbours_of(const Surface& surface, Index rows, int edges) {
   return lists;
 }
 
+template <int vertices>
+template <class Items>
+BroadPhase::Features<vertices>::Features(const Items& items, const Points& rest)
+    : tree(centres_of(items, rest)), nodes(static_cast<std::size_t>(tree.groups())) {
+  for (Index place = 0; place < tree.size(); ++place) {
+    const auto& of_item = vertices_of(items[static_cast<std::size_t>(tree.item(place / 8, place % 8))]);
+    for (std::size_t k = 0; k < vertices; ++k)
+      nodes[static_cast<std::size_t>(place / 8)].node[k][place % 8] = of_item[k];
+  }
+}
+
 BroadPhase::BroadPhase(const Surface& surface, const Points& rest, Exclusions exclusions)
     : surface_(surface),
       exclusions_(std::move(exclusions)),
-      vertices_(centres_of(surface.vertices, rest)),
-      edges_(centres_of(surface.edges, rest)),
-      triangles_(centres_of(surface.triangles, rest)) {}
+      vertices_(surface.vertices, rest),
+      edges_(surface.edges, rest),
+      triangles_(surface.triangles, rest) {}
 
 bool BroadPhase::neighbours(Index a, Index b) const {
   const auto* items = exclusions_.neighbours.items.data();
@@ -95,7 +101,6 @@ bool BroadPhase::neighbours(Index a, Index b) const {
 }
 
 bool BroadPhase::left_out(const Index* a, int of_a, const Index* b, int of_b) const {
-  if (share(a, of_a, b, of_b)) return true;
   if (!exclusions_.group.empty()) {
     const auto group = [&](Index v) { return exclusions_.group[static_cast<std::size_t>(v)]; };
     const auto same = [&](Index v) { return group(v) == group(a[0]); };
@@ -108,26 +113,33 @@ bool BroadPhase::left_out(const Index* a, int of_a, const Index* b, int of_b) co
   return false;
 }
 
-/// same: both trees are one, of which each pair is looked at once.
-template <class Keep>
-void BroadPhase::pair_up(const WideTree& queries, const WideTree& tree, bool same, double reach, Team& team,
+/// Of features and themselves each pair is looked at once.
+template <int of_query, int of_other, class Keep>
+void BroadPhase::pair_up(const Features<of_query>& queries, const Features<of_other>& others, double reach, Team& team,
                          const Keep& keep, std::vector<Pair>& out) {
   constexpr Index groups_a_piece = 32;
-  const Index pieces = (queries.groups() + groups_a_piece - 1) / groups_a_piece;
+  constexpr bool same = of_query == of_other;
+  const WideTree &query_tree = queries.tree, &tree = others.tree;
+  const Index pieces = (query_tree.groups() + groups_a_piece - 1) / groups_a_piece;
   if (found_.size() < static_cast<std::size_t>(pieces)) found_.resize(static_cast<std::size_t>(pieces));
   const auto pair_group = [&](Index group, std::vector<Pair>& found) {
-    MovingBox boxes[8], all;
-    const int lanes = static_cast<int>(std::min<Index>(8, queries.size() - 8 * group));
+    MovingBox boxes[8];
+    EightBoxes eight;
+    const EightNodes& nodes = queries.nodes[static_cast<std::size_t>(group)];
+    const int lanes = static_cast<int>(std::min<Index>(8, query_tree.size() - 8 * group));
     for (int lane = 0; lane < lanes; ++lane) {
-      boxes[lane] = enlarged(queries.boxes(group).at(lane), reach);
-      all.extend(boxes[lane]);
+      boxes[lane] = enlarged(query_tree.boxes(group).at(lane), reach);
+      eight.set(lane, boxes[lane]);
     }
-    tree.visit(all, same ? group : 0, [&](Index other) {
-      for (int lane = 0; lane < lanes; ++lane) {
-        unsigned bits = tree.boxes(other).may_meet(boxes[lane]);
+    tree.visit(WideTree::joint(eight), same ? group : 0, [&](Index other) {
+      const EightNodes& other_nodes = others.nodes[static_cast<std::size_t>(other)];
+      for (unsigned some = eight.may_meet(tree.box(other)); some != 0; some &= some - 1) {
+        const int lane = __builtin_ctz(some);
+        unsigned bits =
+            tree.boxes(other).may_meet(boxes[lane]) & ~that_share<of_other, of_query>(other_nodes, nodes, lane);
         if (same && other == group) bits &= ~0u << (lane + 1);
         for (; bits != 0; bits &= bits - 1) {
-          const Pair pair{queries.item(group, lane), tree.item(other, __builtin_ctz(bits))};
+          const Pair pair{query_tree.item(group, lane), tree.item(other, __builtin_ctz(bits))};
           if (keep(pair)) found.push_back(pair);
         }
       }
@@ -136,7 +148,7 @@ void BroadPhase::pair_up(const WideTree& queries, const WideTree& tree, bool sam
   team.each(pieces, [&](Index piece) {
     std::vector<Pair>& found = found_[static_cast<std::size_t>(piece)];
     found.clear();
-    const Index end = std::min(queries.groups(), (piece + 1) * groups_a_piece);
+    const Index end = std::min(query_tree.groups(), (piece + 1) * groups_a_piece);
     for (Index group = piece * groups_a_piece; group < end; ++group) pair_group(group, found);
   });
   out.clear();
@@ -151,19 +163,25 @@ void BroadPhase::find(const Points& positions, double reach, Team& team, Candida
 }
 
 void BroadPhase::find(const Points& from, const Points& to, double reach, Team& team, Candidates& out) {
-  vertices_.refit(boxes_of(surface_.vertices, from, to), team);
-  edges_.refit(boxes_of(surface_.edges, from, to), team);
-  triangles_.refit(boxes_of(surface_.triangles, from, to), team);
+  vertices_.tree.refit(boxes_of(surface_.vertices, from, to), team);
+  edges_.tree.refit(boxes_of(surface_.edges, from, to), team);
+  triangles_.tree.refit(boxes_of(surface_.triangles, from, to), team);
+  const auto apart = [&](const Nodes& n, const auto& pairs, auto separation) {
+    const FourPoints start = points_of(from, n), end = points_of(to, n);
+    if (clearly_apart(start, end, pairs, reach)) return true;
+    const Separation last = separation(end);
+    return last.squared > reach * reach && apart_along(last.vector, start, pairs, reach * std::sqrt(last.squared));
+  };
   const auto keep_vertex = [&](const Pair& pair) {
     const Nodes n = nodes_of_vertex_triangle(surface_, pair);
-    return !left_out(n.data(), 1, n.data() + 1, 3);
+    return !left_out(n.data(), 1, n.data() + 1, 3) && !apart(n, of_triangle, vertex_triangle);
   };
   const auto keep_edges = [&](const Pair& pair) {
     const Nodes n = nodes_of_edge_edge(surface_, pair);
-    return !left_out(n.data(), 2, n.data() + 2, 2);
+    return !left_out(n.data(), 2, n.data() + 2, 2) && !apart(n, of_edges, edge_edge);
   };
-  pair_up(vertices_, triangles_, false, reach, team, keep_vertex, out.vertex_triangle);
-  pair_up(edges_, edges_, true, reach, team, keep_edges, out.edge_edge);
+  pair_up(vertices_, triangles_, reach, team, keep_vertex, out.vertex_triangle);
+  pair_up(edges_, edges_, reach, team, keep_edges, out.edge_edge);
   for (Pair& pair : out.edge_edge)
     if (pair.second < pair.first) std::swap(pair.first, pair.second);
 }

@@ -58,26 +58,40 @@ class BroadPhase {
   /// surface     outlives this
   BroadPhase(const Surface& surface, const Points& rest, Exclusions exclusions = {});
 
-  /// All pairs whose boxes are at most `reach` [mm] apart along each axis, which holds all that are at most `reach`
-  /// apart; always in the same order, whatever the team.
+  /// All pairs whose boxes are at most `reach` [mm] apart along each axis, less those that are clearly farther apart,
+  /// which holds all that are at most `reach` apart; always in the same order, whatever the team.
   ///
   /// positions  finite [mm]
   void find(const Points& positions, double reach, Team& team, Candidates& out);
 
   /// The same along a linear motion: all pairs whose boxes are so near at any instant of it, for all that is known of
-  /// moves by their boxes, too; what moves together is not near for that.
+  /// moves by their boxes, too; what moves together is not near for that. Clear is what the way between their middles
+  /// tells, mean of both ends, or the shortest way at the end.
   void find(const Points& from, const Points& to, double reach, Team& team, Candidates& out);
 
  private:
-  template <class Keep>
-  void pair_up(const WideTree& queries, const WideTree& tree, bool same, double reach, Team& team, const Keep& keep,
-               std::vector<Pair>& out);
+  /// Things of so many vertices.
+  template <int vertices>
+  struct Features {
+    WideTree tree;
+    std::vector<EightNodes> nodes;  // of the tree's groups
+
+    template <class Items>
+    Features(const Items& items, const Points& rest);
+  };
+
+  template <int of_query, int of_other, class Keep>
+  void pair_up(const Features<of_query>& queries, const Features<of_other>& others, double reach, Team& team,
+               const Keep& keep, std::vector<Pair>& out);
+  /// Beside those that share a vertex.
   [[nodiscard]] bool left_out(const Index* a, int of_a, const Index* b, int of_b) const;
   [[nodiscard]] bool neighbours(Index a, Index b) const;
 
   const Surface& surface_;
   Exclusions exclusions_;
-  WideTree vertices_, edges_, triangles_;
+  Features<1> vertices_;
+  Features<2> edges_;
+  Features<3> triangles_;
   std::vector<std::vector<Pair>> found_;  // by piece of the queries
 };
 

@@ -2,16 +2,12 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <softkin/contact/apart.hpp>
 #include <softkin/contact/collision.hpp>
 
 namespace softkin::contact {
 
 namespace {
-
-/// Points of one feature and of the other. What lies between two features is a mean of what lies between such points.
-using PointPair = std::array<int, 2>;
-constexpr std::array<PointPair, 3> of_triangle{{{0, 1}, {0, 2}, {0, 3}}};
-constexpr std::array<PointPair, 4> of_edges{{{0, 2}, {0, 3}, {1, 2}, {1, 3}}};
 
 template <std::size_t N>
 double largest_speed(const FourPoints& motion, const std::array<PointPair, N>& pairs) {
@@ -72,12 +68,14 @@ double safe_share(const FourPoints& from, const FourPoints& to, double keep, dou
   constexpr int most_advances = 100;
   constexpr int patience = 2;             // advances after which it is worth more to look longer
   constexpr double small_advance = 3e-4;  // of the share so far: what is left is not worth a distance
-  const FourPoints motion = to - from;
-  const double speed = largest_speed(motion, pairs);
-  if (speed == 0) return until;
   // of all that is rounded here, and of positions that are rounded once more
   const double rounding =
       32 * std::numeric_limits<double>::epsilon() * (from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
+  // no less than the share of the distance, which is at most that of the middles
+  if (clearly_apart(from, to, pairs, keep * between_middles(from, pairs).norm() + rounding)) return until;
+  const FourPoints motion = to - from;
+  const double speed = largest_speed(motion, pairs);
+  if (speed == 0) return until;
   double share = 0, floor = 0;
   for (int advance = 0; advance < most_advances; ++advance) {
     const FourPoints x = from + share * motion;

@@ -8,6 +8,9 @@
 #include <softkin/core/team.hpp>
 #include <softkin/core/types.hpp>
 #include <vector>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 namespace softkin::contact {
 
@@ -59,6 +62,12 @@ class WideTree {
   /// Item in a lane of a group; only lanes of items.
   [[nodiscard]] Index item(Index group, int lane) const { return items_[static_cast<std::size_t>(8 * group + lane)]; }
   [[nodiscard]] const EightBoxes& boxes(Index group) const { return levels_[0][static_cast<std::size_t>(group)]; }
+  /// Around them all.
+  [[nodiscard]] static MovingBox joint(const EightBoxes& boxes);
+  [[nodiscard]] MovingBox box(Index group) const {
+    if (levels_.size() == 1) return joint(boxes(group));
+    return levels_[1][static_cast<std::size_t>(group) / 8].at(group % 8);
+  }
 
   /// Gives item i the box box_of(i).
   template <class BoxOf>
@@ -73,16 +82,55 @@ class WideTree {
   static constexpr std::size_t depth = 80;  // of the stack: 7 a level and one more, 11 levels of an Index
 
   void sort(const Points& centres, Index begin, Index end);
-  [[nodiscard]] static MovingBox joint(const EightBoxes& boxes);
   void refit_upper(std::size_t level);
 
   std::vector<Index> items_;
   std::vector<Level> levels_;  // [0]: of the items; lane l of block b of a level: block 8 b + l of the level below
 };
 
+/// The vertices that eight things have, by their place in them; -1: none.
+struct alignas(32) EightNodes {
+  Index node[3][8];
+
+  EightNodes() { std::fill_n(&node[0][0], 24, Index{-1}); }
+};
+
+typedef double Eight __attribute__((vector_size(64)));
+typedef long long Mask __attribute__((vector_size(64)));
+typedef int EightIndices __attribute__((vector_size(32)));
+
+/// Bit l: lane l is all ones, else it is 0.
+inline unsigned bits_of(Mask lanes) {
+#ifdef __AVX512DQ__  // which no compiler finds by itself, and may_meet is little more than this
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(lanes));
+#else
+  unsigned bits = 0;
+  for (unsigned l = 0; l < 8; ++l) bits |= static_cast<unsigned>(lanes[l]) & (1u << l);
+  return bits;
+#endif
+}
+
+inline unsigned bits_of(EightIndices lanes) {
+#ifdef __AVX2__
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
+#else
+  unsigned bits = 0;
+  for (unsigned l = 0; l < 8; ++l) bits |= static_cast<unsigned>(lanes[l]) & (1u << l);
+  return bits;
+#endif
+}
+
+/// Bit l: what is in lane l has a vertex of what is in a lane of others, of which each has so many.
+template <int of_eight, int of_other>
+unsigned that_share(const EightNodes& eight, const EightNodes& others, int lane) {
+  EightIndices same{};
+  for (int i = 0; i < of_eight; ++i)
+    for (int j = 0; j < of_other; ++j)
+      same |= reinterpret_cast<const EightIndices&>(eight.node[i]) == others.node[j][lane];
+  return bits_of(same);
+}
+
 inline unsigned EightBoxes::may_meet(const MovingBox& box) const {
-  typedef double Eight __attribute__((vector_size(64)));
-  typedef long long Mask __attribute__((vector_size(64)));
   const auto at = [](const double(&values)[3][8], int k) { return reinterpret_cast<const Eight*>(values)[k]; };
   Mask meets = ~Mask{};
   for (int k = 0; k < 3; ++k) {
@@ -92,9 +140,7 @@ inline unsigned EightBoxes::may_meet(const MovingBox& box) const {
                 to = box.at.max()[k] + (forth > 0 ? forth : Eight{});
     meets &= (at(low, k) <= to) & (at(high, k) >= from);
   }
-  unsigned bits = 0;
-  for (unsigned l = 0; l < 8; ++l) bits |= static_cast<unsigned>(meets[l]) & (1u << l);
-  return bits;
+  return bits_of(meets);
 }
 
 template <class BoxOf>

@@ -130,20 +130,19 @@ contact::Exclusions Contacts::exclusions() const {
 
 std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
   return std::make_unique<Scratch>(
-      Scratch{contact::BroadPhase(surfaces_.surface, rest_, exclusions()), {}, {}, -1, {}, {}, {}});
+      Scratch{contact::BroadPhase(surfaces_.surface, rest_, exclusions()), {}, {}, {}, {}, {}});
 }
 
 /// Of candidates those that are so close and feel each other; sorted.
 void Contacts::keep_close(const Points& positions, double reach, Candidates& pairs) const {
   const contact::Surface& surface = surfaces_.surface;
   std::erase_if(pairs.vertex_triangle, [&](const Pair& pair) {
-    return !potential_->felt(pair.first, pair.second) ||
-           contact::vertex_triangle(contact::points_of(positions, nodes_of_vertex_triangle(surface, pair))).squared >
-               reach * reach;
+    const contact::FourPoints x = contact::points_of(positions, nodes_of_vertex_triangle(surface, pair));
+    return !potential_->felt(pair.first, pair.second) || contact::vertex_triangle(x).squared > reach * reach;
   });
   std::erase_if(pairs.edge_edge, [&](const Pair& pair) {
-    return !potential_->edges_felt(pair) ||
-           contact::edge_edge(contact::points_of(positions, nodes_of_edge_edge(surface, pair))).squared > reach * reach;
+    const contact::FourPoints x = contact::points_of(positions, nodes_of_edge_edge(surface, pair));
+    return !potential_->edges_felt(pair) || contact::edge_edge(x).squared > reach * reach;
   });
   sort_candidates(pairs);
 }
@@ -154,16 +153,23 @@ double Contacts::moved(const Points& from, const Points& to) {
 }
 
 void Contacts::search(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
-  scratch.broad.find(from, to, surfaces_.reach_mm + margin_mm_, team, scratch.around);
-  scratch.center = to;
-  scratch.least = -1;
+  std::swap(scratch.around, scratch.before);
+  scratch.broad.find(from, to, surfaces_.reach_mm + margin_mm_, team, scratch.around.pairs);
+  scratch.around.center = to;
+  scratch.around.least = -1;
 }
 
 void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const {
   Points room;
   const Points& points = points_.of(positions, room);
-  if (!(2 * moved(scratch.center, points) <= margin_mm_)) search(points, points, scratch, team);
-  scratch.close = scratch.around;
+  const auto close_to = [&](const Scratch::Around& around) { return 2 * moved(around.center, points) <= margin_mm_; };
+  if (!close_to(scratch.around)) {
+    if (close_to(scratch.before))
+      std::swap(scratch.around, scratch.before);
+    else
+      search(points, points, scratch, team);
+  }
+  scratch.close = scratch.around.pairs;
   keep_close(points, surfaces_.reach_mm, scratch.close);
   potential_->find(points, scratch.close, scratch.terms);
 }
@@ -348,16 +354,16 @@ double Contacts::safe_share(const Points& from, const Points& to, Scratch& scrat
 }
 
 double Contacts::safe_share_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
-  const double way = std::max(moved(scratch.center, from), moved(scratch.center, to));
+  Scratch::Around& around = scratch.around;
+  const double way = std::max(moved(around.center, from), moved(around.center, to));
   if (!(2 * way <= margin_mm_)) {
     search(from, to, scratch, team);
   } else {
-    if (scratch.least < 0)
-      scratch.least =
-          std::sqrt(contact::least_squared_distance(surfaces_.surface, scratch.around, scratch.center, team));
-    if (2 * way < (1 - kept_gap) * scratch.least) return 1;
+    if (around.least < 0)
+      around.least = std::sqrt(contact::least_squared_distance(surfaces_.surface, around.pairs, around.center, team));
+    if (2 * way < (1 - kept_gap) * around.least) return 1;
   }
-  return contact::safe_motion(surfaces_.surface, scratch.around, from, to, kept_gap, team);
+  return contact::safe_motion(surfaces_.surface, around.pairs, from, to, kept_gap, team);
 }
 
 }  // namespace softkin::physical

@@ -19,11 +19,14 @@ class Contacts {
 
   /// What changes with the shape; one per thread of control.
   struct Scratch {
+    /// What is within reach on the way to a shape, or after any motion around it of at most half the margin.
+    struct Around {
+      contact::Candidates pairs;
+      Points center;      // the points of that shape
+      double least = -1;  // distance of those pairs there [mm]; negative: not known
+    };
     contact::BroadPhase broad;
-    // what is within reach on the way to a shape, or after any motion around it of at most half the margin
-    contact::Candidates around;
-    Points center;                              // the points of that shape
-    double least = -1;                          // distance of those pairs there [mm]; negative: not known
+    Around around, before;                      // and the last but one, as steps that are not taken lead back to it
     contact::Candidates close;                  // what is within reach of the shape that was found last
     std::vector<ContactPotential::Term> terms;  // of the points of the shape that was found last
     Friction::Holds holds;                      // of normal forces that were held last
