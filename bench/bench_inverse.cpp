@@ -22,6 +22,7 @@ struct Options {
   int targets = 100, unreachable = 20, threads = 0, order = 0, updates = 300, other_starts = 3;
   unsigned seed = 1;
   double tolerance_mm = 1e-3, size = 2000, millimetres_per_update = 0.5;
+  bool touching = false;
 };
 
 /// A beam of 64 x 20 x 20 mm with three chambers around its axis, of about so many tetrahedra.
@@ -113,9 +114,10 @@ class Bench {
     rest_ = statics_.solve(model_.rest_actuation(), statics_.rest(), inverse_.statics).state;
     Tally near, far;
     double reach_mm = 0;
-    for (int i = 0; i < options_.targets; ++i) {
+    const int tries = (options_.touching ? 20 : 1) * options_.targets;
+    for (int i = 0; i < tries && near.count < options_.targets; ++i) {
       const Equilibrium made = statics_.solve(random_actuation(), rest_, inverse_.statics);
-      if (made.report.status != Status::converged) continue;
+      if (made.report.status != Status::converged || (options_.touching && !touches(made.state))) continue;
       reach_mm = std::max(reach_mm, (tip_of(model_, made.state) - tip_of(model_, rest_)).norm());
       const Answer answer = solve(tip_of(model_, made.state), rest_);
       near.add(model_, answer);
@@ -187,6 +189,11 @@ class Bench {
     return actuation;
   }
 
+  [[nodiscard]] bool touches(const State& state) const {
+    const std::optional<ContactForces> contacts = statics_.measured(state).contacts;
+    return contacts && !contacts->pairs.empty();
+  }
+
   Answer solve(const Vec3& target, const State& start, const Sensitivity* sensitivity = nullptr) {
     inverse_.start_sensitivity = sensitivity;
     const std::clock_t begin = std::clock();
@@ -233,6 +240,7 @@ int main(int argc, char** argv) {
   app.add_option("--method", options.method)->check(CLI::IsMember({"newton", "gradient"}));
   app.add_option("--targets", options.targets, "reachable ones, made by forward kinematics");
   app.add_option("--unreachable", options.unreachable);
+  app.add_flag("--touching", options.touching, "only reachable targets at which the robot touches something");
   app.add_option("--tolerance", options.tolerance_mm, "[mm]")->check(CLI::PositiveNumber);
   app.add_option("--other-starts", options.other_starts)->check(CLI::Range(0, 100));
   app.add_option("--updates", options.updates, "drag: how many")->check(CLI::Range(1, 1000000));

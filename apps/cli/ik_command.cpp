@@ -7,6 +7,7 @@
 
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/contacts_json.hpp>
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
@@ -96,8 +97,8 @@ class IkRun {
     if (!options_.json) {
       const std::string found = findings_text(model_, record);
       print(ik_table(model_, search_.asked, found_, record));
-      print((found.empty() ? "" : found + "\n") + std::string(name_of(found_.status)) + ": " + ik_summary(found_) +
-            "\n");
+      print((found.empty() ? "" : found + "\n") + sliding_text(record) + std::string(name_of(found_.status)) + ": " +
+            ik_summary(found_) + "\n");
     }
     runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report, options_.inverse(),
                                                   search_.asked, found_, record);
@@ -106,6 +107,15 @@ class IkRun {
     print(std::string());
     for (const Output& output : options_.outputs())
       if (!options_.json) print(output.option.substr(2) + ": " + output.file.string() + "\n");
+  }
+
+  /// What the Jacobian of the report is of, where something slides.
+  [[nodiscard]] std::string sliding_text(const runs::InverseRecord& record) const {
+    std::string text;
+    if (!found_.sensitivity.regular) return text;
+    for (const auto& [on, by] : runs::sliding_pairs(model_, record.contacts))
+      text += (text.empty() ? "" : ", ") + on + " on " + by;
+    return text.empty() ? text : "the Jacobian is one-sided: that for sliding on, of " + text + "\n";
   }
 
   const Model& model_;

@@ -202,7 +202,7 @@ def test_bodies_and_motions() -> None:
     cube = {"name": "cube", "box": [[0, 40, -20], [20, 60, 0]], "density": 1000}
     contact = {"distance": 0.05, "friction": 0.4}
     robot = beam(2, 2, actuators=[], gravity=[0, 0, -9.81], contact=contact, obstacles=[floor], bodies=[cube])
-    assert [(a.name, a.kind) for a in robot.actuators] == [
+    assert [(a.name, a.kind) for a in robot.actuator_infos] == [
         ("cube_hold", "hold"),
         ("cube_fx", "force"),
         ("cube_fy", "force"),

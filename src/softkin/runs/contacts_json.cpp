@@ -35,6 +35,17 @@ Json contacts_json(const Model& model, const std::optional<std::vector<PairForce
   return all;
 }
 
+std::vector<std::array<std::string, 2>> sliding_pairs(const Model& model,
+                                                      const std::optional<std::vector<PairForces>>& contacts) {
+  std::vector<std::array<std::string, 2>> pairs;
+  if (!contacts) return pairs;
+  for (const PairForces& pair : *contacts)
+    if (pair.slipping.value_or(0) > 0)
+      pairs.push_back({model.contact.parts[static_cast<std::size_t>(pair.a)].name,
+                       model.contact.parts[static_cast<std::size_t>(pair.b)].name});
+  return pairs;
+}
+
 std::vector<PairForces> contacts_of(const Model& model, const Json& list) {
   const auto part = [&](const Json& name) {
     const std::vector<ContactPart>& parts = model.contact.parts;

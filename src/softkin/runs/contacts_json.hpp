@@ -1,15 +1,21 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <softkin/model/model.hpp>
 #include <softkin/runs/records_json.hpp>
 #include <softkin/statics/contact_forces.hpp>
+#include <string>
 #include <vector>
 
 namespace softkin::runs {
 
 /// A list; null where it was not measured.
 [[nodiscard]] Json contacts_json(const Model& model, const std::optional<std::vector<PairForces>>& contacts);
+
+/// Pairs of which something slips, as [on, by]: there derivatives are those for sliding on.
+[[nodiscard]] std::vector<std::array<std::string, 2>> sliding_pairs(
+    const Model& model, const std::optional<std::vector<PairForces>>& contacts);
 
 /// throws  std::out_of_range and Json::exception on what contacts_json() does not write
 [[nodiscard]] std::vector<PairForces> contacts_of(const Model& model, const Json& list);

@@ -4,6 +4,7 @@
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/contacts_json.hpp>
 #include <softkin/runs/records_json.hpp>
 #include <softkin/runs/reports.hpp>
 
@@ -159,7 +160,7 @@ Json history_json(const std::vector<InverseTrial>& history) {
 }
 
 Json inverse_json(const Model& model, const InverseOptions& options, const std::vector<NamedGoal>& goals,
-                  const InverseResult& found) {
+                  const InverseResult& found, const InverseRecord& record) {
   const bool newton = options.method == InverseMethod::newton;
   Json json = {{"method", name_of(options.method)},
                {"tolerance_mm", options.tolerance_mm},
@@ -175,7 +176,10 @@ Json inverse_json(const Model& model, const InverseOptions& options, const std::
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (found.active[a] != 0) json["at_end_of_range"][model.actuators[a].name] = found.active[a] < 0 ? "low" : "high";
   if (newton && found.status != InverseStatus::reached) json["slope_mm_per_range"] = found.slope;
-  if (newton && found.sensitivity.regular) json["jacobian"] = jacobian_json(model, found.sensitivity);
+  if (newton && found.sensitivity.regular) {
+    json["jacobian"] = jacobian_json(model, found.sensitivity);
+    if (model.contact.any()) json["jacobian"]["one_sided"] = sliding_pairs(model, record.contacts);
+  }
   json["history"] = history_json(found.history);
   return json;
 }
@@ -264,7 +268,7 @@ RecordLog inverse_report(const Model& model, const std::string& scene, const std
                          const InverseOptions& options, const std::vector<NamedGoal>& goals, const InverseResult& found,
                          const InverseRecord& record) {
   Json head = Json::parse(report_head(model, scene, options.statics));
-  head["ik"] = inverse_json(model, options, goals, found);
+  head["ik"] = inverse_json(model, options, goals, found, record);
   Json step = to_json(model, record);
   step["error_mm"] = record.error_mm;
   RecordLog log(model, {file}, line_of(head), {});
