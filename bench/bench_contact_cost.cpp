@@ -13,14 +13,14 @@ using namespace softkin;
 using namespace softkin::bench;
 
 struct Options {
-  double size = 15000, large = 45000, distance = 0.06, free = 2, curled = 3;
+  double size = 15000, large = 45000, distance = 0.06, free = 1.3, curled = 3;
   int threads = 2, repeat = 3;
 };
 
 struct Outcome {
   double processor = 0, seconds = 0;
   int iterations = 0, factorisations = 0;
-  bool converged = true;
+  bool converged = true, touched = false;
 };
 
 Model finger(double size, bool quadratic, double distance) {
@@ -54,12 +54,15 @@ Outcome sweep(const Statics& statics, double ratio, int steps, const Options& op
     state = found.state;
   }
   outcome.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const std::optional<ContactForces> contacts = statics.measured(state).contacts;
+  outcome.touched = contacts && !contacts->pairs.empty();
   return outcome;
 }
 
 void print(const char* what, const Outcome& outcome) {
-  std::printf("  %-16s %7.2f s of processor, %7.2f s, %4d iterations, %4d factorisations%s\n", what, outcome.processor,
-              outcome.seconds, outcome.iterations, outcome.factorisations, outcome.converged ? "" : " NOT CONVERGED");
+  std::printf("  %-16s %7.2f s of processor, %7.2f s, %4d iterations, %4d factorisations, %s touches%s\n", what,
+              outcome.processor, outcome.seconds, outcome.iterations, outcome.factorisations,
+              outcome.touched ? "something" : "nothing", outcome.converged ? "" : " NOT CONVERGED");
   std::fflush(stdout);
 }
 
@@ -88,8 +91,8 @@ bool compare(const char* name, bool quadratic, double ratio, int steps, const Op
 
 int run(const Options& options) {
   print_machine();
-  bool converged = compare("nothing touches, order 2", true, options.free, 3, options);
-  converged &= compare("nothing touches, linear", false, options.free, 3, options);
+  bool converged = compare("nothing touches, linear", false, options.free, 3, options);
+  converged &= compare("nothing touches, order 2", true, options.free, 3, options);
   converged &= compare("curled onto its base, linear", false, options.curled, 6, options);
   converged &= compare("curled onto its base, linear", false, options.curled, 1, options);
   if (options.large > 0) {

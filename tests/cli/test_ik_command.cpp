@@ -277,4 +277,44 @@ TEST(IkCommand, RefusesBadInput) {
   also({"--report", folder.scene}, "would replace a file that is read");
 }
 
+TEST(IkCommand, ReachesWhereItLeansOnABall) {
+  const std::string scene = SOFTKIN_SOURCE_DIR "/docs/scenes/actuator_on_ball.yaml";
+  const ProgramResult made = run_fk(scene, {"--set", "air1=1.57", "--set", "air2=1.53", "--set", "air3=1.1", "--json"});
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  const Point target = step_of(made).at("markers").at("tip");
+  ASSERT_EQ(step_of(made).at("contacts").at(0).at("by"), "ball");
+  const ProgramResult result = run_ik(scene, {"--target", "tip=" + coordinates(target), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_LT(distance(step_of(result).at("markers").at("tip"), target), 1e-3);
+  EXPECT_EQ(step_of(result).at("contacts").at(0).at("by"), "ball");
+  EXPECT_EQ(json::parse(result.output).at("ik").at("jacobian").at("one_sided"), json::array());
+}
+
+/// It once had no step and no force out of balance, as if it had not been solved.
+TEST(IkCommand, AStartThatIsTheAnswerSaysHowWellItWasSolved) {
+  const IkFolder folder;
+  const Point target = folder.marker("tip", 1.2, 1);
+  const ProgramResult result = run_ik(
+      folder.scene, {"--target", "tip=" + coordinates(target), "--start", "air=1.2", "--tolerance", "1", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(json::parse(result.output).at("ik").at("equilibria"), 1);
+  EXPECT_GT(step_of(result).at("iterations").get<int>(), 0);
+  EXPECT_GT(step_of(result).at("pull_N").get<double>(), 0);
+}
+
+TEST(IkCommand, TellsWhereTheJacobianIsOneSided) {
+  const std::string scene = SOFTKIN_SOURCE_DIR "/docs/scenes/finger_on_floor.yaml";
+  const std::vector<std::string> options{"--start",     "air=1.15", "--target", "tip=119.28,0.05,-9.9",
+                                         "--tolerance", "0.3"};
+  const ProgramResult text = run_ik(scene, options);
+  ASSERT_EQ(text.exit_code, 0) << text.errors;
+  EXPECT_NE(text.output.find(" % of it slips\n"), std::string::npos) << text.output;
+  EXPECT_NE(text.output.find("the Jacobian is one-sided: that for sliding on, of robot on floor\n"), std::string::npos)
+      << text.output;
+  std::vector<std::string> as_json = options;
+  as_json.push_back("--json");
+  const json report = json::parse(run_ik(scene, as_json).output);
+  EXPECT_EQ(report.at("ik").at("jacobian").at("one_sided"), json::parse(R"([["robot", "floor"]])"));
+}
+
 }  // namespace

@@ -317,6 +317,7 @@ InverseResult solve_inverse_from(const Model& model, const Statics& statics, con
   }
   const double error = goal_errors(model, goals, first.state.positions).maxCoeff();
   result = solve_inverse(model, statics, goals, first.state, options, progress);
+  if (result.equilibrium.state.positions == first.state.positions) result.equilibrium.report = first.report;
   result.history.insert(result.history.begin(), {first.actuation, first.report.status, error, first.report.iterations});
   ++result.equilibria;
   result.seconds = seconds();

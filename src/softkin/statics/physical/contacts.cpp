@@ -48,7 +48,8 @@ Contacts::Contacts(const Model& model)
   choose_areas();
   margin_mm_ = margin_share * surfaces_.reach_mm;
   Team alone(1);
-  leave_out_neighbours(rest_, make_scratch()->broad, alone, surfaces_);
+  broad_ = std::make_unique<contact::BroadPhase>(surfaces_.surface, rest_, exclusions());
+  leave_out_neighbours(rest_, *broad_, alone, surfaces_);
   potential_ = std::make_unique<ContactPotential>(surfaces_, rest_);
 }
 
@@ -129,8 +130,7 @@ contact::Exclusions Contacts::exclusions() const {
 }
 
 std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
-  return std::make_unique<Scratch>(
-      Scratch{contact::BroadPhase(surfaces_.surface, rest_, exclusions()), {}, {}, {}, {}, {}});
+  return std::make_unique<Scratch>(Scratch{*broad_, {}, {}, {}, {}, {}});
 }
 
 /// Of candidates those that are so close and feel each other; sorted.

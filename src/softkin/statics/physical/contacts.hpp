@@ -97,6 +97,7 @@ class Contacts {
   Friction friction_;
   double margin_mm_ = 0;
   std::unique_ptr<ContactPotential> potential_;
+  std::unique_ptr<contact::BroadPhase> broad_;  // sorted once; every thread of control has a copy
 };
 
 }  // namespace softkin::physical
