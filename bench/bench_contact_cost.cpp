@@ -21,6 +21,7 @@ struct Outcome {
   double processor = 0, seconds = 0;
   int iterations = 0, factorisations = 0;
   bool converged = true, touched = false;
+  std::vector<double> pressures;  // [kPa]
 };
 
 Model finger(double size, bool quadratic, double distance) {
@@ -52,6 +53,7 @@ Outcome sweep(const Statics& statics, double ratio, int steps, const Options& op
     outcome.factorisations += found.report.factorisations;
     outcome.converged = found.report.status == Status::converged;
     state = found.state;
+    outcome.pressures.push_back(state.multipliers[0]);
   }
   outcome.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   const std::optional<ContactForces> contacts = statics.measured(state).contacts;
@@ -63,6 +65,9 @@ void print(const char* what, const Outcome& outcome) {
   std::printf("  %-16s %7.2f s of processor, %7.2f s, %4d iterations, %4d factorisations, %s touches%s\n", what,
               outcome.processor, outcome.seconds, outcome.iterations, outcome.factorisations,
               outcome.touched ? "something" : "nothing", outcome.converged ? "" : " NOT CONVERGED");
+  std::printf("  %16s kPa in the chamber:", "");
+  for (const double pressure : outcome.pressures) std::printf(" %.2f", pressure);
+  std::printf("\n");
   std::fflush(stdout);
 }
 
