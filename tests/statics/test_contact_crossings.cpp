@@ -2,6 +2,9 @@
 
 #include <cstdio>
 #include <map>
+#include <softkin/io/scene/scene.hpp>
+#include <string>
+#include <vector>
 
 #include "statics/contact_scenes.hpp"
 #include "statics/pressed_drops.hpp"
@@ -60,6 +63,33 @@ TEST(ContactCrossings, RandomDropsFromShapesOfNoKnownShare) {
   for (const std::uint64_t seed : {73, 97, 101, 120, 121, 122})
     for (const PressedDrop::Shape& shape : press_drop(seed, 3, false).shapes)
       EXPECT_EQ(shape.crossings, 0u) << "seed " << seed;
+}
+
+/// Where the documents take them, from rest.
+TEST(ContactCrossings, ExamplesAndScenesOfTheDocuments) {
+  struct Pose {
+    const char* scene;
+    std::map<std::string, double> commands;
+  };
+  const std::vector<Pose> poses{
+      {"docs/scenes/finger_on_floor.yaml", {{"air", 1.3}}},
+      {"docs/scenes/finger_on_smooth_floor.yaml", {{"air", 1.3}}},
+      {"docs/scenes/arm_around_rod.yaml", {{"tendon1", 0.75}, {"tendon2", 0.7}, {"tendon3", 0.7}}},
+      {"docs/scenes/actuator_on_ball.yaml", {{"air1", 1.57}, {"air2", 1.53}, {"air3", 1.1}}},
+      {"examples/two_finger_gripper/two_finger_gripper.yaml", {{"left.air", 1.15}, {"right.air", 1.15}}}};
+  for (const Pose& pose : poses) {
+    SCOPED_TRACE(pose.scene);
+    const Model model = compile(read_scene(std::string(SOFTKIN_SOURCE_DIR) + "/" + pose.scene));
+    Actuation actuation = model.rest_actuation();
+    for (std::size_t a = 0; a < model.actuators.size(); ++a)
+      if (const auto found = pose.commands.find(model.actuators[a].name); found != pose.commands.end())
+        actuation[static_cast<Index>(a)] = found->second;
+    const Statics statics(model);
+    const Equilibrium found = statics.solve(actuation, statics.rest());
+    EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+    EXPECT_FALSE(statics.measured(found.state).contacts.value().pairs.empty());
+    EXPECT_EQ(crossings(found.state.positions, model.contact.triangles).size(), 0u);
+  }
 }
 
 }  // namespace
