@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/statics/physical/contacts.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "model/physical_robots.hpp"
@@ -108,6 +109,17 @@ inline double push_of_gap(double z) {
 [[nodiscard]] inline Vec3 reaction_of(const Model& model, const Statics& statics, const Equilibrium& found,
                                       std::size_t support) {
   return reactions(model, found.state.positions, statics.measured(found.state))[support].force;
+}
+
+/// Of what touches in a shape, in its nodes [N].
+[[nodiscard]] inline Points contact_gradient(const Model& model, const Points& at) {
+  const physical::Contacts contacts(model);
+  const auto scratch = contacts.make_scratch();
+  Team alone(1);
+  contacts.find(at, *scratch, alone);
+  Points gradient = Points::Zero(at.rows(), 3);
+  contacts.add_gradient(at, *scratch, gradient);
+  return gradient;
 }
 
 }  // namespace softkin::testing

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <softkin/energy/contact_laws.hpp>
-#include <softkin/statics/physical/contacts.hpp>
 
 #include "statics/contact_scenes.hpp"
 
@@ -114,12 +113,7 @@ struct BallContact {
   out.unknowns = 3 * model.robot_vertices();
   const Points& at = out.found.state.positions;
   out.force = -4 * reaction_of(model, statics, out.found, 0).z();
-  const physical::Contacts contacts(model);
-  const auto scratch = contacts.make_scratch();
-  Team alone(1);
-  contacts.find(at, *scratch, alone);
-  Points gradient = Points::Zero(at.rows(), 3);
-  contacts.add_gradient(at, *scratch, gradient);
+  const Points gradient = contact_gradient(model, at);
   double sum = 0, square = 0, gaps = 0, strongest = 0;
   const double plane = balls.two ? 0 : -1;
   for (const int pass : {0, 1})

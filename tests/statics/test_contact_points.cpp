@@ -108,12 +108,7 @@ TEST(ContactPoints, AnEvenPressureComesAsItsConsistentLoads) {
   const Model model = compile(BlockOnFloor{0.2, 0.5, 0, true}.robot());
   Points at = model.rest;
   at.topRows(model.robot_vertices()).col(2).array() -= 0.4;
-  const physical::Contacts contacts(model);
-  const auto scratch = contacts.make_scratch();
-  Team alone(1);
-  contacts.find(at, *scratch, alone);
-  Points gradient = Points::Zero(at.rows(), 3);
-  contacts.add_gradient(at, *scratch, gradient);
+  const Points gradient = contact_gradient(model, at);
   const double pressure = push_of_gap(0.1 / 0.2), cell = BlockOnFloor::size / 3;
   std::vector<double> area(static_cast<std::size_t>(at.rows()));
   int corners = 0, edges = 0;
@@ -163,7 +158,7 @@ TEST(ContactPoints, AreNodesInTheMiddleOfStraightEdgesAndOfOrderOne) {
   for (const bool quadratic : {false, true}) {
     const NearBlocks blocks(quadratic);
     EXPECT_EQ(blocks.contacts.points().are_nodes(), !quadratic);
-    EXPECT_EQ(physical::ContactPoints::at_rest(blocks.model), blocks.model.rest);
+    EXPECT_EQ(physical::ContactPoints::in(blocks.model, blocks.model.rest), blocks.model.rest);
     Points room;
     const Points& points = blocks.contacts.points().of(blocks.near, room);
     EXPECT_EQ(&points == &blocks.near, !quadratic);

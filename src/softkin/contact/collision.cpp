@@ -68,14 +68,12 @@ double safe_share(const FourPoints& from, const FourPoints& to, double keep, dou
   constexpr int most_advances = 100;
   constexpr int patience = 2;             // advances after which it is worth more to look longer
   constexpr double small_advance = 3e-4;  // of the share so far: what is left is not worth a distance
-  // of all that is rounded here, and of positions that are rounded once more
-  const double rounding =
-      32 * std::numeric_limits<double>::epsilon() * (from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
-  // no less than the share of the distance, which is at most that of the middles
-  if (clearly_apart(from, to, pairs, keep * between_middles(from, pairs).norm() + rounding)) return until;
   const FourPoints motion = to - from;
   const double speed = largest_speed(motion, pairs);
   if (speed == 0) return until;
+  // of all that is rounded here, and of positions that are rounded once more
+  const double rounding =
+      32 * std::numeric_limits<double>::epsilon() * (from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
   double share = 0, floor = 0;
   for (int advance = 0; advance < most_advances; ++advance) {
     const FourPoints x = from + share * motion;

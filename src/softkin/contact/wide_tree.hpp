@@ -99,25 +99,18 @@ typedef double Eight __attribute__((vector_size(64)));
 typedef long long Mask __attribute__((vector_size(64)));
 typedef int EightIndices __attribute__((vector_size(32)));
 
-/// Bit l: lane l is all ones, else it is 0.
-inline unsigned bits_of(Mask lanes) {
-#ifdef __AVX512DQ__  // which no compiler finds by itself, and may_meet is little more than this
-  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(lanes));
-#else
-  unsigned bits = 0;
-  for (unsigned l = 0; l < 8; ++l) bits |= static_cast<unsigned>(lanes[l]) & (1u << l);
-  return bits;
+/// Bit l: lane l is all ones, else it is 0. may_meet is little more than this, and no compiler finds the instruction.
+template <class Lanes>
+unsigned bits_of(Lanes lanes) {
+#ifdef __AVX512DQ__
+  if constexpr (sizeof(Lanes) == 64) return _mm512_movepi64_mask(reinterpret_cast<__m512i>(lanes));
 #endif
-}
-
-inline unsigned bits_of(EightIndices lanes) {
 #ifdef __AVX2__
-  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
-#else
+  if constexpr (sizeof(Lanes) == 32) return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
+#endif
   unsigned bits = 0;
   for (unsigned l = 0; l < 8; ++l) bits |= static_cast<unsigned>(lanes[l]) & (1u << l);
   return bits;
-#endif
 }
 
 /// Bit l: what is in lane l has a vertex of what is in a lane of others, of which each has so many.

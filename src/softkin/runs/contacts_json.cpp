@@ -17,15 +17,18 @@ void each_measure(Pair& pair, const Visit& visit) {
   visit("gap_mm", pair.gap_mm);
 }
 
+const std::string& name_of_part(const Model& model, Index part) {
+  return model.contact.parts[static_cast<std::size_t>(part)].name;
+}
+
 }  // namespace
 
 Json contacts_json(const Model& model, const std::optional<std::vector<PairForces>>& contacts) {
   if (!contacts) return {};
-  const auto name = [&](Index part) { return model.contact.parts[static_cast<std::size_t>(part)].name; };
   Json all = Json::array();
   for (const PairForces& pair : *contacts) {
-    all.push_back({{"on", name(pair.a)},
-                   {"by", name(pair.b)},
+    all.push_back({{"on", name_of_part(model, pair.a)},
+                   {"by", name_of_part(model, pair.b)},
                    {"force_N", json_of(pair.force)},
                    {"moment_N_mm", json_of(pair.moment)},
                    {"center_mm", json_of(pair.center)}});
@@ -40,9 +43,7 @@ std::vector<std::array<std::string, 2>> sliding_pairs(const Model& model,
   std::vector<std::array<std::string, 2>> pairs;
   if (!contacts) return pairs;
   for (const PairForces& pair : *contacts)
-    if (pair.slipping.value_or(0) > 0)
-      pairs.push_back({model.contact.parts[static_cast<std::size_t>(pair.a)].name,
-                       model.contact.parts[static_cast<std::size_t>(pair.b)].name});
+    if (pair.slipping.value_or(0) > 0) pairs.push_back({name_of_part(model, pair.a), name_of_part(model, pair.b)});
   return pairs;
 }
 

@@ -22,18 +22,13 @@ constexpr double advised = 2.2;        // gap over the distance to choose
 constexpr double neighbourhood = 6;    // along the surface, over the contact distance
 constexpr double facing_cosine = 0.5;  // between the way across and the normals
 
-Points contact_points(const Model& model, const Points& nodes) {
-  Points room;
-  return ContactPoints(model).of(nodes, room);
-}
-
 /// What the checks share: the surfaces in a shape, at rest mostly, and which part each of their vertices and
 /// triangles is of.
 class RestingSurfaces {
  public:
   RestingSurfaces(const Model& of, const Points& nodes)
       : model(of),
-        points(contact_points(of, nodes)),
+        points(ContactPoints::in(of, nodes)),
         surface(contact::make_surface(of.contact.triangles, points)),
         team(1) {
     contact::Exclusions exclusions;

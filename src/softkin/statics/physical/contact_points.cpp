@@ -25,9 +25,9 @@ const Points& ContactPoints::of(const Points& nodes, Points& room) const {
   return room;
 }
 
-Points ContactPoints::at_rest(const Model& model) {
+Points ContactPoints::in(const Model& model, const Points& nodes) {
   Points room;
-  return ContactPoints(model).of(model.rest, room);
+  return ContactPoints(model).of(nodes, room);
 }
 
 void ContactPoints::add_forces(Points& on_points, Points& on_nodes) const {

@@ -24,7 +24,8 @@ class ContactPoints {
   /// Of positions or moves of the nodes: those themselves, or what is put into the room.
   [[nodiscard]] const Points& of(const Points& nodes, Points& room) const;
 
-  [[nodiscard]] static Points at_rest(const Model& model);
+  /// Those of a shape, once.
+  [[nodiscard]] static Points in(const Model& model, const Points& nodes);
 
   /// Adds forces on points, which are left changed, to those on the nodes.
   void add_forces(Points& on_points, Points& on_nodes) const;

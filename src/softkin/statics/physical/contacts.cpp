@@ -41,7 +41,7 @@ ContactSurfaces surfaces_of(const Model& model, const Points& rest) {
 Contacts::Contacts(const Model& model)
     : model_(model),
       points_(model),
-      rest_(ContactPoints::at_rest(model)),
+      rest_(ContactPoints::in(model, model.rest)),
       surfaces_(surfaces_of(model, rest_)),
       friction_(surfaces_) {
   find_parts();
