@@ -155,8 +155,35 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     const int more = system_.contact() ? 5 : 0;                // something begins to touch in most steps
     way_.advance *= used <= 5 + more ? 2 : used <= 9 + more ? 1.4 : 0.8;
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
+    if (leads_beyond(at)) {
+      take_beyond(at);
+    } else if (way_.beyond && system_.contact()) {  // a step as long would end there again
+      way_.advance = std::min(way_.advance, std::max(finest, 0.5 * (way_.beyond->done - way_.done)));
+    }
   }
   return end ? end : out_of_patience(at);
+}
+
+/// Does the way lead from here to where a longer step came out, without a jump? Where something begins to touch in
+/// several places a step turns as often, which looks like a jump to it.
+bool Continuation::leads_beyond(const Iterate& at) {
+  if (!way_.beyond || !system_.contact() || system_.friction() || active_ != way_.beyond->active) return false;
+  const Demand& there = way_.beyond->demand;
+  Iterate predicted = at;
+  if (!way_.factorised && prepare(way_.here, at) < 0) return false;
+  const bool clear = predict_clear(system_, way_.here, there, active_, work_, team_, predicted, predicted_).has_value();
+  way_.factorised = false;
+  return clear && !jumped(way_.here, there, at, way_.beyond->at);
+}
+
+void Continuation::take_beyond(Iterate& at) {
+  Beyond beyond = std::move(*way_.beyond);
+  way_.beyond.reset();
+  take(at, std::move(beyond.at));
+  active_ = std::move(beyond.active);
+  last_ = beyond.last;
+  pass(beyond.demand, beyond.done);
+  way_.factorised = prepare(way_.here, at) >= 0;
 }
 
 /// After a step of this length that led to no equilibrium.
@@ -171,13 +198,8 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     active_ = active;
   }
   if (way_.beyond && way_.advance < finest) {
-    Beyond beyond = std::move(*way_.beyond);
-    way_.beyond.reset();
-    tell_snap(beyond.jump_mm, way_.done);
-    take(at, std::move(beyond.at));
-    active_ = std::move(beyond.active);
-    last_ = beyond.last;
-    pass(beyond.demand, beyond.done);
+    tell_snap(way_.beyond->jump_mm, way_.done);
+    take_beyond(at);
     way_.advance = follow_below;
     return std::nullopt;
   }

@@ -88,6 +88,8 @@ class Continuation {
   std::optional<Status> out_of_patience(const Iterate& at);
   bool release(const Demand& there, Iterate& at, bool contradicting);
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
+  bool leads_beyond(const Iterate& at);
+  void take_beyond(Iterate& at);
   bool jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial);
   void tell_snap(double move_mm, double from);
   Status arrive(const Demand& demand, Iterate& at);
