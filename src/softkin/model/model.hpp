@@ -61,6 +61,7 @@ struct Actuator {
   Branch branch = Branch::loading;     // of the curve, where a command names none
   Index other = -1;                    // motion: part of ContactModel; force, hold: index into Model::bodies
   int axis = -1;                       // motion, force
+  bool pushes = false;                 // cable: held to its length whatever that takes, as a rod would be
   double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
                                        // a dea's ratio 1
 };

@@ -318,7 +318,7 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
 bool Continuation::release(const Demand& there, Iterate& at, bool contradicting) {
   bool changed = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!active_[a] || system_.sign(a) < 0 || (at.multipliers[a] > 0 && !contradicting)) continue;
+    if (!active_[a] || !system_.only_pulls(a) || (at.multipliers[a] > 0 && !contradicting)) continue;
     if (system_.measures().value(a, at.positions) >= system_.target(a, there)) continue;
     active_[a] = false;
     at.multipliers[a] = 0;

@@ -29,7 +29,7 @@ Derivative::Derivative(const System& system, System::Workspace& work, double acc
 void Derivative::hold(const Iterate& at, const Demand& demand) {
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (!system_.constrains(a)) continue;
-    active_[a] = system_.sign(a) < 0 || at.multipliers[a] > 0 ||
+    active_[a] = !system_.only_pulls(a) || at.multipliers[a] > 0 ||
                  system_.measures().value(a, at.positions) >= (1 - verge) * system_.target(a, demand);
     if (active_[a]) held_.push_back(a);
   }

@@ -400,7 +400,7 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
       active_(static_cast<std::size_t>(system.actuators())) {
   for (Index a = 0; a < system.actuators(); ++a) {
     // chambers are held always, cables where they pull
-    active_[a] = system.constrains(a) && (system.sign(a) < 0 || iterate_.multipliers[a] > 0);
+    active_[a] = system.constrains(a) && (!system.only_pulls(a) || iterate_.multipliers[a] > 0);
   }
   System::Balance balance;
   const Demand demand{at.actuation, at.share};
@@ -419,7 +419,7 @@ State Predictor::predict(const Actuation& actuation, Team& team) {
   for (Index a = 0; a < system_.actuators(); ++a) {
     state.multipliers[a] /= system_.unit(a);
     // no cable pushes
-    if (system_.constrains(a) && system_.sign(a) > 0) state.multipliers[a] = std::max(0.0, state.multipliers[a]);
+    if (system_.constrains(a) && system_.only_pulls(a)) state.multipliers[a] = std::max(0.0, state.multipliers[a]);
   }
   return state;
 }

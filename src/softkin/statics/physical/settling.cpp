@@ -100,7 +100,7 @@ Newton::Outcome Continuation::settle_constraints(const Demand& demand, Newton::P
 bool Continuation::change_active(const Demand& demand, Iterate& at) {
   bool changed = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!system_.constrains(a) || system_.sign(a) < 0) continue;  // a chamber pushes and pulls
+    if (!system_.constrains(a) || !system_.only_pulls(a)) continue;  // a chamber pushes and pulls
     const double target = system_.target(a, demand);
     if (active_[a] && at.multipliers[a] < 0) {
       active_[a] = false;

@@ -199,6 +199,11 @@ class System {
   [[nodiscard]] double sign(Index actuator) const {
     return model_.actuators[actuator].kind == ActuatorKind::cable ? 1 : -1;
   }
+  /// A cable, which gives way where it would push.
+  [[nodiscard]] bool only_pulls(Index actuator) const {
+    const Actuator& a = model_.actuators[actuator];
+    return a.kind == ActuatorKind::cable && !a.pushes;
+  }
   /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
   [[nodiscard]] double unit(Index actuator) const {
     return model_.actuators[actuator].kind == ActuatorKind::pneumatic ? 1e-3 : 1;

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <softkin/core/types.hpp>
+#include <vector>
+
+namespace softkin::maps {
+
+/// Degrees of a term in each variable, a row per term.
+using Terms = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr int most_variables = 8, highest_degree = 60;
+
+/// The terms with the least sums of decay times degree over the variables, sorted by their degrees, the last variable
+/// fastest: with each term all that have lower degrees.
+///
+/// decay  d values > 0, d <= most_variables
+/// count  how many, >= 1; fewer where no degree is above highest_degree
+[[nodiscard]] Terms least_terms(const Eigen::VectorXd& decay, Index count);
+
+/// Products of Chebyshev polynomials in d variables from -1 to 1, one per term.
+///
+/// slopes  returns d by #terms, if asked for
+void evaluate_terms(const Terms& terms, const Eigen::VectorXd& x, Eigen::VectorXd& values, RowMatrix* slopes);
+
+/// p sums of such products.
+class Polynomials {
+ public:
+  Polynomials() = default;
+  /// terms         sorted as those of least_terms()
+  /// coefficients  #terms by p
+  Polynomials(Terms terms, RowMatrix coefficients);
+
+  [[nodiscard]] Index variables() const { return terms_.cols(); }
+  [[nodiscard]] Index count() const { return coefficients_.cols(); }
+  [[nodiscard]] const Terms& terms() const { return terms_; }
+  [[nodiscard]] const RowMatrix& coefficients() const { return coefficients_; }
+
+  /// x       d values from -1 to 1
+  /// values  p
+  /// slopes  d by p, by rows; null: not asked for
+  void evaluate(const double* x, double* values, double* slopes = nullptr) const;
+
+ private:
+  /// Terms that differ in the last variable alone, whose degree is 0, 1, ...
+  struct Run {
+    Index begin = 0, count = 0;  // terms
+  };
+
+  Terms terms_;
+  RowMatrix coefficients_;
+  std::vector<Run> runs_;
+  std::vector<int> highest_;  // degree per variable
+};
+
+}  // namespace softkin::maps
