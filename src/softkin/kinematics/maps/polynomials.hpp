@@ -55,4 +55,11 @@ class Polynomials {
   std::vector<int> highest_;  // degree per variable
 };
 
+/// The number whose bits they are, the first the lowest.
+[[nodiscard]] inline Index bits_of(const std::vector<bool>& flags) {
+  Index number = 0;
+  for (std::size_t i = 0; i < flags.size(); ++i) number |= static_cast<Index>(flags[i]) << i;
+  return number;
+}
+
 }  // namespace softkin::maps

@@ -1,0 +1,192 @@
+#include <algorithm>
+#include <array>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/kinematics/map.hpp>
+#include <utility>
+
+namespace softkin {
+
+namespace {
+
+constexpr std::size_t most_cables = 12;
+
+void check(bool fits, const char* what) {
+  if (!fits) throw InvalidInput(std::string("the map is broken: ") + what);
+}
+
+void check_cell(const MapData& data, const MapPiece& piece, const MapCell& cell) {
+  const auto variables = static_cast<Index>(piece.inputs.size());
+  check(cell.low.size() == variables && cell.high.size() == variables && (cell.low.array() < cell.high.array()).all(),
+        "a cell has no box");
+  check(cell.outputs.variables() == variables && cell.outputs.count() == static_cast<Index>(data.outputs.size()),
+        "a cell has other outputs");
+  const Index modes = data.shape ? static_cast<Index>(data.shape->modes.cols()) : 0;
+  check(cell.modes.count() == modes && (modes == 0 || cell.modes.variables() == variables),
+        "a cell has other modes of the shape");
+}
+
+void check_tree(const MapPiece& piece) {
+  check(!piece.tree.empty(), "a piece has no cells");
+  const auto nodes = static_cast<Index>(piece.tree.size());
+  for (Index n = 0; n < nodes; ++n) {
+    const MapNode& node = piece.tree[static_cast<std::size_t>(n)];
+    if (node.variable < 0) {
+      check(node.cell >= -1 && node.cell < static_cast<Index>(piece.cells.size()), "a cell is missing");
+      continue;
+    }
+    check(node.variable < static_cast<int>(piece.inputs.size()), "a cell is divided along nothing");
+    for (const Index below : {node.first, node.second}) check(below > n && below < nodes, "a cell is missing");
+  }
+}
+
+}  // namespace
+
+KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
+  const std::size_t cables = data_.cables.size();
+  const auto in_range = [](Index i, std::size_t size) { return i >= 0 && i < static_cast<Index>(size); };
+  check(cables <= most_cables, "it has too many cables");
+  check(data_.inputs.size() <= maps::most_variables, "it has too many inputs");
+  for (const MapCable& cable : data_.cables) {
+    check(cable.input == -1 || in_range(cable.input, data_.inputs.size()), "a cable has another input");
+    check(in_range(cable.tension, data_.outputs.size()) && in_range(cable.ratio, data_.outputs.size()),
+          "a cable has no outputs");
+  }
+  for (const MapInput& input : data_.inputs)
+    check(in_range(input.actuator, static_cast<std::size_t>(data_.actuation.size())) && input.low < input.high,
+          "an input has no range");
+  pieces_.assign(std::size_t{1} << cables, -1);
+  for (std::size_t p = 0; p < data_.pieces.size(); ++p) {
+    const MapPiece& piece = data_.pieces[p];
+    check(piece.taut.size() == cables, "a piece has other cables");
+    for (const Index input : piece.inputs) check(in_range(input, data_.inputs.size()), "a piece has another input");
+    check_tree(piece);
+    for (const MapCell& cell : piece.cells) check_cell(data_, piece, cell);
+    pieces_[static_cast<std::size_t>(maps::bits_of(piece.taut))] = static_cast<Index>(p);
+  }
+}
+
+Index KinematicMap::cell_of(const MapPiece& piece, const double* commands) const {
+  const MapNode* node = piece.tree.data();
+  while (node->variable >= 0) {
+    const double command = commands[piece.inputs[static_cast<std::size_t>(node->variable)]];
+    node = piece.tree.data() + (command < node->at ? node->first : node->second);
+  }
+  return node->cell;
+}
+
+void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const double* commands, double* values,
+                            double* slopes) const {
+  std::array<double, maps::most_variables> x{};
+  const std::size_t variables = piece.inputs.size();
+  for (std::size_t j = 0; j < variables; ++j) {
+    const auto at = static_cast<Index>(j);
+    x[j] = (2 * commands[piece.inputs[j]] - cell.low[at] - cell.high[at]) / (cell.high[at] - cell.low[at]);
+  }
+  if (!slopes) return cell.outputs.evaluate(x.data(), values);
+  // the piece's rows first, then to where they belong, from the last on: inputs ascend
+  const Index size = outputs();
+  cell.outputs.evaluate(x.data(), values, slopes);
+  for (Index input = inputs(), j = static_cast<Index>(variables); input-- > 0;) {
+    double* row = slopes + input * size;
+    if (j == 0 || piece.inputs[static_cast<std::size_t>(j - 1)] != input) {
+      std::fill_n(row, size, 0.0);
+      continue;
+    }
+    --j;
+    const double scale = 2 / (cell.high[j] - cell.low[j]);
+    const double* found = slopes + j * size;
+    for (Index q = 0; q < size; ++q) row[q] = scale * found[q];
+  }
+}
+
+/// With all cables taut at first: one that would push goes slack, one that is longer than it may be is taken up.
+///
+/// taut     the bits of the last that were
+/// returns  the piece is -1 where there is none of these, the cell where it has none there
+KinematicMap::Place KinematicMap::find(const double* commands, double* values, double* slopes, Index& taut) const {
+  const std::size_t cables = data_.cables.size();
+  taut = (Index{1} << cables) - 1;
+  Place place;
+  for (std::size_t change = 0; change <= 4 * cables; ++change) {
+    place.piece = pieces_[static_cast<std::size_t>(taut)];
+    if (place.piece < 0) return place;
+    const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
+    place.cell = cell_of(piece, commands);
+    if (place.cell < 0) return place;
+    evaluate(piece, piece.cells[static_cast<std::size_t>(place.cell)], commands, values, slopes);
+    std::size_t wrong = cables;
+    double worst = 0;
+    bool pushes = false;
+    for (std::size_t c = 0; c < cables; ++c) {
+      const MapCable& cable = data_.cables[c];
+      const bool holds = (taut >> c) & 1;
+      const double command = cable.input < 0 ? cable.command : commands[cable.input];
+      const double by = holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12);
+      // pushing ones first: those that are too long may then be so no more
+      if (!(by > 0) || (pushes && !holds) || (pushes == holds && by <= worst)) continue;
+      wrong = c;
+      worst = by;
+      pushes = holds;
+    }
+    if (wrong == cables) return place;
+    taut ^= Index{1} << wrong;
+  }
+  place.cell = -1;
+  return place;
+}
+
+std::optional<KinematicMap::Place> KinematicMap::evaluate(const double* commands, double* values,
+                                                          double* slopes) const {
+  for (Index i = 0; i < inputs(); ++i) {
+    const MapInput& input = data_.inputs[static_cast<std::size_t>(i)];
+    if (!(commands[i] >= input.low && commands[i] <= input.high)) return std::nullopt;
+  }
+  Index taut = 0;
+  const Place place = find(commands, values, slopes, taut);
+  return place.cell < 0 ? std::nullopt : std::optional(place);
+}
+
+std::optional<std::vector<bool>> KinematicMap::missing_piece(const double* commands, double* values) const {
+  Index taut = 0;
+  if (find(commands, values, nullptr, taut).piece >= 0) return std::nullopt;
+  std::vector<bool> asked(data_.cables.size());
+  for (std::size_t c = 0; c < asked.size(); ++c) asked[c] = (taut >> c) & 1;
+  return asked;
+}
+
+Points KinematicMap::shape(const double* commands, const Place& place) const {
+  if (!data_.shape) throw InvalidInput("the map was made without the robot's shape");
+  const MapShape& shape = *data_.shape;
+  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
+  const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
+  Eigen::VectorXd x(static_cast<Index>(piece.inputs.size())), amplitudes(shape.modes.cols());
+  for (Index j = 0; j < x.size(); ++j)
+    x[j] = (2 * commands[piece.inputs[static_cast<std::size_t>(j)]] - cell.low[j] - cell.high[j]) /
+           (cell.high[j] - cell.low[j]);
+  cell.modes.evaluate(x.data(), amplitudes.data());
+  const Eigen::VectorXf moved = shape.mean + shape.modes * amplitudes.cast<float>();
+  return shape.rest + Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+                          moved.data(), shape.rest.rows(), 3)
+                          .cast<double>();
+}
+
+Eigen::VectorXd KinematicMap::commands(const Actuation& actuation) const {
+  if (actuation.size() != data_.actuation.size())
+    throw InvalidInput("the map is of a robot with " + std::to_string(data_.actuation.size()) + " actuators, not " +
+                       std::to_string(actuation.size()));
+  Eigen::VectorXd commands(inputs());
+  Actuation others = actuation;
+  for (Index i = 0; i < inputs(); ++i) {
+    const Index actuator = data_.inputs[static_cast<std::size_t>(i)].actuator;
+    commands[i] = actuation[actuator];
+    others[actuator] = data_.actuation[actuator];
+  }
+  for (Index a = 0; a < others.size(); ++a)
+    if (others[a] != data_.actuation[a])
+      throw InvalidInput("the map knows the robot with command " + std::to_string(a + 1) + " at " +
+                         number(data_.actuation[a]) + " alone, not at " + number(others[a]));
+  return commands;
+}
+
+}  // namespace softkin

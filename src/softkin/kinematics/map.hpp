@@ -1,0 +1,132 @@
+#pragma once
+
+#include <optional>
+#include <softkin/kinematics/maps/polynomials.hpp>
+#include <softkin/model/equilibrium.hpp>
+#include <string>
+
+namespace softkin {
+
+/// A command that a map takes.
+struct MapInput {
+  std::string name;        // of its actuator
+  std::string unit;        // "" (a ratio), "kPa" or "N"
+  Index actuator = 0;      // in the robot's order
+  double low = 0, high = 0;
+};
+
+/// A number that a map gives.
+struct MapOutput {
+  std::string name;     // "tip_x", "air_pressure", "tendon1_ratio"
+  std::string unit;     // "mm", "kPa", "N" or ""
+  double accuracy = 0;  // that was asked for, in its unit; 0: none
+};
+
+/// A cable whose length is commanded: it goes slack where it would push.
+struct MapCable {
+  Index actuator = 0;              // in the robot's order
+  Index input = -1;                // -1: its command is always the same
+  double command = 1;              // where it is
+  Index tension = -1, ratio = -1;  // outputs
+};
+
+/// Polynomials over a box of commands.
+struct MapCell {
+  Eigen::VectorXd low, high;  // of the inputs of its piece
+  maps::Polynomials outputs;  // in the order of MapData::outputs, of the commands from -1 to 1 over the box
+  maps::Polynomials modes;    // amplitudes of MapShape's; none: count() == 0
+};
+
+/// The box of all commands, halved again and again: a node tells where, or the cell that it is.
+struct MapNode {
+  int variable = -1;      // of the piece's inputs; -1: a cell, or none
+  double at = 0;          // commands below it: first
+  Index first = -1, second = -1;  // nodes
+  Index cell = -1;        // -1: outside the map
+};
+
+/// All shapes in which the same cables pull, as functions of what does not hang slack.
+struct MapPiece {
+  std::vector<bool> taut;     // per cable
+  std::vector<Index> inputs;  // that it depends on
+  std::vector<MapNode> tree;  // the first is its root
+  std::vector<MapCell> cells;
+};
+
+/// The whole shape: rest + mean + modes times amplitudes.
+struct MapShape {
+  Points rest;                    // #V by 3 [mm]
+  Eigen::VectorXf mean;           // 3 #V, x, y, z of each vertex [mm]
+  Eigen::MatrixXf modes;          // 3 #V by #modes, orthonormal [-]
+};
+
+/// How far a map was from the solver at actuations that it was not made of. Not a bound.
+struct MapCheck {
+  Index points = 0;               // inside the map; so many were solved
+  Index outside = 0;              // of them that the map refuses, or the solver has no equilibrium for
+  std::uint64_t seed = 0;
+  Eigen::VectorXd largest, mean;  // per output, in its unit
+  double shape_largest_mm = 0, shape_mean_mm = 0;  // over vertices: the largest; its mean over the points
+};
+
+/// A robot's equilibria as functions of its commands, in closed form.
+struct MapData {
+  std::string robot;             // fingerprint_of its model
+  std::string name;              // of the robot
+  Actuation actuation;           // m: commands that are always the same, at rest
+  std::vector<MapInput> inputs;
+  std::vector<MapOutput> outputs;
+  std::vector<MapCable> cables;
+  std::vector<MapPiece> pieces;
+  std::optional<MapShape> shape;
+  MapCheck check;
+  Index equilibria = 0;          // that it was made of
+};
+
+/// Answers of a map: microseconds, no memory.
+class KinematicMap {
+ public:
+  /// throws  InvalidInput where parts of the data do not fit together
+  explicit KinematicMap(MapData data);
+
+  [[nodiscard]] const MapData& data() const { return data_; }
+  [[nodiscard]] Index inputs() const { return static_cast<Index>(data_.inputs.size()); }
+  [[nodiscard]] Index outputs() const { return static_cast<Index>(data_.outputs.size()); }
+
+  /// Where commands lead: a cell of a piece.
+  struct Place {
+    Index piece = -1, cell = -1;
+  };
+
+  /// commands  one per input
+  /// values    one per output; of a slack cable the ratio that its path has
+  /// slopes    inputs by outputs, by rows [unit of the output per unit of the command]; null: not asked for
+  /// returns   nothing where the commands are outside the map
+  std::optional<Place> evaluate(const double* commands, double* values, double* slopes = nullptr) const;
+
+  /// What is taut where the commands ask for a piece that the map does not have; nothing where it has all they ask for.
+  ///
+  /// values  one per output, scratch
+  [[nodiscard]] std::optional<std::vector<bool>> missing_piece(const double* commands, double* values) const;
+
+  /// Of commands at a place that evaluate() has given.
+  ///
+  /// throws  InvalidInput on a map without shape
+  [[nodiscard]] Points shape(const double* commands, const Place& place) const;
+
+  /// Of a robot's m commands those that the map takes.
+  ///
+  /// throws  InvalidInput naming the actuator: one that has another command than the map was made with
+  [[nodiscard]] Eigen::VectorXd commands(const Actuation& actuation) const;
+
+ private:
+  Place find(const double* commands, double* values, double* slopes, Index& taut) const;
+  [[nodiscard]] Index cell_of(const MapPiece& piece, const double* commands) const;
+  void evaluate(const MapPiece& piece, const MapCell& cell, const double* commands, double* values,
+                double* slopes) const;
+
+  MapData data_;
+  std::vector<Index> pieces_;  // by their taut cables, as the bits of a number; -1: none
+};
+
+}  // namespace softkin

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <softkin/kinematics/map.hpp>
+#include <softkin/kinematics/maps/piece_solver.hpp>
+
+namespace softkin {
+
+struct MapOptions {
+  double accuracy_mm = 0.01;        // of markers, > 0
+  double load_accuracy = 0;         // of pressures [kPa] and tensions [N], >= 0; 0: a thousandth of the largest
+  double ratio_accuracy = 1e-4;     // of achieved ratios [-], > 0
+  double shape_accuracy_mm = 0.05;  // of every vertex, >= 0; 0: without the shape
+  Index most_equilibria = 2000;     // that it is made of, >= 1
+  Index checks = 200;               // random actuations, >= 1
+  std::uint64_t seed = 1;           // of these
+  StaticsOptions statics{};
+  int threads = 1;  // >= 1; the map is the same
+};
+
+/// What was found in a map's making, kept as it is found. An equilibrium has a number in its piece; checks have -1.
+class MapDesk {
+ public:
+  virtual ~MapDesk() = default;
+  /// What keep() was given in an earlier run that was stopped; nothing where it was not.
+  [[nodiscard]] virtual std::optional<maps::Sample> known(Index piece, Index number,
+                                                          const Eigen::VectorXd& commands) = 0;
+  /// Called by one thread at a time.
+  virtual void keep(Index piece, Index number, const maps::Sample& sample) = 0;
+};
+
+struct MapProgress {
+  Index equilibria = 0, checks = 0;  // solved so far
+  double error = 0;                  // of the last predictions, over the accuracy that is wanted; infinite at first
+  std::string doing;                 // "all cables taut", "tendon2 slack"; "checking"
+};
+using MapCallback = std::function<bool(const MapProgress&)>;
+
+struct MapResult {
+  MapData data;
+  bool accurate = false;  // as was asked for, at the checks
+  std::string remark;     // why not
+};
+
+/// Makes a map: solves equilibria where the map is known worst until it predicts new ones as well as is wanted, then
+/// checks it at random actuations of the robot itself. Where a check fails it is refined and checked at others. The
+/// same map with any number of threads, and whatever the desk knows.
+///
+/// progress  called after every equilibrium, by one thread at a time
+/// returns   nothing where progress stopped it
+/// throws    InvalidInput on options out of range and as maps::outline_of does; where no equilibrium is found
+[[nodiscard]] std::optional<MapResult> build_map(const Model& model, const MapOptions& options, MapDesk* desk = nullptr,
+                                                 const MapCallback& progress = {});
+
+}  // namespace softkin

@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <softkin/core/error.hpp>
+#include <softkin/kinematics/maps/piece_solver.hpp>
+#include <softkin/model/names.hpp>
+#include <utility>
+
+namespace softkin::maps {
+
+namespace {
+
+/// A robot whose taut cables push, too, and whose other ones are not there.
+Model of_piece(const Model& model, const MapData& data, const MapPiece& piece) {
+  Model changed = model;
+  for (std::size_t c = 0, a = 0; a < changed.actuators.size(); ++a) {
+    Actuator& actuator = changed.actuators[a];
+    if (c == data.cables.size() || data.cables[c].actuator != static_cast<Index>(a)) continue;
+    if (piece.taut[c++]) {
+      actuator.pushes = true;
+    } else {
+      actuator.control = Control::load;
+      actuator.low = actuator.high = actuator.rest = 0;
+    }
+  }
+  return changed;
+}
+
+/// A cable that goes slack where it would push.
+bool is_cable(const Model& model, const Actuator& actuator) {
+  return model.formulation == Formulation::physical && actuator.kind == ActuatorKind::cable &&
+         actuator.control == Control::ratio;
+}
+
+/// Does a physical robot answer with a load?
+bool answers_with_load(const Model& model, const Actuator& actuator) {
+  return model.formulation == Formulation::physical && actuator.control == Control::ratio &&
+         !multiplier_key(actuator).empty();
+}
+
+bool answers_with_ratio(const Model& model, const Actuator& actuator) {
+  return drives(actuator) && (!answers_with_load(model, actuator) || is_cable(model, actuator));
+}
+
+bool rubs(const Model& model) {
+  return std::any_of(model.contact.pairs.begin(), model.contact.pairs.end(),
+                     [](const ContactPair& pair) { return pair.touch && pair.friction > 0; });
+}
+
+}  // namespace
+
+MapData outline_of(const Model& model) {
+  if (model.markers.empty()) throw InvalidInput("the robot has no marker, so that a map has nothing to give: add one to the scene");
+  if (rubs(model))
+    throw InvalidInput("shapes depend on the way there where something rubs: a map is for robots without friction");
+  MapData data;
+  data.robot = fingerprint_of(model);
+  data.name = model.name;
+  data.actuation = model.rest_actuation();
+  for (const Marker& marker : model.markers)
+    for (const char* axis : {"_x", "_y", "_z"}) data.outputs.push_back({marker.name + axis, "mm"});
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const auto next = static_cast<Index>(data.outputs.size());
+    const auto input = static_cast<Index>(data.inputs.size());
+    const auto number = static_cast<Index>(a);
+    if (answers_with_load(model, actuator)) {
+      const bool cable = actuator.kind == ActuatorKind::cable;
+      data.outputs.push_back({actuator.name + (cable ? "_tension" : "_pressure"), cable ? "N" : "kPa"});
+    }
+    if (answers_with_ratio(model, actuator)) data.outputs.push_back({actuator.name + "_ratio", ""});
+    if (is_cable(model, actuator))
+      data.cables.push_back({number, varies(actuator) ? input : -1, data.actuation[number], next, next + 1});
+    if (varies(actuator))
+      data.inputs.push_back({actuator.name, command_unit(actuator), number, actuator.low, actuator.high});
+  }
+  if (data.inputs.empty()) throw InvalidInput("no actuator of the robot has a range, so that there is nothing to map");
+  if (data.inputs.size() > most_variables)
+    throw InvalidInput("a map takes up to " + std::to_string(most_variables) + " commands, the robot has " +
+                       std::to_string(data.inputs.size()));
+  return data;
+}
+
+Eigen::VectorXd outputs_of(const Model& model, const MapData& data, const State& state) {
+  Eigen::VectorXd values(static_cast<Index>(data.outputs.size()));
+  Index next = 0;
+  for (const Marker& marker : model.markers) {
+    values.segment<3>(next) = marker.point.at(state.positions);
+    next += 3;
+  }
+  std::size_t c = 0;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    // a cable of a piece that is slack there answers as the robot's does
+    const bool cable = c < data.cables.size() && data.cables[c].actuator == static_cast<Index>(a);
+    if (cable) ++c;
+    if (cable || answers_with_load(model, actuator)) values[next++] = state.multipliers[static_cast<Index>(a)];
+    if (cable || answers_with_ratio(model, actuator)) values[next++] = achieved_ratio(model, actuator, state.positions);
+  }
+  return values;
+}
+
+PieceSolver::PieceSolver(const Model& model, const MapData& data, const MapPiece& piece)
+    : model_(of_piece(model, data, piece)), data_(data), statics_(model_) {
+  for (const Index input : piece.inputs) actuators_.push_back(data.inputs[static_cast<std::size_t>(input)].actuator);
+}
+
+std::optional<Sample> PieceSolver::solve(const Eigen::VectorXd& commands, const Sample* nearest,
+                                         const StaticsOptions& options, const ProgressCallback& progress) const {
+  StaticsOptions own = options;
+  own.threads = 1;
+  own.reuse_factor = false;
+  own.keep_history = false;
+  Sample sample;
+  sample.commands = commands;
+  Actuation actuation = model_.rest_actuation();
+  for (std::size_t j = 0; j < actuators_.size(); ++j) actuation[actuators_[j]] = commands[static_cast<Index>(j)];
+  Equilibrium found = statics_.solve(actuation, nearest ? nearest->state : statics_.rest(), own, progress);
+  if (found.report.status == Status::interrupted) return std::nullopt;
+  // beyond a snap shapes are others than those from where they were reached
+  if (found.report.status != Status::converged || found.report.snapped_mm > 0) return sample;
+  sample.state = std::move(found.state);
+  const Sensitivity sensitivity = statics_.sensitivity(sample.state, own, 1e-7);
+  if (!sensitivity.regular) return sample;
+  add_values(sample);
+  add_slopes(sensitivity, sample);
+  return sample;
+}
+
+void PieceSolver::add_values(Sample& sample) const {
+  sample.values = outputs_of(model_, data_, sample.state);
+}
+
+void PieceSolver::add_slopes(const Sensitivity& sensitivity, Sample& sample) const {
+  constexpr double share = 1e-4;  // of a range: for ratios, which are differentiated by differences
+  const auto variables = static_cast<Index>(actuators_.size());
+  sample.slopes.resize(variables, sample.values.size());
+  sample.moves.resize(3 * model_.rest.rows(), variables);
+  for (Index j = 0; j < variables; ++j) {
+    const Index a = actuators_[static_cast<std::size_t>(j)];
+    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    const Points& moves = sensitivity.positions[static_cast<std::size_t>(a)];
+    const double step = share * (actuator.high - actuator.low);
+    State before = sample.state, after = sample.state;
+    before.positions -= step * moves;
+    after.positions += step * moves;
+    before.multipliers -= step * sensitivity.multipliers.col(a);
+    after.multipliers += step * sensitivity.multipliers.col(a);
+    sample.slopes.row(j) =
+        (outputs_of(model_, data_, after) - outputs_of(model_, data_, before)) / (2 * step);
+    for (Index v = 0; v < moves.rows(); ++v)
+      for (int k = 0; k < 3; ++k) sample.moves(3 * v + k, j) = static_cast<float>(moves(v, k));
+  }
+}
+
+}  // namespace softkin::maps

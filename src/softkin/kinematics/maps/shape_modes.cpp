@@ -1,0 +1,55 @@
+#include <Eigen/Eigenvalues>
+#include <random>
+#include <softkin/kinematics/maps/shape_modes.hpp>
+
+namespace softkin::maps {
+
+namespace {
+
+double largest_vertex(const Eigen::MatrixXf& moves) {
+  double largest = 0;
+  for (Index s = 0; s < static_cast<Index>(moves.cols()); ++s)
+    for (Index v = 0; v + 2 < static_cast<Index>(moves.rows()); v += 3)
+      largest = std::max<double>(largest, moves.col(s).segment<3>(v).norm());
+  return largest;
+}
+
+}  // namespace
+
+MapShape shape_modes(const Points& rest, const std::vector<const Sample*>& samples, double accuracy_mm) {
+  const auto count = static_cast<Index>(samples.size());
+  Eigen::MatrixXf left(rest.size(), count);  // what the modes so far do not tell
+  for (Index s = 0; s < count; ++s) {
+    const Points moved = samples[static_cast<std::size_t>(s)]->state.positions - rest;
+    left.col(s) = Eigen::Map<const Eigen::VectorXd>(moved.data(), moved.size()).cast<float>();
+  }
+  MapShape shape{rest, left.rowwise().mean(), Eigen::MatrixXf(left.rows(), 0)};
+  left.colwise() -= shape.mean;
+  const Eigen::MatrixXd gram = (left.transpose() * left).cast<double>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+  for (Index m = count; m-- > 0 && largest_vertex(left) > accuracy_mm;) {
+    Eigen::VectorXf mode = left * solver.eigenvectors().col(m).cast<float>();
+    mode -= shape.modes * (shape.modes.transpose() * mode);
+    if (!(mode.norm() > 0)) break;
+    mode.normalize();
+    left -= mode * (mode.transpose() * left);
+    shape.modes.conservativeResize(Eigen::NoChange, shape.modes.cols() + 1);
+    shape.modes.col(shape.modes.cols() - 1) = mode;
+  }
+  return shape;
+}
+
+RowMatrix random_commands(const MapData& data, Index count, std::uint64_t seed) {
+  constexpr double steps = 9007199254740992.0;  // 2^53
+  std::mt19937_64 generator(seed);
+  RowMatrix commands(count, static_cast<Index>(data.inputs.size()));
+  for (Index i = 0; i < count; ++i)
+    for (Index j = 0; j < static_cast<Index>(data.inputs.size()); ++j) {
+      const MapInput& input = data.inputs[static_cast<std::size_t>(j)];
+      const double share = static_cast<double>(generator() >> 11) / steps;
+      commands(i, j) = input.low + share * (input.high - input.low);
+    }
+  return commands;
+}
+
+}  // namespace softkin::maps

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <softkin/kinematics/maps/piece_solver.hpp>
+
+namespace softkin::maps {
+
+/// The few modes of which all sampled shapes are sums but for so much at the farthest vertex, by proper orthogonal
+/// decomposition.
+///
+/// source  Sirovich 1987, the method of snapshots
+[[nodiscard]] MapShape shape_modes(const Points& rest, const std::vector<const Sample*>& samples, double accuracy_mm);
+
+/// Commands inside the ranges, independent and uniform: a row each, the same on every machine.
+[[nodiscard]] RowMatrix random_commands(const MapData& data, Index count, std::uint64_t seed);
+
+}  // namespace softkin::maps
