@@ -21,7 +21,7 @@ void check_cell(const MapData& data, const MapPiece& piece, const MapCell& cell)
         "a cell has no box");
   check(cell.outputs.variables() == variables && cell.outputs.count() == static_cast<Index>(data.outputs.size()),
         "a cell has other outputs");
-  const Index modes = data.shape ? static_cast<Index>(data.shape->modes.cols()) : 0;
+  const Index modes = data.shape ? static_cast<Index>(data.shape->units.size()) : 0;
   check(cell.modes.count() == modes && (modes == 0 || cell.modes.variables() == variables),
         "a cell has other modes of the shape");
 }
@@ -52,6 +52,10 @@ KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
     check(in_range(cable.tension, data_.outputs.size()) && in_range(cable.ratio, data_.outputs.size()),
           "a cable has no outputs");
   }
+  if (data_.shape)
+    check(data_.shape->mean.size() == data_.shape->modes.rows() && data_.shape->mean.size() % 3 == 0 &&
+              data_.shape->modes.cols() == data_.shape->units.size(),
+          "its shape has other modes");
   for (const MapInput& input : data_.inputs)
     check(in_range(input.actuator, static_cast<std::size_t>(data_.actuation.size())) && input.low < input.high,
           "an input has no range");
@@ -165,10 +169,11 @@ Points KinematicMap::shape(const double* commands, const Place& place) const {
     x[j] = (2 * commands[piece.inputs[static_cast<std::size_t>(j)]] - cell.low[j] - cell.high[j]) /
            (cell.high[j] - cell.low[j]);
   cell.modes.evaluate(x.data(), amplitudes.data());
-  const Eigen::VectorXf moved = shape.mean + shape.modes * amplitudes.cast<float>();
-  return shape.rest + Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(
-                          moved.data(), shape.rest.rows(), 3)
-                          .cast<double>();
+  Eigen::VectorXf at = shape.mean;
+  for (Index m = 0; m < amplitudes.size(); ++m)
+    at += static_cast<float>(shape.units[m] * amplitudes[m]) * shape.modes.col(m).cast<float>();
+  return Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(at.data(), at.size() / 3, 3)
+      .cast<double>();
 }
 
 Eigen::VectorXd KinematicMap::commands(const Actuation& actuation) const {

@@ -120,6 +120,7 @@ class Builder {
       piece.fit->take(std::move(found));
     }
     gave_up_ = gave_up_ || piece.fit->gave_up();
+    data().shape.reset();
     data().pieces.clear();
     for (const auto& each : pieces_) data().pieces.push_back(each->made);
     data().equilibria = equilibria_;
@@ -137,15 +138,16 @@ class Builder {
       double load = std::abs(first.values[static_cast<Index>(q)]);
       for (std::size_t j = 0; j < piece.made.inputs.size(); ++j) {
         const MapInput& input = data().inputs[static_cast<std::size_t>(piece.made.inputs[j])];
-        load += 0.5 * (input.high - input.low) *
-                std::abs(first.slopes(static_cast<Index>(j), static_cast<Index>(q)));
+        load += 0.5 * (input.high - input.low) * std::abs(first.slopes(static_cast<Index>(j), static_cast<Index>(q)));
       }
       largest = std::max(largest, load);
     }
     const double loads = options_.load_accuracy > 0 ? options_.load_accuracy : usual * largest;
     for (std::size_t q = 0; q < data().outputs.size(); ++q) {
       MapOutput& output = data().outputs[q];
-      output.accuracy = output.unit == "mm" ? options_.accuracy_mm : output.unit.empty() ? options_.ratio_accuracy : loads;
+      output.accuracy = output.unit == "mm"   ? options_.accuracy_mm
+                        : output.unit.empty() ? options_.ratio_accuracy
+                                              : loads;
       wanted_.accuracy[static_cast<Index>(q)] = strictness_ * output.accuracy;
     }
     wanted_.shape_mm = strictness_ * options_.shape_accuracy_mm;
@@ -235,7 +237,8 @@ class Builder {
     for (const auto& piece : pieces_)
       for (const Sample& sample : piece->fit->samples())
         if (sample.is_good()) samples.push_back(&sample);
-    data().shape = maps::shape_modes(model_.rest, samples, 0.3 * options_.shape_accuracy_mm);
+    data().shape = maps::shape_modes(samples, 0.3 * options_.shape_accuracy_mm);
+    data().shape->accuracy_mm = options_.shape_accuracy_mm;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
       pieces_[p]->fit->fit_modes(*data().shape);
       data().pieces[p] = pieces_[p]->made;
@@ -244,7 +247,7 @@ class Builder {
   }
 
   struct Check {
-    bool refused = false;    // by the map
+    bool refused = false;  // by the map
     bool solved = false;
     Eigen::VectorXd errors;
     double shape_mm = 0;
@@ -298,7 +301,8 @@ class Builder {
     Sample sample;
     sample.commands = commands;
     Actuation actuation = data().actuation;
-    for (Index i = 0; i < commands.size(); ++i) actuation[data().inputs[static_cast<std::size_t>(i)].actuator] = commands[i];
+    for (Index i = 0; i < commands.size(); ++i)
+      actuation[data().inputs[static_cast<std::size_t>(i)].actuator] = commands[i];
     State start = statics_.rest();
     if (place) {
       const Piece& piece = *pieces_[static_cast<std::size_t>(place->piece)];
@@ -321,7 +325,8 @@ class Builder {
       const Index a = result_.data.cables[c].actuator;
       const Actuator& cable = model_.actuators[static_cast<std::size_t>(a)];
       if (!taut[c]) state.actuation[a] = achieved_ratio(model_, cable, state.positions);
-      const bool is_one = state.multipliers[a] >= 0 && state.actuation[a] >= cable.low && state.actuation[a] <= cable.high;
+      const bool is_one =
+          state.multipliers[a] >= 0 && state.actuation[a] >= cable.low && state.actuation[a] <= cable.high;
       if (!is_one) return statics_.rest();
     }
     return state;

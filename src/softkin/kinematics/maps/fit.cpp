@@ -17,8 +17,8 @@ constexpr Caution of_fits{1e-7, 1e-3}, of_plans{1e-4, 1e-1};
 
 /// What a point tells of the terms: a row for the values, and one per slope with its weight.
 struct Rows {
-  RowMatrix rows;              // 1 + d by #terms
-  Eigen::VectorXd of_slopes;   // d: the weight of each slope
+  RowMatrix rows;             // 1 + d by #terms
+  Eigen::VectorXd of_slopes;  // d: the weight of each slope
 
   Rows(const Terms& terms, const Eigen::VectorXd& x) : rows(1 + terms.cols(), terms.rows()), of_slopes(terms.cols()) {
     Eigen::VectorXd values;

@@ -93,7 +93,8 @@ RowMatrix PieceFit::next() {
   }
   RowMatrix known(static_cast<Index>(chart.samples.size()), variables_);
   for (Index i = 0; i < known.rows(); ++i)
-    known.row(i) = scaled(chart, samples_[static_cast<std::size_t>(chart.samples[static_cast<std::size_t>(i)])].commands);
+    known.row(i) =
+        scaled(chart, samples_[static_cast<std::size_t>(chart.samples[static_cast<std::size_t>(i)])].commands);
   const Terms terms = terms_of(chart, static_cast<Index>(known.rows()) + batch);
   const RowMatrix points = worst_known(terms, chart.decay, known, batch);
   const Eigen::RowVectorXd half = 0.5 * (chart.high - chart.low), middle = 0.5 * (chart.high + chart.low);
@@ -116,8 +117,7 @@ void PieceFit::fit_chart(Chart& chart) const {
     const Sample& sample = samples_[static_cast<std::size_t>(s)];
     if (sample.is_good()) observations.push_back(observation(chart, sample));
   }
-  chart.polynomials =
-      fit(terms_of(chart, static_cast<Index>(observations.size())), observations, chart.decay);
+  chart.polynomials = fit(terms_of(chart, static_cast<Index>(observations.size())), observations, chart.decay);
   if (variables_ > 0) chart.decay = decay_of(chart.polynomials);
 }
 
@@ -224,6 +224,7 @@ const Sample* PieceFit::nearest(const Eigen::VectorXd& commands) const {
 }
 
 void PieceFit::fit_modes(const MapShape& shape) {
+  const Eigen::MatrixXf modes = shape.modes.cast<float>() * shape.units.cast<float>().asDiagonal();
   for (std::size_t c = 0; c < done_.size(); ++c) {
     const Chart& chart = done_[c];
     const Eigen::VectorXf half = (0.5 * (chart.high - chart.low)).cast<float>();
@@ -231,11 +232,10 @@ void PieceFit::fit_modes(const MapShape& shape) {
     for (const Index s : chart.samples) {
       const Sample& sample = samples_[static_cast<std::size_t>(s)];
       if (!sample.is_good()) continue;
-      const Points moved = sample.state.positions - shape.rest;
-      const Eigen::VectorXf away =
-          Eigen::Map<const Eigen::VectorXd>(moved.data(), moved.size()).cast<float>() - shape.mean;
-      observations.push_back({scaled(chart, sample.commands), (shape.modes.transpose() * away).cast<double>(),
-                              (shape.modes.transpose() * sample.moves * half.asDiagonal()).transpose().cast<double>()});
+      const Points& at = sample.state.positions;
+      const Eigen::VectorXf away = Eigen::Map<const Eigen::VectorXd>(at.data(), at.size()).cast<float>() - shape.mean;
+      observations.push_back({scaled(chart, sample.commands), (modes.transpose() * away).cast<double>(),
+                              (modes.transpose() * sample.moves * half.asDiagonal()).transpose().cast<double>()});
     }
     piece_.cells[c].modes = fit(chart.polynomials.terms(), observations, chart.decay);
   }

@@ -8,10 +8,10 @@ namespace softkin::maps {
 
 /// What a fit is to reach.
 struct Wanted {
-  Eigen::VectorXd accuracy;             // per output, in its unit; 0: any will do
-  std::vector<Index> probes;            // vertices that stand for the shape
-  double shape_mm = 0;                  // of them; 0: any will do
-  Index most = 0;                       // equilibria of a piece, >= 1
+  Eigen::VectorXd accuracy;   // per output, in its unit; 0: any will do
+  std::vector<Index> probes;  // vertices that stand for the shape
+  double shape_mm = 0;        // of them; 0: any will do
+  Index most = 0;             // equilibria of a piece, >= 1
 };
 
 /// Refines a piece of a map until it predicts new equilibria as well as is wanted: adds points at which its polynomials

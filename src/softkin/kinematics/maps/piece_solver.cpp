@@ -48,7 +48,8 @@ bool rubs(const Model& model) {
 }  // namespace
 
 MapData outline_of(const Model& model) {
-  if (model.markers.empty()) throw InvalidInput("the robot has no marker, so that a map has nothing to give: add one to the scene");
+  if (model.markers.empty())
+    throw InvalidInput("the robot has no marker, so that a map has nothing to give: add one to the scene");
   if (rubs(model))
     throw InvalidInput("shapes depend on the way there where something rubs: a map is for robots without friction");
   MapData data;
@@ -144,8 +145,7 @@ void PieceSolver::add_slopes(const Sensitivity& sensitivity, Sample& sample) con
     after.positions += step * moves;
     before.multipliers -= step * sensitivity.multipliers.col(a);
     after.multipliers += step * sensitivity.multipliers.col(a);
-    sample.slopes.row(j) =
-        (outputs_of(model_, data_, after) - outputs_of(model_, data_, before)) / (2 * step);
+    sample.slopes.row(j) = (outputs_of(model_, data_, after) - outputs_of(model_, data_, before)) / (2 * step);
     for (Index v = 0; v < moves.rows(); ++v)
       for (int k = 0; k < 3; ++k) sample.moves(3 * v + k, j) = static_cast<float>(moves(v, k));
   }

@@ -136,8 +136,7 @@ void Polynomials::evaluate(const double* x, double* values, double* slopes) cons
       for (Index j = 0; j < last; ++j)
         for (Index q = 0; q < width; ++q)
           slopes[j * size + begin + q] += weights[static_cast<std::size_t>(j)] * sum[static_cast<std::size_t>(q)];
-      for (Index q = 0; q < width; ++q)
-        slopes[last * size + begin + q] += weight * sloped[static_cast<std::size_t>(q)];
+      for (Index q = 0; q < width; ++q) slopes[last * size + begin + q] += weight * sloped[static_cast<std::size_t>(q)];
     }
   }
 }

@@ -16,26 +16,33 @@ double largest_vertex(const Eigen::MatrixXf& moves) {
 
 }  // namespace
 
-MapShape shape_modes(const Points& rest, const std::vector<const Sample*>& samples, double accuracy_mm) {
+MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_mm) {
+  constexpr double most = 32767;
   const auto count = static_cast<Index>(samples.size());
-  Eigen::MatrixXf left(rest.size(), count);  // what the modes so far do not tell
+  Eigen::MatrixXf left(samples.front()->state.positions.size(), count);  // what the modes so far do not tell
   for (Index s = 0; s < count; ++s) {
-    const Points moved = samples[static_cast<std::size_t>(s)]->state.positions - rest;
-    left.col(s) = Eigen::Map<const Eigen::VectorXd>(moved.data(), moved.size()).cast<float>();
+    const Points& at = samples[static_cast<std::size_t>(s)]->state.positions;
+    left.col(s) = Eigen::Map<const Eigen::VectorXd>(at.data(), at.size()).cast<float>();
   }
-  MapShape shape{rest, left.rowwise().mean(), Eigen::MatrixXf(left.rows(), 0)};
+  MapShape shape;
+  shape.mean = left.rowwise().mean();
+  Eigen::MatrixXf modes(left.rows(), 0);  // orthonormal
   left.colwise() -= shape.mean;
   const Eigen::MatrixXd gram = (left.transpose() * left).cast<double>();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
   for (Index m = count; m-- > 0 && largest_vertex(left) > accuracy_mm;) {
     Eigen::VectorXf mode = left * solver.eigenvectors().col(m).cast<float>();
-    mode -= shape.modes * (shape.modes.transpose() * mode);
+    mode -= modes * (modes.transpose() * mode);
     if (!(mode.norm() > 0)) break;
     mode.normalize();
     left -= mode * (mode.transpose() * left);
-    shape.modes.conservativeResize(Eigen::NoChange, shape.modes.cols() + 1);
-    shape.modes.col(shape.modes.cols() - 1) = mode;
+    modes.conservativeResize(Eigen::NoChange, modes.cols() + 1);
+    modes.col(modes.cols() - 1) = mode;
   }
+  shape.units = (modes.cwiseAbs().colwise().maxCoeff() / static_cast<float>(most)).cast<double>();
+  shape.modes.resize(modes.rows(), modes.cols());
+  for (Index m = 0; m < static_cast<Index>(modes.cols()); ++m)
+    shape.modes.col(m) = (modes.col(m).cast<double>() / shape.units[m]).array().round().cast<std::int16_t>();
   return shape;
 }
 

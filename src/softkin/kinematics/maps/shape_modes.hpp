@@ -8,7 +8,7 @@ namespace softkin::maps {
 /// decomposition.
 ///
 /// source  Sirovich 1987, the method of snapshots
-[[nodiscard]] MapShape shape_modes(const Points& rest, const std::vector<const Sample*>& samples, double accuracy_mm);
+[[nodiscard]] MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_mm);
 
 /// Commands inside the ranges, independent and uniform: a row each, the same on every machine.
 [[nodiscard]] RowMatrix random_commands(const MapData& data, Index count, std::uint64_t seed);
