@@ -57,6 +57,7 @@ void add_fk(CLI::App& app, Run& run);
 void add_follow(CLI::App& app, Run& run);
 void add_grasp(CLI::App& app, Run& run);
 void add_ik(CLI::App& app, Run& run);
+void add_map(CLI::App& app, Run& run);
 void add_mesh(CLI::App& app, Run& run);
 void add_measure(CLI::App& app, Run& run);
 void add_walk(CLI::App& app, Run& run);

@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   app.callback([&app] {
     if (app.get_subcommands().empty())
       throw CLI::RequiredError(
-          "a command (fk, ik, follow, workspace, walk, grasp, compare, calibrate, measure, drive, mesh)");
+          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh)");
   });
   cli::Run run;
   cli::add_fk(app, run);
@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   cli::add_walk(app, run);
   cli::add_grasp(app, run);
   cli::add_workspace(app, run);
+  cli::add_map(app, run);
   return cli::outcome_of([&] {
     std::string command = "softkin";
     if (const std::string wrong = cli::misspelt(app, argc, argv, command); !wrong.empty())

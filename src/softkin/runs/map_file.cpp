@@ -282,4 +282,24 @@ std::string map_text(const MapData& data) {
   return text;
 }
 
+std::string map_json(const MapData& data, const std::string& file_name, double seconds) {
+  Arrays arrays;
+  nlohmann::ordered_json told = header(data, arrays), made{{"map", file_name}};
+  for (const char* key : {"softkin", "robot", "name", "equilibria", "inputs", "outputs", "checked"})
+    made[key] = told[key];
+  made["pieces"] = nlohmann::ordered_json::array();
+  for (const MapPiece& piece : data.pieces) {
+    Index terms = 0;
+    for (const MapCell& cell : piece.cells) terms += static_cast<Index>(cell.outputs.terms().rows());
+    made["pieces"].push_back({{"taut", piece.taut}, {"cells", piece.cells.size()}, {"terms", terms}});
+  }
+  if (data.shape) {
+    made["shape"] = told["shape"];
+    for (const char* key : {"mean", "modes", "units"}) made["shape"].erase(key);
+    made["shape"]["modes"] = data.shape->units.size();
+  }
+  made["seconds"] = seconds;
+  return made.dump(2);
+}
+
 }  // namespace softkin::runs

@@ -21,4 +21,7 @@ void check_robot(const MapData& data, const Model& model, const std::string& fil
 /// "36 equilibria; checked at 200 points: tip within 0.00018 mm, ..." and what it refused, a line each.
 [[nodiscard]] std::string map_text(const MapData& data);
 
+/// The same as JSON. seconds: that it took to make
+[[nodiscard]] std::string map_json(const MapData& data, const std::string& file_name, double seconds);
+
 }  // namespace softkin::runs

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/maps/piece_solver.hpp>
 #include <softkin/model/names.hpp>
@@ -54,7 +55,7 @@ MapData outline_of(const Model& model) {
     throw InvalidInput("shapes depend on the way there where something rubs: a map is for robots without friction");
   MapData data;
   data.robot = fingerprint_of(model);
-  data.name = model.name;
+  data.name = std::filesystem::path(model.name).stem().string();
   data.actuation = model.rest_actuation();
   for (const Marker& marker : model.markers)
     for (const char* axis : {"_x", "_y", "_z"}) data.outputs.push_back({marker.name + axis, "mm"});
