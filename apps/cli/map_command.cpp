@@ -44,8 +44,9 @@ class MapRun {
     journal_.emplace(asked.output, model, options_, asked.resume);
     say(asked.scene + ": " + summary(model, asked.solver_name));
     if (asked.resume)
-      say(journal_->known() > 0 ? counted(journal_->known(), "equilibrium", "equilibria") + " were found before: going on"
-                                : "nothing to resume: starting with the first equilibrium");
+      say(journal_->known() > 0
+              ? counted(journal_->known(), "equilibrium", "equilibria") + " were found before: going on"
+              : "nothing to resume: starting with the first equilibrium");
   }
 
   int run() {

@@ -151,6 +151,17 @@ std::optional<KinematicMap::Place> KinematicMap::evaluate(const double* commands
   return place.cell < 0 ? std::nullopt : std::optional(place);
 }
 
+std::optional<KinematicMap::Place> KinematicMap::evaluate_taut(const std::vector<bool>& taut, const double* commands,
+                                                               double* values, double* slopes) const {
+  const Index number = pieces_[static_cast<std::size_t>(maps::bits_of(taut))];
+  if (number < 0) return std::nullopt;
+  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(number)];
+  const Index cell = cell_of(piece, commands);
+  if (cell < 0) return std::nullopt;
+  evaluate(piece, piece.cells[static_cast<std::size_t>(cell)], commands, values, slopes);
+  return Place{number, cell};
+}
+
 std::optional<std::vector<bool>> KinematicMap::missing_piece(const double* commands, double* values) const {
   Index taut = 0;
   if (find(commands, values, nullptr, taut).piece >= 0) return std::nullopt;

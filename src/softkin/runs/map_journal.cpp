@@ -37,7 +37,8 @@ class Unpacker {
     const std::int64_t rows = take_number(), columns = take_number();
     const std::size_t scalar = sizeof(typename Matrix::Scalar);
     if (rows < 0 || columns < 0 ||
-        (columns > 0 && static_cast<std::size_t>(rows) > (bytes_.size() - at_) / scalar / static_cast<std::size_t>(columns)))
+        (columns > 0 &&
+         static_cast<std::size_t>(rows) > (bytes_.size() - at_) / scalar / static_cast<std::size_t>(columns)))
       throw InvalidInput("a record is broken");
     matrix.resize(rows, columns);
     const std::size_t size = static_cast<std::size_t>(matrix.size()) * scalar;
@@ -87,8 +88,8 @@ std::string journal_head(const Model& model, const MapOptions& options) {
   std::string ranges;
   for (const Actuator& actuator : model.actuators)
     ranges += " " + actuator.name + " " + exact(actuator.low) + " " + exact(actuator.high);
-  return "softkin map journal 1, softkin " SOFTKIN_VERSION "\nrobot " + fingerprint_of(model) + ranges +
-         "\naccuracy " + exact(options.accuracy_mm) + " mm, loads " + exact(options.load_accuracy) + ", ratios " +
+  return "softkin map journal 1, softkin " SOFTKIN_VERSION "\nrobot " + fingerprint_of(model) + ranges + "\naccuracy " +
+         exact(options.accuracy_mm) + " mm, loads " + exact(options.load_accuracy) + ", ratios " +
          exact(options.ratio_accuracy) + ", shape " + exact(options.shape_accuracy_mm) + " mm; seed " +
          std::to_string(options.seed) + "; solver tolerance " + exact(options.statics.step_tolerance_mm) +
          " mm, iterations " + std::to_string(options.statics.max_iterations) +
@@ -109,7 +110,8 @@ MapJournal::MapJournal(const std::filesystem::path& map, const Model& model, con
   const std::string head = journal_head(model, options);
   store_.emplace(path, head, resume);
   if (store_->head() != head)
-    throw InvalidInput({path.string()}, "cannot be gone on with: it is of another robot, or was begun with other options");
+    throw InvalidInput({path.string()},
+                       "cannot be gone on with: it is of another robot, or was begun with other options");
   store_->each([&](std::size_t, std::string_view record) {
     std::istringstream line{std::string(record)};
     Index piece = 0, number = 0;

@@ -76,7 +76,9 @@ void check_actuation(const Model& model, const Actuation& actuation) {
 }
 
 struct Statics::Parts {
-  explicit Parts(const Model& robot) : model(robot), worthwhile(worthwhile_threads(robot)) {
+  explicit Parts(const Model& robot) : model(robot), worthwhile(worthwhile_threads(robot)) {}
+
+  void assemble(const Model& robot) {
     if (robot.formulation == Formulation::physical)
       physical.emplace(robot);
     else
@@ -118,9 +120,16 @@ struct Statics::Parts {
   TeamPool teams;
   std::optional<TargetShape> target_shape;
   std::optional<physical::Equilibria> physical;
+  std::unique_ptr<const GivenEquilibria> given;
 };
 
-Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
+Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {
+  parts_->assemble(model);
+}
+Statics::Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given)
+    : parts_(std::make_unique<Parts>(model)) {
+  parts_->given = std::move(given);
+}
 Statics::~Statics() = default;
 Statics::Statics(Statics&&) noexcept = default;
 Statics& Statics::operator=(Statics&&) noexcept = default;
@@ -137,6 +146,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
+  if (parts_->given) return parts_->given->at(actuation, start);
   const TeamPool::Lent team = parts_->team(options);
   const double paper_tolerance = 8e-8 * model.diagonal_mm;
 
@@ -170,6 +180,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
 
 Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options, double accuracy) const {
   parts_->check_known(at, options, "the sensitivity of a shape");
+  if (parts_->given) return parts_->given->sensitivity(at);
   const TeamPool::Lent team = parts_->team(options);
   if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, accuracy, *team);
   return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, accuracy, *team);

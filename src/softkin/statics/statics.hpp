@@ -32,12 +32,28 @@ struct StaticsOptions {
   bool reuse_factor = true;
 };
 
+/// Equilibria that are known without being solved.
+class GivenEquilibria {
+ public:
+  GivenEquilibria() = default;
+  GivenEquilibria(const GivenEquilibria&) = delete;
+  GivenEquilibria& operator=(const GivenEquilibria&) = delete;
+  virtual ~GivenEquilibria() = default;
+
+  /// That of an actuation inside the ranges; status limit and the start where none is known.
+  [[nodiscard]] virtual Equilibrium at(const Actuation& actuation, const State& start) const = 0;
+  /// See Statics::sensitivity.
+  [[nodiscard]] virtual Sensitivity sensitivity(const State& at) const = 0;
+};
+
 /// Equilibria of one robot. Assembles and factorises once, and keeps threads, memory and factors from call to call, so
 /// that a solve from the last equilibrium starts nothing. solve() is const and may run on several threads at once.
 class Statics {
  public:
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held
   explicit Statics(const Model& model);
+  /// Of a robot whose equilibria are given.
+  Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given);
   ~Statics();
   Statics(Statics&&) noexcept;
   Statics& operator=(Statics&&) noexcept;
