@@ -1,13 +1,8 @@
-#include <cmath>
 #include <cstdio>
-#include <softkin/core/error.hpp>
-#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/io/plain_text.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/kinematics/grasp.hpp>
-#include <softkin/model/names.hpp>
-#include <softkin/runs/records.hpp>
+#include <softkin/runs/run_tables.hpp>
 #include <softkin/runs/shape_files.hpp>
 
 #include "command.hpp"
@@ -53,18 +48,11 @@ void add_options(CLI::App& command, GraspOptions& options) {
   command.add_flag("--json", options.json, "Print the pulls as JSON instead of the table");
 }
 
-/// "-x" or "1,0,-1".
-Vec3 direction_of(const std::string& text) {
-  const bool minus = text.starts_with('-');
-  const std::string axis = text.substr(minus ? 1 : 0);
-  const std::size_t named = axis.size() == 1 ? std::string("xyz").find(axis) : std::string::npos;
-  if (named != std::string::npos) return (minus ? -1 : 1) * Vec3::Unit(static_cast<Index>(named));
-  Vec3 direction;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &direction[0], &direction[1], &direction[2], &rest) != 3 ||
-      !direction.allFinite() || direction.norm() == 0)
-    throw InvalidInput("--pull must be x, -x, y, -y, z, -z or DX,DY,DZ that are not all 0, not " + excerpt(text));
-  return direction.normalized();
+std::vector<PullDirection> asked_directions(const GraspOptions& options) {
+  if (options.pulls.empty()) return axes_to_pull_along();
+  std::vector<PullDirection> directions;
+  for (const std::string& pull : options.pulls) directions.push_back({pull, read_direction("--pull", pull)});
+  return directions;
 }
 
 void check_usage(const GraspOptions& options) {
@@ -75,129 +63,61 @@ void check_usage(const GraspOptions& options) {
   check_solver(options);
 }
 
-Index body_of(const Model& model, const std::string& name) {
-  std::vector<std::string> names;
-  for (const FreeBody& body : model.bodies) names.push_back(body.name);
-  if (names.empty()) throw InvalidInput({model.name}, "the scene has no body to grasp: give it 'bodies'");
-  if (name.empty()) {
-    if (names.size() == 1) return 0;
-    throw InvalidInput("--body: the scene has " + std::to_string(names.size()) + " bodies, " + names[0] + ", " +
-                       names[1] + (names.size() > 2 ? ", ..." : "") + ": say which one is pulled");
-  }
-  for (std::size_t b = 0; b < names.size(); ++b)
-    if (names[b] == name) return static_cast<Index>(b);
-  throw InvalidInput("--body: the scene has no body " + excerpt(name) + suggest_name(name, names));
-}
-
-Table table_of_pulls() {
-  Table table;
-  table.columns = {{.key = "direction", .title = "pull along", .width = 18, .left = true},
-                   {.key = "force_N", .title = "largest", .unit = "N", .digits = 4},
-                   {.key = "moved_mm", .title = "moved", .unit = "mm", .digits = 3},
-                   {.key = "normal_N", .title = "pressed", .unit = "N", .digits = 4},
-                   {.key = "slipping", .title = "slips", .unit = "-", .digits = 3},
-                   {.key = "end", .title = "then", .left = true}};
-  return table;
-}
-
 class GraspRun {
  public:
-  GraspRun(const Model& model, const Statics& statics, const GraspOptions& options)
-      : model_(model), statics_(statics), options_(options), body_(body_of(model, options.body)) {}
+  GraspRun(const Model& model, const Statics& statics, const GraspOptions& options, Index body)
+      : model_(model), statics_(statics), options_(options), body_(body) {}
 
-  int run(const std::vector<ActuationStep>& closing) {
-    Equilibrium at;
-    at.state = statics_.rest();
-    for (std::size_t i = 0; i < closing.size(); ++i)
-      if (!solved(closing[i].actuation, at, "closing, step " + std::to_string(i))) return failed(at, "closing");
-    const Actuation closed = at.state.actuation;
-    if (!solved(pulled(model_, closed, body_, Vec3::UnitX(), 0), at, "releasing '" + name() + "'"))
-      return failed(at, "'" + name() + "' is not held when it is released");
-    write(at.state);
-    return pull(at.state);
+  int run(const std::vector<Actuation>& closing, const std::vector<PullDirection>& directions) {
+    const Grasp grasp = close_around(model_, statics_, closing, body_, options_.statics(), shown());
+    line_.clear();
+    if (!grasp.held) {
+      std::fprintf(stderr, "softkin: %s\n", grasp.remark.c_str());
+      return not_converged;
+    }
+    write(grasp.last.state);
+    return pull(grasp.last.state, directions);
   }
 
  private:
-  [[nodiscard]] const std::string& name() const { return model_.bodies[static_cast<std::size_t>(body_)].name; }
-
-  ProgressCallback shown(const std::string& what) {
-    return [this, what](const Progress& p) {
-      line_.show(-1, what + ": " + EquilibriumProgress::text(p));
+  GraspProgress shown() {
+    return [this](const std::string& doing, const Progress& p) {
+      line_.show(-1, doing + ": " + EquilibriumProgress::text(p));
       return !interrupted();
     };
   }
 
-  bool solved(const Actuation& actuation, Equilibrium& at, const std::string& what) {
-    at = statics_.solve(actuation, at.state, options_.statics(), shown(what));
-    line_.clear();
-    return at.report.status == Status::converged;
-  }
-
-  int failed(const Equilibrium& at, const std::string& what) const {
-    const bool stopped = at.report.status == Status::interrupted;
-    std::fprintf(stderr, "softkin: %s\n", stopped ? "interrupted" : (what + ": " + at.report.remark).c_str());
-    return not_converged;
-  }
-
   void write(const State& grasp) const {
+    const std::string& name = model_.bodies[static_cast<std::size_t>(body_)].name;
     if (!options_.output.empty())
       runs::write_shape(options_.output, model_, grasp.positions, statics_.measured(grasp), true);
     if (!options_.show.image.empty())
-      runs::write_image(options_.show.image, model_, grasp.positions, options_.show.view, "'" + name() + "', grasped");
+      runs::write_image(options_.show.image, model_, grasp.positions, options_.show.view, "'" + name + "', grasped");
   }
 
-  /// Normal force on the body and the share of it that slips.
-  [[nodiscard]] std::pair<double, std::optional<double>> pressed(const State& at) const {
-    const std::optional<ContactForces> contacts = statics_.measured(at).contacts;
-    double normal = 0, slipping = 0;
-    bool rubs = false;
-    for (const PairForces& pair : contacts ? contacts->pairs : std::vector<PairForces>()) {
-      const auto is_body = [&](Index part) {
-        return model_.contact.parts[static_cast<std::size_t>(part)].name == name();
-      };
-      if (!is_body(pair.a) && !is_body(pair.b)) continue;
-      normal += pair.normal_N;
-      rubs = rubs || pair.slipping;
-      slipping += pair.slipping.value_or(0) * pair.normal_N;
-    }
-    return {normal, rubs && normal > 0 ? std::optional(slipping / normal) : std::nullopt};
-  }
-
-  Row row_of(const std::string& direction, const Pull& pull) const {
-    const auto [normal, slipping] = pressed(pull.last.state);
-    Row row{direction, pull.force_N, pull.moved_mm, normal};
-    row.emplace_back(slipping ? Cell(*slipping) : Cell());
-    const std::string reason = pull.status == Status::limit ? pull.last.report.remark : "";
-    row.emplace_back(pull.status == Status::converged ? "holds more"
-                     : pull.status == Status::limit
-                         ? (reason.find("slips") != std::string::npos ? "slips" : "gives way")
-                         : name_of(pull.status));
-    return row;
-  }
-
-  int pull(const State& grasp) {
-    Table table = table_of_pulls();
+  int pull(const State& grasp, const std::vector<PullDirection>& directions) {
+    Table table = runs::table_of_pulls();
     if (!options_.json) print(table.header() + "\n");
     bool stopped = false, lost = false;
-    const double most = options_.most_N.value_or(most_pull(model_, body_));
-    for (const std::string& text :
-         options_.pulls.empty() ? std::vector<std::string>{"x", "-x", "y", "-y", "z", "-z"} : options_.pulls) {
-      const Pull found = largest_pull(model_, statics_, grasp, body_, direction_of(text), most, options_.statics(),
-                                      shown("pulling along " + text));
+    for (const PullDirection& direction : directions) {
+      const Pull found =
+          largest_pull(model_, statics_, grasp, body_, direction, options_.most_N, options_.statics(), shown());
       line_.clear();
       stopped = found.status == Status::interrupted;
       if (stopped) break;
       lost = lost || found.status == Status::not_converged;
-      table.rows.push_back(row_of(text, found));
+      table.rows.push_back(runs::row_of(found));
       if (!options_.json) print(table.line(table.rows.back()) + "\n");
     }
-    if (!options_.table.empty()) write_file(options_.table, table.csv());
-    if (options_.json) print(table.json() + "\n");
-    if (!options_.json)
-      for (const Output& output : options_.outputs())
-        print(output.option.substr(2) + ": " + output.file.string() + "\n");
+    finish(table);
     if (stopped) std::fprintf(stderr, "softkin: interrupted after %zu pulls\n", table.rows.size());
     return stopped || lost ? not_converged : done;
+  }
+
+  void finish(const Table& table) const {
+    if (!options_.table.empty()) write_file(options_.table, table.csv());
+    if (options_.json) return print(table.json() + "\n");
+    for (const Output& output : options_.outputs()) print(output.option.substr(2) + ": " + output.file.string() + "\n");
   }
 
   const Model& model_;
@@ -207,19 +127,26 @@ class GraspRun {
   ProgressLine line_;
 };
 
+/// How the gripper closes.
+std::vector<Actuation> asked_closing(const Model& model, const GraspOptions& options) {
+  const Settings settings = read_settings(model, "--set", options.settings);
+  if (options.path.empty()) return {with_settings(model.rest_actuation(), settings)};
+  std::vector<Actuation> closing;
+  for (ActuationStep& step : read_actuation_path(model, options.path, settings))
+    closing.push_back(std::move(step.actuation));
+  return closing;
+}
+
 int run_grasp(const GraspOptions& options) {
   check_usage(options);
-  for (const std::string& pull : options.pulls) (void)direction_of(pull);
+  const std::vector<PullDirection> directions = asked_directions(options);
   std::vector<fs::path> inputs{options.scene};
   if (!options.path.empty()) inputs.emplace_back(options.path);
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
-  (void)body_of(model, options.body);
-  const Settings settings = read_settings(model, "--set", options.settings);
-  const std::vector<ActuationStep> closing =
-      options.path.empty() ? std::vector<ActuationStep>{{with_settings(model.rest_actuation(), settings)}}
-                           : read_actuation_path(model, options.path, settings);
+  const Index body = read_body(model, "--body", options.body);
+  const std::vector<Actuation> closing = asked_closing(model, options);
   check_outputs(options.outputs(), inputs);
   line.show(-1, "assembling");
   const Statics statics(model);
@@ -227,7 +154,7 @@ int run_grasp(const GraspOptions& options) {
   catch_interrupt();
   const OutputFolders folders(options.outputs());
   if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
-  return GraspRun(model, statics, options).run(closing);
+  return GraspRun(model, statics, options, body).run(closing, directions);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@ from ._core import ActuatorInfo
 from ._core import version as __version__
 from ._solving import Progress
 from .errors import InvalidInput, NotConverged, SoftkinWarning
+from .grasp import Grasp, Pull
 from .inverse import Answer
 from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
@@ -24,11 +25,13 @@ __all__ = [
     "Contact",
     "Deformation",
     "FollowRun",
+    "Grasp",
     "Hull",
     "InvalidInput",
     "NotConverged",
     "PathRun",
     "Progress",
+    "Pull",
     "Reaction",
     "Robot",
     "SelfOverlap",

@@ -16,6 +16,7 @@ from . import _core, neighbours
 from ._arrays import Floats, Indices, floats, indices, vector
 from ._solving import Command
 from .errors import SoftkinWarning
+from .grasp import Grasp, _Grasps
 from .runs import FollowRun, PathRun
 from .walk import WalkRun, _Walks
 from .workspace import _Workspaces
@@ -102,7 +103,7 @@ def _add_region(mesh: _core.Mesh, sizes: list[int], name: str, value: Any) -> di
     return None
 
 
-class Robot(_Walks, _Workspaces):
+class Robot(_Walks, _Grasps, _Workspaces):
     """A compiled robot; immutable. Every solve stands for itself, so that threads may share it."""
 
     def __init__(
@@ -381,4 +382,4 @@ def _unpickled(state: bytes) -> Robot:
 
 
 # what annotations of the mixins name
-_ = (Command, FollowRun, PathRun, WalkRun)
+_ = (Command, FollowRun, Grasp, PathRun, WalkRun)

@@ -14,6 +14,7 @@ void bind_solve(nanobind::module_& module);
 void bind_inverse(nanobind::module_& module);
 void bind_mesh_files(nanobind::module_& module);
 void bind_runs(nanobind::module_& module);
+void bind_grasp(nanobind::module_& module);
 void bind_workspace(nanobind::module_& module);
 void bind_compare(nanobind::module_& module);
 void bind_calibrate(nanobind::module_& module);

@@ -73,7 +73,7 @@ std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, c
     const SessionPtr with = session ? session : std::make_shared<Session>(robot);
     InverseOptions known = options;
     if (last && last->found.sensitivity.regular) known.start_sensitivity = &last->found.sensitivity;
-    return start ? solve_inverse(robot->model(), with->statics, plain, start->found().state, known, callback)
+    return start ? solve_inverse(robot->model(), with->statics, plain, start->found(), known, callback)
                  : solve_inverse_from(robot->model(), with->statics, plain, begin, known, callback);
   };
   auto answer = std::make_shared<Answer>();

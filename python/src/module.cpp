@@ -23,6 +23,7 @@ NB_MODULE(_core, module) {
   python::bind_inverse(module);
   python::bind_mesh_files(module);
   python::bind_runs(module);
+  python::bind_grasp(module);
   python::bind_workspace(module);
   python::bind_compare(module);
   python::bind_calibrate(module);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/kinematics/grasp.hpp>
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/runs/reports.hpp>
@@ -23,12 +24,17 @@ template <class A>
 void members(A& archive, SolveReport& r) {
   archive(r.status, r.solver, r.iterations, r.factorisations, r.projections, r.shifts, r.continuation_steps, r.reached,
           r.remark, r.energy, r.step_mm, r.tolerance_mm, r.gradient_norm, r.residual_N, r.pull_N, r.unstable_modes,
-          r.buckled, r.buckled_mm, r.snapped_mm, r.snapped_from, r.unstable_from, r.estimated_error_mm, r.history,
-          r.seconds);
+          r.buckled, r.buckled_mm, r.snapped_mm, r.snapped_from, r.friction_change, r.unstable_from,
+          r.estimated_error_mm, r.history, r.seconds);
+}
+template <class A>
+void members(A& archive, Anchor& a) {
+  archive(a.vertex, a.part, a.triangle, a.weights, a.slipped_mm);
 }
 template <class A>
 void members(A& archive, Equilibrium& e) {
-  archive(e.state.positions, e.state.actuation, e.state.multipliers, e.state.share, e.actuation, e.report);
+  archive(e.state.positions, e.state.actuation, e.state.multipliers, e.state.share, e.state.anchors, e.actuation,
+          e.report);
 }
 template <class A>
 void members(A& archive, StaticsOptions& o) {
@@ -75,6 +81,22 @@ void members(A& archive, runs::NamedGoal& g) {
   if (kind == 1 && g.goal.what.index() != 1) g.goal.what = PlaneGoal();
   if (kind == 2 && g.goal.what.index() != 2) g.goal.what = DirectionGoal();
   std::visit([&archive](auto& goal) { archive(goal); }, g.goal.what);
+}
+template <class A>
+void members(A& archive, Pressed& p) {
+  archive(p.normal_N, p.slipping);
+}
+template <class A>
+void members(A& archive, PullDirection& d) {
+  archive(d.name, d.along);
+}
+template <class A>
+void members(A& archive, Pull& p) {
+  archive(p.direction, p.status, p.force_N, p.moved_mm, p.pressed, p.last);
+}
+template <class A>
+void members(A& archive, Grasp& g) {
+  archive(g.held, g.remark, g.last);
 }
 template <class A>
 void members(A& archive, WorkspaceSample& s) {

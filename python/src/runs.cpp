@@ -8,7 +8,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <softkin/io/file.hpp>
-#include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/follow_run.hpp>
@@ -22,6 +21,7 @@
 #include "bindings.hpp"
 #include "convert.hpp"
 #include "solve.hpp"
+#include "steps.hpp"
 #include "watch.hpp"
 
 namespace softkin::python {
@@ -245,12 +245,6 @@ void bind_table(nb::module_& module) {
         return text;
       });
 }
-
-/// Steps that a run goes through, of an array or a file, and what they are called.
-struct NamedSteps {
-  Steps steps;
-  std::string name;
-};
 
 template <class Run>
 nb::class_<Run> bind_runner(nb::module_& module, const char* name, const char* what) {

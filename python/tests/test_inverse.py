@@ -115,6 +115,19 @@ def test_wrong_goals(robot: softkin.Robot, keywords: dict[str, object], message:
         robot.inverse(**keywords)  # type: ignore[arg-type]
 
 
+def test_a_start_that_stays_best_is_told_of(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    """As the solve that found it told of it."""
+    answer = robot.inverse(tip=goal["tip"], start=goal)
+    assert answer.reached and answer.equilibria == 0 and answer.shape.iterations == goal.iterations
+    (told,), (known,) = answer.report["steps"], goal.report["steps"]
+    for key in ("step_mm", "residual_N", "pull_N", "energy"):
+        assert (key in told) == (key in known) and told.get(key) == known.get(key), key
+    assert told["pull_N"] > 0
+    again = robot.session()
+    again.solve(air1=1.4, air2=1.3, air3=1.2)
+    assert again.inverse(tip=goal["tip"]).report["steps"][0]["pull_N"] == pytest.approx(told["pull_N"], rel=1e-6)
+
+
 def test_session(robot: softkin.Robot, goal: softkin.Shape) -> None:
     session = robot.session()
     assert session.robot is robot and session.shape is None

@@ -351,4 +351,35 @@ TEST(FkInterrupt, OfAPathWritesTheLastShape) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(points(corner, axis), last["markers"]["corner"][axis], 1e-9);
 }
 
+TEST(FkPhysical, ResumeRefusesAnotherRobot) {
+  const BlockFolder folder(physical_scene());
+  folder.write("path.csv", "air\n1\n1.1\n");
+  const std::vector<std::string> options{"--path", folder / "path.csv", "--report", folder / "out/a.json",
+                                         "-o",     folder / "out/a.pvd"};
+  EXPECT_EQ(run_fk(folder.scene, options).exit_code, 0);
+  const auto refused = [&](const std::string& scene, const std::vector<std::string>& more, const std::string& why) {
+    folder.write("block.yaml", scene);
+    std::vector<std::string> again = options;
+    again.emplace_back("--resume");
+    again.insert(again.end(), more.begin(), more.end());
+    const ProgramResult result = run_fk(folder.scene, again);
+    EXPECT_EQ(result.exit_code, 2) << why;
+    EXPECT_NE(result.errors.find(why), std::string::npos) << result.errors;
+  };
+  const std::string scene = physical_scene(), other = "it is of another robot";
+  refused(replaced(scene, "youngs_modulus: 1,", "youngs_modulus: 1.1,"), {}, other);
+  refused(replaced(scene, "poisson_ratio: 0.3", "poisson_ratio: 0.31"), {}, other);
+  refused(replaced(scene, "poisson_ratio: 0.3", "poisson_ratio: 0.3, law: corotational"), {}, other);
+  refused(replaced(scene, "poisson_ratio: 0.3", "poisson_ratio: 0.3, density: 1000"), {}, other);
+  refused(replaced(scene, "block.msh", "block.msh, order: 2"), {}, other);
+  refused(replaced(scene, "length, range: [0.5, 1.2]", "tension, range: [0, 1]"), {}, other);
+  refused(replaced(scene, "force: [0, 0, 0]", "force: [0, 0, 1e-6]"), {}, other);
+  refused(scene, {"--force", "payload=0,0,1e-6"}, other);
+  refused(scene, {"--max-iterations", "40"}, "other solver options");
+  folder.write("block.yaml", scene);
+  std::vector<std::string> again = options;
+  again.emplace_back("--resume");
+  EXPECT_EQ(run_fk(folder.scene, again).exit_code, 0);
+}
+
 }  // namespace

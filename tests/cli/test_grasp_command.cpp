@@ -73,12 +73,12 @@ TEST(GraspCommand, WhatIsNotRightIsRefused) {
   const GraspFolder folder(cube_on_floor());
   folder.expect_refused("--pull must be x, -x, y, -y, z, -z or DX,DY,DZ that are not all 0, not 'up'",
                         {"--pull", "up"});
-  folder.expect_refused("--body: the scene has no body 'cub'; did you mean 'cube'?", {"--body", "cub"});
+  folder.expect_refused("--body: there is no body 'cub'; did you mean 'cube'?", {"--body", "cub"});
   folder.expect_refused("must be a force > 0 in N, not 0", {"--most", "0"});
   folder.expect_refused("--table", {"--table", "pulls.txt"});
   folder.expect_refused("no actuator 'cube_hol'; did you mean 'cube_hold'?", {"--set", "cube_hol=0"});
   const GraspFolder two(cube_on_floor("  - {name: ball, sphere: {center: [100, 0, 20], radius: 5}}\n"));
-  two.expect_refused("--body: the scene has 2 bodies, cube, ball: say which one is pulled", {});
+  two.expect_refused("--body: there are 2 bodies, cube, ball: say which one is pulled", {});
 }
 
 }  // namespace

@@ -291,9 +291,8 @@ TEST(Inverse, AWarmTargetCostsTwoOrThreeEquilibria) {
   }
   EXPECT_LE(equilibria, 30);
   // and where it is already, none
-  EXPECT_EQ(
-      solve_inverse(model, statics, at_point(marker_at(model, last.equilibrium)), last.equilibrium.state).equilibria,
-      0);
+  EXPECT_EQ(solve_inverse(model, statics, at_point(marker_at(model, last.equilibrium)), last.equilibrium).equilibria,
+            0);
 }
 
 TEST(Inverse, SensitivityIsThatOfTheAnswer) {

@@ -1,18 +1,64 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/statics.hpp>
+#include <string>
+#include <vector>
 
 namespace softkin {
 
+/// What presses on a body in a shape.
+struct Pressed {
+  double normal_N = 0;               // sum of the magnitudes of all normal forces
+  std::optional<double> slipping{};  // share of it where it slips [-]; none: no friction, or nothing presses
+};
+
+/// body    index into model.bodies
+/// throws  InvalidInput on a body that the model does not have
+[[nodiscard]] Pressed pressed(const Model& model, Index body, const ElementDeformation& shape);
+
+/// Told what is being done ("closing, step 2", "releasing 'cube'", "pulling along x") and how far that is; false stops.
+using GraspProgress = std::function<bool(const std::string& doing, const Progress& progress)>;
+
+/// A gripper that was closed around its bodies and has let go of one.
+struct Grasp {
+  bool held = false;   // is there an equilibrium without what held the body?
+  std::string remark;  // what was not found and why, where not held
+  Equilibrium last;    // the grasp, where held; else as far as it came
+};
+
+/// Closes a gripper with its bodies held, each step from the last, beginning at rest; then releases one of them.
+///
+/// closing  actuations, at least one
+/// body     index into model.bodies
+/// returns  that a step has no equilibrium, or the body falls, is not held
+/// throws   InvalidInput as pulled() and Statics::solve do, and without a step
+[[nodiscard]] Grasp close_around(const Model& model, const Statics& statics, const std::vector<Actuation>& closing,
+                                 Index body, const StaticsOptions& options = {}, const GraspProgress& progress = {});
+
+/// A direction to pull in, and what it is called.
+struct PullDirection {
+  std::string name;  // "x"
+  Vec3 along{0, 0, 0};
+};
+
+/// x, -x, y, -y, z, -z.
+[[nodiscard]] std::vector<PullDirection> axes_to_pull_along();
+
 /// How far a body can be pulled out of what holds it.
 struct Pull {
-  Vec3 direction{0, 0, 0};                // of length 1
+  PullDirection direction;                // of length 1
   Status status = Status::not_converged;  // limit: it was found; converged: more than was asked; interrupted
   double force_N = 0;                     // the largest at which there is an equilibrium
   double moved_mm = 0;                    // the center of mass of the body from where it was without the pull
+  Pressed pressed;                        // the body, at that force
   Equilibrium last;                       // at that force
 };
+
+/// "slips", "gives way" (otherwise than by slipping), "holds more" (than was tried), or the status that it ended by.
+[[nodiscard]] const char* what_then(const Pull& pull);
 
 /// The actuation with a body released and pulled.
 ///
@@ -26,11 +72,11 @@ struct Pull {
 /// from the body's weight, or from what presses on it if that is more, until an equilibrium cannot be followed.
 ///
 /// grasp    an equilibrium that solve() returned, the body free
-/// most_N   > 0: no larger force is tried
+/// most_N   > 0: no larger force is tried; none: most_pull()
 /// throws   InvalidInput as above, on a direction without length, and as Statics::solve does
 [[nodiscard]] Pull largest_pull(const Model& model, const Statics& statics, const State& grasp, Index body,
-                                const Vec3& direction, double most_N, const StaticsOptions& options = {},
-                                const ProgressCallback& progress = {});
+                                const PullDirection& direction, std::optional<double> most_N = {},
+                                const StaticsOptions& options = {}, const GraspProgress& progress = {});
 
 /// Of the commands along the axes, the largest that a body may be pulled with [N].
 [[nodiscard]] double most_pull(const Model& model, Index body);

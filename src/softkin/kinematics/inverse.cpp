@@ -76,9 +76,11 @@ class Inverse {
         options_(options),
         response_(model, statics, goals, options, free_actuators(model, options), progress) {}
 
-  InverseResult solve(const State& start) {
-    Equilibrium first;
-    if (settle(start, first)) {
+  /// known: may the start's report stand for it?
+  InverseResult solve(const Equilibrium& start, bool known) {
+    Equilibrium first = start;
+    if (!known) first.report = {};
+    if (settle(start.state, first)) {
       if (options_.method == InverseMethod::newton) {
         search(std::move(first));
       } else {
@@ -91,11 +93,12 @@ class Inverse {
   }
 
  private:
-  /// The start as an equilibrium; it is taken for one where it says all that solve() says.
+  /// The start as an equilibrium; it is taken for one where it says all that solve() says; where a stable one is asked
+  /// for, only if its report tells that it is.
   bool settle(const State& start, Equilibrium& first) {
     const auto m = static_cast<Index>(model_.actuators.size());
-    const bool known = start.knows(m) && start.multipliers.size() == m && start.share == 1;
-    first.state = start;
+    const bool known = start.knows(m) && start.multipliers.size() == m && start.share == 1 &&
+                       (!options_.statics.stable || (is_told(first) && first.report.unstable_modes == 0));
     first.actuation = start.actuation.size() > 0 ? start.actuation : model_.rest_actuation();
     first.report.status = Status::converged;
     if (known || response_.solve(first.actuation, start, first)) return true;
@@ -242,9 +245,25 @@ class Inverse {
   }
 
   void finish(inverse::Pose pose) {
+    if (!is_told(pose.equilibrium) && !response_.interrupted()) look_at(pose.equilibrium);
     result_.errors_mm = goal_errors(model_, goals_, pose.equilibrium.state.positions);
     result_.equilibrium = std::move(pose.equilibrium);
     result_.equilibrium.actuation = result_.equilibrium.state.actuation;
+  }
+
+  /// Has it a report, or was it taken for an equilibrium as it is?
+  static bool is_told(const Equilibrium& equilibrium) { return !equilibrium.report.solver.empty(); }
+
+  /// Measures a start of which nothing is told.
+  void look_at(Equilibrium& start) {
+    Equilibrium found;
+    if (response_.solve(start.state.actuation, start.state, found)) {
+      start = std::move(found);
+      return;
+    }
+    start.report = found.report;
+    result_.status = response_.interrupted() ? InverseStatus::interrupted : InverseStatus::not_converged;
+    result_.remark = response_.interrupted() ? "interrupted" : "the start has no equilibrium: " + found.report.remark;
   }
 
   const Model& model_;
@@ -284,10 +303,16 @@ const char* name_of(InverseStatus status) {
 
 InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
                             const State& start, const InverseOptions& options, const ProgressCallback& progress) {
+  return solve_inverse(model, statics, goals, Equilibrium{start, {}, {}}, options, progress);
+}
+
+InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
+                            const Equilibrium& start, const InverseOptions& options, const ProgressCallback& progress) {
   const auto begin = std::chrono::steady_clock::now();
   check_goals(model, goals);
-  check_options(model, start, options);
-  InverseResult result = Inverse(model, statics, goals, options, progress).solve(start);
+  check_options(model, start.state, options);
+  const bool known = start.report.status == Status::converged;
+  InverseResult result = Inverse(model, statics, goals, options, progress).solve(start, known);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
@@ -316,8 +341,7 @@ InverseResult solve_inverse_from(const Model& model, const Statics& statics, con
     return result;
   }
   const double error = goal_errors(model, goals, first.state.positions).maxCoeff();
-  result = solve_inverse(model, statics, goals, first.state, options, progress);
-  if (result.equilibrium.state.positions == first.state.positions) result.equilibrium.report = first.report;
+  result = solve_inverse(model, statics, goals, first, options, progress);
   result.history.insert(result.history.begin(), {first.actuation, first.report.status, error, first.report.iterations});
   ++result.equilibria;
   result.seconds = seconds();

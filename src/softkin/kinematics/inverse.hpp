@@ -57,7 +57,8 @@ struct InverseResult {
 
 /// Actuation at which the goals are met, or met as nearly as the ranges allow.
 ///
-/// start     an equilibrium: State with its actuation, inside the ranges; statics.rest() with empty actuation will do
+/// start     an equilibrium: State with its actuation, inside the ranges; statics.rest() with empty actuation will do.
+///           Where it stays the best one it is solved for, so that the report tells of it
 /// progress  iteration: equilibria so far; step_mm: the least error so far, of the farthest goal [mm]
 /// returns   not reaching a goal is a status; commands never leave their ranges, not during the search either. A cable
 ///           that ends slack stays as long as it was preferred where its path allows
@@ -69,6 +70,12 @@ struct InverseResult {
 ///           preferred actuation or a start outside the ranges
 [[nodiscard]] InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
                                           const State& start, const InverseOptions& options = {},
+                                          const ProgressCallback& progress = {});
+
+/// The same from what solve() returned, which need not be solved for again: where it stays the best one its report is
+/// that of the result.
+[[nodiscard]] InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
+                                          const Equilibrium& start, const InverseOptions& options = {},
                                           const ProgressCallback& progress = {});
 
 /// The same from an actuation, whose equilibrium is found first, from rest; it is the first of the history. Where it

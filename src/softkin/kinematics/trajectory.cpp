@@ -156,7 +156,7 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
   InverseResult spent;
   spent.status = InverseStatus::interrupted;
   if (next_ == 0 && options_.start.size() > 0 && !first(spent, progress)) return spent;
-  State from = state_;
+  Equilibrium from{state_, {}, {}};
   bool moved = false;
   if (const std::optional<Actuation> guess = predicted(goals)) {
     Equilibrium there = statics_.solve(*guess, state_, options_.inverse.statics, told(progress));
@@ -164,7 +164,7 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
     spent.seconds += there.report.seconds;
     if (there.report.status == Status::interrupted) return spent;
     moved = there.report.status == Status::converged;
-    if (moved) from = std::move(there.state);
+    if (moved) from = std::move(there);
   }
   InverseOptions inverse = options_.inverse;
   if (next_ > 0) inverse.other_starts = 0;

@@ -257,4 +257,22 @@ Row row_of(const Model& model, const WalkRecord& record) {
   return row;
 }
 
+Table table_of_pulls() {
+  Table table;
+  table.columns = {{.key = "direction", .title = "pull along", .width = 18, .left = true},
+                   {.key = "force_N", .title = "largest", .unit = "N", .digits = 4},
+                   {.key = "moved_mm", .title = "moved", .unit = "mm", .digits = 3},
+                   {.key = "normal_N", .title = "pressed", .unit = "N", .digits = 4},
+                   {.key = "slipping", .title = "slips", .unit = "-", .digits = 3},
+                   {.key = "end", .title = "then", .left = true}};
+  return table;
+}
+
+Row row_of(const Pull& pull) {
+  Row row{pull.direction.name, pull.force_N, pull.moved_mm, pull.pressed.normal_N};
+  row.emplace_back(pull.pressed.slipping ? Cell(*pull.pressed.slipping) : Cell());
+  row.emplace_back(what_then(pull));
+  return row;
+}
+
 }  // namespace softkin::runs

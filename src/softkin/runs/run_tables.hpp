@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/io/table/table.hpp>
+#include <softkin/kinematics/grasp.hpp>
 #include <softkin/runs/records.hpp>
 
 namespace softkin::runs {
@@ -28,5 +29,8 @@ namespace softkin::runs {
 
 [[nodiscard]] Table table_of_walk(const Model& model);
 [[nodiscard]] Row row_of(const Model& model, const WalkRecord& record);
+
+[[nodiscard]] Table table_of_pulls();
+[[nodiscard]] Row row_of(const Pull& pull);
 
 }  // namespace softkin::runs

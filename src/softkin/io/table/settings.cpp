@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/plain_text.hpp>
@@ -169,6 +170,31 @@ Actuation with_settings(Actuation actuation, const Settings& settings) {
   for (std::size_t a = 0; a < settings.size(); ++a)
     if (settings[a]) actuation[static_cast<Index>(a)] = *settings[a];
   return actuation;
+}
+
+Index read_body(const Model& model, const std::string& option, const std::string& name) {
+  std::vector<std::string> names;
+  for (const FreeBody& body : model.bodies) names.push_back(body.name);
+  if (names.empty()) throw InvalidInput({model.name}, "there is no body to grasp: give it 'bodies'");
+  if (name.empty() && names.size() > 1)
+    throw InvalidInput(option + ": there are " + std::to_string(names.size()) + " bodies, " + names[0] + ", " +
+                       names[1] + (names.size() > 2 ? ", ..." : "") + ": say which one is pulled");
+  for (std::size_t b = 0; b < names.size(); ++b)
+    if (name.empty() || names[b] == name) return static_cast<Index>(b);
+  throw InvalidInput(option + ": there is no body " + excerpt(name) + suggest_name(name, names));
+}
+
+Vec3 read_direction(const std::string& option, const std::string& text) {
+  const bool minus = text.starts_with('-');
+  const std::string axis = text.substr(minus ? 1 : 0);
+  const std::size_t named = axis.size() == 1 ? std::string("xyz").find(axis) : std::string::npos;
+  if (named != std::string::npos) return (minus ? -1 : 1) * Vec3::Unit(static_cast<Index>(named));
+  Vec3 direction;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &direction[0], &direction[1], &direction[2], &rest) != 3 ||
+      !direction.allFinite() || direction.norm() == 0)
+    throw InvalidInput(option + " must be x, -x, y, -y, z, -z or DX,DY,DZ that are not all 0, not " + excerpt(text));
+  return direction.normalized();
 }
 
 }  // namespace softkin

@@ -43,6 +43,13 @@ using Settings = std::vector<std::optional<double>>;
 /// The actuation with what the settings change in it.
 [[nodiscard]] Actuation with_settings(Actuation actuation, const Settings& settings);
 
+/// The place in model.bodies of the body that the option of that name names; empty: the only one. Throws InvalidInput
+/// naming the option.
+[[nodiscard]] Index read_body(const Model& model, const std::string& option, const std::string& name);
+
+/// A direction, "-x" or "1,0,-1", of the option of that name; of length 1. Throws InvalidInput naming it.
+[[nodiscard]] Vec3 read_direction(const std::string& option, const std::string& text);
+
 /// "no actuator 'ari'; did you mean 'air'?"
 [[nodiscard]] std::string unknown_actuator(const Model& model, const std::string& name);
 

@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include <softkin/kinematics/inverse.hpp>
+#include <softkin/kinematics/trajectory.hpp>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin {
+namespace {
+
+using namespace testing;
+
+/// A beam with three chambers, settled where they are a bit filled.
+struct SettledBeam {
+  Model model;
+  Statics statics;
+  Equilibrium start;
+
+  SettledBeam()
+      : model(compile(beam_to_settle())),
+        statics(model),
+        start(statics.solve(values({1.2, 1.3, 1.4}), statics.rest())) {}
+
+  static RobotSpec beam_to_settle() {
+    RobotSpec spec = chambers_beam(3);
+    for (ActuatorSpec& actuator : spec.actuators) {
+      actuator.low = 1;
+      actuator.high = 1.6;
+    }
+    return spec;
+  }
+  [[nodiscard]] std::vector<Goal> tip_at(const Vec3& target) const { return {{PositionGoal{0, target}}}; }
+  [[nodiscard]] Vec3 tip() const { return marker_at(model, start); }
+};
+
+/// What solve() tells of an equilibrium: the same as of one that is solved for where it is.
+void expect_told(const SettledBeam& beam, const InverseResult& result) {
+  const Equilibrium again =
+      beam.statics.solve(beam.start.actuation, beam.start.state, StaticsOptions{.keep_history = false});
+  const SolveReport &told = result.equilibrium.report, &known = again.report;
+  EXPECT_EQ(told.status, Status::converged);
+  EXPECT_EQ(told.solver, "newton");
+  EXPECT_EQ(told.tolerance_mm, known.tolerance_mm);
+  EXPECT_GT(told.step_mm, 0);
+  EXPECT_LE(told.step_mm, told.tolerance_mm);
+  EXPECT_NEAR(told.pull_N, known.pull_N, 1e-6 * known.pull_N);
+  EXPECT_LE(told.residual_N, 1e-6 * told.pull_N);
+  EXPECT_NEAR(told.energy, known.energy, 1e-9 * known.energy);
+  EXPECT_EQ(result.equilibrium.actuation, beam.start.actuation);
+  EXPECT_LT(distance(result.equilibrium.state.positions, beam.start.state.positions), 1e-5);
+}
+
+TEST(InverseStart, ThatStaysBestIsMeasured) {
+  const SettledBeam beam;
+  const InverseResult reached = solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip()), beam.start.state);
+  EXPECT_EQ(reached.status, InverseStatus::reached);
+  EXPECT_EQ(reached.equilibria, 1);
+  expect_told(beam, reached);
+  InverseOptions options;
+  options.free = {false, false, false};
+  const InverseResult missed =
+      solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip() + Vec3(0, 0, 1)), beam.start.state, options);
+  EXPECT_EQ(missed.status, InverseStatus::unreachable);
+  EXPECT_NEAR(missed.errors_mm[0], 1, 1e-5);
+  expect_told(beam, missed);
+}
+
+TEST(InverseStart, WithAReportKeepsIt) {
+  const SettledBeam beam;
+  const InverseResult result = solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip()), beam.start);
+  EXPECT_EQ(result.status, InverseStatus::reached);
+  EXPECT_EQ(result.equilibria, 0);
+  EXPECT_EQ(result.equilibrium.report.iterations, beam.start.report.iterations);
+  EXPECT_EQ(result.equilibrium.report.residual_N, beam.start.report.residual_N);
+  EXPECT_EQ(result.equilibrium.state.positions, beam.start.state.positions);
+  expect_told(beam, result);
+}
+
+TEST(InverseStart, OfASolveThatDidNotConvergeIsMeasured) {
+  const SettledBeam beam;
+  Equilibrium lost = beam.start;
+  lost.report.status = Status::limit;  // farther on; its state is an equilibrium
+  lost.report.pull_N = 0;
+  const InverseResult result = solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip()), lost);
+  EXPECT_EQ(result.equilibria, 1);
+  expect_told(beam, result);
+}
+
+/// A waypoint to which the prediction leads needs no search, and is told of all the same.
+TEST(InverseStart, OfAWaypointIsThatOfItsPrediction) {
+  const SettledBeam beam;
+  MarkerPath path{{0}, {{true, true, true}}, {}};
+  for (int i = 0; i < 6; ++i) {
+    const Actuation actuation = values({1.2, 1.3, 1.4}) + 0.002 * i * values({1, -1, 0.5});
+    Waypoint waypoint;
+    waypoint.targets = {marker_at(beam.model, settled(beam.statics, actuation))};
+    path.waypoints.push_back(waypoint);
+  }
+  for (const InverseResult& each : follow_path(beam.model, beam.statics, path)) {
+    EXPECT_EQ(each.status, InverseStatus::reached);
+    EXPECT_EQ(each.equilibrium.report.solver, "newton");
+    EXPECT_GT(each.equilibrium.report.pull_N, 0);
+    EXPECT_GT(each.equilibrium.report.tolerance_mm, 0);
+  }
+}
+
+}  // namespace
+}  // namespace softkin
