@@ -105,7 +105,8 @@ class KinematicMap {
   /// returns   nothing where the commands are outside the map
   std::optional<Place> evaluate(const double* commands, double* values, double* slopes = nullptr) const;
 
-  /// The same while certain cables are taut, whether they pull or push; nothing where the map has no such piece or cell.
+  /// The same while certain cables are taut, whether they pull or push; nothing where the map has no such piece
+  /// or cell.
   ///
   /// taut  per cable
   std::optional<Place> evaluate_taut(const std::vector<bool>& taut, const double* commands, double* values,

@@ -2,6 +2,7 @@
 #include <array>
 #include <queue>
 #include <set>
+#include <softkin/core/error.hpp>
 #include <softkin/kinematics/maps/polynomials.hpp>
 #include <utility>
 
@@ -90,8 +91,17 @@ void evaluate_terms(const Terms& terms, const Eigen::VectorXd& x, Eigen::VectorX
 
 Polynomials::Polynomials(Terms terms, RowMatrix coefficients)
     : terms_(std::move(terms)), coefficients_(std::move(coefficients)), highest_(highest_degrees(terms_)) {
+  const Index last = variables() - 1;
+  const bool fits = variables() <= most_variables && coefficients_.rows() == terms_.rows() &&
+                    std::all_of(highest_.begin(), highest_.end(), [](int degree) { return degree <= highest_degree; });
+  if (!fits) throw InvalidInput("sums of polynomials have too many variables or degrees, or other coefficients");
   for (Index t = 0; t < terms_.rows(); ++t) {
-    if (variables() == 0 || terms_(t, variables() - 1) == 0) runs_.push_back({t, 0});
+    if (last < 0 || terms_(t, last) == 0) {
+      runs_.push_back({t, 0});
+    } else if (t == 0 || terms_(t, last) != terms_(t - 1, last) + 1 ||
+               terms_.row(t).head(last) != terms_.row(t - 1).head(last)) {
+      throw InvalidInput("terms are not in the order of their degrees");
+    }
     ++runs_.back().count;
   }
 }

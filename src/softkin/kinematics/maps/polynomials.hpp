@@ -31,6 +31,7 @@ class Polynomials {
   Polynomials() = default;
   /// terms         sorted as those of least_terms()
   /// coefficients  #terms by p
+  /// throws        InvalidInput on terms in another order or beyond the limits above
   Polynomials(Terms terms, RowMatrix coefficients);
 
   [[nodiscard]] Index variables() const { return terms_.cols(); }
