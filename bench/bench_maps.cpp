@@ -147,10 +147,12 @@ int economy(const Options& options) {
     grid.x.push_back(tendons), grid.y.push_back(full);
   }
   if (!options.plot.empty()) {
-    PlotPanel panel{"Equilibria for " + std::to_string(options.accuracy) + " mm",
-                    {"tendons", {}, {}, true},
-                    {"equilibria"},
-                    {made, grid}};
+    PlotPanel panel;
+    panel.title = "Equilibria for " + std::to_string(options.accuracy) + " mm";
+    panel.x.label = "tendons";
+    panel.x.whole = true;
+    panel.y.label = "equilibria";
+    panel.series = {made, grid};
     panel.y.logarithmic = true;
     write_svg(options.plot, {"Kinematic maps of an arm", {{panel}}});
   }
