@@ -134,7 +134,8 @@ struct TwoCables {
 
 /// A chamber and two cables, the second of which may be tied at a length; with a shape of 5 vertices and 3 modes.
 inline MapData cable_map(bool tied = false) {
-  MapData data = outline("finger \"map_1\" */ \xc3\xbc", {{"air", "", 0, 0, 2}, {"tendon1", "", 1, 0.6, 1.1}});
+  MapData data =
+      outline(tied ? "tied" : "finger \"map_1\" */ \xc3\xbc", {{"air", "", 0, 0, 2}, {"tendon1", "", 1, 0.6, 1.1}});
   if (!tied) data.inputs.push_back({"tendon2", "", 2, 0.5, 1.2});
   data.actuation = Eigen::Vector3d(1, 1, 0.9);
   data.outputs.insert(data.outputs.end(), {{"tendon1_tension", "N", 0.1},

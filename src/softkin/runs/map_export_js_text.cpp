@@ -88,7 +88,8 @@ function wrongCable(taut, commands, values) {
 }
 
 function find(commands, values, slopes) {
-  if (commands.length !== inputs.length) throw new TypeError(`the map takes ${inputs.length} commands`);
+  if (commands.length !== inputs.length || !inputs.every((_, i) => typeof commands[i] === 'number'))
+    throw new TypeError(`the map takes ${inputs.length} numbers`);
   if (!inputs.every(({low, high}, i) => commands[i] >= low && commands[i] <= high)) return null;
   let taut = (1 << tables.cables.length) - 1;
   for (let change = 0; change <= 4 * tables.cables.length; ++change) {
