@@ -78,7 +78,7 @@ TEST(MapFile, SurvivesAnyByteOfTheHeader) {
   const std::string bytes = map_bytes(a_map());
   const std::size_t end = bytes.find('\n');
   int refused = 0;
-  for (std::size_t at = 0; at < end; at += 3)
+  for (std::size_t at = 0; at < end; ++at)
     for (const char other : {'0', '9', '-', '}'}) {
       std::string changed = bytes;
       changed[at] = other;

@@ -53,6 +53,9 @@ class ArrayReader {
     const auto rows = told.at("shape").at(0).get<std::size_t>(), columns = told.at("shape").at(1).get<std::size_t>();
     const bool fits = at <= bytes_.size() && (columns == 0 || rows <= (bytes_.size() - at) / sizeof(Scalar) / columns);
     if (!fits) throw InvalidInput("it is cut off");
+    const int fixed = Matrix::RowsAtCompileTime;
+    if (fixed != Eigen::Dynamic && rows != static_cast<std::size_t>(fixed))
+      throw InvalidInput("an array has another shape");
     Matrix matrix(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     const char* next = bytes_.data() + at;
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
