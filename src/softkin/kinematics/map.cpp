@@ -40,6 +40,18 @@ void check_tree(const MapPiece& piece) {
   }
 }
 
+using Scaled = std::array<double, maps::most_variables>;
+
+/// Commands of a piece over the box of a cell, from -1 to 1.
+Scaled scaled(const MapPiece& piece, const MapCell& cell, const double* commands) {
+  Scaled x{};
+  for (std::size_t j = 0; j < piece.inputs.size(); ++j) {
+    const auto at = static_cast<Index>(j);
+    x[j] = (2 * commands[piece.inputs[j]] - cell.low[at] - cell.high[at]) / (cell.high[at] - cell.low[at]);
+  }
+  return x;
+}
+
 }  // namespace
 
 KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
@@ -81,12 +93,8 @@ Index KinematicMap::cell_of(const MapPiece& piece, const double* commands) const
 
 void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const double* commands, double* values,
                             double* slopes) const {
-  std::array<double, maps::most_variables> x{};
+  const Scaled x = scaled(piece, cell, commands);
   const std::size_t variables = piece.inputs.size();
-  for (std::size_t j = 0; j < variables; ++j) {
-    const auto at = static_cast<Index>(j);
-    x[j] = (2 * commands[piece.inputs[j]] - cell.low[at] - cell.high[at]) / (cell.high[at] - cell.low[at]);
-  }
   if (!slopes) return cell.outputs.evaluate(x.data(), values);
   // the piece's rows first, then to where they belong, from the last on: inputs ascend
   const Index size = outputs();
@@ -175,11 +183,8 @@ Points KinematicMap::shape(const double* commands, const Place& place) const {
   const MapShape& shape = *data_.shape;
   const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
   const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
-  Eigen::VectorXd x(static_cast<Index>(piece.inputs.size())), amplitudes(shape.modes.cols());
-  for (Index j = 0; j < x.size(); ++j)
-    x[j] = (2 * commands[piece.inputs[static_cast<std::size_t>(j)]] - cell.low[j] - cell.high[j]) /
-           (cell.high[j] - cell.low[j]);
-  cell.modes.evaluate(x.data(), amplitudes.data());
+  Eigen::VectorXd amplitudes(shape.modes.cols());
+  cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data());
   Eigen::VectorXf at = shape.mean;
   for (Index m = 0; m < amplitudes.size(); ++m)
     at += static_cast<float>(shape.units[m] * amplitudes[m]) * shape.modes.col(m).cast<float>();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <softkin/kinematics/map_robot.hpp>
 #include <utility>
 
