@@ -5,7 +5,6 @@
 #include <softkin/kinematics/map_build.hpp>
 #include <softkin/runs/map_file.hpp>
 #include <softkin/runs/map_journal.hpp>
-#include <thread>
 
 #include "command.hpp"
 #include "run_text.hpp"
@@ -29,8 +28,7 @@ struct MapAsked : SolveOptions, RunOptions {
 MapOptions map_options(const MapAsked& asked) {
   MapOptions options = asked.map;
   options.statics = asked.statics();
-  options.threads =
-      asked.threads > 0 ? asked.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  options.threads = thread_count(asked.threads);
   return options;
 }
 

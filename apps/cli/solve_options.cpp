@@ -1,8 +1,10 @@
 #include "solve_options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/io/scanner.hpp>
+#include <thread>
 
 namespace softkin::cli {
 
@@ -12,6 +14,10 @@ constexpr int most_threads = 512;
 constexpr int most_iterations = 1'000'000'000;
 
 }  // namespace
+
+int thread_count(int asked) {
+  return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
 
 CLI::Validator integer_from(std::int64_t low, std::int64_t high) {
   const auto check = [low, high](const std::string& text) -> std::string {

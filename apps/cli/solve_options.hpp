@@ -68,6 +68,9 @@ void check_solver(const SolveOptions& options);
 [[nodiscard]] RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
 [[nodiscard]] Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
 
+/// Of those that work side by side, each on a piece of its own; 0: as many as the machine has.
+[[nodiscard]] int thread_count(int asked);
+
 // What CLI11 says of a number in words of its own.
 [[nodiscard]] CLI::Validator integer_from(std::int64_t low, std::int64_t high);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);

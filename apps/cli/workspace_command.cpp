@@ -4,7 +4,6 @@
 #include <softkin/core/text.hpp>
 #include <softkin/runs/ranks.hpp>
 #include <softkin/runs/workspace_file.hpp>
-#include <thread>
 
 #include "command.hpp"
 #include "run_text.hpp"
@@ -133,10 +132,6 @@ struct Asked {
     head = runs::workspace_head(model, sampling, options.statics());
   }
 };
-
-int thread_count(int asked) {
-  return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
 
 class WorkspaceRun {
  public:

@@ -40,6 +40,18 @@ void check_tree(const MapPiece& piece) {
   }
 }
 
+using Scaled = std::array<double, maps::most_variables>;
+
+/// Commands of a piece over the box of a cell, from -1 to 1.
+Scaled scaled(const MapPiece& piece, const MapCell& cell, const double* commands) {
+  Scaled x{};
+  for (std::size_t j = 0; j < piece.inputs.size(); ++j) {
+    const auto at = static_cast<Index>(j);
+    x[j] = (2 * commands[piece.inputs[j]] - cell.low[at] - cell.high[at]) / (cell.high[at] - cell.low[at]);
+  }
+  return x;
+}
+
 }  // namespace
 
 KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
@@ -81,12 +93,8 @@ Index KinematicMap::cell_of(const MapPiece& piece, const double* commands) const
 
 void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const double* commands, double* values,
                             double* slopes) const {
-  std::array<double, maps::most_variables> x{};
+  const Scaled x = scaled(piece, cell, commands);
   const std::size_t variables = piece.inputs.size();
-  for (std::size_t j = 0; j < variables; ++j) {
-    const auto at = static_cast<Index>(j);
-    x[j] = (2 * commands[piece.inputs[j]] - cell.low[at] - cell.high[at]) / (cell.high[at] - cell.low[at]);
-  }
   if (!slopes) return cell.outputs.evaluate(x.data(), values);
   // the piece's rows first, then to where they belong, from the last on: inputs ascend
   const Index size = outputs();
@@ -172,15 +180,6 @@ std::optional<std::vector<bool>> KinematicMap::missing_piece(const double* comma
 
 namespace {
 
-/// Commands of a piece over the box of a cell, from -1 to 1.
-Eigen::VectorXd scaled_commands(const MapPiece& piece, const MapCell& cell, const double* commands) {
-  Eigen::VectorXd x(static_cast<Index>(piece.inputs.size()));
-  for (Index j = 0; j < x.size(); ++j)
-    x[j] = (2 * commands[piece.inputs[static_cast<std::size_t>(j)]] - cell.low[j] - cell.high[j]) /
-           (cell.high[j] - cell.low[j]);
-  return x;
-}
-
 Points rows_of(const Eigen::VectorXf& values) {
   return Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(values.data(), values.size() / 3, 3)
       .cast<double>();
@@ -201,7 +200,7 @@ Points KinematicMap::shape(const double* commands, const Place& place) const {
   const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
   const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
   Eigen::VectorXd amplitudes(data_.shape->units.size());
-  cell.modes.evaluate(scaled_commands(piece, cell, commands).data(), amplitudes.data());
+  cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data());
   return rows_of(data_.shape->mean) + sum_of_modes(amplitudes);
 }
 
@@ -211,7 +210,7 @@ std::vector<Points> KinematicMap::shape_slopes(const double* commands, const Pla
   const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
   Eigen::VectorXd amplitudes(data_.shape->units.size());
   maps::RowMatrix slopes(static_cast<Index>(piece.inputs.size()), amplitudes.size());
-  cell.modes.evaluate(scaled_commands(piece, cell, commands).data(), amplitudes.data(), slopes.data());
+  cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data(), slopes.data());
   std::vector<Points> all(data_.inputs.size(), Points::Zero(data_.shape->mean.size() / 3, 3));
   for (Index j = 0; j < static_cast<Index>(slopes.rows()); ++j)
     all[static_cast<std::size_t>(piece.inputs[static_cast<std::size_t>(j)])] =

@@ -194,6 +194,13 @@ class Builder {
     return sample.commands == commands ? std::optional(sample) : std::nullopt;
   }
 
+  /// What the desk has of it.
+  [[nodiscard]] std::optional<Sample> known(Index key, Index number, const Eigen::VectorXd& commands) {
+    if (!desk_) return std::nullopt;
+    const std::lock_guard lock(mutex_);
+    return desk_->known(key, number, commands);
+  }
+
   /// Every equilibrium is a function of those before this call, its commands and nothing else.
   bool solve(Piece& piece, const maps::RowMatrix& commands, std::vector<Sample>& found) {
     const Index key = maps::bits_of(piece.made.taut);
@@ -203,15 +210,12 @@ class Builder {
     const bool done = together(static_cast<Index>(commands.rows()), [&](Index i) {
       const Eigen::VectorXd at = commands.row(i);
       std::optional<Sample> sample = from_earlier(piece.made.taut, before + i, at);
-      if (!sample && desk_) {
-        const std::lock_guard lock(mutex_);
-        sample = desk_->known(key, before + i, at);
-      }
-      const bool known = sample.has_value();
-      if (!known) sample = piece.solver->solve(at, piece.fit->nearest(at), options_.statics, patient());
+      if (!sample) sample = known(key, before + i, at);
+      const bool is_known = sample.has_value();
+      if (!is_known) sample = piece.solver->solve(at, piece.fit->nearest(at), options_.statics, patient());
       if (!sample) return false;
       const std::lock_guard lock(mutex_);
-      if (!known && desk_) desk_->keep(key, before + i, *sample);
+      if (!is_known && desk_) desk_->keep(key, before + i, *sample);
       found[static_cast<std::size_t>(i)] = std::move(*sample);
       ++told_.equilibria;
       return !progress_ || progress_(told_);
@@ -273,12 +277,8 @@ class Builder {
     Eigen::VectorXd values(map.outputs());
     const auto place = map.evaluate(commands.data(), values.data());
     check.refused = !place;
-    std::optional<Sample> sample;
     const Index key = -1 - round;
-    if (desk_) {
-      const std::lock_guard lock(mutex_);
-      sample = desk_->known(key, number, commands);
-    }
+    std::optional<Sample> sample = known(key, number, commands);
     if (!sample) {
       sample = solve_robot(commands, place);
       if (!sample) return false;

@@ -58,28 +58,28 @@ class Unpacker {
   std::size_t at_ = 0;
 };
 
+/// What a record holds, in its order.
+template <class Sample, class Visit>
+void visit_arrays(Sample& sample, const Visit& visit) {
+  visit(sample.commands);
+  visit(sample.values);
+  visit(sample.slopes);
+  visit(sample.moves);
+  visit(sample.state.positions);
+  visit(sample.state.actuation);
+  visit(sample.state.multipliers);
+}
+
 std::string packed_sample(const maps::Sample& sample) {
   Packer packer;
-  packer.add(sample.commands);
-  packer.add(sample.values);
-  packer.add(sample.slopes);
-  packer.add(sample.moves);
-  packer.add(sample.state.positions);
-  packer.add(sample.state.actuation);
-  packer.add(sample.state.multipliers);
+  visit_arrays(sample, [&](const auto& array) { packer.add(array); });
   return packer.bytes();
 }
 
 maps::Sample unpacked_sample(std::string bytes) {
   Unpacker unpacker(std::move(bytes));
   maps::Sample sample;
-  unpacker.take(sample.commands);
-  unpacker.take(sample.values);
-  unpacker.take(sample.slopes);
-  unpacker.take(sample.moves);
-  unpacker.take(sample.state.positions);
-  unpacker.take(sample.state.actuation);
-  unpacker.take(sample.state.multipliers);
+  visit_arrays(sample, [&](auto& array) { unpacker.take(array); });
   return sample;
 }
 
