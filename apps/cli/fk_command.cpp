@@ -10,6 +10,7 @@
 #include <softkin/runs/shape_files.hpp>
 
 #include "command.hpp"
+#include "map_use.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
@@ -22,7 +23,7 @@ using runs::StepRecord;
 namespace {
 
 /// What the user asks of `softkin fk`. An empty file name: not given.
-struct FkOptions : SolveOptions, RunOptions {
+struct FkOptions : SolveOptions, RunOptions, MapUse {
   std::string path;
   std::string output, report;
   ShowOptions show;
@@ -55,6 +56,7 @@ void add_options(CLI::App& command, FkOptions& options) {
                "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
                "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
                "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest");
+  add_map_use(command, options);
   add_force(command, options);
   add_view(command, options.show);
   add_solver(command, options);
@@ -207,6 +209,7 @@ int run_fk(const FkOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.scene};
   if (!options.path.empty()) inputs.emplace_back(options.path);
+  check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
@@ -214,13 +217,14 @@ int run_fk(const FkOptions& options) {
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
   line.show(-1, "assembling");
-  const Statics statics(model);
+  const Answers answers(model, options);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
   if (!options.json)
-    print(options.scene + ": " + summary(model, options.solver_name) + "\n" + curve_remarks(model, options.settings));
-  return FkRun(model, statics, options, steps).run();
+    print(options.scene + ": " + summary(model, options.solver_name) + "\n" + curve_remarks(model, options.settings) +
+          answers.remark());
+  return FkRun(model, answers.statics(), options, steps).run();
 }
 
 }  // namespace

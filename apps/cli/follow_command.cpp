@@ -10,6 +10,7 @@
 #include <softkin/runs/workspace_file.hpp>
 
 #include "command.hpp"
+#include "map_use.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
@@ -22,7 +23,7 @@ using runs::WaypointRecord;
 namespace {
 
 /// What the user asks of `softkin follow`. An empty file name: not given.
-struct FollowOptions : SolveOptions, MethodOptions, RunOptions {
+struct FollowOptions : SolveOptions, MethodOptions, RunOptions, MapUse {
   std::string path, folder, marker, workspace, plot_file;
   double max_step_mm = 0;  // 0: as given
 
@@ -69,6 +70,7 @@ void add_options(CLI::App& command, FollowOptions& options) {
   add_value(command, "--workspace", options.workspace, "F.csv",
             "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)");
   add_value(command, "--plot", options.plot_file, "F.svg", "The plot, instead of path.svg in the folder");
+  add_map_use(command, options);
   add_force(command, options);
   add_solver(command, options);
   add_run(command, options, "Go on where the same command was interrupted", "Print the report instead of the table");
@@ -184,6 +186,7 @@ int run_follow(const FollowOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.scene, options.path};
   if (!options.workspace.empty()) inputs.emplace_back(options.workspace);
+  check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
@@ -196,14 +199,15 @@ int run_follow(const FollowOptions& options) {
   if (!options.workspace.empty())
     trajectory.start = runs::nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
   line.show(-1, "assembling");
-  const Statics statics(model);
+  const Answers answers(model, options);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
-  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
-  runs::FollowRun follow(model, statics, {options.scene, options.path, std::move(path)}, trajectory, options.files());
+  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n" + answers.remark());
+  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path)}, trajectory,
+                         options.files());
   return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow).show();
 }
 

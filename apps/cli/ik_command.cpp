@@ -129,23 +129,24 @@ int run_ik(const IkOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.scene};
   if (!options.workspace.empty()) inputs.emplace_back(options.workspace);
+  check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
   const Search search = asked_search(model, options);
   check_outputs(options.outputs(), inputs);
   line.show(-1, "assembling");
-  const Statics statics(model);
+  const Answers answers(model, options);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(options.outputs());
   for (const std::string& doubt : doubts_about(model, search.goals))
     std::fprintf(stderr, "softkin: warning: %s\n", doubt.c_str());
   if (!options.json) {
-    print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+    print(options.scene + ": " + summary(model, options.solver_name) + "\n" + answers.remark());
     for (const auto* settings : {&options.start, &options.prefer, &options.fix}) print(curve_remarks(model, *settings));
   }
-  return IkRun(model, statics, options, search).run();
+  return IkRun(model, answers.statics(), options, search).run();
 }
 
 }  // namespace

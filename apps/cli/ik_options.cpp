@@ -210,6 +210,7 @@ void add_options(CLI::App& command, IkOptions& options) {
   add_start(command, options);
   add_search(command, options);
   add_files(command, options);
+  add_map_use(command, options);
   add_force(command, options);
   add_solver(command, options);
   command.add_flag("--json", options.json, "Print the report instead of the table");

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include <softkin/io/file.hpp>
+#include "map_use.hpp"
 #include "solve_options.hpp"
 
 namespace softkin::cli {
 
 /// What the user asks of `softkin ik`. An empty file name: not given.
-struct IkOptions : SolveOptions, MethodOptions {
+struct IkOptions : SolveOptions, MethodOptions, MapUse {
   std::vector<std::string> targets;     // MARKER=X,Y,Z
   std::vector<std::string> planes;      // MARKER=PX,PY,PZ/NX,NY,NZ
   std::vector<std::string> directions;  // FROM:TO=X,Y,Z

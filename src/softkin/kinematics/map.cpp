@@ -178,18 +178,44 @@ std::optional<std::vector<bool>> KinematicMap::missing_piece(const double* comma
   return asked;
 }
 
+namespace {
+
+Points rows_of(const Eigen::VectorXf& values) {
+  return Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(values.data(), values.size() / 3, 3)
+      .cast<double>();
+}
+
+}  // namespace
+
+Points KinematicMap::sum_of_modes(const Eigen::VectorXd& amplitudes) const {
+  const MapShape& shape = *data_.shape;
+  Eigen::VectorXf sum = Eigen::VectorXf::Zero(shape.mean.size());
+  for (Index m = 0; m < amplitudes.size(); ++m)
+    sum += static_cast<float>(shape.units[m] * amplitudes[m]) * shape.modes.col(m).cast<float>();
+  return rows_of(sum);
+}
+
 Points KinematicMap::shape(const double* commands, const Place& place) const {
   if (!data_.shape) throw InvalidInput("the map was made without the robot's shape");
-  const MapShape& shape = *data_.shape;
   const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
   const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
-  Eigen::VectorXd amplitudes(shape.modes.cols());
+  Eigen::VectorXd amplitudes(data_.shape->units.size());
   cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data());
-  Eigen::VectorXf at = shape.mean;
-  for (Index m = 0; m < amplitudes.size(); ++m)
-    at += static_cast<float>(shape.units[m] * amplitudes[m]) * shape.modes.col(m).cast<float>();
-  return Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(at.data(), at.size() / 3, 3)
-      .cast<double>();
+  return rows_of(data_.shape->mean) + sum_of_modes(amplitudes);
+}
+
+std::vector<Points> KinematicMap::shape_slopes(const double* commands, const Place& place) const {
+  if (!data_.shape) throw InvalidInput("the map was made without the robot's shape");
+  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
+  const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
+  Eigen::VectorXd amplitudes(data_.shape->units.size());
+  maps::RowMatrix slopes(static_cast<Index>(piece.inputs.size()), amplitudes.size());
+  cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data(), slopes.data());
+  std::vector<Points> all(data_.inputs.size(), Points::Zero(data_.shape->mean.size() / 3, 3));
+  for (Index j = 0; j < static_cast<Index>(slopes.rows()); ++j)
+    all[static_cast<std::size_t>(piece.inputs[static_cast<std::size_t>(j)])] =
+        sum_of_modes(2 / (cell.high[j] - cell.low[j]) * slopes.row(j).transpose());
+  return all;
 }
 
 Eigen::VectorXd KinematicMap::commands(const Actuation& actuation) const {

@@ -121,6 +121,8 @@ class KinematicMap {
   ///
   /// throws  InvalidInput on a map without shape
   [[nodiscard]] Points shape(const double* commands, const Place& place) const;
+  /// Its slopes by each input, #V by 3 [mm per unit of the command]; zeros by those that the piece does not depend on.
+  [[nodiscard]] std::vector<Points> shape_slopes(const double* commands, const Place& place) const;
 
   /// Of a robot's m commands those that the map takes.
   ///
@@ -130,6 +132,7 @@ class KinematicMap {
  private:
   Place find(const double* commands, double* values, double* slopes, Index& taut) const;
   [[nodiscard]] Index cell_of(const MapPiece& piece, const double* commands) const;
+  [[nodiscard]] Points sum_of_modes(const Eigen::VectorXd& amplitudes) const;
   void evaluate(const MapPiece& piece, const MapCell& cell, const double* commands, double* values,
                 double* slopes) const;
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <softkin/core/error.hpp>
 #include <softkin/kinematics/map_robot.hpp>
 #include <utility>
 
@@ -6,16 +7,101 @@ namespace softkin {
 
 namespace {
 
-MapRobot::Places places_of(const Model& model, const MapData& data) {
-  MapRobot::Places places{static_cast<Index>(model.markers.size()), {}};
+/// The load of each actuator among a map's outputs, or -1.
+std::vector<Index> loads_of(const Model& model, const MapData& data) {
+  std::vector<Index> loads;
   for (const Actuator& actuator : model.actuators) {
-    places.loads.push_back(-1);
+    loads.push_back(-1);
     for (const char* load : {"_pressure", "_tension"})
       for (std::size_t q = 0; q < data.outputs.size(); ++q)
-        if (data.outputs[q].name == actuator.name + load) places.loads.back() = static_cast<Index>(q);
+        if (data.outputs[q].name == actuator.name + load) loads.back() = static_cast<Index>(q);
   }
-  return places;
+  return loads;
 }
+
+/// Equilibria by a map; what their positions are is for others to say.
+class OfMap : public GivenEquilibria {
+ public:
+  OfMap(const Model& model, const KinematicMap& map) : model_(model), map_(map), loads_(loads_of(model, map.data())) {}
+
+  [[nodiscard]] Equilibrium at(const Actuation& actuation, const State& start) const override {
+    Equilibrium found;
+    found.actuation = actuation;
+    found.report.solver = "map";
+    Eigen::VectorXd values(map_.outputs());
+    const Eigen::VectorXd commands = map_.commands(actuation);
+    const auto place = map_.evaluate(commands.data(), values.data());
+    if (!place) {
+      found.report.status = Status::limit;
+      found.report.reached = 0;
+      found.report.remark = "the actuation is outside the map";
+      found.state = start;
+      return found;
+    }
+    found.report.status = Status::converged;
+    found.state.actuation = actuation;
+    found.state.positions = positions(values, commands, *place);
+    found.state.multipliers = loads(actuation, values);
+    return found;
+  }
+
+  [[nodiscard]] Sensitivity sensitivity(const State& at) const override {
+    const MapData& data = map_.data();
+    std::vector<bool> taut(data.cables.size());
+    for (std::size_t c = 0; c < taut.size(); ++c) taut[c] = is_taut(data.cables[c], at);
+    Eigen::VectorXd values(map_.outputs());
+    maps::RowMatrix slopes(map_.inputs(), map_.outputs());
+    const Eigen::VectorXd commands = map_.commands(at.actuation);
+    Sensitivity found = no_sensitivity(static_cast<Index>(model_.rest.rows()), static_cast<Index>(at.actuation.size()));
+    auto place = map_.evaluate_taut(taut, commands.data(), values.data(), slopes.data());
+    if (!place) place = map_.evaluate(commands.data(), values.data(), slopes.data());
+    if (!place) return found;
+    found.regular = true;
+    add_moves(slopes, commands, *place, found);
+    for (Index i = 0; i < map_.inputs(); ++i) {
+      const Index a = data.inputs[static_cast<std::size_t>(i)].actuator;
+      for (std::size_t k = 0; k < loads_.size(); ++k)
+        if (loads_[k] >= 0) found.multipliers(static_cast<Index>(k), a) = slopes(i, loads_[k]);
+      if (model_.actuators[static_cast<std::size_t>(a)].control == Control::load) found.multipliers(a, a) = 1;
+    }
+    return found;
+  }
+
+ protected:
+  [[nodiscard]] virtual Points positions(const Eigen::VectorXd& values, const Eigen::VectorXd& commands,
+                                         const KinematicMap::Place& place) const = 0;
+  /// By every input, into found.positions.
+  virtual void add_moves(const maps::RowMatrix& slopes, const Eigen::VectorXd& commands,
+                         const KinematicMap::Place& place, Sensitivity& found) const = 0;
+
+  const Model& model_;
+  const KinematicMap& map_;
+
+ private:
+  /// As Statics has it: one that pulls, or is as long as it may be.
+  [[nodiscard]] bool is_taut(const MapCable& cable, const State& at) const {
+    constexpr double verge = 1e-9;
+    if (at.multipliers[cable.actuator] > 0) return true;
+    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(cable.actuator)];
+    return achieved_ratio(model_, actuator, at.positions) >= (1 - verge) * at.actuation[cable.actuator];
+  }
+
+  [[nodiscard]] Eigen::VectorXd loads(const Actuation& actuation, const Eigen::VectorXd& values) const {
+    Eigen::VectorXd loads = Eigen::VectorXd::Zero(actuation.size());
+    for (std::size_t a = 0; a < loads_.size(); ++a) {
+      const auto at = static_cast<Index>(a);
+      if (loads_[a] >= 0)
+        loads[at] = values[loads_[a]];
+      else if (model_.actuators[a].control == Control::load)
+        loads[at] = actuation[at];
+    }
+    // a slack cable's polynomials are 0 up to rounding
+    for (const MapCable& cable : map_.data().cables) loads[cable.actuator] = std::max(0.0, loads[cable.actuator]);
+    return loads;
+  }
+
+  std::vector<Index> loads_;
+};
 
 /// No elements, and nothing that is held.
 Model seen_by(const Model& model, const MapData& data) {
@@ -47,67 +133,17 @@ Model seen_by(const Model& model, const MapData& data) {
   return seen;
 }
 
-class OfMap : public GivenEquilibria {
+class MarkersOfMap : public OfMap {
  public:
-  OfMap(const Model& model, const KinematicMap& map, const MapRobot::Places& places)
-      : model_(model), map_(map), places_(places) {}
-
-  [[nodiscard]] Equilibrium at(const Actuation& actuation, const State& start) const override {
-    Equilibrium found;
-    found.actuation = actuation;
-    found.report.solver = "map";
-    Eigen::VectorXd values(map_.outputs());
-    const Eigen::VectorXd commands = map_.commands(actuation);
-    if (!map_.evaluate(commands.data(), values.data())) {
-      found.report.status = Status::limit;
-      found.report.reached = 0;
-      found.report.remark = "the actuation is outside the map";
-      found.state = start;
-      return found;
-    }
-    found.report.status = Status::converged;
-    found.state.actuation = actuation;
-    found.state.positions = positions(values);
-    found.state.multipliers = loads(actuation, values);
-    return found;
-  }
-
-  [[nodiscard]] Sensitivity sensitivity(const State& at) const override {
-    const MapData& data = map_.data();
-    std::vector<bool> taut(data.cables.size());
-    for (std::size_t c = 0; c < taut.size(); ++c) taut[c] = is_taut(data.cables[c], at);
-    Eigen::VectorXd values(map_.outputs());
-    maps::RowMatrix slopes(map_.inputs(), map_.outputs());
-    const Eigen::VectorXd commands = map_.commands(at.actuation);
-    Sensitivity found = no_sensitivity(static_cast<Index>(model_.rest.rows()), static_cast<Index>(at.actuation.size()));
-    if (!map_.evaluate_taut(taut, commands.data(), values.data(), slopes.data()) &&
-        !map_.evaluate(commands.data(), values.data(), slopes.data()))
-      return found;
-    found.regular = true;
-    for (Index i = 0; i < map_.inputs(); ++i) {
-      const Index a = data.inputs[static_cast<std::size_t>(i)].actuator;
-      found.positions[static_cast<std::size_t>(a)] = positions(slopes.row(i));
-      for (std::size_t k = 0; k < places_.loads.size(); ++k)
-        if (places_.loads[k] >= 0) found.multipliers(static_cast<Index>(k), a) = slopes(i, places_.loads[k]);
-      if (model_.actuators[static_cast<std::size_t>(a)].control == Control::load) found.multipliers(a, a) = 1;
-    }
-    return found;
-  }
+  using OfMap::OfMap;
 
  private:
-  /// As Statics has it: one that pulls, or is as long as it may be.
-  [[nodiscard]] bool is_taut(const MapCable& cable, const State& at) const {
-    constexpr double verge = 1e-9;
-    if (at.multipliers[cable.actuator] > 0) return true;
-    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(cable.actuator)];
-    return achieved_ratio(model_, actuator, at.positions) >= (1 - verge) * at.actuation[cable.actuator];
-  }
-
-  /// Of values, or of their slopes.
-  [[nodiscard]] Points positions(const Eigen::VectorXd& values) const {
+  [[nodiscard]] Points positions(const Eigen::VectorXd& values, const Eigen::VectorXd&,
+                                 const KinematicMap::Place&) const override {
     Points positions = Points::Zero(model_.rest.rows(), 3);
-    for (Index p = 0; p < places_.markers; ++p) positions.row(p) = values.segment<3>(3 * p).transpose();
-    Index end = places_.markers + 1;
+    const auto markers = static_cast<Index>(model_.markers.size());
+    for (Index p = 0; p < markers; ++p) positions.row(p) = values.segment<3>(3 * p).transpose();
+    Index end = markers + 1;
     for (const MapCable& cable : map_.data().cables) {
       positions(end, 0) = values[cable.ratio] * model_.actuators[static_cast<std::size_t>(cable.actuator)].rest_measure;
       end += 2;
@@ -115,30 +151,63 @@ class OfMap : public GivenEquilibria {
     return positions;
   }
 
-  [[nodiscard]] Eigen::VectorXd loads(const Actuation& actuation, const Eigen::VectorXd& values) const {
-    Eigen::VectorXd loads = Eigen::VectorXd::Zero(actuation.size());
-    for (std::size_t a = 0; a < places_.loads.size(); ++a) {
-      const auto at = static_cast<Index>(a);
-      if (places_.loads[a] >= 0)
-        loads[at] = values[places_.loads[a]];
-      else if (model_.actuators[a].control == Control::load)
-        loads[at] = actuation[at];
-    }
-    // what it is pulled by to the accuracy of the map
-    for (const MapCable& cable : map_.data().cables) loads[cable.actuator] = std::max(0.0, loads[cable.actuator]);
-    return loads;
+  void add_moves(const maps::RowMatrix& slopes, const Eigen::VectorXd& commands, const KinematicMap::Place& place,
+                 Sensitivity& found) const override {
+    for (Index i = 0; i < map_.inputs(); ++i)
+      found.positions[static_cast<std::size_t>(map_.data().inputs[static_cast<std::size_t>(i)].actuator)] =
+          positions(slopes.row(i), commands, place);
+  }
+};
+
+class ShapesOfMap : public OfMap {
+ public:
+  ShapesOfMap(const Model& model, const KinematicMap& map) : OfMap(model, map) {
+    if (!map.data().shape)
+      throw InvalidInput("the map was made without the robot's shape (--shape-accuracy 0), which is asked for");
+    if (map.data().shape->mean.size() != model.rest.size()) throw InvalidInput("the map is of another mesh");
   }
 
-  const Model& model_;
-  const KinematicMap& map_;
-  const MapRobot::Places& places_;
+ private:
+  [[nodiscard]] Points positions(const Eigen::VectorXd& values, const Eigen::VectorXd& commands,
+                                 const KinematicMap::Place& place) const override {
+    Points positions = map_.shape(commands.data(), place);
+    lead_markers(values, positions);
+    return positions;
+  }
+
+  void add_moves(const maps::RowMatrix& slopes, const Eigen::VectorXd& commands, const KinematicMap::Place& place,
+                 Sensitivity& found) const override {
+    std::vector<Points> moves = map_.shape_slopes(commands.data(), place);
+    for (Index i = 0; i < map_.inputs(); ++i) {
+      Points& move = moves[static_cast<std::size_t>(i)];
+      lead_markers(slopes.row(i), move);
+      found.positions[static_cast<std::size_t>(map_.data().inputs[static_cast<std::size_t>(i)].actuator)] =
+          std::move(move);
+    }
+  }
+
+  /// The least move of the vertices of each marker that brings it to where it is. Of positions, or of their slopes.
+  void lead_markers(const Eigen::VectorXd& values, Points& positions) const {
+    Index next = 0;
+    for (const Marker& marker : model_.markers) {
+      const EmbeddedPoint& point = marker.point;
+      const Vec3 missing = values.segment<3>(next) - point.at(positions);
+      next += 3;
+      double squares = 0;
+      for (const double weight : point.weights) squares += weight * weight;
+      for (std::size_t k = 0; k < point.vertices.size(); ++k)
+        positions.row(point.vertices[k]) += (point.weights[k] / squares * missing).transpose();
+    }
+  }
 };
 
 }  // namespace
 
 MapRobot::MapRobot(const Model& model, const KinematicMap& map)
-    : model_(seen_by(model, map.data())),
-      places_(places_of(model, map.data())),
-      statics_(model_, std::make_unique<OfMap>(model_, map, places_)) {}
+    : model_(seen_by(model, map.data())), statics_(model_, std::make_unique<MarkersOfMap>(model_, map)) {}
+
+std::unique_ptr<const GivenEquilibria> shapes_of(const Model& model, const KinematicMap& map) {
+  return std::make_unique<ShapesOfMap>(model, map);
+}
 
 }  // namespace softkin

@@ -19,16 +19,16 @@ class MapRobot {
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const Statics& statics() const { return statics_; }
 
-  /// Where the outputs of a map belong in a state of this robot.
-  struct Places {
-    Index markers = 0;         // vertices: the first ones
-    std::vector<Index> loads;  // per actuator: its output, or -1
-  };
-
  private:
   Model model_;
-  Places places_;
   Statics statics_;
 };
+
+/// Whole shapes of the robot as its map has them, for Statics. The vertices around a marker are moved by what its own,
+/// more accurate polynomials say.
+///
+/// model, map  must outlive the object, and belong together (runs::check_robot)
+/// throws      InvalidInput on a map without shape
+[[nodiscard]] std::unique_ptr<const GivenEquilibria> shapes_of(const Model& model, const KinematicMap& map);
 
 }  // namespace softkin

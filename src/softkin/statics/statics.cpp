@@ -121,14 +121,17 @@ struct Statics::Parts {
   std::optional<TargetShape> target_shape;
   std::optional<physical::Equilibria> physical;
   std::unique_ptr<const GivenEquilibria> given;
+
+  [[nodiscard]] bool assembled() const { return physical || target_shape; }
 };
 
 Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {
   parts_->assemble(model);
 }
-Statics::Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given)
+Statics::Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given, Given use)
     : parts_(std::make_unique<Parts>(model)) {
   parts_->given = std::move(given);
+  if (use == Given::starts) parts_->assemble(model);
 }
 Statics::~Statics() = default;
 Statics::Statics(Statics&&) noexcept = default;
@@ -146,7 +149,13 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
-  if (parts_->given) return parts_->given->at(actuation, start);
+  if (parts_->given && !parts_->assembled()) return parts_->given->at(actuation, start);
+  State near;
+  if (parts_->given && !model.contact.any()) {
+    Equilibrium given = parts_->given->at(actuation, start);
+    if (given.report.status == Status::converged) near = std::move(given.state);
+  }
+  const State& begun = near.positions.rows() > 0 ? near : start;
   const TeamPool::Lent team = parts_->team(options);
   const double paper_tolerance = 8e-8 * model.diagonal_mm;
 
@@ -155,7 +164,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   if (parts_->physical) {
     if (options.solver == Solver::local_global)
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
-    result = parts_->physical->solve(actuation, start,
+    result = parts_->physical->solve(actuation, begun,
                                      {tolerance, options.max_iterations, options.keep_history, options.reuse_factor,
                                       options.stable, 1e-6 * std::max(1.0, tolerance / paper_tolerance)},
                                      progress, *team);
@@ -163,11 +172,11 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     if (options.stable)
       throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
     result.actuation = actuation;
-    result.state.positions = start.positions;
+    result.state.positions = begun.positions;
     result.report.tolerance_mm = tolerance;
     const Parts::TargetShape& parts = *parts_->target_shape;
     if (options.solver == Solver::newton)
-      parts.newton.solve(start.actuation, options, progress, *team, result);
+      parts.newton.solve(begun.actuation, options, progress, *team, result);
     else
       target_shape::solve_local_global(parts.system, parts.global, options, progress, *team, result);
     if (result.report.status == Status::converged) result.state.actuation = actuation;
@@ -180,7 +189,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
 
 Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options, double accuracy) const {
   parts_->check_known(at, options, "the sensitivity of a shape");
-  if (parts_->given) return parts_->given->sensitivity(at);
+  if (parts_->given && !parts_->assembled()) return parts_->given->sensitivity(at);
   const TeamPool::Lent team = parts_->team(options);
   if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, accuracy, *team);
   return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, accuracy, *team);

@@ -46,14 +46,18 @@ class GivenEquilibria {
   [[nodiscard]] virtual Sensitivity sensitivity(const State& at) const = 0;
 };
 
+/// answers: nothing is solved. starts: every solve begins at the given equilibrium instead of the start it is told,
+/// where there is one; not of robots that touch something, which would pass through it.
+enum class Given { answers, starts };
+
 /// Equilibria of one robot. Assembles and factorises once, and keeps threads, memory and factors from call to call, so
 /// that a solve from the last equilibrium starts nothing. solve() is const and may run on several threads at once.
 class Statics {
  public:
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held
   explicit Statics(const Model& model);
-  /// Of a robot whose equilibria are given.
-  Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given);
+  /// Of a robot whose equilibria are given, or whose equilibria are found from those that are.
+  Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given, Given use = Given::answers);
   ~Statics();
   Statics(Statics&&) noexcept;
   Statics& operator=(Statics&&) noexcept;

@@ -116,12 +116,13 @@ RowMatrix worst_known(const Terms& terms, const Eigen::VectorXd& decay, const Ro
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(normal.selfadjointView<Eigen::Lower>());
   // what is not known of each candidate's values, in an orthonormal basis of the terms
-  std::vector<Eigen::MatrixXd> rows(static_cast<std::size_t>(points.rows()));
   Eigen::MatrixXd values(terms.rows(), points.rows());
+  Eigen::VectorXd of_point;
   for (Index i = 0; i < points.rows(); ++i) {
-    rows[static_cast<std::size_t>(i)] = factor.matrixL().solve(Rows(terms, points.row(i)).rows.transpose());
-    values.col(i) = rows[static_cast<std::size_t>(i)].col(0);
+    evaluate_terms(terms, points.row(i), of_point, nullptr);
+    values.col(i) = of_point;
   }
+  factor.matrixL().solveInPlace(values);
   Eigen::VectorXd unknown = values.colwise().squaredNorm();
   RowMatrix chosen(count, terms.cols());
   Eigen::MatrixXd made(terms.rows(), 0);  // inverse = I - made made^T
@@ -129,8 +130,9 @@ RowMatrix worst_known(const Terms& terms, const Eigen::VectorXd& decay, const Ro
     Index worst = 0;
     unknown.maxCoeff(&worst);
     chosen.row(i) = points.row(worst);
+    const Eigen::MatrixXd rows = factor.matrixL().solve(Rows(terms, points.row(worst)).rows.transpose());
     for (Index j = 0; j < 1 + terms.cols(); ++j) {
-      const Eigen::VectorXd row = rows[static_cast<std::size_t>(worst)].col(j);
+      const Eigen::VectorXd row = rows.col(j);
       Eigen::VectorXd change = row - made * (made.transpose() * row);
       change /= std::sqrt(1 + row.dot(change));
       unknown -= (values.transpose() * change).cwiseAbs2();

@@ -4,6 +4,7 @@
 #include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/maps/polynomials.hpp>
+#include <type_traits>
 #include <utility>
 
 namespace softkin::maps {
@@ -32,6 +33,13 @@ struct Table {
 
   Table(const double* x, const std::vector<int>& highest) {
     for (std::size_t j = 0; j < highest.size(); ++j) chebyshev(x[j], highest[j], values[j].data(), slopes[j].data());
+  }
+
+  /// Over the first variables; of one of them the slope.
+  [[nodiscard]] double product(const std::uint8_t* degrees, std::size_t count, std::size_t sloped) const {
+    double value = 1;
+    for (std::size_t j = 0; j < count; ++j) value *= (j == sloped ? slopes : values)[j][degrees[j]];
+    return value;
   }
 };
 
@@ -77,14 +85,10 @@ void evaluate_terms(const Terms& terms, const Eigen::VectorXd& x, Eigen::VectorX
   if (slopes) slopes->resize(variables, terms.rows());
   for (Index t = 0; t < terms.rows(); ++t) {
     const auto product = [&](Index sloped) {
-      double value = 1;
-      for (Index j = 0; j < variables; ++j) {
-        const auto place = static_cast<std::size_t>(j);
-        value *= (j == sloped ? table.slopes : table.values)[place][terms(t, j)];
-      }
-      return value;
+      return table.product(terms.data() + t * variables, static_cast<std::size_t>(variables),
+                           static_cast<std::size_t>(sloped));
     };
-    values[t] = product(-1);
+    values[t] = product(variables);
     for (Index j = 0; slopes && j < variables; ++j) (*slopes)(j, t) = product(j);
   }
 }
@@ -104,51 +108,63 @@ Polynomials::Polynomials(Terms terms, RowMatrix coefficients)
     }
     ++runs_.back().count;
   }
+  block_ = count() <= 8 ? 8 : count() <= 16 ? 16 : 32;
+  for (Index begin = 0; begin < count(); begin += block_)
+    for (Index t = 0; t < terms_.rows(); ++t)
+      for (Index q = begin; q < begin + block_; ++q) blocks_.push_back(q < count() ? coefficients_(t, q) : 0);
 }
 
 /// Sums run by run over the last variable, then those over the others.
+template <int width, bool sloped>
+void Polynomials::add_up(const double* x, double* values, double* slopes) const {
+  using Block = std::array<double, width>;
+  const Table table(x, highest_);
+  const auto last = static_cast<std::size_t>(variables()) - 1;
+  const auto& of_last = table.values[last];
+  const auto& slopes_of_last = table.slopes[last];
+  const double* row = blocks_.data();
+  std::array<Block, most_variables> changes;  // of the sums, by each variable
+  for (Index begin = 0; begin < count(); begin += width) {
+    Block totals{};
+    if constexpr (sloped) std::fill_n(changes.begin(), last + 1, Block{});
+    for (const Run& run : runs_) {
+      Block sum{}, change{};
+      for (std::size_t k = 0; k < static_cast<std::size_t>(run.count); ++k, row += width)
+        for (std::size_t q = 0; q < width; ++q) {
+          sum[q] += of_last[k] * row[q];
+          if constexpr (sloped) change[q] += slopes_of_last[k] * row[q];
+        }
+      const std::uint8_t* degrees = terms_.data() + run.begin * terms_.cols();
+      const double weight = table.product(degrees, last, last);
+      for (std::size_t q = 0; q < width; ++q) totals[q] += weight * sum[q];
+      if constexpr (!sloped) continue;
+      for (std::size_t q = 0; q < width; ++q) changes[last][q] += weight * change[q];
+      for (std::size_t j = 0; j < last; ++j) {
+        const double by = table.product(degrees, last, j);
+        for (std::size_t q = 0; q < width; ++q) changes[j][q] += by * sum[q];
+      }
+    }
+    const Index used = std::min<Index>(width, count() - begin);
+    std::copy_n(totals.data(), used, values + begin);
+    for (std::size_t j = 0; sloped && j <= last; ++j)
+      std::copy_n(changes[j].data(), used, slopes + static_cast<Index>(j) * count() + begin);
+  }
+}
+
 void Polynomials::evaluate(const double* x, double* values, double* slopes) const {
-  const Index size = count(), last = variables() - 1;
-  std::fill_n(values, size, 0.0);
-  if (slopes) std::fill_n(slopes, size * variables(), 0.0);
-  if (last < 0) {
-    std::copy_n(coefficients_.data(), size, values);
+  if (variables() == 0) {
+    std::copy_n(coefficients_.data(), count(), values);
     return;
   }
-  const Table table(x, highest_);
-  const double* of_last = table.values[static_cast<std::size_t>(last)].data();
-  const double* slopes_of_last = table.slopes[static_cast<std::size_t>(last)].data();
-  constexpr Index block = 32;
-  std::array<double, block> sum, sloped;
-  std::array<double, most_variables> weights{};
-  for (const Run& run : runs_) {
-    double weight = 1;
-    for (Index j = 0; j < last; ++j) weight *= table.values[static_cast<std::size_t>(j)][terms_(run.begin, j)];
-    for (Index j = 0; slopes && j < last; ++j) {
-      weights[static_cast<std::size_t>(j)] = 1;
-      for (Index k = 0; k < last; ++k)
-        weights[static_cast<std::size_t>(j)] *=
-            (k == j ? table.slopes : table.values)[static_cast<std::size_t>(k)][terms_(run.begin, k)];
-    }
-    for (Index begin = 0; begin < size; begin += block) {
-      const Index width = std::min(block, size - begin);
-      std::fill_n(sum.begin(), width, 0.0);
-      std::fill_n(sloped.begin(), width, 0.0);
-      for (Index k = 0; k < run.count; ++k) {
-        const double* row = coefficients_.data() + (run.begin + k) * size + begin;
-        const double value = of_last[k], slope = slopes_of_last[k];
-        for (Index q = 0; q < width; ++q) sum[static_cast<std::size_t>(q)] += value * row[q];
-        if (slopes)
-          for (Index q = 0; q < width; ++q) sloped[static_cast<std::size_t>(q)] += slope * row[q];
-      }
-      for (Index q = 0; q < width; ++q) values[begin + q] += weight * sum[static_cast<std::size_t>(q)];
-      if (!slopes) continue;
-      for (Index j = 0; j < last; ++j)
-        for (Index q = 0; q < width; ++q)
-          slopes[j * size + begin + q] += weights[static_cast<std::size_t>(j)] * sum[static_cast<std::size_t>(q)];
-      for (Index q = 0; q < width; ++q) slopes[last * size + begin + q] += weight * sloped[static_cast<std::size_t>(q)];
-    }
-  }
+  const auto add = [&](auto width) {
+    if (slopes)
+      add_up<width, true>(x, values, slopes);
+    else
+      add_up<width, false>(x, values, nullptr);
+  };
+  if (block_ == 8) return add(std::integral_constant<int, 8>());
+  if (block_ == 16) return add(std::integral_constant<int, 16>());
+  add(std::integral_constant<int, 32>());
 }
 
 }  // namespace softkin::maps

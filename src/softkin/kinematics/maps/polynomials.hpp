@@ -50,10 +50,16 @@ class Polynomials {
     Index begin = 0, count = 0;  // terms
   };
 
+  template <int width, bool sloped>
+  void add_up(const double* x, double* values, double* slopes) const;
+
   Terms terms_;
   RowMatrix coefficients_;
   std::vector<Run> runs_;
   std::vector<int> highest_;  // degree per variable
+  // sums go together in blocks that fill whole registers, of 8, 16 or 32; those that are missing are zero
+  int block_ = 8;
+  std::vector<double> blocks_;  // coefficients, block by block
 };
 
 /// The number whose bits they are, the first the lowest.
