@@ -133,7 +133,9 @@ struct TwoCables {
 };
 
 /// A chamber and two cables, the second of which may be tied at a length; with a shape of 5 vertices and 3 modes.
-inline MapData cable_map(bool tied = false) {
+///
+/// askew  ratios of slack cables are so much too large: near the kink neither taut nor slack is right
+inline MapData cable_map(bool tied = false, double askew = 0) {
   MapData data =
       outline(tied ? "tied" : "finger \"map_1\" */ \xc3\xbc", {{"air", "", 0, 0, 2}, {"tendon1", "", 1, 0.6, 1.1}});
   if (!tied) data.inputs.push_back({"tendon2", "", 2, 0.5, 1.2});
@@ -167,7 +169,10 @@ inline MapData cable_map(bool tied = false) {
     };
     const Function outputs = [=, taut = piece.taut](const Eigen::VectorXd& of_piece) {
       const Eigen::Vector3d commands = commands_of(of_piece);
-      return TwoCables().outputs(commands[0], commands.tail<2>(), taut);
+      Eigen::VectorXd values = TwoCables().outputs(commands[0], commands.tail<2>(), taut);
+      for (const Index c : {0, 1})
+        if (!taut[static_cast<std::size_t>(c)]) values[4 + 2 * c] += askew;
+      return values;
     };
     const Function amplitudes = [=](const Eigen::VectorXd& of_piece) -> Eigen::VectorXd {
       const Eigen::Vector3d commands = commands_of(of_piece);
@@ -176,6 +181,18 @@ inline MapData cable_map(bool tied = false) {
     piece.tree = {{-1, 0, -1, -1, 0}};
     piece.cells = {fitted_cell(limits(data, piece.inputs, &MapInput::low), limits(data, piece.inputs, &MapInput::high),
                                60, outputs, amplitudes)};
+  }
+  return data;
+}
+
+/// Where the kink is neither taut nor slack cables are right, but for the accuracy.
+inline MapData askew_map() {
+  constexpr double askew = 0.02;
+  MapData data = cable_map(false, askew);
+  data.name = "askew";
+  for (const MapCable& cable : data.cables) {
+    data.outputs[static_cast<std::size_t>(cable.tension)].accuracy = 1.2 * askew / 0.02;
+    data.outputs[static_cast<std::size_t>(cable.ratio)].accuracy = 0;
   }
   return data;
 }

@@ -113,9 +113,9 @@ double nearest_of_grid(const KinematicMap& map, const Eigen::Vector3d& target) {
   return nearest;
 }
 
-/// Its boxes do not fit together, so that a way to the target may end between them.
+/// Its boxes or pieces do not fit together, so that a way to the target may end between them.
 bool jumps(const Exported& map) {
-  return map.data.name.starts_with("2 boxes");
+  return map.data.name.starts_with("2 boxes") || map.data.name.starts_with("askew");
 }
 
 struct Tally {

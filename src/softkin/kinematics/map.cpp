@@ -112,7 +112,8 @@ void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const do
   }
 }
 
-/// With all cables taut at first: one that would push goes slack, one that is longer than it may be is taken up.
+/// With all cables taut at first: one that would push goes slack, one that is longer than it may be is taken up. Pieces
+/// are approximate: where that goes round in circles, less than their accuracy is not wrong.
 ///
 /// taut     the bits of the last that were
 /// returns  the piece is -1 where there is none of these, the cell where it has none there
@@ -127,6 +128,7 @@ KinematicMap::Place KinematicMap::find(const double* commands, double* values, d
     place.cell = cell_of(piece, commands);
     if (place.cell < 0) return place;
     evaluate(piece, piece.cells[static_cast<std::size_t>(place.cell)], commands, values, slopes);
+    const bool circles = change >= 2 * cables;
     std::size_t wrong = cables;
     double worst = 0;
     bool pushes = false;
@@ -134,7 +136,8 @@ KinematicMap::Place KinematicMap::find(const double* commands, double* values, d
       const MapCable& cable = data_.cables[c];
       const bool holds = (taut >> c) & 1;
       const double command = cable.input < 0 ? cable.command : commands[cable.input];
-      const double by = holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12);
+      const double by = (holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12)) -
+                        (circles ? data_.outputs[static_cast<std::size_t>(holds ? cable.tension : cable.ratio)].accuracy : 0);
       // pushing ones first: those that are too long may then be so no more
       if (!(by > 0) || (pushes && !holds) || (pushes == holds && by <= worst)) continue;
       wrong = c;

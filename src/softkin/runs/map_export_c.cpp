@@ -114,7 +114,7 @@ void add_sum_tables(const FlatSums& sums, Index inputs, CTables& tables) {
 
 void add_tables(const MapData& data, const FlatMap& flat, CNumbers numbers, CTables& tables) {
   const auto inputs = static_cast<Index>(data.inputs.size());
-  std::vector<double> low, high, commands;
+  std::vector<double> low, high, commands, accuracies;
   for (const MapInput& input : data.inputs) {
     low.push_back(input.low);
     high.push_back(input.high);
@@ -126,6 +126,8 @@ void add_tables(const MapData& data, const FlatMap& flat, CNumbers numbers, CTab
   for (const MapCable& cable : data.cables) {
     cables.insert(cables.end(), {cable.input, cable.tension, cable.ratio});
     commands.push_back(cable.command);
+    for (const Index output : {cable.tension, cable.ratio})
+      accuracies.push_back(data.outputs[static_cast<std::size_t>(output)].accuracy);
   }
   tables.shorts("pieces", flat.pieces);
   tables.integers("variables", flat.variables, inputs);
@@ -136,6 +138,7 @@ void add_tables(const MapData& data, const FlatMap& flat, CNumbers numbers, CTab
   if (!cables.empty()) {
     tables.shorts("cables", cables, 3);
     tables.reals("cable_commands", commands);
+    tables.reals("cable_accuracies", accuracies, 2);
   }
   tables.reals("boxes", scales_of(flat, numbers), 3);
   add_sum_tables(flat.outputs, inputs, tables);
@@ -261,7 +264,7 @@ std::string map_c_header(const MapData& data, CNumbers numbers) {
   add_tables(data, flat, numbers, tables);
   add_answers(answers, numbers, checks);
   const std::string slack = data.cables.empty()
-                                ? "\n#define map_wrong_cable(taut, commands, outputs) (-1) /* it has no cables */\n"
+                                ? "\n#define map_wrong_cable(taut, circles, commands, outputs) (-1) /* it has no cables */\n"
                                 : c_slack;
   const std::string text =
       head(data, tables, checks.bytes(), stack_of(data, flat, numbers)) + "#ifndef MAP_H\n#define MAP_H\n\n" +

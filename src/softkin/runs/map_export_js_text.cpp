@@ -75,12 +75,13 @@ function cellOf(piece, commands) {
 }
 
 /** All cables are taut at first: one that would push goes slack, one that is longer than it may be is taken up; the one
-    that is most wrong first. */
-function wrongCable(taut, commands, values) {
+    that is most wrong first. circles: less than the accuracy is not wrong. */
+function wrongCable(taut, circles, commands, values) {
   let wrong = -1, pushes = false, worst = 0;
   tables.cables.forEach(({input, command, tension, ratio}, c) => {
     const holds = ((taut >> c) & 1) === 1;
-    const by = holds ? -values[tension] : values[ratio] - (input < 0 ? command : commands[input]) * (1 + 1e-12);
+    const excess = holds ? -values[tension] : values[ratio] - (input < 0 ? command : commands[input]) * (1 + 1e-12);
+    const by = excess - (circles ? outputs[holds ? tension : ratio].accuracy : 0);
     if (!(by > 0) || (pushes && !holds) || (pushes === holds && by <= worst)) return;
     [wrong, worst, pushes] = [c, by, holds];
   });
@@ -97,7 +98,7 @@ function find(commands, values, slopes) {
     if (place.piece >= 0) place.cell = cellOf(place.piece, commands);
     if (place.cell < 0) return null;
     addUp(tables.outputs, place.cell, scaled(place, commands), values, slopes);
-    const wrong = wrongCable(taut, commands, values);
+    const wrong = wrongCable(taut, change >= 2 * tables.cables.length, commands, values);
     if (wrong < 0) return place;
     taut ^= 1 << wrong;
   }
