@@ -114,6 +114,14 @@ TEST(MapFit, DecayIsThatOfTheFunction) {
   EXPECT_GT(decay[1], 1.5);
 }
 
+/// Else more and more terms of high degree are taken, which tell nothing.
+TEST(MapFit, WhatDoesNotFallAnyMoreIsNoDecay) {
+  RowMatrix coefficients(21, 1);
+  for (int k = 0; k <= 20; ++k) coefficients(k, 0) = std::max(1000 * std::exp(-2.5 * k), k % 3 == 0 ? 0.04 : 0.02);
+  const Terms terms = least_terms(Eigen::VectorXd::Ones(1), 21);
+  EXPECT_NEAR(decay_of(Polynomials(terms, coefficients))[0], 2.5, 0.2);
+}
+
 /// The next point is that of the greatest unexplained variance, found by inverting the normal matrix.
 TEST(MapFit, NextPointIsTheWorstKnown) {
   std::mt19937 engine(5);

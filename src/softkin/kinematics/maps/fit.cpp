@@ -88,6 +88,7 @@ Polynomials fit(const Terms& terms, const std::vector<Observation>& observations
 
 Eigen::VectorXd decay_of(const Polynomials& polynomials) {
   constexpr double usual = 1.6, slowest = 0.3, fastest = 4;
+  constexpr double still_falling = 3;  // over that of the highest degree: those below are what is not known
   const Terms& terms = polynomials.terms();
   Eigen::VectorXd decay(terms.cols());
   for (Index j = 0; j < terms.cols(); ++j) {
@@ -98,7 +99,9 @@ Eigen::VectorXd decay_of(const Polynomials& polynomials) {
     for (Index k = highest; k-- > 0;) largest[k] = std::max(largest[k], largest[k + 1]);
     // from the first degree on: the mean says nothing of how fast what varies falls
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (Index k = 1; k <= highest && largest[k] > 0; ++k) {
+    bool falls = true;
+    for (Index k = 1; k <= highest && largest[k] > 0 && falls; ++k) {
+      falls = largest[k] > still_falling * largest[highest];
       const double value = std::log(largest[k]), at = static_cast<double>(k);
       n += 1, x += at, y += value, xx += at * at, xy += at * value;
     }

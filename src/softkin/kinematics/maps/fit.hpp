@@ -20,7 +20,7 @@ struct Observation {
                               const Eigen::VectorXd& decay);
 
 /// How fast coefficients fall per degree of each variable: the slope of the logarithm of the largest of that degree and
-/// all above, as far as they mean something.
+/// all above, until these do not fall any more: the rest is what is not known, and more such terms would tell less.
 [[nodiscard]] Eigen::VectorXd decay_of(const Polynomials& polynomials);
 
 /// Points of the box at which terms are known worst if observations at some points, values and slopes, are made: one
