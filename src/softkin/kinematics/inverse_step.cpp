@@ -35,9 +35,27 @@ struct Region {
   }
 };
 
-/// Directions that move nothing, as columns: by the singular values of the slopes, as those of J^T J are known to the
-/// root of rounding only.
-Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, double resolution_mm) {
+/// Are all eigenvalues above so much? By determinant and trace, the others being as large as they may: where that does
+/// not tell, false.
+bool clearly_above(const Eigen::MatrixXd& symmetric, double least) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(symmetric);
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::Index others = symmetric.rows() - 1;
+  double bound = 1;
+  for (Eigen::Index i = 0; i <= others; ++i) bound *= factor.matrixLLT()(i, i) * factor.matrixLLT()(i, i);
+  const double largest = others > 0 ? symmetric.trace() / static_cast<double>(others) : 1;
+  for (Eigen::Index i = 0; i < others; ++i) bound /= largest;
+  return bound > least;
+}
+
+/// Directions that move nothing, as columns: by the singular values of the slopes, as those of J^T J, which usually show
+/// that there are none, are known to the root of rounding only.
+///
+/// normal  J^T J
+Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, const Eigen::MatrixXd& normal, double resolution_mm) {
+  constexpr double clear = 4, known = 1e-10;
+  if (clearly_above(normal, std::max(clear * resolution_mm * resolution_mm, known * normal.trace())))
+    return {slopes.cols(), 0};
   const SingularValues singular = singular_values(slopes);
   const auto seen = (singular.values.array() >= resolution_mm).count();
   return singular.right.rightCols(slopes.cols() - seen);
@@ -46,10 +64,12 @@ Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, double resolutio
 /// Positive definite: the magnitudes of its curvatures. Directions that move nothing are made stiff: over them rounding
 /// would decide.
 Eigen::MatrixXd made_definite(const Eigen::MatrixXd& hessian, double resolution_mm) {
+  constexpr double known = 1e-14;
+  if (clearly_above(hessian, std::max(resolution_mm * resolution_mm, known * hessian.trace()))) return hessian;
   const SymmetricEigen eigen = symmetric_eigen(hessian);
   const Eigen::VectorXd magnitude = eigen.values.cwiseAbs();
   const double most = std::max(magnitude.maxCoeff(), resolution_mm * resolution_mm);
-  const double least = std::max(resolution_mm * resolution_mm, 1e-14 * most);
+  const double least = std::max(resolution_mm * resolution_mm, known * most);
   const Eigen::VectorXd made = (magnitude.array() < least).select(most, magnitude);
   return eigen.vectors * made.asDiagonal() * eigen.vectors.transpose();
 }
@@ -188,7 +208,7 @@ InverseStep find_step(const Pose& pose, const Slopes& slopes, const Eigen::Matri
                                   slopes.terms.transpose() * pose.terms, region.rows, region.bounds);
   step.predicted = predicted_reduction(pose, slopes, curvature, step.move);
   step.predicted_norm = (pose.terms + slopes.terms * step.move).norm();
-  const Eigen::MatrixXd blind = blind_directions(slopes.terms, limits.resolution_mm);
+  const Eigen::MatrixXd blind = blind_directions(slopes.terms, normal, limits.resolution_mm);
   // where the goals stay out of reach, how near they are comes before how near the actuation is
   if (blind.cols() > 0 && (pose.miss <= 1 || step.predicted_norm < 0.5 * pose.terms.norm())) {
     const Eigen::VectorXd more = sideways_move(pose, blind, region, step.move, preferred);

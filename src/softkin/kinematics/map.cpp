@@ -136,8 +136,9 @@ KinematicMap::Place KinematicMap::find(const double* commands, double* values, d
       const MapCable& cable = data_.cables[c];
       const bool holds = (taut >> c) & 1;
       const double command = cable.input < 0 ? cable.command : commands[cable.input];
-      const double by = (holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12)) -
-                        (circles ? data_.outputs[static_cast<std::size_t>(holds ? cable.tension : cable.ratio)].accuracy : 0);
+      const double by =
+          (holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12)) -
+          (circles ? data_.outputs[static_cast<std::size_t>(holds ? cable.tension : cable.ratio)].accuracy : 0);
       // pushing ones first: those that are too long may then be so no more
       if (!(by > 0) || (pushes && !holds) || (pushes == holds && by <= worst)) continue;
       wrong = c;

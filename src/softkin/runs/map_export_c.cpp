@@ -263,9 +263,9 @@ std::string map_c_header(const MapData& data, CNumbers numbers) {
   CTables tables(numbers), checks(numbers);
   add_tables(data, flat, numbers, tables);
   add_answers(answers, numbers, checks);
-  const std::string slack = data.cables.empty()
-                                ? "\n#define map_wrong_cable(taut, circles, commands, outputs) (-1) /* it has no cables */\n"
-                                : c_slack;
+  const std::string slack =
+      data.cables.empty() ? "\n#define map_wrong_cable(taut, circles, commands, outputs) (-1) /* it has no cables */\n"
+                          : c_slack;
   const std::string text =
       head(data, tables, checks.bytes(), stack_of(data, flat, numbers)) + "#ifndef MAP_H\n#define MAP_H\n\n" +
       definitions(data, flat, answers, numbers) + "\n" + tables.text() + "\n#define MAP_TABLE_BYTES (" +
