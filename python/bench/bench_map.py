@@ -8,6 +8,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from beams import beam  # noqa: E402
 import softkin  # noqa: E402
 
 
-def best_of(repeats: int, work: Callable[[], object]) -> float:
+def median_of(repeats: int, work: Callable[[], object]) -> float:
     """[s]"""
     times = []
     for _ in range(repeats):
@@ -44,14 +45,13 @@ def main() -> None:
     commands = low + (high - low) * np.random.default_rng(1).random((options.rows, len(low)))
     for jacobian in (False, True):
         what = "with Jacobians" if jacobian else "without"
-        print(f"{len(low)} inputs, {len(made.outputs)} outputs, {what}, {options.rows} rows, {options.threads} threads:")
-        seconds = best_of(
-            options.repeats, lambda: made.solve(commands, jacobian=jacobian, threads=options.threads, outside="leave out")
-        )
+        print(f"{len(low)} inputs, {len(made.outputs)} outputs, {what}, {options.rows} rows:")
+        asked = partial(made.solve, commands, jacobian=jacobian, threads=options.threads, outside="leave out")
+        seconds = median_of(options.repeats, asked)
         print(f"  {options.rows / seconds:,.0f} per second")
     few = commands[: min(5000, options.rows)]
     for jacobian in (False, True):
-        seconds = best_of(options.repeats, lambda: [made.solve(row, jacobian=jacobian) for row in few])
+        seconds = median_of(options.repeats, lambda: [made.solve(row, jacobian=jacobian) for row in few])
         print(f"one call {'with' if jacobian else 'without'} Jacobian: {1e6 * seconds / len(few):.1f} us")
 
 

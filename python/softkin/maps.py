@@ -305,15 +305,12 @@ class KinematicMap:
 
         floats  numbers of 4 bytes in place of 8
         """
-        file = _file("path", path, ".h")
-        Path(file).write_text(self._core.c_header(floats))
+        self._core.save_c(_file("path", path, ".h"), floats)
 
     def export_js(self, path: PathLike) -> None:
         """A module for browsers and node, .mjs, and beside it .d.mts with its types."""
-        file = Path(_file("path", path, ".mjs"))
-        text, types = self._core.js_module(), self._core.js_types()
-        file.write_text(text)
-        file.with_suffix(".d.mts").write_text(types)
+        file = _file("path", path, ".mjs")
+        self._core.save_js(file, os.fspath(Path(file).with_suffix(".d.mts")))
 
     def export_numpy(self, path: PathLike) -> None:
         """All arrays, .npz: examples/python/map_numpy.py reads them with numpy alone."""

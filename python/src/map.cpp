@@ -264,13 +264,19 @@ void bind_map(nb::module_& module) {
       .def("refusal", &refusal, nb::arg("commands"))
       .def("shape", &shape_at, nb::arg("commands"))
       .def(
-          "c_header",
-          [](const Map& m, bool floats) {
-            return runs::map_c_header(m.map.data(), floats ? runs::CNumbers::floats : runs::CNumbers::doubles);
+          "save_c",
+          [](const Map& m, const std::string& path, bool floats) {
+            const auto numbers = floats ? runs::CNumbers::floats : runs::CNumbers::doubles;
+            write_file(path, runs::map_c_header(m.map.data(), numbers));
           },
-          nb::arg("floats"))
-      .def("js_module", [](const Map& m) { return runs::map_js_module(m.map.data()); })
-      .def("js_types", [](const Map& m) { return runs::map_js_types(m.map.data()); })
+          nb::arg("path"), nb::arg("floats"))
+      .def(
+          "save_js",
+          [](const Map& m, const std::string& path, const std::string& types) {
+            write_file(path, runs::map_js_module(m.map.data()));
+            write_file(types, runs::map_js_types(m.map.data()));
+          },
+          nb::arg("path"), nb::arg("types"))
       .def(
           "save_npz", [](const Map& m, const std::string& path) { write_file(path, runs::map_npz(m.map.data())); },
           nb::arg("path"));
