@@ -27,8 +27,8 @@ def block() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     return vertices, np.concatenate(tetrahedra)
 
 
-def three_chamber_beam(youngs_modulus: float = 1.0) -> softkin.Robot:
-    """youngs_modulus: [MPa]"""
+def three_chamber_beam(youngs_modulus: float = 1.0, payload_N: tuple[float, float, float] = (0, 0, 0)) -> softkin.Robot:
+    """youngs_modulus: [MPa]; payload_N: a force at the end [N]"""
     vertices, tetrahedra = block()
     middle = vertices[tetrahedra].mean(axis=1)
     regions: dict[str, object] = {
@@ -46,6 +46,7 @@ def three_chamber_beam(youngs_modulus: float = 1.0) -> softkin.Robot:
         materials=[{"youngs_modulus": youngs_modulus, "poisson_ratio": 0.4}],
         fixed=[{"region": "base"}],
         actuators=[{"name": f"air{i}", "kind": "pneumatic", "region": f"chamber{i}", "range": (1, 2)} for i in (1, 2, 3)],
+        forces=[{"name": "payload", "region": "end", "force": payload_N}],
         markers={"tip": "end"},
         name="beam",
     )

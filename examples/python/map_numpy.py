@@ -2,10 +2,7 @@
 
     robot = NumpyMap("robot.npz")
     outputs, cells = robot.fk(commands)      # a row per command; NaN where it is outside the map
-    points = robot.shape(commands, cells)    # of a map with the robot's shape: x, y, z of each vertex [mm]
-"""
-
-from __future__ import annotations
+    points = robot.shape(commands, cells)    # of a map with the robot's shape: x, y, z of each vertex [mm]"""
 
 from pathlib import Path
 from typing import Any

@@ -10,6 +10,7 @@ from ._solving import Progress
 from .errors import InvalidInput, NotConverged, SoftkinWarning
 from .grasp import Grasp, Pull
 from .inverse import Answer
+from .maps import KinematicMap, MapAnswer, MapCheck, MapInput, MapOutput, MapProgress, load_map
 from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
 from .session import Session
@@ -28,6 +29,12 @@ __all__ = [
     "Grasp",
     "Hull",
     "InvalidInput",
+    "KinematicMap",
+    "MapAnswer",
+    "MapCheck",
+    "MapInput",
+    "MapOutput",
+    "MapProgress",
     "NotConverged",
     "PathRun",
     "Progress",
@@ -48,5 +55,6 @@ __all__ = [
     "compare",
     "drive",
     "load",
+    "load_map",
     "measure",
 ]

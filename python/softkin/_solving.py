@@ -18,6 +18,7 @@ from .inverse import Answer
 from .shape import Shape
 
 if TYPE_CHECKING:
+    from .maps import KinematicMap
     from .robot import Robot
 
 Command = float | str
@@ -55,6 +56,13 @@ def _telling(progress: ProgressFunction) -> Callable[[int, float, float, float],
         return progress(Progress(iteration, step_mm, tolerance_mm, share)) is not False
 
     return told
+
+
+def _check_map(map: KinematicMap | None, polish: bool, options: _core.SolveOptions) -> None:
+    if map is None and polish:
+        raise ValueError("polish goes on from the answers of a map: it needs map")
+    if map is not None and not polish and options.for_the_solver:
+        raise ValueError("a map answers without the solver: the solver's options need polish=True")
 
 
 def _chosen_start(
@@ -97,10 +105,18 @@ class Solving:
             raise ValueError(f"{name} must be a finite number, not {number}")
         return number
 
+    def _by(
+        self, map: KinematicMap | None, polish: bool, options: _core.SolveOptions
+    ) -> _core.Session | None:
+        """What solves: a map, where there is one."""
+        _check_map(map, polish, options)
+        return self._session if map is None else map._session(self._owner, polish)
+
     def _solve(
         self,
         asked: Floats,
         start: Shape | ArrayLike | None,
+        by: _core.Session | None,
         options: _core.SolveOptions,
         progress: ProgressFunction | None,
     ) -> Shape:
@@ -111,7 +127,7 @@ class Solving:
         elif start is not None:
             positions = floats("start", start, (len(robot.rest), 3))
         tell = None if progress is None else _telling(progress)
-        return Shape(robot, _core.solve(robot._core, self._session, asked, begin, positions, options, tell))
+        return Shape(robot, _core.solve(robot._core, by, asked, begin, positions, options, tell))
 
     def solve(
         self,
@@ -119,6 +135,8 @@ class Solving:
         /,
         *,
         start: Shape | ArrayLike | None = None,
+        map: KinematicMap | None = None,
+        polish: bool = False,
         solver: str = "newton",
         tolerance_mm: float | None = None,
         max_iterations: int = DEFAULT_ITERATIONS,
@@ -133,6 +151,8 @@ class Solving:
         actuation       (m,) in the order of `robot.actuators`, or commands by name
         commands        by the actuator's name: a number in its unit, or a text with one: air="50 kPa"
         start           shape where the search begins, or (n, 3) positions [mm]; None: rest
+        map             of this robot: answers in the solver's place; outside of it the status is 'limit'
+        polish          the solver goes on from the map's answer
         solver          'newton', or for target shapes 'local-global': Algorithm 1 of the paper
         tolerance_mm    largest move of a vertex at which it stops [mm]; None: 8e-8 of the robot's size
         max_iterations  >= 1
@@ -143,7 +163,8 @@ class Solving:
         returns         not converging is its status
         """
         options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        return self._solve(self._actuation(actuation, commands), start, options, progress)
+        by = self._by(map, polish, options)
+        return self._solve(self._actuation(actuation, commands), start, by, options, progress)
 
     def jacobian(self, shape: Shape, markers: str | Sequence[str] | None = None) -> Floats:
         """Derivatives of marker positions by commands.
@@ -194,6 +215,7 @@ class Solving:
         last: Answer | None,
         prefer: Mapping[str, Command] | None,
         fix: Mapping[str, Command] | Sequence[str] | None,
+        by: _core.Session | None,
         options: _core.InverseOptions,
         progress: ProgressFunction | None,
     ) -> Answer:
@@ -216,7 +238,7 @@ class Solving:
                 preferred[robot._place(name)] = self._number(name, value)
         core = _core.inverse(
             goals,
-            self._session,
+            by,
             begin,
             None if shape is None else shape._core,
             None if last is None else last._core,
@@ -240,6 +262,8 @@ class Solving:
         workspace: str | os.PathLike[str] | None = None,
         prefer: Mapping[str, Command] | None = None,
         fix: Mapping[str, Command] | Sequence[str] | None = None,
+        map: KinematicMap | None = None,
+        polish: bool = False,
         method: str = "newton",
         tolerance_mm: float | None = None,
         max_equilibria: int = 200,
@@ -266,6 +290,7 @@ class Solving:
         workspace       CSV of a workspace, in place of start: its sample nearest to the goals
         prefer          where several actuations reach the goals, the one nearest to these commands; None: to the start
         fix             actuators that do not change: names, or commands by name
+        map, polish     as solve's
         method          'newton', or 'gradient': Algorithm 2 of Fang et al. 2020
         tolerance_mm    error of every goal at which they are reached [mm]; None: 0.001, gradient 0.2
         max_equilibria  newton: gives up after so many
@@ -278,4 +303,4 @@ class Solving:
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         start = _chosen_start(goals, start, workspace)
-        return self._solve_inverse(goals, start, None, prefer, fix, options, progress)
+        return self._solve_inverse(goals, start, None, prefer, fix, self._by(map, polish, statics), options, progress)

@@ -17,6 +17,7 @@ from ._arrays import Floats, Indices, floats, indices, vector
 from ._solving import Command
 from .errors import SoftkinWarning
 from .grasp import Grasp, _Grasps
+from .maps import KinematicMap, _Maps
 from .runs import FollowRun, PathRun
 from .walk import WalkRun, _Walks
 from .workspace import _Workspaces
@@ -103,7 +104,7 @@ def _add_region(mesh: _core.Mesh, sizes: list[int], name: str, value: Any) -> di
     return None
 
 
-class Robot(_Walks, _Grasps, _Workspaces):
+class Robot(_Walks, _Grasps, _Workspaces, _Maps):
     """A compiled robot; immutable. Every solve stands for itself, so that threads may share it."""
 
     def __init__(
@@ -382,4 +383,4 @@ def _unpickled(state: bytes) -> Robot:
 
 
 # what annotations of the mixins name
-_ = (Command, FollowRun, Grasp, PathRun, WalkRun)
+_ = (Command, FollowRun, Grasp, KinematicMap, PathRun, WalkRun)

@@ -14,12 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, floats
-from ._solving import DEFAULT_ITERATIONS, Command, Commands, Solving, _options
+from ._solving import DEFAULT_ITERATIONS, Command, Commands, Solving, _check_map, _options
 from .errors import SoftkinWarning
 from .shape import Shape
 from .table import Table
 
 if TYPE_CHECKING:
+    from .maps import KinematicMap
     from .robot import Robot
 
     AnyRun = _core.PathRun | _core.FollowRun | _core.WalkRun
@@ -171,6 +172,8 @@ class _Runs(Solving):
         *,
         times: ArrayLike | None = None,
         store: PathLike | None = None,
+        map: KinematicMap | None = None,
+        polish: bool = False,
         solver: str = "newton",
         tolerance_mm: float | None = None,
         max_iterations: int = DEFAULT_ITERATIONS,
@@ -185,11 +188,15 @@ class _Runs(Solving):
         times     (k,) [s], ascending
         store     folder of report.json and path.pvd with the shapes: a run that was stopped goes on where it was
         commands  of actuators that the steps do not name
+        map       of this robot: answers in the solver's place
+        polish    the solver goes on from the map's answers
         others    as solve's
         """
         options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
         core = self._steps("steps", steps, times, commands)
-        return PathRun(self._owner, _core.PathRun(self._owner._core, core, options, _folder(store)))
+        _check_map(map, polish, options)
+        by = None if map is None else map._core
+        return PathRun(self._owner, _core.PathRun(self._owner._core, by, polish, core, options, _folder(store)))
 
     def _steps(self, name: str, steps: Steps, times: ArrayLike | None, others: Mapping[str, Command]) -> _core.Steps:
         """others: commands of actuators that the steps do not name"""
@@ -218,6 +225,8 @@ class _Runs(Solving):
         workspace: PathLike | None = None,
         store: PathLike | None = None,
         predict: bool = True,
+        map: KinematicMap | None = None,
+        polish: bool = False,
         method: str = "newton",
         tolerance_mm: float | None = None,
         descents: int = 30,
@@ -238,11 +247,13 @@ class _Runs(Solving):
         start        commands from which the first waypoint is sought; None: rest
         workspace    CSV of a workspace: the first waypoint is sought from its nearest sample
         store        folder as `softkin follow -o` writes it: a run that was stopped goes on where it was
+        map, polish  as path's
         tolerance_mm distance from a waypoint at which it is reached [mm]; None: 0.001, gradient 0.2
         others       as inverse's
         """
         robot = self._owner
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
+        _check_map(map, polish, statics)
         inverse = _core.InverseOptions(method, tolerance_mm, 200, descents, 3, statics)
         name = "the path"
         if isinstance(path, (str, os.PathLike)):
@@ -259,6 +270,8 @@ class _Runs(Solving):
         begin = None if start is None else self._actuation(start, {})
         core = _core.FollowRun(
             robot._core,
+            None if map is None else map._core,
+            polish,
             places,
             name,
             inverse,

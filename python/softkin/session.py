@@ -23,6 +23,7 @@ from .inverse import Answer
 from .shape import Shape
 
 if TYPE_CHECKING:
+    from .maps import KinematicMap
     from .robot import Robot
 
 __all__ = ["Session"]
@@ -55,6 +56,8 @@ class Session(Solving):
         /,
         *,
         start: Shape | ArrayLike | None = None,
+        map: KinematicMap | None = None,
+        polish: bool = False,
         solver: str = "newton",
         tolerance_mm: float | None = None,
         max_iterations: int = DEFAULT_ITERATIONS,
@@ -66,8 +69,9 @@ class Session(Solving):
     ) -> Shape:
         """As Robot.solve, from the last equilibrium where no start is given."""
         options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        by = self._by(map, polish, options)
         found = self._solve(
-            self._actuation(actuation, commands), self._last if start is None else start, options, progress
+            self._actuation(actuation, commands), self._last if start is None else start, by, options, progress
         )
         if found.converged:
             self._last, self._answer = found, None
@@ -86,6 +90,8 @@ class Session(Solving):
         workspace: str | os.PathLike[str] | None = None,
         prefer: Mapping[str, Command] | None = None,
         fix: Mapping[str, Command] | Sequence[str] | None = None,
+        map: KinematicMap | None = None,
+        polish: bool = False,
         method: str = "newton",
         tolerance_mm: float | None = None,
         max_equilibria: int = 200,
@@ -106,7 +112,9 @@ class Session(Solving):
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         start = _chosen_start(goals, start, workspace)
         last = self._answer if start is None else None
-        found = self._solve_inverse(goals, self._last if start is None else start, last, prefer, fix, options, progress)
+        begin = self._last if start is None else start
+        by = self._by(map, polish, statics)
+        found = self._solve_inverse(goals, begin, last, prefer, fix, by, options, progress)
         if found.shape.converged:
             self._last, self._answer = found.shape, found
         return found

@@ -140,11 +140,13 @@ void bind_robot(nb::module_& module) {
       .def("marker", &Robot::marker, nb::arg("name"))
       .def("actuator", &Robot::actuator, nb::arg("name"));
   nb::class_<Session>(module, "Session", "Threads and factors that are kept from call to call.")
-      .def("__init__",
-           [](Session* self, RobotPtr robot) {
-             const nb::gil_scoped_release released;
-             new (self) Session(std::move(robot));
-           })
+      .def(
+          "__init__",
+          [](Session* self, RobotPtr robot, MapPtr map, bool polish) {
+            const nb::gil_scoped_release released;
+            new (self) Session(std::move(robot), std::move(map), polish);
+          },
+          nb::arg("robot"), nb::arg("map").none() = nb::none(), nb::arg("polish") = false)
       .def("forget", [](const Session& session) { session.statics.forget(); });
 }
 

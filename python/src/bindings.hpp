@@ -16,6 +16,7 @@ void bind_mesh_files(nanobind::module_& module);
 void bind_runs(nanobind::module_& module);
 void bind_grasp(nanobind::module_& module);
 void bind_workspace(nanobind::module_& module);
+void bind_map(nanobind::module_& module);
 void bind_compare(nanobind::module_& module);
 void bind_calibrate(nanobind::module_& module);
 void bind_drive(nanobind::module_& module);

@@ -70,7 +70,9 @@ std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, c
   const auto work = [robot, session, start, last, options, plain = goals.plain(),
                      begin =
                          from ? vector_of(*from) : robot->model().rest_actuation()](const ProgressCallback& callback) {
-    const SessionPtr with = session ? session : std::make_shared<Session>(robot);
+    const bool own = !session || session->polishes;
+    const SessionPtr with =
+        own ? std::make_shared<Session>(robot, session ? session->map : nullptr, session != nullptr) : session;
     InverseOptions known = options;
     if (last && last->found.sensitivity.regular) known.start_sensitivity = &last->found.sensitivity;
     return start ? solve_inverse(robot->model(), with->statics, plain, start->found(), known, callback)

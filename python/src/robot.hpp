@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/kinematics/map.hpp>
 #include <softkin/runs/records.hpp>
 #include <softkin/statics/statics.hpp>
 
@@ -39,11 +40,28 @@ class Robot : public std::enable_shared_from_this<Robot> {
 };
 using RobotPtr = std::shared_ptr<Robot>;
 
-/// Statics of its own, which keep threads and factors from call to call: for one user at a time.
+/// A kinematic map; not modified.
+struct Map : std::enable_shared_from_this<Map> {
+  /// of: for messages, its file
+  Map(MapData data, std::string of) : map(std::move(data)), name(std::move(of)) {}
+
+  KinematicMap map;
+  std::string name;
+};
+using MapPtr = std::shared_ptr<Map>;
+
+/// Statics of its own, which keep threads and factors from call to call: for one user at a time. Those of a map keep
+/// nothing, so that several may use them at once.
 struct Session : std::enable_shared_from_this<Session> {
   explicit Session(RobotPtr of) : robot(std::move(of)), statics(robot->model()) {}
+  /// by      null: none; answers in the solver's place
+  /// polish  the solver goes on from its answers
+  /// throws  InvalidInput where it is the map of another robot, or one without shape
+  Session(RobotPtr of, MapPtr by, bool polish);
 
   RobotPtr robot;
+  MapPtr map;
+  bool polishes = false;
   Statics statics;
 };
 using SessionPtr = std::shared_ptr<Session>;

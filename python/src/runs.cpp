@@ -92,12 +92,12 @@ class Runner {
 
 class PathRun : public Runner<runs::StepRecord> {
  public:
-  PathRun(const RobotPtr& robot, Steps steps, const std::string& name, const StaticsOptions& options,
-          const std::string& store)
+  PathRun(const RobotPtr& robot, const MapPtr& map, bool polish, Steps steps, const std::string& name,
+          const StaticsOptions& options, const std::string& store)
       : Runner(robot, options),
-        statics_(model()),
+        session_(robot, map, polish),
         steps_(std::move(steps)),
-        job_(model(), statics_, steps_, name, options),
+        job_(model(), session_.statics, steps_, name, options),
         run_(model(), job_, files_in(store), runs::report_head(model(), model().name, options), {}) {
     resume(store);
   }
@@ -109,7 +109,7 @@ class PathRun : public Runner<runs::StepRecord> {
  private:
   [[nodiscard]] runs::Run<runs::StepRecord>& run() override { return run_; }
 
-  Statics statics_;
+  Session session_;
   Steps steps_;
   runs::PathJob job_;
   runs::Run<runs::StepRecord> run_;
@@ -117,11 +117,12 @@ class PathRun : public Runner<runs::StepRecord> {
 
 class FollowRun : public Runner<runs::WaypointRecord> {
  public:
-  FollowRun(const RobotPtr& robot, MarkerPath path, const std::string& name, const TrajectoryOptions& options,
-            const std::string& store)
+  FollowRun(const RobotPtr& robot, const MapPtr& map, bool polish, MarkerPath path, const std::string& name,
+            const TrajectoryOptions& options, const std::string& store)
       : Runner(robot, options.inverse.statics),
-        statics_(model()),
-        follow_(model(), statics_, {model().name, name, std::move(path)}, options, runs::FollowFolder(made(store))) {
+        session_(robot, map, polish),
+        follow_(model(), session_.statics, {model().name, name, std::move(path)}, options,
+                runs::FollowFolder(made(store))) {
     resume(store);
   }
   void finish() override { follow_.finish(); }
@@ -149,7 +150,7 @@ class FollowRun : public Runner<runs::WaypointRecord> {
  private:
   [[nodiscard]] runs::Run<runs::WaypointRecord>& run() override { return follow_.run(); }
 
-  Statics statics_;
+  Session session_;
   runs::FollowRun follow_;
 };
 
@@ -276,9 +277,12 @@ void bind_paths(nb::module_& module) {
   bind_runner<PathRun>(module, "PathRun", "Equilibria along a path of actuations, each from the last.")
       .def(
           "__init__",
-          [](PathRun* self, const RobotPtr& robot, const NamedSteps& path, const StaticsOptions& options,
-             const std::string& store) { new (self) PathRun(robot, path.steps, path.name, options, store); },
-          nb::arg("robot"), nb::arg("path"), nb::arg("options"), nb::arg("store"));
+          [](PathRun* self, const RobotPtr& robot, const MapPtr& map, bool polish, const NamedSteps& path,
+             const StaticsOptions& options, const std::string& store) {
+            new (self) PathRun(robot, map, polish, path.steps, path.name, options, store);
+          },
+          nb::arg("robot"), nb::arg("map").none(), nb::arg("polish"), nb::arg("path"), nb::arg("options"),
+          nb::arg("store"));
   bind_runner<WalkRun>(module, "WalkRun", "A gait that is walked, each equilibrium from the last.")
       .def(
           "__init__",
@@ -314,17 +318,17 @@ void bind_runs(nb::module_& module) {
   bind_runner<FollowRun>(module, "FollowRun", "Inverse kinematics along a path of markers.")
       .def(
           "__init__",
-          [](FollowRun* self, const RobotPtr& robot, const MarkerPath& path, const std::string& name,
-             const InverseOptions& inverse, bool predict, const std::optional<VectorIn>& start,
+          [](FollowRun* self, const RobotPtr& robot, const MapPtr& map, bool polish, const MarkerPath& path,
+             const std::string& name, const InverseOptions& inverse, bool predict, const std::optional<VectorIn>& start,
              const std::string& workspace, const std::string& store) {
             TrajectoryOptions options{inverse, predict, start ? vector_of(*start) : Actuation()};
             if (!workspace.empty() && !path.waypoints.empty())
               options.start =
                   runs::nearest_actuation(robot->model(), workspace, goals_of(path, path.waypoints.front()));
-            new (self) FollowRun(robot, path, name, options, store);
+            new (self) FollowRun(robot, map, polish, path, name, options, store);
           },
-          nb::arg("robot"), nb::arg("path"), nb::arg("name"), nb::arg("inverse"), nb::arg("predict"),
-          nb::arg("start").none(), nb::arg("workspace"), nb::arg("store"))
+          nb::arg("robot"), nb::arg("map").none(), nb::arg("polish"), nb::arg("path"), nb::arg("name"),
+          nb::arg("inverse"), nb::arg("predict"), nb::arg("start").none(), nb::arg("workspace"), nb::arg("store"))
       .def("commands", &FollowRun::commands)
       .def("errors", &FollowRun::errors)
       .def("asked", &FollowRun::asked)

@@ -19,7 +19,7 @@ ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn&
                const std::optional<PointsIn>& positions, StaticsOptions options, const Tell& progress) {
   if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
   State from = positions ? State{points_of(*positions)} : start ? State() : robot->statics().rest();
-  options.reuse_factor = session != nullptr;
+  options.reuse_factor = keeps(session.get());
   const auto work = [robot, session, start, options, from = std::move(from),
                      asked = vector_of(actuation)](const ProgressCallback& callback) {
     const State& begin = start ? start->found().state : from;
@@ -65,7 +65,15 @@ void bind_solve(nb::module_& module) {
             options->stable = stable;
           },
           nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations"), nb::arg("anderson"),
-          nb::arg("threads"), nb::arg("stable"));
+          nb::arg("threads"), nb::arg("stable"))
+      .def_prop_ro(
+          "for_the_solver",
+          [](const StaticsOptions& options) {
+            const StaticsOptions usual;
+            return options.solver != usual.solver || options.step_tolerance_mm != usual.step_tolerance_mm ||
+                   options.max_iterations != usual.max_iterations || options.stable;
+          },
+          "Is something asked that only the solver can do?");
   module.def("solve", &solve, nb::arg("robot"), nb::arg("session").none(), nb::arg("actuation"),
              nb::arg("start").none(), nb::arg("positions").none(), nb::arg("options"), nb::arg("progress").none());
   module.def("jacobian", &jacobian_of, nb::arg("shape"), nb::arg("session").none(), nb::arg("markers"),

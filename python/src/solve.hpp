@@ -24,6 +24,11 @@ auto watched_solve(const Robot& robot, const Tell& tell, Work work) {
   return session != nullptr ? session->statics : robot.statics();
 }
 
+/// May it use what an earlier solve left behind?
+[[nodiscard]] inline bool keeps(const Session* session) {
+  return session != nullptr && !session->map;
+}
+
 /// The content of a PNG file, as runs::image_png draws it.
 [[nodiscard]] nb::bytes picture_of(const Shape& shape, const std::vector<double>& view, const std::string& title,
                                    const std::vector<Goal>& goals = {});

@@ -33,6 +33,16 @@ def test_the_tour_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert (tmp_path / "bent.vtu").exists() and (tmp_path / "bent.png").exists()
 
 
+def test_the_map_that_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (shown,) = [block for block in blocks("python.md", "python") if "robot.map(" in block]
+    monkeypatch.chdir(tmp_path)
+    robot = softkin.load(ROOT / "examples/three_chamber_actuator/three_chamber_actuator.yaml")
+    names: dict[str, Any] = {"robot": robot, "softkin": softkin, "np": np}
+    exec(compile(shown, "docs/python.md", "exec"), names)
+    assert names["answer"].jacobian("tip").shape == (100_000, 3, 3)
+    assert repr(softkin.load_map("actuator.skmap")) == repr(names["model"])
+
+
 def hose(file: Path) -> None:
     """A tube of 60 x 20 x 20 mm with a closed hollow, as Abaqus writes it."""
     vertices, tetrahedra = block((6, 4, 4), (60, 20, 20))

@@ -40,6 +40,7 @@ assert max(mesh.deviation_mm.values()) <= 3 * mesh.tolerance_mm  # no two runs a
 assert abs(mesh.volumes["chamber"].mesh_mm3 / 22518 - 1) < 2e-3 > abs(mesh.volumes["body"].mesh_mm3 / 51942 - 1)
 """,
     "first_bend": "assert shape.actuation[0] == 1.4 and shape.converged",
+    "map_closed_loop": "assert np.median(errors) < 0.03 < 0.3 < np.median(blind) and np.median(times) < 2e-4",
     "inverse_and_path": "assert answer.reached and not far.reached and waypoint.number == 12 and waypoint.reached",
 }
 
