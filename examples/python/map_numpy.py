@@ -44,8 +44,8 @@ class NumpyMap:
         for change in range(4 * len(cables) + 1):  # cables that would push go slack, ones too long are taken up
             pull = (taut[:, None] >> cables & 1).astype(bool)
             by = np.where(pull, -outputs[:, a["cable_tensions"]], outputs[:, a["cable_ratios"]] - asked * (1 + 1e-12))
-            if change >= 2 * len(cables):  # round in circles: less than the accuracy is not wrong
-                by -= np.where(pull, a["accuracy"][a["cable_tensions"]], a["accuracy"][a["cable_ratios"]])
+            accuracy = a["accuracy"][np.where(pull, a["cable_tensions"], a["cable_ratios"])]
+            by -= accuracy * (change >= 2 * len(cables))  # in circles: less than that is not wrong
             by[((by > 0) & pull).any(axis=1)[:, None] & ~pull] = 0  # pushing ones first
             wrong = (by > 0).any(axis=1)
             if not wrong.any() or change == 4 * len(cables):
