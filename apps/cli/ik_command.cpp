@@ -159,7 +159,7 @@ void add_ik(CLI::App& app, Run& run) {
       "the nearest point that the ranges allow. Exit code: 0 reached, 1 not reached, not converged or interrupted,\n"
       "2 bad usage or bad input.\n"
       "Example:\n"
-      "  softkin ik examples/three_chamber_actuator/three_chamber_actuator.yaml --target tip=10,-5,138",
+      "  softkin ik examples/three_chamber_actuator/three_chamber_actuator.yaml --target tip=10,-5,140",
       add_options, run_ik);
 }
 
