@@ -205,8 +205,8 @@ int run_follow(const FollowOptions& options) {
   const OutputFolders folders(outputs);
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
-  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n" + answers.remark());
-  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path)}, trajectory,
+  if (!options.json) print(answers.head(options));
+  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path), answers.map()}, trajectory,
                          options.files());
   return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow).show();
 }

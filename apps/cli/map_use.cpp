@@ -4,6 +4,8 @@
 #include <softkin/kinematics/map_robot.hpp>
 #include <softkin/runs/map_file.hpp>
 
+#include "run_text.hpp"
+
 namespace softkin::cli {
 
 namespace {
@@ -26,7 +28,7 @@ void add_map_use(CLI::App& command, MapUse& use) {
   add_value(command, "--map", use.map, "F.skmap",
             "Kinematic map of the robot (softkin map): answers in its place,\nin microseconds, within the errors that "
             "it tells");
-  command.add_flag("--polish", use.polish, "With --map: the solver goes on from the map's answers");
+  command.add_flag("--polish", use.polish, "With --map: the solver goes on from the map's answers, to its\nown accuracy");
 }
 
 void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
@@ -43,9 +45,27 @@ void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<s
 }
 
 Answers::Answers(const Model& model, const MapUse& use)
-    : map_(asked_map(model, use.map)), statics_(statics_of(model, map_, use.polish)) {
-  if (map_)
-    remark_ = use.map + ": " + runs::map_text(map_->data()) + (use.polish ? "; polished by the solver" : "") + "\n";
+    : model_(model), map_(asked_map(model, use.map)), statics_(statics_of(model, map_, use.polish)) {
+  if (map_) used_.emplace(runs::UsedMap{use.map, map_->data(), use.polish});
+}
+
+std::string Answers::solver(const SolveOptions& options) const {
+  return used_ && !used_->polished ? "" : options.solver_name;
+}
+
+std::string Answers::head(const SolveOptions& options) const {
+  std::string text = options.scene + ": " + summary(model_, solver(options)) + "\n";
+  if (used_)
+    text += (used_->polished ? "begun from the map " : "answered by the map ") + used_->file + ": " +
+            runs::map_text(used_->data) + "\n";
+  return text;
+}
+
+InverseResult Answers::inverse(const std::vector<Goal>& goals, const Actuation& start, const InverseOptions& options,
+                               const ProgressCallback& progress) const {
+  if (used_ && used_->polished)
+    return solve_inverse_by_map(model_, *map_, statics_, goals, start, options, progress);
+  return solve_inverse_from(model_, statics_, goals, start, options, progress);
 }
 
 }  // namespace softkin::cli
