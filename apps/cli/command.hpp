@@ -33,8 +33,8 @@ inline CLI::Option* add_repeated(CLI::App& command, const std::string& name, std
 /// A subcommand whose options are kept for the run, which is that of a command of its own where one was chosen.
 /// declare: adds them; act: returns the exit code
 template <class Options>
-CLI::App* add_command(CLI::App& app, Run& run, const std::string& name, const std::string& what, const std::string& footer,
-                 void (*declare)(CLI::App&, Options&), int (*act)(const Options&)) {
+CLI::App* add_command(CLI::App& app, Run& run, const std::string& name, const std::string& what,
+                      const std::string& footer, void (*declare)(CLI::App&, Options&), int (*act)(const Options&)) {
   CLI::App* command = app.add_subcommand(name, what);
   const auto options = std::make_shared<Options>();
   declare(*command, *options);

@@ -11,9 +11,12 @@
 #include <softkin/io/stream_log.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/table.hpp>
+#include <softkin/runs/map_commands.hpp>
+#include <softkin/runs/map_file.hpp>
 #include <softkin/runs/reports.hpp>
 
 #include "command.hpp"
+#include "map_use.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 
@@ -26,7 +29,7 @@ namespace {
 /// What the user asks of `softkin drive`. An empty file name: not given.
 struct DriveOptions {
   SolveOptions robot;  // scene alone
-  std::string commands, hardware, pressures;
+  std::string commands, hardware, pressures, map;
   std::string gcode, schedule, log;  // to write
   std::string port;
   int baud = 115200;
@@ -78,12 +81,16 @@ void add_options(CLI::App& command, DriveOptions& options) {
   add_value(
       command, "--pressures", options.pressures, "F.json",
       "Report of the run that made the commands (follow, fk): the\npressures of chambers that are commanded by volume");
+  add_value(command, "--map", options.map, "F.skmap",
+            "Kinematic map of the robot (softkin map), which knows these\npressures; rows outside it are refused");
   command.add_flag("--return", options.return_home, "After the last row go back home, for the next run");
   add_outputs(command, options);
   command.add_flag("--json", options.json, "Print a report instead of the tables");
 }
 
 void check_usage(const DriveOptions& options) {
+  if (!options.map.empty() && !options.pressures.empty())
+    throw InvalidInput("--map and --pressures both tell the chambers' pressures: give one of them");
   if (options.dry_run && !options.port.empty())
     throw InvalidInput("--dry-run sends nothing, and --port sends: give one of them");
   if (!options.log.empty() && options.port.empty())
@@ -249,9 +256,14 @@ std::string stream_text(const DriveOptions& options, const drive::GcodeProgram& 
   return text;
 }
 
-drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs) {
+/// What is driven; map: that gave pressures, where one was asked for.
+drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs, std::optional<KinematicMap>& map) {
   const Model model = asked_robot(options.robot, inputs);
   Commands commands = read_commands(model, options.commands, options.pressures);
+  if (!options.map.empty()) {
+    map = read_map_of(model, options.map);
+    runs::take_pressures(model, *map, options.map, commands);
+  }
   const fs::path hardware = options.hardware_file();
   if (options.hardware.empty() && !fs::exists(hardware))
     throw InvalidInput({hardware.string()},
@@ -271,10 +283,12 @@ void check_asked(const DriveOptions& options, const drive::Plan& plan) {
 int run_drive(const DriveOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.robot.scene, options.commands, options.hardware_file()};
-  if (!options.pressures.empty()) inputs.emplace_back(options.pressures);
+  for (const std::string& file : {options.pressures, options.map})
+    if (!file.empty()) inputs.emplace_back(file);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const drive::Plan plan = plan_of(options, inputs);
+  std::optional<KinematicMap> map;
+  const drive::Plan plan = plan_of(options, inputs, map);
   line.clear();
   check_asked(options, plan);
   const std::vector<Output> outputs =
@@ -283,7 +297,10 @@ int run_drive(const DriveOptions& options) {
   const OutputFolders folders(outputs);
   std::optional<drive::SerialPort> port;  // before anything is written
   if (!options.port.empty()) port.emplace(options.port, options.baud);
-  if (!options.json) print(plan_text(plan) + (options.dry_run ? dry_text(plan) : ""));
+  if (!options.json)
+    print(plan_text(plan) +
+          (map ? "pressures by the map " + options.map + ": " + runs::map_text(map->data()) + "\n" : "") +
+          (options.dry_run ? dry_text(plan) : ""));
   if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
   if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
   std::optional<drive::StreamReport> sent;
@@ -294,7 +311,12 @@ int run_drive(const DriveOptions& options) {
     std::fprintf(stderr, "softkin: %s", text.c_str());
   else if (!options.json)
     print(text);
-  if (options.json) print(runs::drive_report(options.robot.scene, plan, options.dry_run, sent ? &*sent : nullptr));
+  if (options.json) {
+    std::optional<runs::UsedMap> used;
+    if (map) used.emplace(runs::UsedMap{options.map, map->data()});
+    print(runs::drive_report(options.robot.scene, plan, options.dry_run, sent ? &*sent : nullptr,
+                             used ? &*used : nullptr));
+  }
   return failed ? not_converged : done;
 }
 

@@ -223,8 +223,7 @@ int run_fk(const FkOptions& options) {
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
-  if (!options.json)
-    print(answers.head(options) + curve_remarks(model, options.settings));
+  if (!options.json) print(answers.head(options) + curve_remarks(model, options.settings));
   return FkRun(model, answers, options, steps).run();
 }
 

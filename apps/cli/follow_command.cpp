@@ -206,8 +206,8 @@ int run_follow(const FollowOptions& options) {
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
   if (!options.json) print(answers.head(options));
-  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path), answers.map()}, trajectory,
-                         options.files());
+  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path), answers.map()},
+                         trajectory, options.files());
   return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow).show();
 }
 

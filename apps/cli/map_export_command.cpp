@@ -36,11 +36,11 @@ struct Exported {
 
 void add_options(CLI::App& command, ExportOptions& options) {
   command.add_option("MAP", options.map, "Of softkin map")->type_name("F.skmap")->required();
-  add_value(command, "--c", options.c, "F.h",
-            "A header of C99 for microcontrollers, that includes nothing:\noutputs, their Jacobian, inverse kinematics");
+  add_value(
+      command, "--c", options.c, "F.h",
+      "A header of C99 for microcontrollers, that includes nothing:\noutputs, their Jacobian, inverse kinematics");
   command.add_flag("--float", options.floats, "With --c: numbers of 4 bytes instead of 8");
-  add_value(command, "--numpy", options.numpy, "F.npz",
-            "All arrays, for numpy alone (examples/python/map_numpy.py)");
+  add_value(command, "--numpy", options.numpy, "F.npz", "All arrays, for numpy alone (examples/python/map_numpy.py)");
   add_value(command, "--js", options.js, "F.mjs",
             "A module for browsers and node, and beside it F.d.mts with its\ntypes: outputs, their Jacobian, inverse "
             "kinematics, the shape");
@@ -66,8 +66,7 @@ std::string c_text(const MapData& data, const std::string& header) {
 std::vector<Exported> exported(const ExportOptions& options, const MapData& data) {
   std::vector<Exported> all;
   if (!options.c.empty()) {
-    std::string header =
-        runs::map_c_header(data, options.floats ? runs::CNumbers::floats : runs::CNumbers::doubles);
+    std::string header = runs::map_c_header(data, options.floats ? runs::CNumbers::floats : runs::CNumbers::doubles);
     std::string what = c_text(data, header);
     all.push_back({options.c, std::move(header), std::move(what)});
   }

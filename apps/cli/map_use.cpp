@@ -10,13 +10,6 @@ namespace softkin::cli {
 
 namespace {
 
-std::optional<KinematicMap> asked_map(const Model& model, const std::string& file) {
-  if (file.empty()) return std::nullopt;
-  MapData data = runs::read_map(file);
-  runs::check_robot(data, model, file);
-  return KinematicMap(std::move(data));
-}
-
 Statics statics_of(const Model& model, const std::optional<KinematicMap>& map, bool polish) {
   if (!map) return Statics(model);
   return {model, shapes_of(model, *map), polish ? Given::starts : Given::answers};
@@ -24,11 +17,18 @@ Statics statics_of(const Model& model, const std::optional<KinematicMap>& map, b
 
 }  // namespace
 
+KinematicMap read_map_of(const Model& model, const std::string& file) {
+  MapData data = runs::read_map(file);
+  runs::check_robot(data, model, file);
+  return KinematicMap(std::move(data));
+}
+
 void add_map_use(CLI::App& command, MapUse& use) {
   add_value(command, "--map", use.map, "F.skmap",
             "Kinematic map of the robot (softkin map): answers in its place,\nin microseconds, within the errors that "
             "it tells");
-  command.add_flag("--polish", use.polish, "With --map: the solver goes on from the map's answers, to its\nown accuracy");
+  command.add_flag("--polish", use.polish,
+                   "With --map: the solver goes on from the map's answers, to its\nown accuracy");
 }
 
 void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
@@ -45,7 +45,9 @@ void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<s
 }
 
 Answers::Answers(const Model& model, const MapUse& use)
-    : model_(model), map_(asked_map(model, use.map)), statics_(statics_of(model, map_, use.polish)) {
+    : model_(model),
+      map_(use.map.empty() ? std::nullopt : std::optional(read_map_of(model, use.map))),
+      statics_(statics_of(model, map_, use.polish)) {
   if (map_) used_.emplace(runs::UsedMap{use.map, map_->data(), use.polish});
 }
 
@@ -63,8 +65,7 @@ std::string Answers::head(const SolveOptions& options) const {
 
 InverseResult Answers::inverse(const std::vector<Goal>& goals, const Actuation& start, const InverseOptions& options,
                                const ProgressCallback& progress) const {
-  if (used_ && used_->polished)
-    return solve_inverse_by_map(model_, *map_, statics_, goals, start, options, progress);
+  if (used_ && used_->polished) return solve_inverse_by_map(model_, *map_, statics_, goals, start, options, progress);
   return solve_inverse_from(model_, statics_, goals, start, options, progress);
 }
 

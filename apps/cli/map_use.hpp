@@ -24,6 +24,9 @@ void add_map_use(CLI::App& command, MapUse& use);
 /// Throws InvalidInput where the options contradict each other. inputs: the map is added
 void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
 
+/// throws  InvalidInput on a file that is no map, or not of this robot
+[[nodiscard]] KinematicMap read_map_of(const Model& model, const std::string& file);
+
 /// Equilibria of the solver, or of the map that was asked for; the solver's begun from the map's.
 class Answers {
  public:

@@ -297,13 +297,14 @@ RecordLog inverse_report(const Model& model, const std::string& scene, const std
 }
 
 std::string drive_report(const std::string& scene, const drive::Plan& plan, bool whole,
-                         const drive::StreamReport* stream) {
+                         const drive::StreamReport* stream, const UsedMap* map) {
   const drive::Machine& machine = plan.machine;
   Json json = {{"softkin", SOFTKIN_VERSION},
                {"scene", scene},
                {"commands", plan.commands.file},
                {"hardware", machine.file},
                {"defaults", machine.defaults}};
+  if (map != nullptr) json["pressures_by_map"] = map_json(*map);
   for (std::size_t i = 0; i < machine.tendons.size(); ++i)
     json["tendons"][machine.tendons[i].name] = tendon_json(plan, i);
   for (std::size_t i = 0; i < machine.chambers.size(); ++i) {

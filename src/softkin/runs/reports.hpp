@@ -63,7 +63,8 @@ struct InverseRecord : StepRecord {
 /// scene   its file, as the user named it
 /// whole   with the program and the schedule
 /// stream  how the program was sent; null: it was not
+/// map     that gave pressures; null: none
 [[nodiscard]] std::string drive_report(const std::string& scene, const drive::Plan& plan, bool whole,
-                                       const drive::StreamReport* stream);
+                                       const drive::StreamReport* stream, const UsedMap* map = nullptr);
 
 }  // namespace softkin::runs
