@@ -10,13 +10,13 @@
 #include <softkin/io/scene/hardware.hpp>
 #include <softkin/io/stream_log.hpp>
 #include <softkin/io/table/commands.hpp>
-#include <softkin/io/table/table.hpp>
+#include <softkin/runs/answers.hpp>
+#include <softkin/runs/drive_text.hpp>
 #include <softkin/runs/map_commands.hpp>
 #include <softkin/runs/map_file.hpp>
 #include <softkin/runs/reports.hpp>
 
 #include "command.hpp"
-#include "map_use.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 
@@ -100,62 +100,12 @@ void check_usage(const DriveOptions& options) {
         "nothing is to be done: give --dry-run (print), --gcode F, --schedule F.csv (write) or --port (send)");
 }
 
-Column words(const std::string& title, bool left) {
-  return {.key = title, .left = left};
-}
-
-std::string range(double low, double high) {
-  return decimal(low, 2) + " to " + decimal(high, 2);
-}
-
-std::string tendon_table(const drive::Plan& plan) {
-  Table table{{words("tendon", true), words("axis", true), words("length [mm]", false), words("limits [mm]", false),
-               words("steps from home", false), words("drum turns", false), words("speed [mm/s]", false),
-               words("limit [mm/s]", false)}};
-  for (std::size_t i = 0; i < plan.machine.tendons.size(); ++i) {
-    const drive::Tendon& tendon = plan.machine.tendons[i];
-    const drive::TendonUse use = drive::use_of(plan, i);
-    table.rows.push_back({printable(tendon.name), std::string(1, tendon.axis), range(use.shortest_mm, use.longest_mm),
-                          range(tendon.shortest_mm, tendon.longest_mm),
-                          std::to_string(use.lowest) + " to " + std::to_string(use.highest),
-                          use.turns ? decimal(*use.turns, 2) : "-", decimal(use.fastest_mm_per_s, 2),
-                          decimal(tendon.max_speed_mm_per_s, 2)});
-  }
-  return table_text(table);
-}
-
-std::string chamber_table(const drive::Plan& plan) {
-  Table table{
-      {words("chamber", true), words("channel", true), words("pressure [kPa]", false), words("limits [kPa]", false)}};
-  for (std::size_t i = 0; i < plan.machine.chambers.size(); ++i) {
-    const drive::Chamber& chamber = plan.machine.chambers[i];
-    const auto [low, high] = drive::pressure_range(plan, i);
-    table.rows.push_back({printable(chamber.name), printable(chamber.channel), range(low, high),
-                          range(chamber.low_kpa, chamber.high_kpa)});
-  }
-  return table_text(table);
-}
-
-std::string times_text(const drive::Plan& plan) {
-  std::string text = counted(plan.commands.rows.size(), "row");
-  if (plan.motion.timed)
-    text += ", " + number(*plan.commands.rows.back().time_s - *plan.commands.rows.front().time_s, 6) + " s";
-  else if (!plan.machine.tendons.empty())
-    text += " without times: " + number(plan.motion.seconds, 4) + " s at the approach speed of " +
-            number(plan.machine.approach_speed_mm_per_s) + " mm/s";
-  if (plan.machine.tendons.empty()) return text;
-  text += ", after an approach of " + number(drive::seconds_of(plan.motion.approach), 4) + " s from home";
-  if (!plan.motion.back.empty())
-    text += "; the way back home takes " + number(drive::seconds_of(plan.motion.back), 4) + " s";
-  return text + "; " + counted(plan.program.lines.size(), "line") + " of G-code";
-}
-
 std::string plan_text(const drive::Plan& plan) {
   std::string text = "hardware: " + plan.machine.file + "\n";
   for (const std::string& line : plan.machine.defaults) text += "default: " + printable(line) + "\n";
-  if (!plan.machine.tendons.empty()) text += tendon_table(plan);
-  if (!plan.machine.chambers.empty()) text += chamber_table(plan);
-  return text + times_text(plan) + "\n";
+  if (!plan.machine.tendons.empty()) text += table_text(runs::tendon_table(plan));
+  if (!plan.machine.chambers.empty()) text += table_text(runs::chamber_table(plan));
+  return text + runs::times_text(plan) + "\n";
 }
 
 std::string dry_text(const drive::Plan& plan) {
@@ -230,38 +180,12 @@ drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& o
   return drive::stream(port, program, link, hooks);
 }
 
-/// How a stream ended, in full sentences: which lines were executed, and is the position known.
-std::string stream_text(const DriveOptions& options, const drive::GcodeProgram& program,
-                        const drive::StreamReport& report) {
-  std::string text = report.message;
-  const auto row_of = [&](std::size_t line) {
-    const std::size_t row = program.lines[line - 1].row;
-    return row > 0 ? " (" + options.commands + ":" + std::to_string(row) + ")" : "";
-  };
-  if (report.end != drive::StreamEnd::finished) {
-    text += "; the board accepted " + (report.acknowledged > 0 ? "lines up to " + std::to_string(report.acknowledged) +
-                                                                     row_of(report.acknowledged)
-                                                               : std::string("no line"));
-    text += " of " + std::to_string(report.lines);
-    if (report.sent > report.acknowledged) text += ", and perhaps those up to " + std::to_string(report.sent);
-  }
-  if (report.position_known) {
-    text += "; the motors stand at";
-    for (std::size_t i = 0; i < report.position.size(); ++i)
-      text += std::string(" ") + program.axes[i] + " " + decimal(report.position[i], 3);
-    text += " mm";
-  } else if (report.sent > 0) {
-    text += "; bring the motors home by hand before the next run";
-  }
-  return text;
-}
-
 /// What is driven; map: that gave pressures, where one was asked for.
 drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs, std::optional<KinematicMap>& map) {
   const Model model = asked_robot(options.robot, inputs);
   Commands commands = read_commands(model, options.commands, options.pressures);
   if (!options.map.empty()) {
-    map = read_map_of(model, options.map);
+    map = runs::read_map_of(model, options.map);
     runs::take_pressures(model, *map, options.map, commands);
   }
   const fs::path hardware = options.hardware_file();
@@ -306,7 +230,7 @@ int run_drive(const DriveOptions& options) {
   std::optional<drive::StreamReport> sent;
   if (port) sent = send_to_board(*port, options, plan.program);
   const bool failed = sent && sent->end != drive::StreamEnd::finished;
-  const std::string text = sent ? stream_text(options, plan.program, *sent) + "\n" : "";
+  const std::string text = sent ? runs::stream_text(options.commands, plan.program, *sent) + "\n" : "";
   if (failed)
     std::fprintf(stderr, "softkin: %s", text.c_str());
   else if (!options.json)

@@ -78,7 +78,8 @@ void check_usage(const FkOptions& options) {
 
 class FkRun {
  public:
-  FkRun(const Model& model, const Answers& answers, const FkOptions& options, const std::vector<ActuationStep>& steps)
+  FkRun(const Model& model, const runs::Answers& answers, const FkOptions& options,
+        const std::vector<ActuationStep>& steps)
       : model_(model),
         answers_(answers),
         options_(options),
@@ -129,9 +130,8 @@ class FkRun {
       step.strain = {};
       steps.push_back(std::move(step));
     });
-    const std::string solver = answers_.solver(options_);
-    const std::string title =
-        runs::plot_title(model_, options_.scene) + ", " + (solver.empty() ? options_.map : solver);
+    const std::string title = runs::plot_title(model_, options_.scene) + ", " +
+                              (answers_.by_map_alone() ? options_.map : options_.solver_name);
     write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
   }
 
@@ -194,7 +194,7 @@ class FkRun {
   }
 
   const Model& model_;
-  const Answers& answers_;
+  const runs::Answers& answers_;
   const FkOptions& options_;
   runs::PathJob job_;
   runs::Run<StepRecord> run_;
@@ -219,11 +219,11 @@ int run_fk(const FkOptions& options) {
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
   line.show(-1, "assembling");
-  const Answers answers(model, options);
+  const runs::Answers answers(model, options.map, options.polish);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
-  if (!options.json) print(answers.head(options) + curve_remarks(model, options.settings));
+  if (!options.json) print(head_text(model, options, answers) + curve_remarks(model, options.settings));
   return FkRun(model, answers, options, steps).run();
 }
 

@@ -55,7 +55,7 @@ Search asked_search(const Model& model, const IkOptions& options) {
 
 class IkRun {
  public:
-  IkRun(const Model& model, const Answers& answers, const IkOptions& options, const Search& search)
+  IkRun(const Model& model, const runs::Answers& answers, const IkOptions& options, const Search& search)
       : model_(model), answers_(answers), options_(options), search_(search) {}
 
   int run() {
@@ -119,7 +119,7 @@ class IkRun {
   }
 
   const Model& model_;
-  const Answers& answers_;
+  const runs::Answers& answers_;
   const IkOptions& options_;
   const Search& search_;
   InverseResult found_;
@@ -136,14 +136,14 @@ int run_ik(const IkOptions& options) {
   const Search search = asked_search(model, options);
   check_outputs(options.outputs(), inputs);
   line.show(-1, "assembling");
-  const Answers answers(model, options);
+  const runs::Answers answers(model, options.map, options.polish);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(options.outputs());
   for (const std::string& doubt : doubts_about(model, search.goals))
     std::fprintf(stderr, "softkin: warning: %s\n", doubt.c_str());
   if (!options.json) {
-    print(answers.head(options));
+    print(head_text(model, options, answers));
     for (const auto* settings : {&options.start, &options.prefer, &options.fix}) print(curve_remarks(model, *settings));
   }
   return IkRun(model, answers, options, search).run();

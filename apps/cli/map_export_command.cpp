@@ -1,8 +1,6 @@
 #include <softkin/core/error.hpp>
-#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
-#include <softkin/runs/map_export.hpp>
-#include <softkin/runs/map_file.hpp>
+#include <softkin/runs/exported_files.hpp>
 
 #include "command.hpp"
 #include "solve_options.hpp"
@@ -10,28 +8,15 @@
 
 namespace softkin::cli {
 
-namespace fs = std::filesystem;
-
 namespace {
 
-/// What the user asks of `softkin map export`. An empty file name: not given.
-struct ExportOptions {
+/// What the user asks of `softkin map export`.
+struct ExportOptions : runs::MapExport {
   std::string map;
-  std::string c, numpy, js;
-  bool floats = false;
 
-  /// Those of the module, beside it: robot.d.mts of robot.mjs.
-  [[nodiscard]] std::string js_types() const {
-    return js.empty() ? "" : fs::path(js).replace_extension(".d.mts").string();
-  }
   [[nodiscard]] std::vector<Output> outputs() const {
     return asked_outputs({{"--c", c}, {"--numpy", numpy}, {"--js", js}, {"--js", js_types()}});
   }
-};
-
-/// A file that is written once all of them are known.
-struct Exported {
-  std::string file, text, what;
 };
 
 void add_options(CLI::App& command, ExportOptions& options) {
@@ -55,48 +40,14 @@ void check_usage(const ExportOptions& options) {
   check_extension("--js", options.js, {{".mjs", ""}});
 }
 
-/// "arm_fk(), ...; tables: 1216 bytes of flash ...": how it is called, and what the header says that it takes.
-std::string c_text(const MapData& data, const std::string& header) {
-  std::string text = runs::c_name(data) + "_fk(), ...";
-  const std::size_t from = header.find("Tables: "), end = header.find(" No heap.", from);
-  if (end != std::string::npos) text += "; t" + header.substr(from + 1, end - from - 2);
-  return text;
-}
-
-std::vector<Exported> exported(const ExportOptions& options, const MapData& data) {
-  std::vector<Exported> all;
-  if (!options.c.empty()) {
-    std::string header = runs::map_c_header(data, options.floats ? runs::CNumbers::floats : runs::CNumbers::doubles);
-    std::string what = c_text(data, header);
-    all.push_back({options.c, std::move(header), std::move(what)});
-  }
-  if (!options.numpy.empty()) all.push_back({options.numpy, runs::map_npz(data), ""});
-  if (!options.js.empty()) {
-    all.push_back({options.js, runs::map_js_module(data), data.shape ? "" : "without the shape, which the map lacks"});
-    all.push_back({options.js_types(), runs::map_js_types(data), "types"});
-  }
-  return all;
-}
-
-std::vector<Exported> exported_from(const ExportOptions& options) {
-  const MapData data = runs::read_map(options.map);
-  try {
-    return exported(options, data);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput({options.map}, error.what());
-  }
-}
-
 int run_export(const ExportOptions& options) {
   check_usage(options);
   check_outputs(options.outputs(), {options.map});
-  const std::vector<Exported> all = exported_from(options);
+  const std::vector<runs::ExportedFile> all = runs::exported_files(options.map, options);
   const OutputFolders folders(options.outputs());
-  constexpr double kilo = 1000;
-  for (const Exported& each : all) {
+  for (const runs::ExportedFile& each : all) {
     write_file(each.file, each.text);
-    print(each.file + ": " + number(static_cast<double>(each.text.size()) / kilo, 3) + " kB" +
-          (each.what.empty() ? "" : "; " + each.what) + "\n");
+    print(each.file + ": " + each.what + "\n");
   }
   return done;
 }

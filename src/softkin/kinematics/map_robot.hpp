@@ -32,8 +32,8 @@ class MapRobot {
 /// throws      InvalidInput on a map without shape
 [[nodiscard]] std::unique_ptr<const GivenEquilibria> shapes_of(const Model& model, const KinematicMap& map);
 
-/// solve_inverse_from() by the map alone, and again by the solver from what that found: a few equilibria. From the start
-/// where the map has nothing there.
+/// solve_inverse_from() by the map alone, and again by the solver from what that found: a few equilibria. Where the map
+/// has no equilibrium at the start, by the solver alone.
 ///
 /// statics  of the model, whose solves begin at the map's equilibria: shapes_of(), Given::starts
 /// returns  counts and history are those of the solver
