@@ -30,15 +30,19 @@ inline CLI::Option* add_repeated(CLI::App& command, const std::string& name, std
   return add_value(command, name, values, type, what)->expected(1)->take_all();
 }
 
-/// A subcommand whose options are kept for the run. declare: adds them; act: returns the exit code
+/// A subcommand whose options are kept for the run, which is that of a command of its own where one was chosen.
+/// declare: adds them; act: returns the exit code
 template <class Options>
-void add_command(CLI::App& app, Run& run, const std::string& name, const std::string& what, const std::string& footer,
-                 void (*declare)(CLI::App&, Options&), int (*act)(const Options&)) {
+CLI::App* add_command(CLI::App& app, Run& run, const std::string& name, const std::string& what,
+                      const std::string& footer, void (*declare)(CLI::App&, Options&), int (*act)(const Options&)) {
   CLI::App* command = app.add_subcommand(name, what);
   const auto options = std::make_shared<Options>();
   declare(*command, *options);
   command->footer(footer);
-  command->callback([options, act, &run] { run = [options, act] { return act(*options); }; });
+  command->callback([command, options, act, &run] {
+    if (command->get_subcommands().empty()) run = [options, act] { return act(*options); };
+  });
+  return command;
 }
 
 /// Refuses a text that is not right: "must be WHAT, not TEXT".
@@ -58,6 +62,7 @@ void add_follow(CLI::App& app, Run& run);
 void add_grasp(CLI::App& app, Run& run);
 void add_ik(CLI::App& app, Run& run);
 void add_map(CLI::App& app, Run& run);
+void add_map_export(CLI::App& map, Run& run);
 void add_mesh(CLI::App& app, Run& run);
 void add_measure(CLI::App& app, Run& run);
 void add_walk(CLI::App& app, Run& run);

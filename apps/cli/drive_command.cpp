@@ -10,7 +10,10 @@
 #include <softkin/io/scene/hardware.hpp>
 #include <softkin/io/stream_log.hpp>
 #include <softkin/io/table/commands.hpp>
-#include <softkin/io/table/table.hpp>
+#include <softkin/runs/answers.hpp>
+#include <softkin/runs/drive_text.hpp>
+#include <softkin/runs/map_commands.hpp>
+#include <softkin/runs/map_file.hpp>
 #include <softkin/runs/reports.hpp>
 
 #include "command.hpp"
@@ -26,7 +29,7 @@ namespace {
 /// What the user asks of `softkin drive`. An empty file name: not given.
 struct DriveOptions {
   SolveOptions robot;  // scene alone
-  std::string commands, hardware, pressures;
+  std::string commands, hardware, pressures, map;
   std::string gcode, schedule, log;  // to write
   std::string port;
   int baud = 115200;
@@ -78,12 +81,16 @@ void add_options(CLI::App& command, DriveOptions& options) {
   add_value(
       command, "--pressures", options.pressures, "F.json",
       "Report of the run that made the commands (follow, fk): the\npressures of chambers that are commanded by volume");
+  add_value(command, "--map", options.map, "F.skmap",
+            "Kinematic map of the robot (softkin map), which knows these\npressures; rows outside it are refused");
   command.add_flag("--return", options.return_home, "After the last row go back home, for the next run");
   add_outputs(command, options);
   command.add_flag("--json", options.json, "Print a report instead of the tables");
 }
 
 void check_usage(const DriveOptions& options) {
+  if (!options.map.empty() && !options.pressures.empty())
+    throw InvalidInput("--map and --pressures both tell the chambers' pressures: give one of them");
   if (options.dry_run && !options.port.empty())
     throw InvalidInput("--dry-run sends nothing, and --port sends: give one of them");
   if (!options.log.empty() && options.port.empty())
@@ -93,62 +100,12 @@ void check_usage(const DriveOptions& options) {
         "nothing is to be done: give --dry-run (print), --gcode F, --schedule F.csv (write) or --port (send)");
 }
 
-Column words(const std::string& title, bool left) {
-  return {.key = title, .left = left};
-}
-
-std::string range(double low, double high) {
-  return decimal(low, 2) + " to " + decimal(high, 2);
-}
-
-std::string tendon_table(const drive::Plan& plan) {
-  Table table{{words("tendon", true), words("axis", true), words("length [mm]", false), words("limits [mm]", false),
-               words("steps from home", false), words("drum turns", false), words("speed [mm/s]", false),
-               words("limit [mm/s]", false)}};
-  for (std::size_t i = 0; i < plan.machine.tendons.size(); ++i) {
-    const drive::Tendon& tendon = plan.machine.tendons[i];
-    const drive::TendonUse use = drive::use_of(plan, i);
-    table.rows.push_back({printable(tendon.name), std::string(1, tendon.axis), range(use.shortest_mm, use.longest_mm),
-                          range(tendon.shortest_mm, tendon.longest_mm),
-                          std::to_string(use.lowest) + " to " + std::to_string(use.highest),
-                          use.turns ? decimal(*use.turns, 2) : "-", decimal(use.fastest_mm_per_s, 2),
-                          decimal(tendon.max_speed_mm_per_s, 2)});
-  }
-  return table_text(table);
-}
-
-std::string chamber_table(const drive::Plan& plan) {
-  Table table{
-      {words("chamber", true), words("channel", true), words("pressure [kPa]", false), words("limits [kPa]", false)}};
-  for (std::size_t i = 0; i < plan.machine.chambers.size(); ++i) {
-    const drive::Chamber& chamber = plan.machine.chambers[i];
-    const auto [low, high] = drive::pressure_range(plan, i);
-    table.rows.push_back({printable(chamber.name), printable(chamber.channel), range(low, high),
-                          range(chamber.low_kpa, chamber.high_kpa)});
-  }
-  return table_text(table);
-}
-
-std::string times_text(const drive::Plan& plan) {
-  std::string text = counted(plan.commands.rows.size(), "row");
-  if (plan.motion.timed)
-    text += ", " + number(*plan.commands.rows.back().time_s - *plan.commands.rows.front().time_s, 6) + " s";
-  else if (!plan.machine.tendons.empty())
-    text += " without times: " + number(plan.motion.seconds, 4) + " s at the approach speed of " +
-            number(plan.machine.approach_speed_mm_per_s) + " mm/s";
-  if (plan.machine.tendons.empty()) return text;
-  text += ", after an approach of " + number(drive::seconds_of(plan.motion.approach), 4) + " s from home";
-  if (!plan.motion.back.empty())
-    text += "; the way back home takes " + number(drive::seconds_of(plan.motion.back), 4) + " s";
-  return text + "; " + counted(plan.program.lines.size(), "line") + " of G-code";
-}
-
 std::string plan_text(const drive::Plan& plan) {
   std::string text = "hardware: " + plan.machine.file + "\n";
   for (const std::string& line : plan.machine.defaults) text += "default: " + printable(line) + "\n";
-  if (!plan.machine.tendons.empty()) text += tendon_table(plan);
-  if (!plan.machine.chambers.empty()) text += chamber_table(plan);
-  return text + times_text(plan) + "\n";
+  if (!plan.machine.tendons.empty()) text += table_text(runs::tendon_table(plan));
+  if (!plan.machine.chambers.empty()) text += table_text(runs::chamber_table(plan));
+  return text + runs::times_text(plan) + "\n";
 }
 
 std::string dry_text(const drive::Plan& plan) {
@@ -223,35 +180,14 @@ drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& o
   return drive::stream(port, program, link, hooks);
 }
 
-/// How a stream ended, in full sentences: which lines were executed, and is the position known.
-std::string stream_text(const DriveOptions& options, const drive::GcodeProgram& program,
-                        const drive::StreamReport& report) {
-  std::string text = report.message;
-  const auto row_of = [&](std::size_t line) {
-    const std::size_t row = program.lines[line - 1].row;
-    return row > 0 ? " (" + options.commands + ":" + std::to_string(row) + ")" : "";
-  };
-  if (report.end != drive::StreamEnd::finished) {
-    text += "; the board accepted " + (report.acknowledged > 0 ? "lines up to " + std::to_string(report.acknowledged) +
-                                                                     row_of(report.acknowledged)
-                                                               : std::string("no line"));
-    text += " of " + std::to_string(report.lines);
-    if (report.sent > report.acknowledged) text += ", and perhaps those up to " + std::to_string(report.sent);
-  }
-  if (report.position_known) {
-    text += "; the motors stand at";
-    for (std::size_t i = 0; i < report.position.size(); ++i)
-      text += std::string(" ") + program.axes[i] + " " + decimal(report.position[i], 3);
-    text += " mm";
-  } else if (report.sent > 0) {
-    text += "; bring the motors home by hand before the next run";
-  }
-  return text;
-}
-
-drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs) {
+/// What is driven; map: that gave pressures, where one was asked for.
+drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs, std::optional<KinematicMap>& map) {
   const Model model = asked_robot(options.robot, inputs);
   Commands commands = read_commands(model, options.commands, options.pressures);
+  if (!options.map.empty()) {
+    map = runs::read_map_of(model, options.map);
+    runs::take_pressures(model, *map, options.map, commands);
+  }
   const fs::path hardware = options.hardware_file();
   if (options.hardware.empty() && !fs::exists(hardware))
     throw InvalidInput({hardware.string()},
@@ -271,10 +207,12 @@ void check_asked(const DriveOptions& options, const drive::Plan& plan) {
 int run_drive(const DriveOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.robot.scene, options.commands, options.hardware_file()};
-  if (!options.pressures.empty()) inputs.emplace_back(options.pressures);
+  for (const std::string& file : {options.pressures, options.map})
+    if (!file.empty()) inputs.emplace_back(file);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const drive::Plan plan = plan_of(options, inputs);
+  std::optional<KinematicMap> map;
+  const drive::Plan plan = plan_of(options, inputs, map);
   line.clear();
   check_asked(options, plan);
   const std::vector<Output> outputs =
@@ -283,18 +221,26 @@ int run_drive(const DriveOptions& options) {
   const OutputFolders folders(outputs);
   std::optional<drive::SerialPort> port;  // before anything is written
   if (!options.port.empty()) port.emplace(options.port, options.baud);
-  if (!options.json) print(plan_text(plan) + (options.dry_run ? dry_text(plan) : ""));
+  if (!options.json)
+    print(plan_text(plan) +
+          (map ? "pressures by the map " + options.map + ": " + runs::map_text(map->data()) + "\n" : "") +
+          (options.dry_run ? dry_text(plan) : ""));
   if (!options.gcode.empty()) write_file(options.gcode, drive::gcode_text(plan.machine, plan.program));
   if (!options.schedule.empty()) write_file(options.schedule, drive::schedule_csv(plan.schedule));
   std::optional<drive::StreamReport> sent;
   if (port) sent = send_to_board(*port, options, plan.program);
   const bool failed = sent && sent->end != drive::StreamEnd::finished;
-  const std::string text = sent ? stream_text(options, plan.program, *sent) + "\n" : "";
+  const std::string text = sent ? runs::stream_text(options.commands, plan.program, *sent) + "\n" : "";
   if (failed)
     std::fprintf(stderr, "softkin: %s", text.c_str());
   else if (!options.json)
     print(text);
-  if (options.json) print(runs::drive_report(options.robot.scene, plan, options.dry_run, sent ? &*sent : nullptr));
+  if (options.json) {
+    std::optional<runs::UsedMap> used;
+    if (map) used.emplace(runs::UsedMap{options.map, map->data()});
+    print(runs::drive_report(options.robot.scene, plan, options.dry_run, sent ? &*sent : nullptr,
+                             used ? &*used : nullptr));
+  }
   return failed ? not_converged : done;
 }
 

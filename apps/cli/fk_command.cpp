@@ -78,13 +78,14 @@ void check_usage(const FkOptions& options) {
 
 class FkRun {
  public:
-  FkRun(const Model& model, const Statics& statics, const FkOptions& options, const std::vector<ActuationStep>& steps)
+  FkRun(const Model& model, const runs::Answers& answers, const FkOptions& options,
+        const std::vector<ActuationStep>& steps)
       : model_(model),
-        statics_(statics),
+        answers_(answers),
         options_(options),
-        job_(model, statics, steps, options.path, options.statics()),
+        job_(model, answers.statics(), steps, options.path, options.statics()),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
-             runs::report_head(model, options.scene, options.statics()), {}),
+             runs::report_head(model, options.scene, options.statics(), answers.map()), {}),
         table_(runs::table_of_steps(model, steps.size())) {}
 
   int run() {
@@ -114,7 +115,7 @@ class FkRun {
       const Points& positions = run_.last_positions();
       if (!options_.output.empty() && !options_.series())
         runs::write_shape(options_.output, model_, positions,
-                          statics_.measured(runs::state_of(model_, run_.last(), positions)), converged);
+                          answers_.statics().measured(runs::state_of(model_, run_.last(), positions)), converged);
       if (!options_.show.image.empty())
         runs::write_image(options_.show.image, model_, positions, options_.show.view, image_title());
       if (!options_.show.plot.empty()) write_plot();
@@ -129,7 +130,8 @@ class FkRun {
       step.strain = {};
       steps.push_back(std::move(step));
     });
-    const std::string title = runs::plot_title(model_, options_.scene) + ", " + options_.solver_name;
+    const std::string title = runs::plot_title(model_, options_.scene) + ", " +
+                              (answers_.by_map_alone() ? options_.map : options_.solver_name);
     write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
   }
 
@@ -192,7 +194,7 @@ class FkRun {
   }
 
   const Model& model_;
-  const Statics& statics_;
+  const runs::Answers& answers_;
   const FkOptions& options_;
   runs::PathJob job_;
   runs::Run<StepRecord> run_;
@@ -217,14 +219,12 @@ int run_fk(const FkOptions& options) {
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
   line.show(-1, "assembling");
-  const Answers answers(model, options);
+  const runs::Answers answers(model, options.map, options.polish);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
-  if (!options.json)
-    print(options.scene + ": " + summary(model, options.solver_name) + "\n" + curve_remarks(model, options.settings) +
-          answers.remark());
-  return FkRun(model, answers.statics(), options, steps).run();
+  if (!options.json) print(head_text(model, options, answers) + curve_remarks(model, options.settings));
+  return FkRun(model, answers, options, steps).run();
 }
 
 }  // namespace

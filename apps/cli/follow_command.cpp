@@ -199,15 +199,15 @@ int run_follow(const FollowOptions& options) {
   if (!options.workspace.empty())
     trajectory.start = runs::nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
   line.show(-1, "assembling");
-  const Answers answers(model, options);
+  const runs::Answers answers(model, options.map, options.polish);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
-  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n" + answers.remark());
-  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path)}, trajectory,
-                         options.files());
+  if (!options.json) print(head_text(model, options, answers));
+  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path), answers.map()},
+                         trajectory, options.files());
   return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow).show();
 }
 

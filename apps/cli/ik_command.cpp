@@ -55,8 +55,8 @@ Search asked_search(const Model& model, const IkOptions& options) {
 
 class IkRun {
  public:
-  IkRun(const Model& model, const Statics& statics, const IkOptions& options, const Search& search)
-      : model_(model), statics_(statics), options_(options), search_(search) {}
+  IkRun(const Model& model, const runs::Answers& answers, const IkOptions& options, const Search& search)
+      : model_(model), answers_(answers), options_(options), search_(search) {}
 
   int run() {
     ProgressLine line;
@@ -68,7 +68,7 @@ class IkRun {
       line.show(-1, text);
       return !interrupted();
     };
-    found_ = solve_inverse_from(model_, statics_, search_.goals, search_.start, search_.inverse, show);
+    found_ = answers_.inverse(search_.goals, search_.start, search_.inverse, show);
     line.clear();
     if (found_.errors_mm.size() == 0) return no_start();
     write();
@@ -85,7 +85,7 @@ class IkRun {
 
   void write() const {
     const Points& positions = found_.equilibrium.state.positions;
-    const ElementDeformation deformation = statics_.measured(found_.equilibrium.state);
+    const ElementDeformation deformation = answers_.statics().measured(found_.equilibrium.state);
     const runs::InverseRecord record = runs::inverse_record(model_, found_, deformation);
     const std::string title = fs::path(options_.scene).filename().string() + ": " + name_of(found_.status) + ", " +
                               number(record.error_mm, 2) + " mm off";
@@ -101,7 +101,7 @@ class IkRun {
             ik_summary(found_) + "\n");
     }
     runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report, options_.inverse(),
-                                                  search_.asked, found_, record);
+                                                  search_.asked, found_, record, answers_.map());
     report.finish();
     if (options_.json) report.report(print_piece);
     print(std::string());
@@ -119,7 +119,7 @@ class IkRun {
   }
 
   const Model& model_;
-  const Statics& statics_;
+  const runs::Answers& answers_;
   const IkOptions& options_;
   const Search& search_;
   InverseResult found_;
@@ -136,17 +136,17 @@ int run_ik(const IkOptions& options) {
   const Search search = asked_search(model, options);
   check_outputs(options.outputs(), inputs);
   line.show(-1, "assembling");
-  const Answers answers(model, options);
+  const runs::Answers answers(model, options.map, options.polish);
   line.clear();
   catch_interrupt();
   const OutputFolders folders(options.outputs());
   for (const std::string& doubt : doubts_about(model, search.goals))
     std::fprintf(stderr, "softkin: warning: %s\n", doubt.c_str());
   if (!options.json) {
-    print(options.scene + ": " + summary(model, options.solver_name) + "\n" + answers.remark());
+    print(head_text(model, options, answers));
     for (const auto* settings : {&options.start, &options.prefer, &options.fix}) print(curve_remarks(model, *settings));
   }
-  return IkRun(model, answers.statics(), options, search).run();
+  return IkRun(model, answers, options, search).run();
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ void add_ik(CLI::App& app, Run& run) {
       "the nearest point that the ranges allow. Exit code: 0 reached, 1 not reached, not converged or interrupted,\n"
       "2 bad usage or bad input.\n"
       "Example:\n"
-      "  softkin ik examples/three_chamber_actuator/three_chamber_actuator.yaml --target tip=10,-5,138",
+      "  softkin ik examples/three_chamber_actuator/three_chamber_actuator.yaml --target tip=10,-5,140",
       add_options, run_ik);
 }
 

@@ -141,12 +141,15 @@ int run_map(const MapAsked& asked) {
 }  // namespace
 
 void add_map(CLI::App& app, Run& run) {
-  add_command(app, run, "map", "Kinematic map: the robot in closed form, its error checked",
-              "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 not as accurate as asked "
-              "for,\nor interrupted, 2 bad usage or bad input.\n"
-              "Example:\n"
-              "  softkin map examples/three_chamber_actuator/three_chamber_actuator.yaml -o actuator.skmap",
-              add_map_options, run_map);
+  CLI::App& map = *add_command(
+      app, run, "map", "Kinematic map: the robot in closed form, its error checked",
+      "Lengths are in mm, pressures in kPa (gauge), forces in N. Exit code: 0 done, 1 not as accurate as asked for,\n"
+      "or interrupted, 2 bad usage or bad input.\n"
+      "Example:\n"
+      "  softkin map examples/three_chamber_actuator/three_chamber_actuator.yaml -o actuator.skmap",
+      add_map_options, run_map);
+  map.require_subcommand(0, 1);
+  add_map_export(map, run);
 }
 
 }  // namespace softkin::cli

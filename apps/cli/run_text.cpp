@@ -215,7 +215,7 @@ std::string summary(const Model& model, const std::string& solver) {
   if (!model.prisms.empty()) text += ", " + grouped(model.prisms.size()) + " prisms";
   text += std::string("; ") + formulation_name(model.formulation) + " formulation";
   if (model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
-  text += ", solver " + solver;
+  if (!solver.empty()) text += ", solver " + solver;
   for (const FreeBody& body : model.bodies)
     text += "\nbody " + body.name + ": " + number(1000 * body.mass_kg) + " g; held while " + body.name +
             "_hold is 1, free at 0; forces " + body.name + "_fx, _fy and _fz [N]";
@@ -274,6 +274,7 @@ std::string worst_text(const WorstPlace& worst) {
 }  // namespace
 
 std::string shortfall_text(const Model& model, const StepRecord& step) {
+  if (step.answered()) return step.remark + "; the shape is the last one";
   if (model.formulation == Formulation::physical && step.reached_share == 1)
     return step.remark + "; the shape is the last one";
   if (model.formulation == Formulation::physical)

@@ -97,7 +97,7 @@ runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std:
 }
 
 /// "1,851 vertices, 5,556 tetrahedra of order 1; physical formulation (neo-hookean), solver newton", the actuators,
-/// the model's warnings and its notes, a line each.
+/// the model's warnings and its notes, a line each. solver: empty: none is used
 [[nodiscard]] std::string summary(const Model& model, const std::string& solver);
 
 /// Strains, slack cables and what a step may hide, a line each.

@@ -145,7 +145,8 @@ ProgramResult run_line(const std::string& command) {
 }
 
 /// Options that are followed by a file that is written.
-const std::set<std::string> outputs{"-o", "--output", "--report", "--image", "--plot", "--gcode", "--schedule"};
+const std::set<std::string> outputs{"-o",      "--output",   "--report", "--image", "--plot",
+                                    "--gcode", "--schedule", "--c",      "--numpy", "--js"};
 
 /// Names of the Makefile's commands.
 std::set<std::string> make_targets() {

@@ -4,6 +4,7 @@
 
 #include "../drive/faulty_marlin.hpp"
 #include "fk_samples.hpp"
+#include "map_samples.hpp"
 #include "start_program.hpp"
 
 namespace softkin {
@@ -141,6 +142,46 @@ TEST(DriveCommand, TakesThePressuresOfVolumes) {
   folder.write("commands.csv", "t_s,air,air_pressure_kPa\n0,1,0\n1,1.2,33\n");
   folder.refused({"--pressures", report, "--dry-run"}, "has the column 'air_pressure_kPa' already");
   EXPECT_TRUE(has(folder.drive({"--dry-run"}).output, "t_s,air_kPa\n0,0\n1,33\n"));
+}
+
+/// Pressures of a map are those of the solver; what it was not made for is refused.
+TEST(DriveCommand, TakesThePressuresOfAMap) {
+  const DriveFolder folder(one_motor + "chambers: [{actuator: air, limits_kPa: [0, 5000]}]\n", testing::scene_to_map());
+  const std::string map = folder / "block.skmap", report = folder / "report.json", schedule = folder / "schedule.csv";
+  ASSERT_EQ(run_program({"map", folder.scene, "-o", map, "--check", "5", "--shape-accuracy", "0"}).exit_code, 0);
+  folder.write("commands.csv", "t_s,air,tendon\n0,1.1,1\n1,1.2,0.95\n");
+  const ProgramResult fk = testing::run_fk(folder.scene, {"--path", folder.commands, "--report", report});
+  ASSERT_EQ(fk.exit_code, 0) << fk.errors;
+  const ProgramResult result = folder.drive({"--map", map, "--schedule", schedule});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_TRUE(has(result.output, "pressures by the map " + map + ": ")) << result.output;
+  const std::vector<std::string> rows = testing::lines_of(read_text(schedule));
+  ASSERT_EQ(rows.size(), 3u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double kpa = json::parse(read_text(report))["steps"][i]["actuators"]["air"]["pressure_kPa"];
+    EXPECT_NEAR(std::stod(rows[i + 1].substr(rows[i + 1].find(',') + 1)), kpa, 2e-3 * kpa) << rows[i + 1];
+  }
+  const json told = json::parse(folder.drive({"--map", map, "--dry-run", "--json"}).output);
+  EXPECT_EQ(told["pressures_by_map"]["file"], map);
+
+  folder.refused({"--map", map, "--pressures", report, "--dry-run"}, "give one of them");
+  folder.refused({"--map", report, "--dry-run"}, report + ": is no map of softkin");
+  folder.refused({"--map", map, "--schedule", map}, "would replace a file that is read");
+  folder.write("commands.csv", "t_s,tendon\n0,1\n1,0.9\n");
+  folder.refused({"--map", map, "--dry-run"}, "its pressures are of no use: " + folder.commands);
+  folder.write("commands.csv", "t_s,air,air_pressure_kPa\n0,1.1,0\n1,1.2,33\n");
+  folder.refused({"--map", map, "--dry-run"}, "has the column 'air_pressure_kPa' already");
+}
+
+TEST(DriveCommand, RowsOutsideTheMapAreRefused) {
+  const DriveFolder folder(one_motor + "chambers: [{actuator: air, limits_kPa: [0, 5000]}]\n", testing::scene_to_map());
+  const std::string map = folder / "block.skmap";
+  ASSERT_EQ(run_program({"map", folder.scene, "-o", map, "--check", "5", "--shape-accuracy", "0"}).exit_code, 0);
+  testing::cut_map(map, 1.3, true);
+  folder.write("commands.csv", "t_s,air\n0,1.1\n1,1.2\n");
+  EXPECT_EQ(folder.drive({"--map", map, "--dry-run"}).exit_code, 0);
+  folder.write("commands.csv", "t_s,air\n0,1.1\n1,1.2\n2,1.4\n");
+  folder.refused({"--map", map, "--dry-run"}, folder.commands + ":4: this row is outside the map " + map);
 }
 
 TEST(DriveCommand, RefusesRowsByLine) {

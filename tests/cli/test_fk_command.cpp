@@ -441,6 +441,8 @@ TEST(Help, OfEveryCommandFitsAPage) {
                                                                                        {"ik"},
                                                                                        {"follow"},
                                                                                        {"workspace"},
+                                                                                       {"map"},
+                                                                                       {"map", "export"},
                                                                                        {"walk"},
                                                                                        {"grasp"},
                                                                                        {"compare"},

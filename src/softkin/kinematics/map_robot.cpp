@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/map_robot.hpp>
 #include <utility>
@@ -28,12 +29,17 @@ class OfMap : public GivenEquilibria {
     Equilibrium found;
     found.actuation = actuation;
     found.report.solver = "map";
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    SolveReport& report = found.report;
+    for (double* of_iteration : {&report.tolerance_mm, &report.step_mm, &report.estimated_error_mm,
+                                 &report.gradient_norm, &report.energy, &report.residual_N, &report.pull_N})
+      *of_iteration = unknown;
     Eigen::VectorXd values(map_.outputs());
     const Eigen::VectorXd commands = map_.commands(actuation);
     const auto place = map_.evaluate(commands.data(), values.data());
     if (!place) {
       found.report.status = Status::limit;
-      found.report.reached = 0;
+      found.report.reached = unknown;
       found.report.remark = "the actuation is outside the map";
       found.state = start;
       return found;
@@ -208,6 +214,20 @@ MapRobot::MapRobot(const Model& model, const KinematicMap& map)
 
 std::unique_ptr<const GivenEquilibria> shapes_of(const Model& model, const KinematicMap& map) {
   return std::make_unique<ShapesOfMap>(model, map);
+}
+
+InverseResult solve_inverse_by_map(const Model& model, const KinematicMap& map, const Statics& statics,
+                                   const std::vector<Goal>& goals, const Actuation& start,
+                                   const InverseOptions& options, const ProgressCallback& progress) {
+  InverseOptions search = options;
+  if (search.preferred.size() == 0) search.preferred = start;
+  const MapRobot robot(model, map);
+  const InverseResult near = solve_inverse_from(robot.model(), robot.statics(), goals, start, search, progress);
+  if (near.errors_mm.size() == 0) return solve_inverse_from(model, statics, goals, start, search, progress);
+  search.other_starts = 0;  // the map has been tried from them
+  InverseResult found = solve_inverse_from(model, statics, goals, near.equilibrium.actuation, search, progress);
+  found.seconds += near.seconds;
+  return found;
 }
 
 }  // namespace softkin

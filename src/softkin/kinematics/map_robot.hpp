@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/map.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/statics.hpp>
@@ -30,5 +31,15 @@ class MapRobot {
 /// model, map  must outlive the object, and belong together (runs::check_robot)
 /// throws      InvalidInput on a map without shape
 [[nodiscard]] std::unique_ptr<const GivenEquilibria> shapes_of(const Model& model, const KinematicMap& map);
+
+/// solve_inverse_from() by the map alone, and again by the solver from what that found: a few equilibria. Where the map
+/// has no equilibrium at the start, by the solver alone.
+///
+/// statics  of the model, whose solves begin at the map's equilibria: shapes_of(), Given::starts
+/// returns  counts and history are those of the solver
+[[nodiscard]] InverseResult solve_inverse_by_map(const Model& model, const KinematicMap& map, const Statics& statics,
+                                                 const std::vector<Goal>& goals, const Actuation& start,
+                                                 const InverseOptions& options = {},
+                                                 const ProgressCallback& progress = {});
 
 }  // namespace softkin

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <softkin/core/types.hpp>
 #include <string>
 #include <vector>
@@ -50,7 +51,7 @@ struct SolveReport {
   std::string remark;          // why it stopped, where status is not converged; or how it is unstable
   double energy = 0;           // at the last shape evaluated
   double step_mm = 0;          // last step [mm]
-  double tolerance_mm = 0;     // step at which the iteration stops [mm]
+  double tolerance_mm = 0;     // step at which the iteration stops [mm]; NaN: a map answered, see answered()
   double gradient_norm = 0;
   double residual_N = 0;   // physical: the largest force out of balance at a vertex or on a rigid region [N]
   double pull_N = 0;       // physical: the largest sum of what elements pull at a vertex [N], which it is compared with
@@ -64,6 +65,9 @@ struct SolveReport {
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   double seconds = 0;
+
+  /// A map gave the equilibrium: there is nothing to tell of an iteration.
+  [[nodiscard]] bool answered() const { return std::isnan(tolerance_mm); }
 };
 
 struct Equilibrium {

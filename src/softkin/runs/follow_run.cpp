@@ -13,7 +13,7 @@ FollowRun::FollowRun(const Model& model, const Statics& statics, FollowTask task
       tolerance_mm_(options.inverse.tolerance_mm),
       folder_(std::move(folder)),
       job_(model, statics, task_.path, task_.file, options),
-      run_(model, job_, folder_.run(), follow_head(model, task_.scene, options), {"follow"}) {}
+      run_(model, job_, folder_.run(), follow_head(model, task_.scene, options, task_.map), {"follow"}) {}
 
 Table FollowRun::commands() {
   return commands_table(model_, task_.path, records());

@@ -4,6 +4,7 @@
 #include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/table/table.hpp>
 #include <softkin/runs/jobs.hpp>
+#include <softkin/runs/reports.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,7 @@ class FollowFolder {
 struct FollowTask {
   std::string scene, file;  // as the user named them
   MarkerPath path;
+  const UsedMap* map = nullptr;  // null: none
 };
 
 /// A trajectory, waypoint by waypoint, and what is made of it.

@@ -66,7 +66,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
   record.actuators = actuator_records(model, found);
   record.strain = strain_histogram(model, deformation);
-  if (model.formulation == Formulation::physical && record.status == Status::limit)
+  if (model.formulation == Formulation::physical && record.status == Status::limit && !record.answered())
     record.worst = worst_place(model, found.state.positions, deformation);
   record.stress = stress_extremes(model, found.state.positions, deformation);
   record.reactions = reactions(model, found.state.positions, deformation);
@@ -209,6 +209,7 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
   add_implausible(model, record, found);
   if (model.formulation == Formulation::physical && record.status != Status::converged)
     return found;  // the iteration was of another shape
+  if (record.answered()) return found;
   if (!std::isfinite(record.step_mm) || !std::isfinite(record.estimated_error_mm))
     found.push_back({Finding::Kind::diverged});
   else

@@ -67,23 +67,41 @@ Json units_json(const Model& model) {
           {"residual", physical ? "N" : "mm^4"}};
 }
 
-Json solver_json(const StaticsOptions& options) {
+/// What is known of the errors of a map.
+Json map_json(const UsedMap& map) {
+  const MapCheck& check = map.data.check;
+  Json json = {{"file", map.file},
+               {"equilibria", map.data.equilibria},
+               {"checked", {{"points", check.points}, {"outside", check.outside}, {"seed", check.seed}}}};
+  for (std::size_t q = 0; q < map.data.outputs.size(); ++q) {
+    const MapOutput& output = map.data.outputs[q];
+    json["largest_error"][output.name + (output.unit.empty() ? "" : "_" + output.unit)] =
+        check.largest[static_cast<Index>(q)];
+  }
+  if (map.data.shape) json["largest_error"]["shape_mm"] = check.shape_largest_mm;
+  return json;
+}
+
+Json solver_json(const StaticsOptions& options, const UsedMap* map) {
+  if (map != nullptr && !map->polished) return {{"name", "map"}, {"map", map_json(*map)}};
   Json json = {{"name", name_of(options.solver)},
                {"tolerance_mm", options.step_tolerance_mm},
                {"max_iterations", options.max_iterations}};
   if (options.solver == Solver::local_global) json["anderson"] = options.anderson;
   if (options.stable) json["stable"] = true;
+  if (map != nullptr) json["begun_from_map"] = map_json(*map);
   return json;
 }
 
-Json head_json(const Model& model, const std::string& scene, const StaticsOptions& options) {
+Json head_json(const Model& model, const std::string& scene, const StaticsOptions& options,
+               const UsedMap* map = nullptr) {
   return {{"softkin", SOFTKIN_VERSION},
           {"scene", scene},
           {"robot_fingerprint", fingerprint_of(model)},
           {"formulation", formulation_name(model.formulation)},
           {"materials", materials_json(model)},
           {"actuators", actuators_json(model)},
-          {"solver", solver_json(options)},
+          {"solver", solver_json(options, map)},
           {"units", units_json(model)},
           {"mesh",
            {{"order", model.edge_nodes.empty() ? 1 : 2},
@@ -216,12 +234,14 @@ Json stream_json(const drive::GcodeProgram& program, const drive::StreamReport& 
 
 }  // namespace
 
-std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options) {
-  return line_of(head_json(model, scene, options));
+std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options,
+                        const UsedMap* map) {
+  return line_of(head_json(model, scene, options, map));
 }
 
-std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options) {
-  Json head = head_json(model, scene, options.inverse.statics);
+std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options,
+                        const UsedMap* map) {
+  Json head = head_json(model, scene, options.inverse.statics, map);
   head["follow"] = {{"method", name_of(options.inverse.method)},
                     {"tolerance_mm", options.inverse.tolerance_mm},
                     {"max_iterations", options.inverse.max_iterations}};
@@ -266,8 +286,8 @@ InverseRecord inverse_record(const Model& model, const InverseResult& found, con
 
 RecordLog inverse_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
                          const InverseOptions& options, const std::vector<NamedGoal>& goals, const InverseResult& found,
-                         const InverseRecord& record) {
-  Json head = Json::parse(report_head(model, scene, options.statics));
+                         const InverseRecord& record, const UsedMap* map) {
+  Json head = Json::parse(report_head(model, scene, options.statics, map));
   head["ik"] = inverse_json(model, options, goals, found, record);
   Json step = to_json(model, record);
   step["error_mm"] = record.error_mm;
@@ -277,13 +297,14 @@ RecordLog inverse_report(const Model& model, const std::string& scene, const std
 }
 
 std::string drive_report(const std::string& scene, const drive::Plan& plan, bool whole,
-                         const drive::StreamReport* stream) {
+                         const drive::StreamReport* stream, const UsedMap* map) {
   const drive::Machine& machine = plan.machine;
   Json json = {{"softkin", SOFTKIN_VERSION},
                {"scene", scene},
                {"commands", plan.commands.file},
                {"hardware", machine.file},
                {"defaults", machine.defaults}};
+  if (map != nullptr) json["pressures_by_map"] = map_json(*map);
   for (std::size_t i = 0; i < machine.tendons.size(); ++i)
     json["tendons"][machine.tendons[i].name] = tendon_json(plan, i);
   for (std::size_t i = 0; i < machine.chambers.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <softkin/drive/marlin_link.hpp>
 #include <softkin/drive/plan.hpp>
 #include <softkin/kinematics/inverse.hpp>
+#include <softkin/kinematics/map.hpp>
 #include <softkin/kinematics/trajectory.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/runs/record_log.hpp>
@@ -11,12 +12,21 @@
 
 namespace softkin::runs {
 
-// What a report says before its steps, a JSON object on one line: version, scene, robot, formulation, materials,
-// actuators, solver, units, mesh, notes. scene: its file, as the user named it
+/// A map that answers in place of the solver, or at whose answers the solver begins.
+struct UsedMap {
+  std::string file;  // as the user named it
+  const MapData& data;
+  bool polished = false;
+};
 
-[[nodiscard]] std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options);
+// What a report says before its steps, a JSON object on one line: version, scene, robot, formulation, materials,
+// actuators, solver, units, mesh, notes. scene: its file, as the user named it; map: null: none
+
+[[nodiscard]] std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options,
+                                      const UsedMap* map = nullptr);
 /// With what changes the waypoints' results beside robot and solver, "follow".
-[[nodiscard]] std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options);
+[[nodiscard]] std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options,
+                                      const UsedMap* map = nullptr);
 /// With what is walked, and the feet.
 [[nodiscard]] std::string walk_head(const Model& model, const std::string& scene, const StaticsOptions& options,
                                     const std::string& gait, std::size_t cycles, const Vec3& direction);
@@ -45,14 +55,16 @@ struct InverseRecord : StepRecord {
 /// The report of it: what was asked and what came of it, and the record; to be written to file at its finish().
 [[nodiscard]] RecordLog inverse_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
                                        const InverseOptions& options, const std::vector<NamedGoal>& goals,
-                                       const InverseResult& found, const InverseRecord& record);
+                                       const InverseResult& found, const InverseRecord& record,
+                                       const UsedMap* map = nullptr);
 
 /// The report of softkin drive, JSON.
 ///
 /// scene   its file, as the user named it
 /// whole   with the program and the schedule
 /// stream  how the program was sent; null: it was not
+/// map     that gave pressures; null: none
 [[nodiscard]] std::string drive_report(const std::string& scene, const drive::Plan& plan, bool whole,
-                                       const drive::StreamReport* stream);
+                                       const drive::StreamReport* stream, const UsedMap* map = nullptr);
 
 }  // namespace softkin::runs

@@ -215,7 +215,8 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record) {
   }
   for (const Vec3& marker : record.markers)
     row.emplace_back(point_text(marker, length_decimals(model), length_width(model)));
-  row.insert(row.end(), {std::int64_t{record.iterations}, record.seconds, name_of(record.status)});
+  row.push_back(record.answered() ? Cell("-") : Cell(std::int64_t{record.iterations}));
+  row.insert(row.end(), {record.seconds, name_of(record.status)});
   if (record.unstable_modes > 0) row.back() = std::string(name_of(record.status)) + ", unstable";
   return row;
 }

@@ -149,7 +149,11 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
-  if (parts_->given && !parts_->assembled()) return parts_->given->at(actuation, start);
+  if (parts_->given && !parts_->assembled()) {
+    Equilibrium given = parts_->given->at(actuation, start);
+    given.report.seconds = seconds_since(begin);
+    return given;
+  }
   State near;
   if (parts_->given && !model.contact.any()) {
     Equilibrium given = parts_->given->at(actuation, start);

@@ -189,17 +189,7 @@ class Reader {
   }
 
   void take_report(const std::string& file) {
-    std::vector<std::size_t> chambers;
-    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      if (!is_commanded_by_volume(model_.actuators[a]) || !commands_.commanded[a]) continue;
-      if (commands_.pressure_known[a])
-        throw InvalidInput({file}, "its pressures are of no use: " + commands_.file + " has the column '" +
-                                       model_.actuators[a].name + pressure_end + "' already");
-      chambers.push_back(a);
-    }
-    if (chambers.empty())
-      throw InvalidInput({file},
-                         "its pressures are of no use: " + commands_.file + " commands no chamber by its volume");
+    const std::vector<std::size_t> chambers = chambers_without_pressures(model_, commands_, file);
     try {
       const Json steps = parse_json(read_file(file)).at("steps");
       if (steps.size() != commands_.rows.size())
@@ -248,6 +238,21 @@ std::vector<ActuationStep> read_actuation_path(const Model& model, const std::st
 
 Commands read_commands(const Model& model, const std::string& file, const std::string& report) {
   return Reader(model, file).read(report);
+}
+
+std::vector<std::size_t> chambers_without_pressures(const Model& model, const Commands& commands,
+                                                    const std::string& file) {
+  std::vector<std::size_t> chambers;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    if (!is_commanded_by_volume(model.actuators[a]) || !commands.commanded[a]) continue;
+    if (commands.pressure_known[a])
+      throw InvalidInput({file}, "its pressures are of no use: " + commands.file + " has the column '" +
+                                     model.actuators[a].name + pressure_end + "' already");
+    chambers.push_back(a);
+  }
+  if (chambers.empty())
+    throw InvalidInput({file}, "its pressures are of no use: " + commands.file + " commands no chamber by its volume");
+  return chambers;
 }
 
 }  // namespace softkin

@@ -35,4 +35,11 @@ struct ActuationStep {
 ///         report of other commands
 [[nodiscard]] Commands read_commands(const Model& model, const std::string& file, const std::string& report);
 
+/// Actuators whose pressures the commands lack: the chambers that they command by volume.
+///
+/// file    that has pressures, for messages
+/// throws  InvalidInput naming it: there is none, or the commands have pressures already
+[[nodiscard]] std::vector<std::size_t> chambers_without_pressures(const Model& model, const Commands& commands,
+                                                                  const std::string& file);
+
 }  // namespace softkin

@@ -13,7 +13,7 @@ constexpr double enough = 0.5;
 /// Terms over what is known: values and slopes.
 constexpr double terms_per_number = 0.8;
 /// A box is halved where so many batches bring its error down by less than this.
-constexpr std::size_t patience = 3;
+constexpr std::size_t patience = 2;
 constexpr double worthwhile = 0.3;
 /// A box of this share of its piece's or less is not halved any more.
 constexpr double least_width = 1.0 / 64;
@@ -34,6 +34,8 @@ PieceFit::PieceFit(const MapData& data, const Wanted& wanted, MapPiece& piece)
   }
   whole.decay = Eigen::VectorXd::Constant(variables_, 1.6);
   piece_.tree.assign(1, {});
+  low_ = whole.low;
+  high_ = whole.high;
   open_.push_back(std::move(whole));
 }
 
@@ -79,7 +81,8 @@ Terms PieceFit::terms_of(const Chart& chart, Index samples) const {
 RowMatrix PieceFit::next() {
   if (!open_.empty() && static_cast<Index>(samples_.size()) >= wanted_.most) {
     gave_up_ = true;
-    for (Chart& chart : std::exchange(open_, {})) keep(std::move(chart));
+    for (Chart& chart : std::exchange(open_, {}))
+      if (!chart.errors.empty() && chart.errors.back() <= 1) keep(std::move(chart));  // the others: outside the map
   }
   if (open_.empty()) return RowMatrix(0, variables_);
   // the widest first: what is left of many small ones when equilibria are used up is little
@@ -146,9 +149,10 @@ void PieceFit::take(std::vector<Sample> samples) {
   open_.push_back(std::move(chart));
 }
 
-/// Along the variable that parts what has equilibria from what has none, or along which coefficients fall slowest.
+/// Along the variable that parts what has equilibria from what has none, or along which coefficients fall slowest and
+/// the box is longest: beside a kink they fall alike along all.
 Index PieceFit::side_of(const Chart& chart) const {
-  Eigen::VectorXd score = -chart.decay;
+  Eigen::VectorXd score = (chart.high - chart.low).cwiseQuotient(high_ - low_).array().log().matrix() - chart.decay;
   Index bad = 0;
   for (const Index s : chart.samples) bad += samples_[static_cast<std::size_t>(s)].is_good() ? 0 : 1;
   if (bad > 0) {

@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <softkin/core/text.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/kinematics/map.hpp>
+#include <softkin/runs/map_export.hpp>
+#include <softkin/runs/map_file.hpp>
+
+#include "run_program.hpp"
+#include "runs/small_maps.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace softkin::testing;
+namespace runs = softkin::runs;
+
+struct ExportFolder : TemporaryFolder {
+  softkin::MapData data = runs::testing::cable_map();
+  std::string map = *this / "arm.skmap";
+
+  ExportFolder() { runs::write_map(map, data); }
+
+  [[nodiscard]] ProgramResult run(const std::vector<std::string>& options) const {
+    std::vector<std::string> all{"map", "export", map};
+    all.insert(all.end(), options.begin(), options.end());
+    return run_program(all);
+  }
+
+  /// One line on standard error, exit code 2, nothing written.
+  void refused(const std::vector<std::string>& options, const std::string& message) const {
+    const std::size_t before = files();
+    const std::string bytes = read_text(map);
+    const ProgramResult result = run(options);
+    EXPECT_EQ(result.exit_code, 2) << message;
+    EXPECT_EQ(result.output, "") << message;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    expect_words(result.errors, {"softkin: ", message});
+    EXPECT_EQ(files(), before) << message;
+    EXPECT_EQ(read_text(map), bytes);
+  }
+};
+
+std::string size_text(const std::string& file) {
+  return file + ": " + softkin::number(static_cast<double>(fs::file_size(file)) / 1000, 3) + " kB";
+}
+
+TEST(MapExport, WritesWhatIsAskedAndTellsItsSize) {
+  const ExportFolder folder;
+  const std::string c = folder / "new/arm.h", numpy = folder / "arm.npz", js = folder / "arm.mjs",
+                    types = folder / "arm.d.mts";
+  const ProgramResult result = folder.run({"--c", c, "--numpy", numpy, "--js", js});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(read_text(c), runs::map_c_header(folder.data, runs::CNumbers::doubles));
+  EXPECT_EQ(read_text(numpy), runs::map_npz(folder.data));
+  EXPECT_EQ(read_text(js), runs::map_js_module(folder.data));
+  EXPECT_EQ(read_text(types), runs::map_js_types(folder.data));
+  const std::vector<std::string> lines = lines_of(result.output);
+  ASSERT_EQ(lines.size(), 4u) << result.output;
+  EXPECT_EQ(lines[0].rfind(size_text(c) + "; " + runs::c_name(folder.data) + "_fk(), ...; tables: ", 0), 0u)
+      << lines[0];
+  expect_words(lines[0], {" bytes of flash", "Stack: about "});
+  EXPECT_EQ(lines[1], size_text(numpy));
+  EXPECT_EQ(lines[2], size_text(js));
+  EXPECT_EQ(lines[3], size_text(types) + "; types");
+}
+
+TEST(MapExport, FloatsAreSmaller) {
+  const ExportFolder folder;
+  const std::string c = folder / "arm.h";
+  const ProgramResult result = folder.run({"--c", c, "--float"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(folder.files(), 2u);
+  EXPECT_EQ(read_text(c), runs::map_c_header(folder.data, runs::CNumbers::floats));
+}
+
+TEST(MapExport, RefusesWhatDoesNotFit) {
+  const ExportFolder folder;
+  folder.refused({}, "give --c F.h, --numpy F.npz or --js F.mjs");
+  folder.refused({"--numpy", folder / "a.npz", "--float"}, "it needs --c F.h");
+  folder.refused({"--c", folder / "a.npz"}, "--c");
+  folder.refused({"--numpy", folder / "a.npz", "--js", folder / "a.js"}, "must end in .mjs");
+  folder.refused({"--c", folder.map}, "must end in .h");
+  folder.refused({"--c", folder / "a.h", "--output", folder / "b.skmap"}, "--output");
+  fs::create_directory(folder / "taken.d.mts");
+  folder.refused({"--js", folder / "taken.mjs"}, "taken.d.mts");
+  fs::create_symlink(folder.map, folder / "same.npz");
+  folder.refused({"--c", folder / "a.h", "--numpy", folder / "same.npz"}, "same.npz");
+}
+
+TEST(MapExport, RefusesFilesThatAreNoMaps) {
+  const ExportFolder folder;
+  const std::string whole = read_text(folder.map);
+  for (const std::string& bytes : {std::string("a,b\n1,2\n"), std::string(), whole.substr(0, whole.size() - 100),
+                                   whole.substr(0, whole.find('\n') - 3)}) {
+    folder.write("arm.skmap", bytes);
+    folder.refused({"--c", folder / "a.h"}, folder.map + ": is ");
+  }
+  fs::remove(folder.map);
+  const ProgramResult none = folder.run({"--js", folder / "a.mjs"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_EQ(none.errors, "softkin: " + folder.map + ": no such file\n");
+}
+
+/// "map" goes on as it was.
+TEST(MapExport, IsACommandBesideMakingMaps) {
+  const ExportFolder folder;
+  const auto told = [](const std::vector<std::string>& arguments) {
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    return result.errors;
+  };
+  EXPECT_EQ(told({"map", "-o", "a.skmap"}), "softkin: SCENE is required (softkin map --help tells more)\n");
+  EXPECT_EQ(told({"map", "a.yaml"}), "softkin: --output is required (softkin map --help tells more)\n");
+  EXPECT_EQ(told({"map", "export"}), "softkin: MAP is required (softkin map export --help tells more)\n");
+  expect_words(told({"map", "a.yaml", "export", folder.map, "--c", folder / "a.h"}), {"export excludes SCENE"});
+  expect_words(told({"map", "--seed", "3", "export", folder.map, "--c", folder / "a.h"}), {"export excludes --seed"});
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+/// The block of a language in docs/maps.md.
+std::string block_of(const std::string& language) {
+  const std::string text = read_text(SOFTKIN_SOURCE_DIR "/docs/maps.md"), begin = "```" + language + "\n";
+  const std::size_t from = text.find(begin);
+  if (from == std::string::npos) return "";
+  return text.substr(from + begin.size(), text.find("```", from + 3) - from - begin.size());
+}
+
+bool can_run(const std::string& command) {
+  return run_shell(command + " > /dev/null 2>&1").exit_code == 0;
+}
+
+/// The robot of docs/maps.md, its map less accurate.
+struct ActuatorFolder : TemporaryFolder {
+  std::string map = *this / "out/actuator.skmap";
+
+  ActuatorFolder() {
+    const std::string robot = SOFTKIN_SOURCE_DIR "/examples/three_chamber_actuator/three_chamber_actuator.yaml";
+    const ProgramResult made = run_program({"map", robot, "-o", map, "--accuracy", "0.5", "--load-accuracy", "1",
+                                            "--shape-accuracy", "1", "--check", "1"});
+    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    const ProgramResult all = run_program({"map", "export", map, "--c", *this / "out/actuator.h", "--float", "--numpy",
+                                           *this / "out/actuator.npz", "--js", *this / "out/actuator.mjs"});
+    EXPECT_EQ(all.exit_code, 0) << all.errors;
+  }
+
+  [[nodiscard]] ProgramResult shell(const std::string& command) const {
+    return run_shell("cd " + shell_quoted(*this / "out") + " && { " + command + "\n} 2>&1");
+  }
+};
+
+TEST(MapExport, ProgramsOfTheDocumentRun) {
+  const ActuatorFolder folder;
+  const softkin::KinematicMap map(runs::read_map(folder.map));
+  const double commands[] = {1.2, 1.0, 1.1};
+  Eigen::VectorXd outputs(map.outputs());
+  ASSERT_TRUE(map.evaluate(commands, outputs.data()));
+  if (can_run("cc --version")) {
+    folder.write("out/main.c", block_of("c"));
+    const ProgramResult result = folder.shell("cc -std=c99 -Wall -Wextra -Werror main.c -o main && ./main");
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+    const std::vector<std::string> lines = lines_of(result.output);
+    ASSERT_EQ(lines.size(), 2u) << result.output;
+    EXPECT_NEAR(std::stod(lines[0]), outputs[3], 1e-3);
+    std::istringstream words(lines[1]);
+    Eigen::Vector3d found;
+    for (double& value : found) words >> value;
+    ASSERT_TRUE(map.evaluate(found.data(), outputs.data()));
+    EXPECT_LT((outputs.head<3>() - Eigen::Vector3d(10, -5, 140)).norm(), 0.05);  // of 4 decimals
+    ASSERT_TRUE(map.evaluate(commands, outputs.data()));
+  }
+  if (can_run("python3 -c 'import numpy'")) {
+    folder.write("out/main.py", "import os\nos.chdir('..')\n" + block_of("python") +
+                                    "assert shape.shape[0] == 1 and shape.size > 3\nprint(outputs[0, 0])\n");
+    const ProgramResult result =
+        folder.shell("PYTHONPATH=" + shell_quoted(SOFTKIN_SOURCE_DIR "/examples/python") + " python3 main.py");
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+    EXPECT_NEAR(std::stod(result.output), outputs[0], 1e-9);
+  }
+  if (can_run("node --version")) {
+    folder.write("out/main.mjs", block_of("js") +
+                                     "if (!reached || vertices.length < 3 || jacobian.length !== outputs.length) throw "
+                                     "new Error('no shape');\nconsole.log(outputs[0]);\n");
+    const ProgramResult result = folder.shell("node main.mjs");
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+    EXPECT_NEAR(std::stod(result.output), outputs[0], 1e-9);
+  }
+}
+
+}  // namespace
