@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <softkin/core/text.hpp>
 #include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/kinematics/map_build.hpp>
 #include <softkin/kinematics/maps/shape_modes.hpp>
@@ -21,6 +22,7 @@ struct Options {
   std::vector<int> inputs{1, 2, 3, 4, 6};
   Index checks = 200, fresh = 0;
   int threads = 0;
+  bool errors = false;
   std::string plot;
 };
 
@@ -148,7 +150,7 @@ int economy(const Options& options) {
   }
   if (!options.plot.empty()) {
     PlotPanel panel;
-    panel.title = "Equilibria for " + std::to_string(options.accuracy) + " mm";
+    panel.title = "Equilibria for " + number(options.accuracy) + " mm";
     panel.x.label = "tendons";
     panel.x.whole = true;
     panel.y.label = "equilibria";
@@ -157,6 +159,31 @@ int economy(const Options& options) {
     write_svg(options.plot, {"Kinematic maps of an arm", {{panel}}});
   }
   return accurate ? 0 : 1;
+}
+
+/// The largest error at checks against the equilibria that it took.
+int errors(const Options& options) {
+  std::printf("tendons  asked for [mm]  equilibria  largest error at %d checks [mm]\n", options.checks);
+  PlotPanel panel;
+  panel.x.label = "equilibria that the map is made of";
+  panel.y.label = "largest error of the tip at checks [mm]";
+  panel.x.logarithmic = panel.y.logarithmic = true;
+  for (const int tendons : options.inputs) {
+    PlotSeries& series = panel.series.emplace_back(std::to_string(tendons) + (tendons == 1 ? " tendon" : " tendons"));
+    const Model model = compile(arm(tendons));
+    for (const double accuracy : {10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4}) {
+      MapOptions map = map_options(options);
+      map.accuracy_mm = accuracy;
+      map.statics.step_tolerance_mm = 1e-9;
+      const MapData data = build_map(model, map).value().data;
+      std::printf("%7d  %14g  %10d  %31.2g\n", tendons, accuracy, data.equilibria, largest_marker(data));
+      std::fflush(stdout);
+      if (!series.x.empty() && series.x.back() == data.equilibria) continue;
+      series.x.push_back(data.equilibria), series.y.push_back(largest_marker(data));
+    }
+  }
+  if (!options.plot.empty()) write_svg(options.plot, {"Kinematic maps of an arm of 180 mm", {{panel}}, 760, 320});
+  return 0;
 }
 
 /// Fresh points, solved and compared.
@@ -216,7 +243,7 @@ int honesty(const Options& options) {
 
 int run(const Options& options) {
   print_machine();
-  return options.fresh > 0 ? honesty(options) : economy(options);
+  return options.fresh > 0 ? honesty(options) : options.errors ? errors(options) : economy(options);
 }
 
 }  // namespace
@@ -229,7 +256,8 @@ int main(int argc, char** argv) {
   app.add_option("--inputs", options.inputs, "tendons of the arms")->delimiter(',');
   app.add_option("--check", options.checks, "random actuations at which a map is checked");
   app.add_option("--fresh", options.fresh, "random actuations beside what the checks found, of ten robots; 0: none");
+  app.add_flag("--errors", options.errors, "errors against equilibria, for accuracies from 10 mm to 1e-4 mm");
   app.add_option("--threads", options.threads, "0: as many as the machine has");
-  app.add_option("--plot", options.plot, "F.svg: equilibria against tendons");
+  app.add_option("--plot", options.plot, "F.svg: equilibria against tendons, or errors against equilibria");
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

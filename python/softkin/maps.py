@@ -90,6 +90,8 @@ class MapCheck:
     """of any vertex at any point"""
     shape_mean_mm: float
     """of the farthest vertex, mean over the points"""
+    strain_largest: float
+    """of the body's least and greatest principal strain, taken from the shape"""
 
 
 @dataclass(frozen=True, eq=False)

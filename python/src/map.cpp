@@ -206,8 +206,9 @@ std::vector<InputOut> inputs_of(const Map& map) {
   return all;
 }
 
-/// Points, outside, seed; of the shape: vertices (0: the map has none), accuracy, largest and mean error [mm].
-using CheckOut = std::tuple<Index, Index, std::uint64_t, Index, double, double, double>;
+/// Points, outside, seed; of the shape: vertices (0: the map has none), accuracy, largest and mean error [mm], largest
+/// error of strains.
+using CheckOut = std::tuple<Index, Index, std::uint64_t, Index, double, double, double, double>;
 CheckOut check_of(const Map& map) {
   const MapData& data = map.map.data();
   return {data.check.points,
@@ -216,7 +217,8 @@ CheckOut check_of(const Map& map) {
           data.shape ? static_cast<Index>(data.shape->mean.size()) / 3 : 0,
           data.shape ? data.shape->accuracy_mm : 0,
           data.check.shape_largest_mm,
-          data.check.shape_mean_mm};
+          data.check.shape_mean_mm,
+          data.check.strain_largest};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <softkin/kinematics/map_build.hpp>
 #include <softkin/kinematics/map_robot.hpp>
 #include <softkin/kinematics/maps/shape_modes.hpp>
+#include <softkin/statics/deformation.hpp>
 
 #include "statics/physical_samples.hpp"
 
@@ -65,6 +66,31 @@ void expect_agreement(const Model& model, const MapResult& result, int points) {
           << result.data.outputs[static_cast<std::size_t>(q)].name;
     EXPECT_LT(largest_move(map.shape(commands.row(i).data(), *place), found.state.positions), 0.02);
   }
+}
+
+/// Of the shape's largest strains, at points that the map was not checked at.
+TEST(Map, StrainsOfTheShapeAreAsTheCheckSays) {
+  const Model model = compile(two_chambers_to_map());
+  const MapResult result = made(model);
+  const KinematicMap map(result.data);
+  const Statics statics(model);
+  const maps::RowMatrix commands = maps::random_commands(result.data, 6, 78);
+  double largest = 0;
+  for (Index i = 0; i < commands.rows(); ++i) {
+    Eigen::VectorXd values(map.outputs());
+    const auto place = map.evaluate(commands.row(i).data(), values.data());
+    ASSERT_TRUE(place);
+    const auto greatest = [&](const Points& positions) {
+      double found = -1;
+      for (const auto& strain : deformation_of(model, positions).strain) found = std::max(found, strain[0]);
+      return found;
+    };
+    const Points solved = settled(statics, commands.row(i)).state.positions;
+    largest = std::max(largest, std::abs(greatest(map.shape(commands.row(i).data(), *place)) - greatest(solved)));
+  }
+  EXPECT_GT(result.data.check.strain_largest, 0);
+  EXPECT_LT(result.data.check.strain_largest, 0.01);
+  EXPECT_LT(largest, 2 * result.data.check.strain_largest + 1e-9);
 }
 
 TEST(Map, ChambersAreAsTheSolverHasThem) {

@@ -68,6 +68,7 @@ struct MapCheck {
   std::uint64_t seed = 0;
   Eigen::VectorXd largest, mean;                   // per output, in its unit
   double shape_largest_mm = 0, shape_mean_mm = 0;  // over vertices: the largest; its mean over the points
+  double strain_largest = 0;  // of the body's least and greatest principal strain, taken from the shape [-]
 };
 
 /// A robot's equilibria as functions of its commands, in closed form.

@@ -11,6 +11,7 @@
 #include <softkin/kinematics/map_build.hpp>
 #include <softkin/kinematics/maps/piece_fit.hpp>
 #include <softkin/kinematics/maps/shape_modes.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <thread>
 #include <utility>
 
@@ -254,7 +255,7 @@ class Builder {
     bool refused = false;  // by the map
     bool solved = false;
     Eigen::VectorXd errors;
-    double shape_mm = 0;
+    double shape_mm = 0, strain = 0;
   };
 
   bool check(int round) {
@@ -288,8 +289,15 @@ class Builder {
     check.solved = sample->is_good();
     if (check.refused || !check.solved) return true;
     check.errors = (values - sample->values).cwiseAbs();
-    if (data().shape) check.shape_mm = largest_move(map.shape(commands.data(), *place), sample->state.positions);
+    if (data().shape) compare_shapes(map.shape(commands.data(), *place), sample->state.positions, check);
     return true;
+  }
+
+  void compare_shapes(const Points& mapped, const Points& solved, Check& check) const {
+    check.shape_mm = largest_move(mapped, solved);
+    const StrainHistogram of_map = strain_histogram(model_, deformation_of(model_, mapped)),
+                          of_robot = strain_histogram(model_, deformation_of(model_, solved));
+    check.strain = std::max(std::abs(of_map.least - of_robot.least), std::abs(of_map.greatest - of_robot.greatest));
   }
 
   /// The robot itself, from the nearest equilibrium of the piece that it is one of.
@@ -349,6 +357,7 @@ class Builder {
       made.mean += each.errors;
       made.shape_largest_mm = std::max(made.shape_largest_mm, each.shape_mm);
       made.shape_mean_mm += each.shape_mm;
+      made.strain_largest = std::max(made.strain_largest, each.strain);
     }
     if (made.points > 0) {
       made.mean /= made.points;

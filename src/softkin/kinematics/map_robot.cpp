@@ -168,8 +168,7 @@ class MarkersOfMap : public OfMap {
 class ShapesOfMap : public OfMap {
  public:
   ShapesOfMap(const Model& model, const KinematicMap& map) : OfMap(model, map) {
-    if (!map.data().shape)
-      throw InvalidInput("the map was made without the robot's shape, which is asked for");
+    if (!map.data().shape) throw InvalidInput("the map was made without the robot's shape, which is asked for");
     if (map.data().shape->mean.size() != model.rest.size()) throw InvalidInput("the map is of another mesh");
   }
 

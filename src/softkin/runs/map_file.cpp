@@ -158,6 +158,7 @@ nlohmann::ordered_json header(const MapData& data, Arrays& arrays) {
     told["shape"] = {{"accuracy_mm", data.shape->accuracy_mm},
                      {"largest_error_mm", data.check.shape_largest_mm},
                      {"mean_error_mm", data.check.shape_mean_mm},
+                     {"largest_strain_error", data.check.strain_largest},
                      {"units", numbers(data.shape->units)},
                      {"mean", arrays.add("f32", data.shape->mean.transpose().eval())},
                      {"modes", arrays.add("i16", data.shape->modes.transpose().eval())}};
@@ -199,6 +200,7 @@ MapData data_of(const nlohmann::json& told, const ArrayReader& arrays) {
   made.accuracy_mm = shape.at("accuracy_mm").get<double>();
   data.check.shape_largest_mm = shape.at("largest_error_mm").get<double>();
   data.check.shape_mean_mm = shape.at("mean_error_mm").get<double>();
+  data.check.strain_largest = shape.at("largest_strain_error").get<double>();
   made.units = vector_of(shape.at("units"));
   using Row = Eigen::Matrix<float, 1, Eigen::Dynamic>;
   made.mean = arrays.read<Row>("f32", shape.at("mean")).transpose();
@@ -278,7 +280,11 @@ std::string map_text(const MapData& data) {
   if (any("kPa")) add("kPa", "pressures", 0);
   if (any("N")) add("N", "tensions", 0);
   if (any("")) add("", "ratios", 0);
-  if (data.shape) add("mm of any vertex", "shape", check.shape_largest_mm);
+  if (data.shape) {
+    constexpr double percent = 100;
+    add("mm of any vertex", "shape", check.shape_largest_mm);
+    text += " and " + number(percent * check.strain_largest, 2) + " % of its largest strains";
+  }
   if (check.outside > 0)
     text += "\n" + std::to_string(check.outside) + " of " + std::to_string(check.points + check.outside) +
             " random actuations are outside the map or have no equilibrium";

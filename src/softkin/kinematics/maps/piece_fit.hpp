@@ -66,7 +66,7 @@ class PieceFit {
   MapPiece& piece_;
   Index variables_;
   std::vector<Sample> samples_;
-  Eigen::VectorXd low_, high_;  // of the ranges
+  Eigen::VectorXd low_, high_;      // of the ranges
   std::vector<Chart> open_, done_;  // of done_ the places are those of the piece's cells
   double error_;
   bool gave_up_ = false;
