@@ -48,8 +48,8 @@ bool clearly_above(const Eigen::MatrixXd& symmetric, double least) {
   return bound > least;
 }
 
-/// Directions that move nothing, as columns: by the singular values of the slopes, as those of J^T J, which usually show
-/// that there are none, are known to the root of rounding only.
+/// Directions that move nothing, as columns: by the singular values of the slopes, as those of J^T J, which usually
+/// show that there are none, are known to the root of rounding only.
 ///
 /// normal  J^T J
 Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, const Eigen::MatrixXd& normal, double resolution_mm) {
