@@ -1,18 +1,11 @@
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <exception>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <softkin/core/error.hpp>
-#include <softkin/core/team.hpp>
-#include <softkin/core/text.hpp>
 #include <softkin/kinematics/map_build.hpp>
+#include <softkin/kinematics/maps/map_check.hpp>
 #include <softkin/kinematics/maps/piece_fit.hpp>
 #include <softkin/kinematics/maps/shape_modes.hpp>
-#include <softkin/statics/deformation.hpp>
-#include <thread>
 #include <utility>
 
 namespace softkin {
@@ -54,7 +47,7 @@ std::vector<Index> spread_vertices(const Model& model, Index count) {
 class Builder {
  public:
   Builder(const Model& model, const MapOptions& options, MapDesk* desk, const MapCallback& progress)
-      : model_(model), options_(options), desk_(desk), progress_(progress), statics_(model) {
+      : model_(model), options_(options), crew_(options.threads, desk, progress), statics_(model) {
     result_.data = maps::outline_of(model);
     wanted_.accuracy.resize(static_cast<Index>(data().outputs.size()));
     wanted_.probes = spread_vertices(model, 24);
@@ -155,37 +148,6 @@ class Builder {
     wanted_of_ = strictness_;
   }
 
-  /// Runs work(i) for every i, on several threads. False where it was stopped.
-  bool together(Index count, const std::function<bool(Index)>& work) {
-    std::atomic<Index> next = 0;
-    std::exception_ptr failure;
-    stopped_ = false;
-    const auto run = [&] {
-      try {
-        for (Index i = next++; i < count && !stopped_; i = next++)
-          if (!work(i)) stopped_ = true;
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!failure) failure = std::current_exception();
-        stopped_ = true;
-      }
-    };
-    std::vector<std::thread> others =
-        start_threads(std::min<int>(options_.threads, count) - 1, run, [&] { stopped_ = true; });
-    run();
-    for (std::thread& other : others) other.join();
-    if (failure) std::rethrow_exception(failure);
-    return !stopped_;
-  }
-
-  [[nodiscard]] ProgressCallback patient() {
-    return [this](const Progress&) {
-      if (stopped_) return false;
-      const std::lock_guard lock(mutex_);
-      return !progress_ || progress_(told_);
-    };
-  }
-
   /// That of the round before, which began alike.
   [[nodiscard]] std::optional<Sample> from_earlier(const std::vector<bool>& taut, Index number,
                                                    const Eigen::VectorXd& commands) const {
@@ -195,33 +157,25 @@ class Builder {
     return sample.commands == commands ? std::optional(sample) : std::nullopt;
   }
 
-  /// What the desk has of it.
-  [[nodiscard]] std::optional<Sample> known(Index key, Index number, const Eigen::VectorXd& commands) {
-    if (!desk_) return std::nullopt;
-    const std::lock_guard lock(mutex_);
-    return desk_->known(key, number, commands);
-  }
-
   /// Every equilibrium is a function of those before this call, its commands and nothing else.
   bool solve(Piece& piece, const maps::RowMatrix& commands, std::vector<Sample>& found) {
     const Index key = maps::bits_of(piece.made.taut);
     const auto before = static_cast<Index>(piece.fit->samples().size());
     found.resize(static_cast<std::size_t>(commands.rows()));
-    told_ = {equilibria_, 0, piece.fit->error(), doing(piece.made)};
-    const bool done = together(static_cast<Index>(commands.rows()), [&](Index i) {
+    const auto solve_one = [&](Index i) {
       const Eigen::VectorXd at = commands.row(i);
       std::optional<Sample> sample = from_earlier(piece.made.taut, before + i, at);
-      if (!sample) sample = known(key, before + i, at);
-      const bool is_known = sample.has_value();
-      if (!is_known) sample = piece.solver->solve(at, piece.fit->nearest(at), options_.statics, patient());
+      if (!sample)
+        sample = crew_.found(key, before + i, at, [&] {
+          return piece.solver->solve(at, piece.fit->nearest(at), options_.statics, crew_.patience());
+        });
       if (!sample) return false;
-      const std::lock_guard lock(mutex_);
-      if (!is_known && desk_) desk_->keep(key, before + i, *sample);
       found[static_cast<std::size_t>(i)] = std::move(*sample);
-      ++told_.equilibria;
-      return !progress_ || progress_(told_);
-    });
-    equilibria_ = told_.equilibria;
+      return true;
+    };
+    const MapProgress from{equilibria_, 0, piece.fit->error(), doing(piece.made)};
+    const bool done = crew_.each(static_cast<Index>(commands.rows()), from, &MapProgress::equilibria, solve_one);
+    equilibria_ = crew_.told().equilibria;
     return done;
   }
 
@@ -251,79 +205,26 @@ class Builder {
     return true;
   }
 
-  struct Check {
-    bool refused = false;  // by the map
-    bool solved = false;
-    Eigen::VectorXd errors;
-    double shape_mm = 0, strain = 0;
-  };
-
   bool check(int round) {
-    const KinematicMap map(data());
-    const std::uint64_t seed = options_.seed + static_cast<std::uint64_t>(round);
-    const maps::RowMatrix commands = maps::random_commands(data(), options_.checks, seed);
-    std::vector<Check> checks(static_cast<std::size_t>(options_.checks));
-    told_ = {equilibria_, 0, 0, "checking"};
-    const bool done = together(options_.checks, [&](Index i) {
-      if (!check_at(map, commands.row(i), round, i, checks[static_cast<std::size_t>(i)])) return false;
-      const std::lock_guard lock(mutex_);
-      ++told_.checks;
-      return !progress_ || progress_(told_);
-    });
-    if (done) judge(seed, checks);
-    return done;
-  }
-
-  bool check_at(const KinematicMap& map, const Eigen::VectorXd& commands, int round, Index number, Check& check) {
-    Eigen::VectorXd values(map.outputs());
-    const auto place = map.evaluate(commands.data(), values.data());
-    check.refused = !place;
-    const Index key = -1 - round;
-    std::optional<Sample> sample = known(key, number, commands);
-    if (!sample) {
-      sample = solve_robot(commands, place);
-      if (!sample) return false;
-      const std::lock_guard lock(mutex_);
-      if (desk_) desk_->keep(key, number, *sample);
-    }
-    check.solved = sample->is_good();
-    if (check.refused || !check.solved) return true;
-    check.errors = (values - sample->values).cwiseAbs();
-    if (data().shape) compare_shapes(map.shape(commands.data(), *place), sample->state.positions, check);
+    const auto start = [this](const KinematicMap::Place& place, const Eigen::VectorXd& commands) {
+      return start_of(place, commands);
+    };
+    std::optional<std::string> remark = maps::check_map(model_, statics_, options_, round, start, crew_, data());
+    if (!remark) return false;
+    result_.accurate = remark->empty();
+    result_.remark = std::move(*remark);
+    if (!result_.accurate && gave_up_)
+      result_.remark += "; it ended after " + std::to_string(data().equilibria) + " equilibria";
     return true;
   }
 
-  void compare_shapes(const Points& mapped, const Points& solved, Check& check) const {
-    check.shape_mm = largest_move(mapped, solved);
-    const StrainHistogram of_map = strain_histogram(model_, deformation_of(model_, mapped)),
-                          of_robot = strain_histogram(model_, deformation_of(model_, solved));
-    check.strain = std::max(std::abs(of_map.least - of_robot.least), std::abs(of_map.greatest - of_robot.greatest));
-  }
-
-  /// The robot itself, from the nearest equilibrium of the piece that it is one of.
-  std::optional<Sample> solve_robot(const Eigen::VectorXd& commands, const std::optional<KinematicMap::Place>& place) {
-    StaticsOptions options = options_.statics;
-    options.threads = 1;
-    options.reuse_factor = false;
-    options.keep_history = false;
-    Sample sample;
-    sample.commands = commands;
-    Actuation actuation = data().actuation;
-    for (Index i = 0; i < commands.size(); ++i)
-      actuation[data().inputs[static_cast<std::size_t>(i)].actuator] = commands[i];
-    State start = statics_.rest();
-    if (place) {
-      const Piece& piece = *pieces_[static_cast<std::size_t>(place->piece)];
-      Eigen::VectorXd own(static_cast<Index>(piece.made.inputs.size()));
-      for (Index j = 0; j < own.size(); ++j) own[j] = commands[piece.made.inputs[static_cast<std::size_t>(j)]];
-      if (const Sample* nearest = piece.fit->nearest(own)) start = of_robot(nearest->state, piece.made.taut);
-    }
-    Equilibrium found = statics_.solve(actuation, start, options, patient());
-    if (found.report.status == Status::interrupted) return std::nullopt;
-    if (found.report.status != Status::converged) return sample;
-    sample.values = maps::outputs_of(model_, data(), found.state);
-    sample.state = std::move(found.state);
-    return sample;
+  /// The nearest equilibrium of the piece that the commands lead to.
+  [[nodiscard]] State start_of(const KinematicMap::Place& place, const Eigen::VectorXd& commands) const {
+    const Piece& piece = *pieces_[static_cast<std::size_t>(place.piece)];
+    Eigen::VectorXd own(static_cast<Index>(piece.made.inputs.size()));
+    for (Index j = 0; j < own.size(); ++j) own[j] = commands[piece.made.inputs[static_cast<std::size_t>(j)]];
+    const Sample* nearest = piece.fit->nearest(own);
+    return nearest ? of_robot(nearest->state, piece.made.taut) : statics_.rest();
   }
 
   /// The state of a piece as one of the robot, whose slack cables are commanded as long as their paths; at rest where
@@ -340,63 +241,17 @@ class Builder {
     return state;
   }
 
-  void judge(std::uint64_t seed, const std::vector<Check>& checks) {
-    MapCheck& made = data().check;
-    made = {};
-    made.seed = seed;
-    made.largest = made.mean = Eigen::VectorXd::Zero(static_cast<Index>(data().outputs.size()));
-    Index lost = 0;
-    for (const Check& each : checks) {
-      if (each.refused || !each.solved) {
-        ++made.outside;
-        if (!each.refused) ++lost;
-        continue;
-      }
-      ++made.points;
-      made.largest = made.largest.cwiseMax(each.errors);
-      made.mean += each.errors;
-      made.shape_largest_mm = std::max(made.shape_largest_mm, each.shape_mm);
-      made.shape_mean_mm += each.shape_mm;
-      made.strain_largest = std::max(made.strain_largest, each.strain);
-    }
-    if (made.points > 0) {
-      made.mean /= made.points;
-      made.shape_mean_mm /= made.points;
-    }
-    result_.remark.clear();
-    for (std::size_t q = 0; q < data().outputs.size(); ++q) {
-      const MapOutput& output = data().outputs[q];
-      if (made.largest[static_cast<Index>(q)] <= output.accuracy) continue;
-      if (result_.remark.empty())
-        result_.remark = output.name + " was " + number(made.largest[static_cast<Index>(q)], 3) + " " + output.unit +
-                         " off at a check, " + number(output.accuracy, 3) + " was asked for";
-    }
-    if (result_.remark.empty() && data().shape && made.shape_largest_mm > options_.shape_accuracy_mm)
-      result_.remark = "a vertex was " + number(made.shape_largest_mm, 3) + " mm off at a check, " +
-                       number(options_.shape_accuracy_mm, 3) + " was asked for";
-    if (result_.remark.empty() && lost > 0)
-      result_.remark = "at " + std::to_string(lost) + " checks inside the map the robot has no equilibrium";
-    if (result_.remark.empty() && made.points == 0) result_.remark = "no check was inside the map";
-    result_.accurate = result_.remark.empty();
-    if (!result_.accurate && gave_up_)
-      result_.remark += "; it ended after " + std::to_string(data().equilibria) + " equilibria";
-  }
-
   const Model& model_;
   const MapOptions& options_;
-  MapDesk* desk_;
-  const MapCallback& progress_;
+  maps::Crew crew_;
   Statics statics_;
   maps::Wanted wanted_;
   double strictness_ = 1, wanted_of_ = 0;
   std::vector<std::unique_ptr<Piece>> pieces_;
   std::map<std::vector<bool>, std::vector<Sample>> earlier_;  // of the round before, by what is taut
   MapResult result_;
-  MapProgress told_;
   Index equilibria_ = 0;
   bool gave_up_ = false;
-  std::atomic<bool> stopped_ = false;
-  std::mutex mutex_;
 };
 
 }  // namespace

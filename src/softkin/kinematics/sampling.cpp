@@ -193,6 +193,13 @@ Actuations sample_actuations(const Model& model, const SamplingOptions& options)
   return actuations;
 }
 
+StaticsOptions one_of_many(StaticsOptions options) {
+  options.threads = 1;
+  options.reuse_factor = false;
+  options.keep_history = false;
+  return options;
+}
+
 std::vector<Index> order_of_neighbours(const Model& model, const Actuations& actuations) {
   std::vector<Index> order(static_cast<std::size_t>(actuations.rows()));
   std::iota(order.begin(), order.end(), 0);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/statics.hpp>
 
 namespace softkin {
 
@@ -36,6 +37,9 @@ using Actuations = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 ///          every range. random: 53 upper bits of std::mt19937_64
 /// throws   InvalidInput on samples < 1, a grid that is not full, no actuator that varies, more than 8 for sobol
 [[nodiscard]] Actuations sample_actuations(const Model& model, const SamplingOptions& options);
+
+/// Options of a solve that is one of many at once: on one thread, and the same bits whatever was solved before.
+[[nodiscard]] StaticsOptions one_of_many(StaticsOptions options);
 
 /// Sample numbers in an order in which neighbours follow each other: along a Hilbert curve through the ranges.
 ///

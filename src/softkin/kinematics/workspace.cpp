@@ -1,12 +1,9 @@
 #include <algorithm>
 #include <atomic>
-#include <exception>
-#include <mutex>
 #include <softkin/core/error.hpp>
-#include <softkin/core/team.hpp>
+#include <softkin/core/together.hpp>
 #include <softkin/kinematics/workspace.hpp>
 #include <softkin/statics/statics.hpp>
-#include <thread>
 
 namespace softkin {
 
@@ -36,11 +33,7 @@ class Group {
  public:
   Group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
         const ProgressCallback& progress)
-      : model_(model), statics_(statics), plan_(plan), options_(options), progress_(progress) {
-    options_.threads = 1;
-    options_.reuse_factor = false;
-    options_.keep_history = false;
-  }
+      : model_(model), statics_(statics), plan_(plan), options_(one_of_many(options)), progress_(progress) {}
 
   /// Nothing where progress stopped it.
   std::optional<WorkspaceSample> solve(Index number) {
@@ -147,27 +140,14 @@ bool solve_group(const Model& model, const Statics& statics, const WorkspacePlan
 void solve_groups(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
                   int threads, GroupDesk& desk, const ProgressCallback& progress) {
   std::atomic<bool> stopped = false;
-  std::exception_ptr failure;
-  std::mutex mutex;
   const ProgressCallback go_on = [&](const Progress& p) { return !stopped && (!progress || progress(p)); };
-  const auto work = [&] {
-    try {
-      while (!stopped) {
-        const std::optional<GroupTask> task = desk.take();
-        if (!task) return;
-        const auto keep = [&](const WorkspaceSample& sample) { desk.keep(sample); };
-        if (!solve_group(model, statics, plan, options, *task, keep, go_on)) stopped = true;
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-      stopped = true;
-    }
-  };
-  std::vector<std::thread> others = start_threads(threads - 1, work, [&] { stopped = true; });
-  work();
-  for (std::thread& other : others) other.join();
-  if (failure) std::rethrow_exception(failure);
+  work_together(threads, stopped, [&] {
+    const std::optional<GroupTask> task = desk.take();
+    if (!task) return false;
+    const auto keep = [&](const WorkspaceSample& sample) { desk.keep(sample); };
+    if (!solve_group(model, statics, plan, options, *task, keep, go_on)) stopped = true;
+    return true;
+  });
 }
 
 }  // namespace softkin

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/maps/piece_solver.hpp>
+#include <softkin/kinematics/sampling.hpp>
 #include <softkin/model/names.hpp>
 #include <utility>
 
@@ -107,10 +108,7 @@ PieceSolver::PieceSolver(const Model& model, const MapData& data, const MapPiece
 
 std::optional<Sample> PieceSolver::solve(const Eigen::VectorXd& commands, const Sample* nearest,
                                          const StaticsOptions& options, const ProgressCallback& progress) const {
-  StaticsOptions own = options;
-  own.threads = 1;
-  own.reuse_factor = false;
-  own.keep_history = false;
+  const StaticsOptions own = one_of_many(options);
   Sample sample;
   sample.commands = commands;
   Actuation actuation = model_.rest_actuation();
