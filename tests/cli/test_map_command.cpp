@@ -122,6 +122,7 @@ TEST(MapUse, AnswersTellTheMapAndNoFiguresOfASolver) {
     EXPECT_TRUE(there.at(key).is_number()) << key;
   }
   EXPECT_LT(distance(here.at("markers").at("tip"), there.at("markers").at("tip")), 0.05);
+  EXPECT_EQ(here.at("actuators").at("air").at("achieved"), 1.3);  // exactly, as by the solver
 }
 
 TEST(MapUse, InverseKinematicsIsPolishedWithFewEquilibria) {

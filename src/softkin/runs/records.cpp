@@ -30,6 +30,10 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return record;
   if (found.state.multipliers.size() == 0) return record;  // not known
   record.multiplier = found.state.multipliers[i];
+  // what holds it holds it exactly, while a map's shape is a little off
+  if (found.report.answered() && actuator.control == Control::ratio &&
+      (actuator.kind != ActuatorKind::cable || record.multiplier > 0))
+    record.achieved = found.actuation[i];
   if (actuator.kind == ActuatorKind::cable)
     record.slack = is_slack(actuator, record.achieved, found.state.actuation[i], record.multiplier);
   return record;
