@@ -281,9 +281,8 @@ std::string map_text(const MapData& data) {
   if (any("N")) add("N", "tensions", 0);
   if (any("")) add("", "ratios", 0);
   if (data.shape) {
-    constexpr double percent = 100;
     add("mm of any vertex", "shape", check.shape_largest_mm);
-    text += " and " + number(percent * check.strain_largest, 2) + " % of its largest strains";
+    text += ", its largest strains " + number(check.strain_largest, 2) + " [-]";
   }
   if (check.outside > 0)
     text += "\n" + std::to_string(check.outside) + " of " + std::to_string(check.points + check.outside) +
