@@ -86,3 +86,6 @@ run(${work}/build/solve ${examples}/three_tendon_finger/three_tendon_finger.yaml
 run(${work}/build/inverse ${examples}/three_chamber_actuator/three_chamber_actuator.yaml 4 -2 2)
 run(${work}/build/control_loop 50 2)
 run(${work}/softkin/bin/softkin --version)
+set(chambers ${examples}/three_chamber_actuator/three_chamber_actuator.yaml)
+run(${work}/softkin/bin/softkin map ${chambers} -o ${work}/chambers.skmap --check 5)
+run(${work}/build/map ${chambers} ${work}/chambers.skmap 100 3)

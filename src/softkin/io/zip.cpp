@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint16_t zip_version = 20, first_of_1980 = 0x21;  // the earliest day that a zip can tell
 
 void append_number(std::string& bytes, std::uint64_t value, int size) {
-  for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 255);
+  for (int i = 0; i < size; ++i, value >>= 8) bytes += static_cast<char>(value & 255);
 }
 
 std::uint64_t crc_of(const std::string& content) {
