@@ -106,7 +106,7 @@ void check_drivable(const Actuator& actuator, bool pressure_known, const std::st
                                    "' is commanded by its volume, and a regulator sets pressures: add a column '" +
                                    actuator.name +
                                    "_pressure_kPa', or name the report of the run that made the commands (pressures) "
-                                   "or a map of the robot (softkin drive --map)");
+                                   "or, to softkin drive, a map of the robot");
 }
 
 void check_described(const Actuator& actuator, const Machine& machine, const std::string& commands) {
