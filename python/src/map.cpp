@@ -172,7 +172,7 @@ std::string refusal(const Map& map, const VectorIn& commands) {
     return "'" + input.name + "' is " + number(command) + ", outside the map, which takes " + number(input.low) +
            " to " + number(input.high) + (input.unit.empty() ? "" : " " + input.unit);
   }
-  return "the commands are outside the map: when it was made, the robot had no equilibrium there, or jumped";
+  return "the commands are outside the map: when it was made, no accurate answer was found there";
 }
 
 TableOut shape_at(const Map& map, const VectorIn& commands) {

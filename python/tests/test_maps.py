@@ -221,11 +221,17 @@ def test_less_accurate_than_asked_for(robot: softkin.Robot) -> None:
     with pytest.warns(softkin.SoftkinWarning, match="not as accurate as was asked for: .*it ended after"):
         poor = robot.map(accuracy_mm=1e-5, shape_accuracy_mm=None, most=5, checks=3, load_accuracy=0.5)
     assert not poor.accurate and poor.check.points == 0 and poor.check.outside == 3 and poor.outputs[3].accuracy == 0.5
-    assert poor.vertices == 0 and poor.check.shape_accuracy_mm == 0
+    with pytest.raises(softkin.InvalidInput, match="outside the map"):
+        poor.solve()
+
+
+def test_without_shape(robot: softkin.Robot) -> None:
+    plain = robot.map(accuracy_mm=0.05, shape_accuracy_mm=None, checks=3)
+    assert plain.vertices == 0 and plain.check.shape_accuracy_mm == 0
     with pytest.raises(softkin.InvalidInput, match="without the robot's shape"):
-        poor.shape()
+        plain.shape()
     with pytest.raises(softkin.InvalidInput, match="without the robot's shape"):
-        robot.solve(map=poor)
+        robot.solve(map=plain)
 
 
 @pytest.mark.parametrize(
