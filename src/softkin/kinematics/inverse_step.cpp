@@ -208,9 +208,11 @@ InverseStep find_step(const Pose& pose, const Slopes& slopes, const Eigen::Matri
                                   slopes.terms.transpose() * pose.terms, region.rows, region.bounds);
   step.predicted = predicted_reduction(pose, slopes, curvature, step.move);
   step.predicted_norm = (pose.terms + slopes.terms * step.move).norm();
-  const Eigen::MatrixXd blind = blind_directions(slopes.terms, normal, limits.resolution_mm);
   // where the goals stay out of reach, how near they are comes before how near the actuation is
-  if (blind.cols() > 0 && (pose.miss <= 1 || step.predicted_norm < 0.5 * pose.terms.norm())) {
+  const bool near = pose.miss <= 1 || step.predicted_norm < 0.5 * pose.terms.norm();
+  const Eigen::MatrixXd blind =
+      near ? blind_directions(slopes.terms, normal, limits.resolution_mm) : Eigen::MatrixXd(slopes.terms.cols(), 0);
+  if (blind.cols() > 0) {
     const Eigen::VectorXd more = sideways_move(pose, blind, region, step.move, preferred);
     step.sideways = more.cwiseAbs().maxCoeff();
     step.move += more * std::min(1.0, limits.sideways / std::max(step.sideways, 1e-300));

@@ -112,6 +112,16 @@ void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const do
   }
 }
 
+KinematicMap::Place KinematicMap::evaluate_bits(Index taut, const double* commands, double* values,
+                                                double* slopes) const {
+  Place place{pieces_[static_cast<std::size_t>(taut)], -1};
+  if (place.piece < 0) return place;
+  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
+  place.cell = cell_of(piece, commands);
+  if (place.cell >= 0) evaluate(piece, piece.cells[static_cast<std::size_t>(place.cell)], commands, values, slopes);
+  return place;
+}
+
 /// With all cables taut at first: one that would push goes slack, one that is longer than it may be is taken up. Pieces
 /// are approximate: where that goes round in circles, less than their accuracy is not wrong.
 ///
@@ -122,12 +132,8 @@ KinematicMap::Place KinematicMap::find(const double* commands, double* values, d
   taut = (Index{1} << cables) - 1;
   Place place;
   for (std::size_t change = 0; change <= 4 * cables; ++change) {
-    place.piece = pieces_[static_cast<std::size_t>(taut)];
-    if (place.piece < 0) return place;
-    const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
-    place.cell = cell_of(piece, commands);
+    place = evaluate_bits(taut, commands, values, slopes);
     if (place.cell < 0) return place;
-    evaluate(piece, piece.cells[static_cast<std::size_t>(place.cell)], commands, values, slopes);
     const bool circles = change >= 2 * cables;
     std::size_t wrong = cables;
     double worst = 0;
@@ -165,13 +171,8 @@ std::optional<KinematicMap::Place> KinematicMap::evaluate(const double* commands
 
 std::optional<KinematicMap::Place> KinematicMap::evaluate_taut(const std::vector<bool>& taut, const double* commands,
                                                                double* values, double* slopes) const {
-  const Index number = pieces_[static_cast<std::size_t>(maps::bits_of(taut))];
-  if (number < 0) return std::nullopt;
-  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(number)];
-  const Index cell = cell_of(piece, commands);
-  if (cell < 0) return std::nullopt;
-  evaluate(piece, piece.cells[static_cast<std::size_t>(cell)], commands, values, slopes);
-  return Place{number, cell};
+  const Place place = evaluate_bits(maps::bits_of(taut), commands, values, slopes);
+  return place.cell < 0 ? std::nullopt : std::optional(place);
 }
 
 std::optional<std::vector<bool>> KinematicMap::missing_piece(const double* commands, double* values) const {

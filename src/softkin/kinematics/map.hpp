@@ -132,6 +132,8 @@ class KinematicMap {
 
  private:
   Place find(const double* commands, double* values, double* slopes, Index& taut) const;
+  /// taut: bits. The piece is -1 where there is none of these, the cell where it has none there.
+  Place evaluate_bits(Index taut, const double* commands, double* values, double* slopes) const;
   [[nodiscard]] Index cell_of(const MapPiece& piece, const double* commands) const;
   [[nodiscard]] Points sum_of_modes(const Eigen::VectorXd& amplitudes) const;
   void evaluate(const MapPiece& piece, const MapCell& cell, const double* commands, double* values,
