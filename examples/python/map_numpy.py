@@ -45,7 +45,8 @@ class NumpyMap:
             pull = (taut[:, None] >> cables & 1).astype(bool)
             by = np.where(pull, -outputs[:, a["cable_tensions"]], outputs[:, a["cable_ratios"]] - asked * (1 + 1e-12))
             accuracy = a["accuracy"][np.where(pull, a["cable_tensions"], a["cable_ratios"])]
-            by -= accuracy * (change >= 2 * len(cables))  # in circles: less than that is not wrong
+            ends = a["roots"][taut[:, None] ^ 1 << cables] < 0
+            by -= accuracy * (ends | (change >= 2 * len(cables)))  # no piece, or circles: less than that is not wrong
             by[((by > 0) & pull).any(axis=1)[:, None] & ~pull] = 0  # pushing ones first
             wrong = (by > 0).any(axis=1)
             if not wrong.any() or change == 4 * len(cables):

@@ -17,7 +17,8 @@ struct Exported {
 };
 
 inline std::vector<MapData> small_maps() {
-  return {arm_map(), redundant_map(), cable_map(), cable_map(true), askew_map(), divided_map(), single_map()};
+  return {arm_map(),   redundant_map(), cable_map(),   cable_map(true),
+          askew_map(), ending_map(),    divided_map(), single_map()};
 }
 
 /// Random ones, corners, ones beside the ranges and what is no number.

@@ -197,6 +197,15 @@ inline MapData askew_map() {
   return data;
 }
 
+/// Of taut cables alone, as where the ranges end before cables go slack but for an error.
+inline MapData ending_map() {
+  MapData data = cable_map();
+  data.name = "ends";
+  data.pieces.resize(1);
+  for (const MapCable& cable : data.cables) data.outputs[static_cast<std::size_t>(cable.tension)].accuracy = 8;
+  return data;
+}
+
 /// Two commands; four boxes, one of them outside the map, in each of which the outputs are others.
 inline MapData divided_map() {
   MapData data = outline("2 boxes", {{"u", "N", 0, -1, 3}, {"v", "N", 1, 100, 101}});

@@ -123,7 +123,8 @@ KinematicMap::Place KinematicMap::evaluate_bits(Index taut, const double* comman
 }
 
 /// With all cables taut at first: one that would push goes slack, one that is longer than it may be is taken up. Pieces
-/// are approximate: where that goes round in circles, less than their accuracy is not wrong.
+/// are approximate: where that goes round in circles, or to a piece that there is not (as at rest, where no command goes
+/// farther), less than their accuracy is not wrong.
 ///
 /// taut     the bits of the last that were
 /// returns  the piece is -1 where there is none of these, the cell where it has none there
@@ -142,9 +143,10 @@ KinematicMap::Place KinematicMap::find(const double* commands, double* values, d
       const MapCable& cable = data_.cables[c];
       const bool holds = (taut >> c) & 1;
       const double command = cable.input < 0 ? cable.command : commands[cable.input];
+      const bool ends = pieces_[static_cast<std::size_t>(taut ^ (Index{1} << c))] < 0;
       const double by =
           (holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12)) -
-          (circles ? data_.outputs[static_cast<std::size_t>(holds ? cable.tension : cable.ratio)].accuracy : 0);
+          (circles || ends ? data_.outputs[static_cast<std::size_t>(holds ? cable.tension : cable.ratio)].accuracy : 0);
       // pushing ones first: those that are too long may then be so no more
       if (!(by > 0) || (pushes && !holds) || (pushes == holds && by <= worst)) continue;
       wrong = c;

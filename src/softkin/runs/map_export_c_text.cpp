@@ -99,7 +99,7 @@ static inline int map_fk(const map_real commands[], map_real outputs[], map_real
 
 const char* const c_slack = R"C(
 /* All cables are taut at first: one that would push goes slack, one that is longer than it may be is taken up; the one
-   that is most wrong first. -1: none is wrong. circles: less than the accuracy is not wrong. */
+   that is most wrong first. -1: none is wrong. circles, or no piece: less than the accuracy is not wrong. */
 static inline int map_wrong_cable(unsigned taut, int circles, const map_real commands[], const map_real outputs[]) {
   int wrong = -1, pushes = 0, c;
   map_real worst = 0;
@@ -108,7 +108,7 @@ static inline int map_wrong_cable(unsigned taut, int circles, const map_real com
     const int holds = (int)((taut >> c) & 1u);
     const map_real command = cable[0] < 0 ? map_cable_commands[c] : commands[cable[0]];
     const map_real by = (holds ? -outputs[cable[1]] : outputs[cable[2]] - command * (1 + MAP_ROUNDING)) -
-                        (circles ? map_cable_accuracies[2 * c + !holds] : 0);
+                        (circles || map_pieces[taut ^ (1u << c)] < 0 ? map_cable_accuracies[2 * c + !holds] : 0);
     if (!(by > 0) || (pushes && !holds) || (pushes == holds && by <= worst)) continue;
     wrong = c;
     worst = by;

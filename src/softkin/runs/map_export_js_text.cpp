@@ -75,13 +75,14 @@ function cellOf(piece, commands) {
 }
 
 /** All cables are taut at first: one that would push goes slack, one that is longer than it may be is taken up; the one
-    that is most wrong first. circles: less than the accuracy is not wrong. */
+    that is most wrong first. circles, or no piece: less than the accuracy is not wrong. */
 function wrongCable(taut, circles, commands, values) {
   let wrong = -1, pushes = false, worst = 0;
   tables.cables.forEach(({input, command, tension, ratio}, c) => {
     const holds = ((taut >> c) & 1) === 1;
     const excess = holds ? -values[tension] : values[ratio] - (input < 0 ? command : commands[input]) * (1 + 1e-12);
-    const by = excess - (circles ? outputs[holds ? tension : ratio].accuracy : 0);
+    const lenient = circles || tables.pieces[taut ^ (1 << c)] < 0;
+    const by = excess - (lenient ? outputs[holds ? tension : ratio].accuracy : 0);
     if (!(by > 0) || (pushes && !holds) || (pushes === holds && by <= worst)) return;
     [wrong, worst, pushes] = [c, by, holds];
   });
