@@ -17,17 +17,18 @@ example := examples/pneumatic_finger
 # without `large`, which takes long and up to 24 GiB
 BENCH ?= iteration factor tracking newton
 # tested under the address and undefined-behaviour sanitizers too; large rooms with some files only (tests/CMakeLists.txt)
-sanitized := core model io statics kinematics drive runs
+sanitized := core model io statics kinematics drive runs view
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
 
-.PHONY: help setup build run test test-release test-sanitize test-threads test-fuzz test-python fuzz python random bench format format-check clean
+.PHONY: help setup build run test test-release test-page test-sanitize test-threads test-fuzz test-python fuzz python docs random bench format format-check clean
 
 help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
 	@echo 'make test          install what is missing, build everything, run all tests and checks'
 	@echo 'make build         build build/softkin'
 	@echo 'make python        install what is missing, and the Python package in build-python (docs/python.md)'
+	@echo 'make docs          the documentation as a site, build-docs/site/index.html, its links checked; with robots to bend'
 	@echo 'make fuzz          2 million damaged inputs to every reader (hours; goes on where it was); RUNS=1000 less'
 	@echo 'make bench         build and run the benchmarks (docs/benchmarks.md); BENCH="newton large" runs these alone'
 	@echo 'make random        solve 20,000 random robots and check every answer; RUNS=1000 fewer of them'
@@ -53,7 +54,13 @@ run: build
 	build/softkin compare out/pneumatic_finger.json out/target_shape.json out/local_global.json \
 	  --turn tip end --poses 90 180 240
 	@echo
+	@echo "A kinematic map of the finger, for a page on which it can be bent by hand:"
+	build/softkin map $(example)/pneumatic_finger.yaml -o out/pneumatic_finger.skmap --check 10
+	build/softkin fk $(example)/pneumatic_finger.yaml --path $(example)/path.csv --map out/pneumatic_finger.skmap --polish \
+	  --html out/pneumatic_finger.html
+	@echo
 	@echo "Turn is the bend of the finger's tip. Open next:"
+	@echo "  out/pneumatic_finger.html                          bend the finger in a browser (a page of one file, offline)"
 	@echo "  out/pneumatic_finger.png, out/target_shape.png     the finger in its last pose, by both formulations"
 	@echo "  out/pneumatic_finger.pvd, out/target_shape.pvd     every pose, in ParaView"
 	@echo "  out/pneumatic_finger.json, out/target_shape.json   markers, pressures, iterations, times"
@@ -69,6 +76,7 @@ test:
 	@$(SETUP) --tests
 	$(MAKE) --no-print-directory format-check
 	$(MAKE) --no-print-directory test-release
+	$(MAKE) --no-print-directory test-page
 	$(MAKE) --no-print-directory test-sanitize
 	$(MAKE) --no-print-directory test-threads
 	$(MAKE) --no-print-directory test-fuzz
@@ -78,6 +86,9 @@ test-release:
 	cmake --preset release -DSOFTKIN_TESTS=ON -DSOFTKIN_BENCH=ON
 	cmake --build --preset release
 	ctest --test-dir build --parallel $(cores) --no-tests=error
+
+test-page:
+	scripts/test_page.sh build/softkin build/page-tests
 
 test-sanitize:
 	cmake --preset sanitize
@@ -102,9 +113,17 @@ test-python:
 	CXX=$${CXX:-c++} build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test --config-settings=build-dir=build \
 	  --config-settings=cmake.define.SOFTKIN_TESTS=ON --config-settings=cmake.define.SOFTKIN_BENCH=ON .
 	cmake --preset release
-	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[all,test]"
-	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin examples/python scripts/notebooks.py
+	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[all,docs,test]"
+	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin examples/python scripts/notebooks.py scripts/site.py
 	build-wheel/venv/bin/pytest -q python/tests
+
+docs: build
+	@PYTHON=$(PYTHON) $(SETUP) --python
+	[ -x build-docs/venv/bin/pip ] || $(PYTHON) -m venv build-docs/venv
+	build-docs/venv/bin/pip install --quiet ".[docs]"
+	build-docs/venv/bin/python scripts/site.py build-docs/pages
+	build-docs/venv/bin/mkdocs build --quiet --strict
+	@echo "the site: build-docs/site/index.html"
 
 fuzz:
 	@$(SETUP) --tests
@@ -134,4 +153,4 @@ format-check:
 	@$(CLANG_FORMAT) --dry-run --Werror $(sources)
 
 clean:
-	rm -rf build build-debug build-sanitize build-threads
+	rm -rf build build-debug build-docs build-sanitize build-threads

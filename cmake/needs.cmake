@@ -2,7 +2,7 @@
 set(missing "")
 foreach(need "Eigen3 3.4 NO_MODULE;libeigen3-dev" "yaml-cpp;libyaml-cpp-dev" "nlohmann_json;nlohmann-json3-dev"
         "pugixml;libpugixml-dev" "ZLIB;zlib1g-dev" "PNG;libpng-dev" "CLI11;libcli11-dev" "nanoflann;libnanoflann-dev"
-        "Qhull;libqhull-dev")
+        "Qhull;libqhull-dev" "Boost 1.74;libboost-dev")
   list(GET need 0 what)
   list(GET need 1 package)
   separate_arguments(what)

@@ -5,10 +5,15 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libpugixml-dev zlib1g-dev libpng-dev
-          libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev)
+          libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev libboost-dev)
+# builds the page of softkin view and --html; any npm with Node.js 18 or later does
+command -v npm >/dev/null || packages+=(npm)
 case "${1:-}" in
   "") ;;
-  --tests) packages+=(libgtest-dev clang-format-14 libopencv-dev clang libclang-rt-dev) ;;
+  --tests)
+    packages+=(libgtest-dev clang-format-14 libopencv-dev clang libclang-rt-dev)
+    command -v "${SOFTKIN_CHROMIUM:-chromium}" >/dev/null || packages+=(chromium)
+    ;;
   --python)
     python=${PYTHON:-python3}
     "$python" -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
@@ -29,8 +34,8 @@ fi
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "$system has no apt; softkin is made for Debian 12 and Ubuntu 24.04." \
        "Install a C++20 compiler (gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
-       "pugixml, zlib, libpng, CLI11, METIS, nanoflann and Qhull, with their headers; for the tests also GoogleTest, clang-format 14 and clang 14 or later" \
-       "with libFuzzer;" \
+       "pugixml, zlib, libpng, CLI11, METIS, nanoflann, Qhull and Boost 1.74, with their headers, and Node.js 18 with npm for the page;" \
+       "for the tests also GoogleTest, clang-format 14, clang 14 or later with libFuzzer, and Chromium;" \
        "for softkin measure OpenCV 4.5 or 4.6." \
        "Then run make again with SETUP=true, e.g.: make run SETUP=true"
 fi

@@ -28,7 +28,7 @@ run() {  # what it prints is shown where it fails
   "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; echo "wheels: failed: $*" >&2; exit 1; }
 }
 licences() {  # FOLDER: of an unpacked wheel; of what it holds of others
-  local to=("$1"/*.dist-info/licenses) packages=(libeigen3-dev libcli11-dev libnanoflann-dev nlohmann-json3-dev)
+  local to=("$1"/*.dist-info/licenses) packages=(libeigen3-dev libcli11-dev libnanoflann-dev nlohmann-json3-dev libboost1.74-dev)
   local library name
   for library in "$1"/softkin.libs/*; do
     name=$(basename "$library" | sed -E 's/-[0-9a-f]{8}(\.so)/\1/')
@@ -54,6 +54,10 @@ for wheel in "$work"/raw/*.whl; do
 done
 for wheel in "$work"/repaired/*.whl; do
   run "$work/tools/bin/wheel" unpack --dest "$work/open" "$wheel"
+  grep -q 'id="softkin-page"' "$work"/open/*/softkin/_core*.so || {
+    echo "wheels: built without the page, for which npm and its registry are needed" >&2
+    exit 1
+  }
   licences "$work"/open/*
   run "$work/tools/bin/wheel" pack --dest-dir "$out" "$work"/open/*
   rm -r "$work/open"

@@ -5,6 +5,7 @@
 #include <softkin/calibration/path_tracks.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/runs/page.hpp>
 #include <softkin/runs/report_comparison.hpp>
 
 #include "command.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 struct CompareOptions {
   std::vector<std::string> reports, turn, sum;
-  std::string marker, plot, by, plane, output;
+  std::string marker, plot, by, plane, output, page;
   std::vector<double> poses;    // [degrees]
   std::optional<double> start;  // [s]
   bool align = false, json = false;
@@ -28,7 +29,9 @@ struct CompareOptions {
     return asked || std::any_of(reports.begin(), reports.end(),
                                 [](const std::string& file) { return lower_extension(file) != ".json"; });
   }
-  [[nodiscard]] std::vector<Output> outputs() const { return asked_outputs({{"--output", output}, {"--plot", plot}}); }
+  [[nodiscard]] std::vector<Output> outputs() const {
+    return asked_outputs({{"--output", output}, {"--plot", plot}, {"--html", page}});
+  }
   /// The files themselves, without markers.
   [[nodiscard]] std::vector<std::filesystem::path> inputs() const {
     std::vector<std::filesystem::path> inputs(sum.begin(), sum.end());
@@ -40,21 +43,29 @@ struct CompareOptions {
   }
 };
 
+/// The page, where it is asked for, and what is said of it.
+std::string page_text(const CompareOptions& options, const runs::Comparison& comparison) {
+  if (options.page.empty()) return "";
+  return runs::write_comparison_page(options.page, comparison, runs::kept_command()) + "\n";
+}
+
 int compare_steps(const CompareOptions& options) {
   check_outputs(options.outputs(), options.inputs());
   const runs::ReportComparison found =
       runs::compare_reports(options.reports, options.marker, options.turn, options.poses);
   const OutputFolders folders(options.outputs());
   if (!options.plot.empty()) write_svg(options.plot, found.plot());
+  std::vector<std::string> heads;
+  for (std::size_t p = 0; p < found.paths.size(); ++p)
+    heads.push_back(std::to_string(p + 1) + ": " + found.paths[p].method + " (" + found.paths[p].file + ")\n");
+  const std::string page =
+      page_text(options, {heads, {{"Steps", found.steps()}, {"Time", found.times()}}, found.plot()});
   if (options.json) {
     print(found.json() + "\n");
     return done;
   }
-  std::string text;
-  for (std::size_t p = 0; p < found.paths.size(); ++p)
-    text += std::to_string(p + 1) + ": " + found.paths[p].method + " (" + found.paths[p].file + ")\n";
-  print(text + table_text(found.steps()) + "\n" + table_text(found.times()) +
-        (options.plot.empty() ? "" : "plot: " + options.plot + "\n"));
+  print(joined(heads, "") + table_text(found.steps()) + "\n" + table_text(found.times()) +
+        (options.plot.empty() ? "" : "plot: " + options.plot + "\n") + page);
   return done;
 }
 
@@ -67,6 +78,8 @@ int compare_paths(const CompareOptions& options) {
   const OutputFolders folders(options.outputs());
   if (!options.output.empty()) write_file(options.output, report.errors().csv());
   if (!options.plot.empty()) write_svg(options.plot, report.plot());
+  const std::string page = page_text(
+      options, {report.heads(), {{"Errors", report.summary()}, {"Waypoints", report.errors()}}, report.plot()});
   if (options.json) {
     print(report.json() + "\n");
     return done;
@@ -78,7 +91,7 @@ int compare_paths(const CompareOptions& options) {
   text += "\n" + table_text(report.summary());
   if (!options.output.empty()) text += "errors: " + options.output + "\n";
   if (!options.plot.empty()) text += "plot: " + options.plot + "\n";
-  print(text);
+  print(text + page);
   return done;
 }
 
@@ -143,6 +156,7 @@ void add_compare(CLI::App& app, Run& run) {
             CLI::PositiveNumber.description(""));
   add_value(command, "--plot", options->plot, "F.svg",
             "Turns, distances and loads over the steps, and the marker's way by each report");
+  add_page(command, options->page, "The comparison as a page for a browser, one file that needs no network");
   add_path_options(command, *options);
   command.add_flag("--json", options->json, "Print JSON; its keys name the units");
   command.footer(

@@ -4,6 +4,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/jobs.hpp>
+#include <softkin/runs/page.hpp>
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/run_tables.hpp>
@@ -34,7 +35,8 @@ struct FkOptions : SolveOptions, RunOptions, MapUse {
   [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const {
     std::vector<Output> outputs = asked_outputs({{"--output", output}});
     if (series()) outputs.back().shapes = steps;
-    for (Output& each : asked_outputs({{"--report", report}, {"--image", show.image}, {"--plot", show.plot}}))
+    for (Output& each :
+         asked_outputs({{"--report", report}, {"--image", show.image}, {"--plot", show.plot}, {"--html", page}}))
       outputs.push_back(std::move(each));
     return outputs;
   }
@@ -86,7 +88,11 @@ class FkRun {
         job_(model, answers.statics(), steps, options.path, options.statics()),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
              runs::report_head(model, options.scene, options.statics(), answers.map()), {}),
-        table_(runs::table_of_steps(model, steps.size())) {}
+        page_(options.page, model, runs::kept_command()),
+        table_(runs::table_of_steps(model, steps.size())) {
+    page_.bend_by(answers.map_data());
+    page_.watch(run_, &answers.statics());
+  }
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
@@ -119,6 +125,7 @@ class FkRun {
       if (!options_.show.image.empty())
         runs::write_image(options_.show.image, model_, positions, options_.show.view, image_title());
       if (!options_.show.plot.empty()) write_plot();
+      page_.write();
     }
     if (options_.json) show_report(run_);
   }
@@ -154,6 +161,7 @@ class FkRun {
     if (!options_.show.image.empty()) say("picture: " + options_.show.image);
     if (!options_.show.plot.empty()) say("plot: " + options_.show.plot);
     if (!options_.report.empty()) say("report: " + options_.report);
+    if (!options_.page.empty()) say(page_.told());
   }
 
   [[nodiscard]] int stopped() const {
@@ -198,6 +206,7 @@ class FkRun {
   const FkOptions& options_;
   runs::PathJob job_;
   runs::Run<StepRecord> run_;
+  runs::RunPage page_;
   Table table_;
 };
 

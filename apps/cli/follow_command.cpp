@@ -6,6 +6,7 @@
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/follow_run.hpp>
+#include <softkin/runs/page.hpp>
 #include <softkin/runs/run_tables.hpp>
 #include <softkin/runs/workspace_file.hpp>
 
@@ -34,6 +35,7 @@ struct FollowOptions : SolveOptions, MethodOptions, RunOptions, MapUse {
     for (const fs::path& file : {all.commands(), all.errors(), all.run().report}) outputs.push_back({"--output", file});
     outputs.push_back({"--output", all.run().shapes, waypoints});
     outputs.push_back({plot_file.empty() ? "--output" : "--plot", all.plot()});
+    if (!page.empty()) outputs.push_back({"--html", page});
     return outputs;
   }
   [[nodiscard]] TrajectoryOptions trajectory() const {
@@ -83,56 +85,16 @@ void check_usage(const FollowOptions& options) {
   check_solver(options);
 }
 
-/// "55 waypoints, 55 reached to 0.001 mm: error at most 3.2e-04 mm, ...".
-std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm) {
-  double worst = 0, errors = 0, equilibria = 0, seconds = 0;
-  std::size_t reached = 0;
-  for (const WaypointRecord& each : done) {
-    equilibria += each.equilibria;
-    seconds += each.seconds;
-    if (!each.is_reached()) continue;
-    ++reached;
-    worst = std::max(worst, each.error_mm);
-    errors += each.error_mm;
-  }
-  std::string text =
-      counted(done.size(), "waypoint") + ", " + std::to_string(reached) + " reached to " + number(tolerance_mm) + " mm";
-  if (reached > 0)
-    text += ": error at most " + number(worst, 2) + " mm, " + number(errors / static_cast<double>(reached), 2) +
-            " mm in the mean";
-  return text + "; " + decimal(equilibria / static_cast<double>(done.size()), 2) + " equilibria per waypoint, " +
-         decimal(seconds, 2) + " s";
-}
-
-/// Which waypoints were not reached, and by how much at worst; empty where all were.
-std::string missed_text(const std::vector<WaypointRecord>& done) {
-  std::vector<std::size_t> missed, lost;
-  double worst = 0;
-  for (std::size_t i = 0; i < done.size(); ++i) {
-    if (done[i].is_reached()) continue;
-    (done[i].end == InverseStatus::not_converged ? lost : missed).push_back(i);
-    worst = std::max(worst, done[i].error_mm);
-  }
-  std::string text;
-  const auto tell = [&text](const std::vector<std::size_t>& numbers, const std::string& what) {
-    if (numbers.empty()) return;
-    text += (text.empty() ? "" : "; ") + std::string(numbers.size() == 1 ? "waypoint " : "waypoints ") +
-            list_text(numbers) + (numbers.size() == 1 ? " was " : " were ") + what;
-  };
-  tell(missed, "not reached: the marker stands at the nearest point that the ranges allow");
-  tell(lost, "not reached, and the search for a nearer point did not converge");
-  if (!text.empty()) text += "; at most " + number(worst, 3) + " mm off";
-  return text;
-}
-
 class ShownTrajectory {
  public:
-  ShownTrajectory(const Model& model, const FollowOptions& options, double reach_mm, runs::FollowRun& follow)
+  ShownTrajectory(const Model& model, const FollowOptions& options, double reach_mm, runs::FollowRun& follow,
+                  runs::RunPage& page)
       : model_(model),
         options_(options),
         reach_mm_(reach_mm),
         follow_(follow),
         run_(follow.run()),
+        page_(page),
         table_(runs::table_of_waypoints(model, run_.size())) {}
 
   int show() {
@@ -146,6 +108,7 @@ class ShownTrajectory {
         },
         [&] { return runs::row_of(run_.done() - 1, run_.last()); });
     follow_.finish();
+    page_.write();
     if (options_.json) show_report(run_);
     if (end != runs::Advance::made) return tell_stopped(run_.done(), run_.size(), "waypoint", options_.folder, true);
     return tell(follow_.records());
@@ -164,6 +127,7 @@ class ShownTrajectory {
     const runs::FollowFolder files = options_.files();
     say("commands: " + files.commands().string() + "; plot: " + files.plot().string() +
         "; shapes: " + files.run().shapes.string() + " (open it in ParaView)");
+    if (!options_.page.empty()) say(page_.told());
     std::vector<std::size_t> unstable;
     for (std::size_t i = 0; i < done.size(); ++i)
       if (done[i].unstable_modes > 0) unstable.push_back(i);
@@ -179,6 +143,7 @@ class ShownTrajectory {
   double reach_mm_;
   runs::FollowRun& follow_;
   runs::Run<WaypointRecord>& run_;
+  runs::RunPage& page_;
   Table table_;
 };
 
@@ -208,7 +173,10 @@ int run_follow(const FollowOptions& options) {
   if (!options.json) print(head_text(model, options, answers));
   runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path), answers.map()},
                          trajectory, options.files());
-  return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow).show();
+  runs::RunPage page(options.page, model, runs::kept_command());
+  page.bend_by(answers.map_data());
+  page.watch(follow.run(), &answers.statics());
+  return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow, page).show();
 }
 
 }  // namespace

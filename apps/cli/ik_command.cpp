@@ -11,6 +11,7 @@
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
+#include <softkin/runs/shortfall_text.hpp>
 #include <softkin/runs/workspace_file.hpp>
 #include "command.hpp"
 #include "ik_options.hpp"
@@ -73,7 +74,7 @@ class IkRun {
     if (found_.errors_mm.size() == 0) return no_start();
     write();
     if (found_.status == InverseStatus::reached) return done;
-    std::fprintf(stderr, "softkin: %s\n", ik_shortfall(model_, found_).c_str());
+    std::fprintf(stderr, "softkin: %s\n", runs::shortfall_text(model_, found_).c_str());
     return not_converged;
   }
 

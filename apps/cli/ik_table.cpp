@@ -53,18 +53,6 @@ std::string found_text(const Model& model, const Goal& goal, const Points& posit
   return coordinates_text(place, length_decimals) + " mm";
 }
 
-std::string ends_text(const Model& model, const InverseResult& found) {
-  std::string text;
-  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    if (found.active[a] == 0) continue;
-    const Actuator& actuator = model.actuators[a];
-    const bool low = found.active[a] < 0;
-    text += "; " + actuator.name + " is at the " + (low ? "low" : "high") + " end of its range, " +
-            number(low ? actuator.low : actuator.high) + " " + bracketed_unit(actuator);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goals, const InverseResult& found,
@@ -103,14 +91,6 @@ std::string ik_summary(const InverseResult& found) {
   return "error at most " + number(found.errors_mm.maxCoeff(), 2) + " mm; " +
          counted(count(found.iterations), "iteration") + ", " +
          counted(count(found.equilibria), "equilibrium", "equilibria") + ", " + decimal(found.seconds, 2) + " s";
-}
-
-std::string ik_shortfall(const Model& model, const InverseResult& found) {
-  const std::string off = number(found.errors_mm.maxCoeff(), 4) + " mm off";
-  if (found.status == InverseStatus::unreachable)
-    return "not reached: " + off + " at the nearest point; " + found.remark + ends_text(model, found);
-  if (found.status == InverseStatus::interrupted) return "interrupted: the best so far is " + off;
-  return "not converged: " + found.remark + "; the best is " + off + ends_text(model, found);
 }
 
 }  // namespace softkin::cli

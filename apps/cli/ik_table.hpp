@@ -15,8 +15,4 @@ namespace softkin::cli {
 /// "error at most 3.2e-05 mm; 5 iterations, 6 equilibria, 0.21 s".
 [[nodiscard]] std::string ik_summary(const InverseResult& found);
 
-/// Why the goals are not reached: "not reached: 4.2 mm off at the nearest point; tendon1 is at the low end of its
-/// range, 0.5 [-]".
-[[nodiscard]] std::string ik_shortfall(const Model& model, const InverseResult& found);
-
 }  // namespace softkin::cli

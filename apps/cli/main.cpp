@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <softkin/runs/page.hpp>
 #include <string>
 
 #include "command.hpp"
@@ -29,8 +30,9 @@ int main(int argc, char** argv) {
   app.callback([&app] {
     if (app.get_subcommands().empty())
       throw CLI::RequiredError(
-          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh)");
+          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh, view)");
   });
+  runs::keep_command({argv, argv + argc});
   cli::Run run;
   cli::add_fk(app, run);
   cli::add_ik(app, run);
@@ -44,6 +46,7 @@ int main(int argc, char** argv) {
   cli::add_grasp(app, run);
   cli::add_workspace(app, run);
   cli::add_map(app, run);
+  cli::add_view_command(app, run);
   return cli::outcome_of([&] {
     std::string command = "softkin";
     if (const std::string wrong = cli::misspelt(app, argc, argv, command); !wrong.empty())

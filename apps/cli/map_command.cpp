@@ -5,6 +5,7 @@
 #include <softkin/kinematics/map_build.hpp>
 #include <softkin/runs/map_file.hpp>
 #include <softkin/runs/map_journal.hpp>
+#include <softkin/runs/page.hpp>
 
 #include "command.hpp"
 #include "run_text.hpp"
@@ -36,8 +37,9 @@ class MapRun {
  public:
   MapRun(const MapAsked& asked, const Model& model, const std::vector<fs::path>& inputs)
       : asked_(asked), model_(model), options_(map_options(asked)) {
-    check_outputs(asked_outputs({{"--output", asked.output}}), inputs);
-    folders_.emplace(asked_outputs({{"--output", asked.output}}));
+    const std::vector<Output> outputs = asked_outputs({{"--output", asked.output}, {"--html", asked.page}});
+    check_outputs(outputs, inputs);
+    folders_.emplace(outputs);
     (void)maps::outline_of(model);
     journal_.emplace(asked.output, model, options_, asked.resume);
     say(asked.scene + ": " + summary(model, asked.solver_name));
@@ -61,7 +63,11 @@ class MapRun {
     if (!result) return stopped();
     runs::write_map(asked_.output, result->data);
     journal_->remove();
+    runs::RunPage page(asked_.page, model_, runs::kept_command());
+    page.bend_by(&result->data);
+    page.write();
     tell(*result, seconds_now() - start);
+    if (!asked_.page.empty()) say(page.told());
     if (result->accurate) return done;
     std::fprintf(stderr, "softkin: the map is not as accurate as was asked for: %s\n", result->remark.c_str());
     return not_converged;
@@ -132,6 +138,8 @@ void add_map_options(CLI::App& command, MapAsked& asked) {
 int run_map(const MapAsked& asked) {
   check_solver(asked);
   check_extension("--output", asked.output, {{".skmap", ""}});
+  if (!asked.page.empty() && asked.map.shape_accuracy_mm == 0)
+    throw InvalidInput("--html bends the robot's shape, which --shape-accuracy 0 leaves out");
   std::vector<fs::path> inputs{asked.scene};
   const Model model = asked_robot(asked, inputs);
   catch_interrupt();

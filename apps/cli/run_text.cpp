@@ -7,6 +7,7 @@
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/shortfall_text.hpp>
 #include <utility>
 
 #include "command.hpp"
@@ -41,18 +42,6 @@ std::string command_range(const Actuator& actuator) {
   const std::string unit = command_unit(actuator);
   return std::string(command_name(actuator)) + " " + number(actuator.low) + " to " + number(actuator.high) + " " +
          (unit.empty() ? "[-]" : unit);
-}
-
-/// "air reached 1.62 of 1.8, tendon reached 2 N of 3 N".
-std::string reached_text(const Model& model, const StepRecord& step) {
-  std::string text;
-  for (const auto& [a, reached, asked] : runs::shortfalls(model, step)) {
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
-    text += (text.empty() ? "" : ", ") + actuator.name + " reached " + command_text(actuator, reached) + " of " +
-            command_text(actuator, asked);
-  }
-  if (!text.empty()) return text;
-  return percent(step.reached_share.value_or(0)) + " of the loads and displacements were reached";
 }
 
 /// share  of the normal force, that slips
@@ -278,7 +267,7 @@ std::string shortfall_text(const Model& model, const StepRecord& step) {
   if (model.formulation == Formulation::physical && step.reached_share == 1)
     return step.remark + "; the shape is the last one";
   if (model.formulation == Formulation::physical)
-    return reached_text(model, step) + ": " + step.remark + "; the shape is the last good one" +
+    return runs::reached_text(model, step) + ": " + step.remark + "; the shape is the last good one" +
            (step.worst ? worst_text(*step.worst) : "");
   return (step.remark.empty() ? "" : step.remark + ", and ") + "the shape is that after " +
          counted(static_cast<std::size_t>(step.iterations), "iteration") + ", not an equilibrium";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/io/scanner.hpp>
+#include <softkin/runs/page.hpp>
 #include <thread>
 
 namespace softkin::cli {
@@ -114,7 +115,15 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
   add_value(command, "--threads", options.threads, "N", threads, integer_from(0, most_threads));
 }
 
+void add_page(CLI::App& command, std::string& page, const std::string& what) {
+  const CLI::Validator check([](const std::string& file) { return runs::page_refusal(file); }, "");
+  add_value(command, "--html", page, "F.html", what, check);
+}
+
 void add_run(CLI::App& command, RunOptions& options, const std::string& resume, const std::string& json) {
+  add_page(command, options.page,
+           "All of it as a page for a browser, one file that needs no\nnetwork; with a kinematic map (softkin map) the "
+           "robot bends in it");
   command.add_flag("--resume", options.resume, resume);
   command.add_flag("--json", options.json, json);
 }

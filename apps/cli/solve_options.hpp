@@ -33,6 +33,7 @@ struct SolveOptions : AskedScene {
 /// Whether a run goes on where it was interrupted, and whether it prints its report.
 struct RunOptions {
   bool json = false, resume = false;
+  std::string page{};
 };
 
 /// Pictures of what was found. An empty file name: not given.
@@ -46,6 +47,7 @@ void add_force(CLI::App& command, SolveOptions& options);
 void add_solver(CLI::App& command, SolveOptions& options,
                 const std::string& threads = "0: as many as the machine has (default)");
 
+void add_page(CLI::App& command, std::string& page, const std::string& what);
 void add_run(CLI::App& command, RunOptions& options, const std::string& resume, const std::string& json);
 void add_view(CLI::App& command, ShowOptions& options);
 

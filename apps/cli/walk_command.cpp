@@ -3,6 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/page.hpp>
 #include <softkin/runs/run_tables.hpp>
 #include <softkin/runs/walk_run.hpp>
 
@@ -32,6 +33,7 @@ struct WalkOptions : SolveOptions, RunOptions {
     for (const fs::path& file : {files().table(), files().plot(), files().run().report})
       outputs.push_back({"--output", file});
     outputs.push_back({"--output", files().run().shapes, steps});
+    if (!page.empty()) outputs.push_back({"--html", page});
     return outputs;
   }
 };
@@ -81,7 +83,14 @@ std::string stride_text(const std::vector<double>& strides) {
 class ShownWalk {
  public:
   ShownWalk(const Model& model, const WalkOptions& options, runs::WalkRun& walk)
-      : model_(model), options_(options), walk_(walk), run_(walk.run()), table_(runs::table_of_walk(model)) {}
+      : model_(model),
+        options_(options),
+        walk_(walk),
+        run_(walk.run()),
+        page_(options.page, model, runs::kept_command()),
+        table_(runs::table_of_walk(model)) {
+    page_.watch(run_, nullptr);
+  }
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
@@ -90,6 +99,7 @@ class ShownWalk {
         [](RunProgress& line, const Progress& p) { line.show("iteration " + std::to_string(p.iteration)); },
         [&] { return runs::row_of(model_, run_.last()); });
     walk_.finish();
+    page_.write();
     if (options_.json) show_report(run_);
     if (end == runs::Advance::interrupted) return tell_stopped(run_.done(), run_.size(), "step", options_.folder, true);
     if (end == runs::Advance::lost) return lost();
@@ -107,6 +117,7 @@ class ShownWalk {
     const runs::WalkFolder files = options_.files();
     print("steps: " + files.table().string() + "; plot: " + files.plot().string() +
           "; shapes: " + files.run().shapes.string() + " (open it in ParaView)\n");
+    if (!options_.page.empty()) print(page_.told() + "\n");
   }
 
   [[nodiscard]] int lost() const {
@@ -119,6 +130,7 @@ class ShownWalk {
   const WalkOptions& options_;
   runs::WalkRun& walk_;
   runs::Run<WalkRecord>& run_;
+  runs::RunPage page_;
   Table table_;
 };
 

@@ -2,6 +2,7 @@
 #include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/runs/page.hpp>
 #include <softkin/runs/ranks.hpp>
 #include <softkin/runs/workspace_file.hpp>
 
@@ -27,7 +28,8 @@ struct WorkspaceOptions : SolveOptions, RunOptions {
   std::optional<std::uint64_t> seed;
 
   [[nodiscard]] std::vector<Output> outputs() const {
-    return asked_outputs({{"--output", output}, {"--cloud", cloud}, {"--hull", hull}, {"--plot", plot}});
+    return asked_outputs(
+        {{"--output", output}, {"--cloud", cloud}, {"--hull", hull}, {"--plot", plot}, {"--html", page}});
   }
   [[nodiscard]] Sampling kind() const {
     return sampling == "grid" ? Sampling::grid : sampling == "sobol" ? Sampling::sobol : Sampling::random;
@@ -76,30 +78,12 @@ void check_usage(const WorkspaceOptions& options) {
     throw InvalidInput("--seed is the seed of random samples: it needs --sampling random");
 }
 
-/// What a hull is called, and its measure.
-std::string hull_text(const Hull& hull) {
-  constexpr int hull_decimals = 3, measure_decimals = 2;
-  const std::string thick = decimal(hull.extents[0], hull_decimals) + " x " + decimal(hull.extents[1], hull_decimals) +
-                            " x " + decimal(hull.extents[2], hull_decimals) + " mm along its principal axes";
-  switch (hull.shape) {
-    case HullShape::solid:
-      return decimal(hull.volume, measure_decimals) + " mm^3, " + thick;
-    case HullShape::flat:
-      return "flat, without a volume: " + decimal(hull.area, measure_decimals) + " mm^2, " + thick;
-    case HullShape::line:
-      return "none: the positions are on a line of " + decimal(hull.extents[0], hull_decimals) + " mm";
-    case HullShape::point:
-      break;
-  }
-  return "none: the marker does not move";
-}
-
 bool has_triangles(const runs::Reach& reach) {
   return reach.hull && !reach.hull->triangles.empty();
 }
 
 /// "tip reaches x 20.1 to 118.3, ... mm", the hull and the files, a line each.
-std::string reach_text(const runs::Reach& reach, const WorkspaceOptions& options) {
+std::string reach_text(const runs::Reach& reach, const WorkspaceOptions& options, const std::string& told_page) {
   if (reach.samples.empty()) return "no sample has an equilibrium: nothing to show\nsamples: " + options.output;
   std::string text = reach.marker + " reaches";
   for (int axis = 0; axis < 3; ++axis)
@@ -107,11 +91,12 @@ std::string reach_text(const runs::Reach& reach, const WorkspaceOptions& options
             decimal(reach.positions.col(axis).minCoeff(), 2) + " to " +
             decimal(reach.positions.col(axis).maxCoeff(), 2);
   text += " mm";
-  if (reach.hull) text += "\nconvex hull of the reach: " + hull_text(*reach.hull);
+  if (reach.hull) text += "\nconvex hull of the reach: " + runs::hull_text(*reach.hull);
   text += "\nsamples: " + options.output;
   if (!options.cloud.empty()) text += "\ncloud: " + options.cloud + " (open it in ParaView)";
   if (has_triangles(reach)) text += "\nhull: " + options.hull;
   if (!options.plot.empty()) text += "\nplot: " + options.plot;
+  if (!told_page.empty()) text += "\n" + told_page;
   return text;
 }
 
@@ -136,7 +121,11 @@ struct Asked {
 class WorkspaceRun {
  public:
   WorkspaceRun(const WorkspaceOptions& options, const Asked& asked, const runs::Ranks& ranks)
-      : options_(options), asked_(asked), ranks_(ranks), columns_(runs::workspace_columns(asked.model)) {}
+      : options_(options),
+        asked_(asked),
+        ranks_(ranks),
+        columns_(runs::workspace_columns(asked.model)),
+        page_(options.page, asked.model, runs::kept_command()) {}
 
   /// Rank 0: before anything is written.
   void begin() {
@@ -211,10 +200,12 @@ class WorkspaceRun {
     line.show(now / all, text);
   }
 
-  void write(const runs::Reach& reach) const {
+  void write(const runs::Reach& reach) {
     if (!options_.cloud.empty()) runs::write_cloud(options_.cloud, asked_.model, reach);
     if (has_triangles(reach)) runs::write_hull(options_.hull, *reach.hull);
     if (!options_.plot.empty()) write_svg(options_.plot, runs::plot_of_reach(reach));
+    page_.show_reach(runs::shown_marker(asked_.model, options_.marker), reach.positions);
+    page_.write();
   }
 
   void tell(const runs::Reach& reach, double seconds) const {
@@ -225,7 +216,7 @@ class WorkspaceRun {
                        [this](Status status) { return file_->count(status); }, seconds) +
                    "\n");
     say(std::to_string(converged) + " of " + samples_text() + " converged; " + duration(seconds));
-    say(reach_text(reach, options_));
+    say(reach_text(reach, options_, page_.told()));
   }
 
   [[nodiscard]] int judge() const {
@@ -246,6 +237,7 @@ class WorkspaceRun {
   const Asked& asked_;
   const runs::Ranks& ranks_;
   WorkspaceColumns columns_;
+  runs::RunPage page_;
   std::optional<OutputFolders> folders_;
   std::optional<runs::WorkspaceFile> file_;
 };

@@ -11,6 +11,7 @@ from .errors import InvalidInput, NotConverged, SoftkinWarning
 from .grasp import Grasp, Pull
 from .inverse import Answer
 from .maps import KinematicMap, MapAnswer, MapCheck, MapInput, MapOutput, MapProgress, load_map
+from .page import PageView
 from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
 from .session import Session
@@ -36,6 +37,7 @@ __all__ = [
     "MapOutput",
     "MapProgress",
     "NotConverged",
+    "PageView",
     "PathRun",
     "Progress",
     "Pull",

@@ -18,6 +18,7 @@ from ._solving import Command
 from .errors import SoftkinWarning
 from .grasp import Grasp, _Grasps
 from .maps import KinematicMap, _Maps
+from .page import _Pages
 from .runs import FollowRun, PathRun
 from .walk import WalkRun, _Walks
 from .workspace import _Workspaces
@@ -104,7 +105,7 @@ def _add_region(mesh: _core.Mesh, sizes: list[int], name: str, value: Any) -> di
     return None
 
 
-class Robot(_Walks, _Grasps, _Workspaces, _Maps):
+class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
     """A compiled robot; immutable. Every solve stands for itself, so that threads may share it."""
 
     def __init__(

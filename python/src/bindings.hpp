@@ -17,6 +17,7 @@ void bind_runs(nanobind::module_& module);
 void bind_grasp(nanobind::module_& module);
 void bind_workspace(nanobind::module_& module);
 void bind_map(nanobind::module_& module);
+void bind_page(nanobind::module_& module);
 void bind_compare(nanobind::module_& module);
 void bind_calibrate(nanobind::module_& module);
 void bind_drive(nanobind::module_& module);

@@ -26,6 +26,7 @@ NB_MODULE(_core, module) {
   python::bind_grasp(module);
   python::bind_workspace(module);
   python::bind_map(module);
+  python::bind_page(module);
   python::bind_compare(module);
   python::bind_calibrate(module);
   python::bind_drive(module);

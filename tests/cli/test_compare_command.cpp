@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "page_samples.hpp"
 #include "run_program.hpp"
 
 namespace {
@@ -87,6 +88,25 @@ TEST_F(Compare, TableNamesLoadsAndWhatDidNotConverge) {
   for (const char* part : {"1: physical, newton", "1: air [kPa]", "2: begin off by [mm]", "12.50", "converged\n",
                            "2: limit\n", "3.00 s", "2.50 s", "not reached", "3.75 s"})
     EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
+}
+
+TEST_F(Compare, WritesAPage) {
+  SKIP_WITHOUT_PAGE();
+  const std::string a = write("a.json", turning({0, 20}, 2)), b = write("b.json", turning({0, 30}, 1));
+  const std::string page = folder_ / "p.html", plot = folder_ / "p.svg";
+  const ProgramResult result = run_program({"compare", a, b, "--turn", "begin", "end", "--html", page, "--plot", plot});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  const json shown = shown_by(page).at("comparison");
+  EXPECT_EQ(shown.at("plot"), read_text(plot));
+  const json& rows = shown.at("tables").at(0).at("rows");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows.at(2).at(2), "20.0");
+  EXPECT_EQ(shown_by(page).at("command"),
+            "softkin compare " + a + " " + b + " --turn begin end --html " + page + " --plot " + plot);
+  const ProgramResult paths = run_program({"compare", a, b, "--marker", "end", "--by", "waypoint", "--html", page});
+  ASSERT_EQ(paths.exit_code, 0) << paths.errors;
+  EXPECT_EQ(shown_by(page).at("comparison").at("tables").size(), 2u);
 }
 
 TEST_F(Compare, RefusesWhatCannotBeCompared) {

@@ -3,6 +3,7 @@
 #include <pugixml.hpp>
 
 #include "fk_samples.hpp"
+#include "page_samples.hpp"
 #include "start_program.hpp"
 
 namespace {
@@ -49,6 +50,21 @@ struct WalkFolder : BlockFolder {
     EXPECT_EQ(files(), before) << message;
   }
 };
+
+TEST(WalkCommand, WritesItsStepsIntoAPage) {
+  SKIP_WITHOUT_PAGE();
+  const WalkFolder folder;
+  const std::string page = folder / "walk.html";
+  const ProgramResult result = folder.walk({"--cycles", "1", "--html", page});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  const json shown = shown_by(page), report = json::parse(read_text(folder.out + "/report.json"));
+  ASSERT_EQ(shown.at("steps").size(), 5u);
+  for (std::size_t s = 0; s < 5; ++s) {
+    EXPECT_EQ(shown["steps"][s]["markers"][1], report["steps"][s]["markers"]["toe"]);
+    EXPECT_EQ(shown["steps"][s]["time_s"], report["steps"][s]["time_s"]);
+  }
+}
 
 TEST(WalkCommand, WritesItsFiles) {
   const WalkFolder folder;

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "fk_samples.hpp"
+#include "page_samples.hpp"
 #include "start_program.hpp"
 
 namespace {
@@ -68,6 +69,18 @@ void expect_refusal(const ReachFolder& folder, const std::vector<std::string>& o
   EXPECT_NE(result.errors.find(message), std::string::npos) << "no '" << message << "' in " << result.errors;
   EXPECT_EQ(folder.files(), before) << message;
   EXPECT_EQ(folder.text(), content) << message;
+}
+
+TEST(WorkspaceCommand, WritesItsReachIntoAPage) {
+  SKIP_WITHOUT_PAGE();
+  const ReachFolder folder;
+  const std::string page = folder / "reach.html";
+  const ProgramResult result = folder.run({"--samples", "4", "--threads", "1", "--html", page});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  const json reach = shown_by(page).at("workspace");
+  EXPECT_EQ(reach.at("marker"), 0);
+  EXPECT_EQ(reach.at("points").at("f32").get<std::string>().size(), 4u * 3 * sizeof(float) * 4 / 3);
 }
 
 TEST(WorkspaceCommand, WritesARowPerSampleThatForwardKinematicsConfirms) {

@@ -3,6 +3,7 @@
 #include <softkin/runs/report_comparison.hpp>
 
 #include "fuzz/targets.hpp"
+#include "view/live_messages.hpp"
 
 namespace softkin::fuzz {
 
@@ -48,12 +49,37 @@ void run_marlin(const Input& input) {
   for (const auto& [letter, place] : answer.position) require_finite(place, "a board is nowhere");
 }
 
+/// What a page sends to a server: whatever is refused has one reason.
+void run_live_message(const Input& input) {
+  const Model& model = finger();
+  const view::ClientMessage message = view::read_client_message(input.part(0), model);
+  const auto require_id = [](view::RequestId id) {
+    require(id >= 1 && id <= view::RequestId{1} << 53, "a request without a number");
+  };
+  if (const auto* hello = std::get_if<view::Hello>(&message)) {
+    require(hello->secret.size() <= view::longest_message, "a secret longer than its message");
+    require(!view::same_secret(hello->secret, hello->secret + "x"), "a longer secret is the same");
+  } else if (const auto* command = std::get_if<view::CommandRequest>(&message)) {
+    require_id(command->id);
+    require(command->commands.size() == static_cast<Index>(model.actuators.size()), "other actuators");
+    for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+      const double value = command->commands[static_cast<Index>(a)];
+      require(value >= model.actuators[a].low && value <= model.actuators[a].high, "a command outside its range");
+    }
+  } else if (const auto* target = std::get_if<view::TargetRequest>(&message)) {
+    require_id(target->id);
+    require(target->marker >= 0 && target->marker < static_cast<Index>(model.markers.size()), "no such marker");
+    require(target->at.cwiseAbs().maxCoeff() <= view::farthest_target_mm(model), "a target farther than anything");
+  }
+}
+
 }  // namespace
 
 std::vector<Target> result_targets() {
   return {{"report", "reports.dict", run_report},
           {"workspace", "tables.dict", run_workspace},
-          {"marlin", "marlin.dict", run_marlin}};
+          {"marlin", "marlin.dict", run_marlin},
+          {"live_message", "live.dict", run_live_message}};
 }
 
 std::vector<Target> all_targets() {

@@ -22,6 +22,7 @@ class Answers {
   [[nodiscard]] const Statics& statics() const { return statics_; }
   /// Null without a map.
   [[nodiscard]] const UsedMap* map() const { return used_ ? &*used_ : nullptr; }
+  [[nodiscard]] const MapData* map_data() const { return used_ ? &used_->data : nullptr; }
   [[nodiscard]] bool by_map_alone() const { return used_ && !used_->polished; }
   /// "answered by the map F.skmap: " and what is known of its errors, a line; empty without a map.
   [[nodiscard]] std::string remark() const;

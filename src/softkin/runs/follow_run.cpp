@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/runs/follow_run.hpp>
 #include <softkin/runs/plots.hpp>
@@ -33,6 +35,46 @@ void FollowRun::finish() {
   if (!folder_.commands().empty()) write_file(folder_.commands(), commands().csv());
   if (!folder_.errors().empty()) write_file(folder_.errors(), errors().csv());
   if (!folder_.plot().empty()) write_svg(folder_.plot(), plot());
+}
+
+std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm) {
+  double worst = 0, errors = 0, equilibria = 0, seconds = 0;
+  std::size_t reached = 0;
+  for (const WaypointRecord& each : done) {
+    equilibria += each.equilibria;
+    seconds += each.seconds;
+    if (!each.is_reached()) continue;
+    ++reached;
+    worst = std::max(worst, each.error_mm);
+    errors += each.error_mm;
+  }
+  std::string text =
+      counted(done.size(), "waypoint") + ", " + std::to_string(reached) + " reached to " + number(tolerance_mm) + " mm";
+  if (reached > 0)
+    text += ": error at most " + number(worst, 2) + " mm, " + number(errors / static_cast<double>(reached), 2) +
+            " mm in the mean";
+  return text + "; " + decimal(equilibria / static_cast<double>(done.size()), 2) + " equilibria per waypoint, " +
+         decimal(seconds, 2) + " s";
+}
+
+std::string missed_text(const std::vector<WaypointRecord>& done) {
+  std::vector<std::size_t> missed, lost;
+  double worst = 0;
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    if (done[i].is_reached()) continue;
+    (done[i].end == InverseStatus::not_converged ? lost : missed).push_back(i);
+    worst = std::max(worst, done[i].error_mm);
+  }
+  std::string text;
+  const auto tell = [&text](const std::vector<std::size_t>& numbers, const std::string& what) {
+    if (numbers.empty()) return;
+    text += (text.empty() ? "" : "; ") + std::string(numbers.size() == 1 ? "waypoint " : "waypoints ") +
+            list_text(numbers) + (numbers.size() == 1 ? " was " : " were ") + what;
+  };
+  tell(missed, "not reached: the marker stands at the nearest point that the ranges allow");
+  tell(lost, "not reached, and the search for a nearer point did not converge");
+  if (!text.empty()) text += "; at most " + number(worst, 3) + " mm off";
+  return text;
 }
 
 }  // namespace softkin::runs

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <softkin/core/progress.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/vtk.hpp>
@@ -60,10 +61,19 @@ class Run {
   [[nodiscard]] const Points& last_positions() const { return positions_; }
   [[nodiscard]] TypedLog<Record>& log() { return log_; }
 
+  /// Of a record and its shape; of one that was made: with its deformation.
+  using Watcher = std::function<void(const Record&, const Points&, const ElementDeformation*)>;
+  /// Called with every record in their order: those that resume() takes over and those that are made.
+  void watch(Watcher watcher) { watcher_ = std::move(watcher); }
+
   /// Takes over what is on disk. remark: for the user. Throws as RecordLog::resume
   void resume(std::string& remark) {
     log_.resume([this](std::size_t number, const Record& record) { return job_.mismatch(number, record); }, remark);
     if (done() == 0) return;
+    if (watcher_)
+      log_.each([this](std::size_t number, const Record& record) {
+        watcher_(record, log_.shape_of(number, record).value(), nullptr);
+      });
     last_ = log_.at(done() - 1);
     positions_ = log_.shape_of(done() - 1, last_).value();
     resumed_ = true;
@@ -84,6 +94,7 @@ class Run {
     if (keeps) log_.add(made->record, made->positions, made->deformation);
     last_ = std::move(made->record);
     positions_ = std::move(made->positions);
+    if (keeps && watcher_) watcher_(last_, positions_, &made->deformation);
     return keeps ? Advance::made : Advance::lost;
   }
 
@@ -121,6 +132,7 @@ class Run {
   Job<Record>& job_;
   RunFiles files_;
   TypedLog<Record> log_;
+  Watcher watcher_{};
   Record last_;
   Points positions_;
   bool resumed_ = false;

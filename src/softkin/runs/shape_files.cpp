@@ -1,11 +1,11 @@
 #include <algorithm>
+#include <softkin/runs/body_surface.hpp>
 #include <softkin/runs/obstacle_picture.hpp>
 #include <softkin/runs/shape_files.hpp>
 #include <utility>
 
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/picture/picture.hpp>
-#include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/names.hpp>
 
 namespace softkin::runs {
@@ -13,18 +13,6 @@ namespace softkin::runs {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Boundary of what has substance: the body and dielectric elastomers, not the air in chambers.
-std::vector<Triangle> visible_surface(const Model& model) {
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<EdgeNodes> edge_nodes;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-    if (model.tetrahedron_roles[e].material < 0) continue;
-    tetrahedra.push_back(model.tetrahedra[e]);
-    if (!model.edge_nodes.empty()) edge_nodes.push_back(model.edge_nodes[e]);
-  }
-  return boundary_triangles(tetrahedra, edge_nodes, model.prisms);
-}
 
 std::vector<ElementRole> all_roles(const Model& model) {
   std::vector<ElementRole> roles = model.tetrahedron_roles;
@@ -155,7 +143,7 @@ struct Image {
 
 Image image_of(const Model& model, const Points& positions, const std::vector<double>& view, const std::string& title,
                const std::vector<Goal>& goals) {
-  const std::vector<Triangle> surface = visible_surface(model);
+  const std::vector<Triangle> surface = body_surface(model).triangles;
   PictureLayer shape, ghost;
   shape.points = positions;
   shape.triangles = surface;

@@ -286,4 +286,21 @@ std::string workspace_summary(const std::string& scene, const WorkspaceHead& hea
   return json_text(json);
 }
 
+std::string hull_text(const Hull& hull) {
+  constexpr int hull_decimals = 3, measure_decimals = 2;
+  const std::string thick = decimal(hull.extents[0], hull_decimals) + " x " + decimal(hull.extents[1], hull_decimals) +
+                            " x " + decimal(hull.extents[2], hull_decimals) + " mm along its principal axes";
+  switch (hull.shape) {
+    case HullShape::solid:
+      return decimal(hull.volume, measure_decimals) + " mm^3, " + thick;
+    case HullShape::flat:
+      return "flat, without a volume: " + decimal(hull.area, measure_decimals) + " mm^2, " + thick;
+    case HullShape::line:
+      return "none: the positions are on a line of " + decimal(hull.extents[0], hull_decimals) + " mm";
+    case HullShape::point:
+      break;
+  }
+  return "none: the marker does not move";
+}
+
 }  // namespace softkin::runs

@@ -88,6 +88,9 @@ struct Reach {
 [[nodiscard]] Reach reach_of(const Model& model, std::vector<WorkspaceSample> samples, const std::string& marker,
                              bool with_hull);
 
+/// What a hull is called, and its measure.
+[[nodiscard]] std::string hull_text(const Hull& hull);
+
 /// The positions as points, with actuation and loads.
 void write_cloud(const std::filesystem::path& path, const Model& model, const Reach& reach);
 /// STL or .vtu, by its name. hull: one with triangles

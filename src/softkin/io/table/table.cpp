@@ -118,6 +118,13 @@ std::vector<std::string> Table::body() const {
   return aligned(texts, columns, std::vector<std::size_t>(columns.size(), 0));
 }
 
+std::vector<std::vector<std::string>> Table::cells() const {
+  std::vector<std::vector<std::string>> all(1);
+  for (const Column& column : columns) all.front().push_back(title_of(column));
+  for (const Row& row : rows) all.push_back(cells_of(row, columns));
+  return all;
+}
+
 std::string Table::csv() const {
   std::string text;
   for (std::size_t i = 0; i < columns.size(); ++i) text += (i > 0 ? "," : "") + quoted(columns[i].key);

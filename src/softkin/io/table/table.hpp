@@ -42,6 +42,9 @@ struct Table {
   /// The rows alone, every column as wide as their cells need; titles do not count.
   [[nodiscard]] std::vector<std::string> body() const;
 
+  /// The titles with their units, then the cells of every row, as they are shown.
+  [[nodiscard]] std::vector<std::vector<std::string>> cells() const;
+
   /// A line of keys, then the rows: numbers so that they read back as they were, nothing as an empty cell.
   [[nodiscard]] std::string csv() const;
 

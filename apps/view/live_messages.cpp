@@ -1,0 +1,215 @@
+#include "live_messages.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/io/json_text.hpp>
+#include <softkin/model/names.hpp>
+
+namespace softkin::view {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "frames are little-endian");
+
+constexpr RequestId largest_id = RequestId{1} << 53;  // beyond it a page cannot count
+
+/// What a page wrote, as it may be repeated to it.
+std::string repeated(std::string_view text) {
+  constexpr std::size_t most = 40;
+  return "'" + on_one_line(text.substr(0, most)) + (text.size() > most ? "..." : "") + "'";
+}
+
+/// One message, its keys looked up with words for what is wrong about them.
+class Message {
+ public:
+  explicit Message(const Json& json) : json_(json) {
+    const Json* id = find("id");
+    if (id != nullptr && id->is_number_unsigned() && *id >= 1u && *id <= largest_id) id_ = id->get<RequestId>();
+  }
+
+  [[noreturn]] void refuse(const std::string& why) const { throw Refusal(why, id_); }
+
+  [[nodiscard]] RequestId id() const {
+    (void)at("id");
+    if (!id_) refuse("id must be an integer from 1 to 2^53");
+    return *id_;
+  }
+
+  [[nodiscard]] std::string text(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_string()) refuse(std::string(key) + " must be text");
+    return value.get<std::string>();
+  }
+
+  /// A list of so many finite numbers. count: "3 numbers", for people
+  [[nodiscard]] Eigen::VectorXd numbers(const char* key, std::size_t size, const std::string& count) const {
+    const Json& list = at(key);
+    if (!list.is_array() || list.size() != size) refuse(std::string(key) + " must be a list of " + count);
+    Eigen::VectorXd numbers(static_cast<Index>(size));
+    for (std::size_t i = 0; i < size; ++i) {
+      if (list[i].is_number()) numbers[static_cast<Index>(i)] = list[i].get<double>();
+      if (!list[i].is_number() || !std::isfinite(numbers[static_cast<Index>(i)]))
+        refuse(std::string(key) + " must be a list of finite numbers");
+    }
+    return numbers;
+  }
+
+  [[nodiscard]] std::size_t place(const char* key, std::size_t size) const {
+    const Json& value = at(key);
+    if (size == 0) refuse("the robot has no " + std::string(key));
+    if (!value.is_number_unsigned() || value >= size)
+      refuse(std::string(key) + " must be an integer from 0 to " + std::to_string(size - 1));
+    return value.get<std::size_t>();
+  }
+
+ private:
+  [[nodiscard]] const Json* find(const char* key) const {
+    const auto at = json_.find(key);
+    return at == json_.end() ? nullptr : &*at;
+  }
+
+  [[nodiscard]] const Json& at(const char* key) const {
+    const Json* value = find(key);
+    if (value == nullptr) refuse(std::string(key) + " is missing");
+    return *value;
+  }
+
+  const Json& json_;
+  std::optional<RequestId> id_;
+};
+
+CommandRequest command_of(const Message& message, const Model& model) {
+  const std::size_t count = model.actuators.size();
+  CommandRequest request{message.id(),
+                         message.numbers("commands", count, counted(count, "number") + ", one per actuator")};
+  for (std::size_t a = 0; a < count; ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const double value = request.commands[static_cast<Index>(a)];
+    if (value < actuator.low || value > actuator.high)
+      message.refuse(actuator.name + ": " + command_text(actuator, value) + " is outside " + range_text(actuator));
+  }
+  return request;
+}
+
+TargetRequest target_of(const Message& message, const Model& model) {
+  TargetRequest request{message.id()};
+  request.marker = static_cast<Index>(message.place("marker", model.markers.size()));
+  request.at = message.numbers("at", 3, "3 numbers");
+  const double farthest = farthest_target_mm(model);
+  if (request.at.cwiseAbs().maxCoeff() > farthest)
+    message.refuse("at is farther away than " + number(farthest, 3) + " mm");
+  return request;
+}
+
+ClientMessage message_of(const Json& json, const Model& model) {
+  if (!json.is_object()) throw Refusal("a message is a JSON object");
+  const Message message(json);
+  const std::string type = message.text("type");
+  if (type == "hello") return Hello{message.text("secret")};
+  if (type == "command") return command_of(message, model);
+  if (type == "target") return target_of(message, model);
+  if (type == "take") return Take{};
+  if (type == "release") return Release{};
+  message.refuse("there is no message of type " + repeated(type));
+}
+
+Json finite_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json points_of(const std::vector<Vec3>& points) {
+  Json list = Json::array();
+  for (const Vec3& point : points) {
+    Json each = Json::array();
+    for (int axis = 0; axis < 3; ++axis) each.push_back(finite_or_null(point[axis]));
+    list.push_back(std::move(each));
+  }
+  return list;
+}
+
+Json json_of(const TargetAnswer& target) {
+  return {{"marker", target.marker},
+          {"at", points_of({target.at})[0]},
+          {"error_mm", finite_or_null(target.error_mm)},
+          {"reached", target.reached},
+          {"why", target.why}};
+}
+
+/// On one line, without its end.
+std::string message_text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string head_text(const LiveShape& shape, RequestId id) {
+  Json commands = Json::array(), loads = Json::array();
+  for (const double command : shape.commands) commands.push_back(finite_or_null(command));
+  for (const auto& load : shape.loads) loads.push_back(load ? finite_or_null(*load) : Json());
+  return message_text({{"id", id},
+                       {"status", shape.status},
+                       {"remark", shape.remark},
+                       {"commands", std::move(commands)},
+                       {"loads", std::move(loads)},
+                       {"markers", points_of(shape.markers)},
+                       {"iterations", shape.iterations},
+                       {"seconds", finite_or_null(shape.seconds)},
+                       {"target", shape.target ? json_of(*shape.target) : Json()},
+                       {"arrays", shape.arrays},
+                       {"vertices", shape.vertices}});
+}
+
+}  // namespace
+
+double farthest_target_mm(const Model& model) {
+  const double farthest = model.rest.size() > 0 ? model.rest.cwiseAbs().maxCoeff() : 0;
+  return farthest + 100 * model.diagonal_mm;
+}
+
+ClientMessage read_client_message(std::string_view text, const Model& model) {
+  if (text.size() > longest_message)
+    throw Refusal("a message is at most " + std::to_string(longest_message) + " bytes long");
+  try {
+    return message_of(parse_json(text), model);
+  } catch (const Json::exception&) {
+    throw Refusal("this is no JSON with numbers that a computer has");
+  }
+}
+
+std::string frame_bytes(const LiveShape& shape, RequestId id) {
+  std::string head = head_text(shape, id);
+  head.resize((head.size() + 3) / 4 * 4, ' ');
+  const auto length = static_cast<std::uint32_t>(head.size());
+  std::string bytes(sizeof length + head.size() + shape.numbers.size() * sizeof(float), '\0');
+  std::memcpy(bytes.data(), &length, sizeof length);
+  std::memcpy(bytes.data() + sizeof length, head.data(), head.size());
+  if (!shape.numbers.empty())
+    std::memcpy(bytes.data() + sizeof length + head.size(), shape.numbers.data(), shape.numbers.size() * sizeof(float));
+  return bytes;
+}
+
+std::string state_text(const LiveState& state) {
+  return message_text({{"type", "state"},
+                       {"model", state.model},
+                       {"secret", state.secret},
+                       {"control", state.control},
+                       {"free", state.free},
+                       {"watchers", state.watchers}});
+}
+
+std::string refused_text(const Refusal& refusal) {
+  return message_text(
+      {{"type", "refused"}, {"id", refusal.id() ? Json(*refusal.id()) : Json()}, {"why", refusal.what()}});
+}
+
+bool same_secret(std::string_view given, std::string_view secret) {
+  unsigned differs = given.size() == secret.size() ? 0 : 1;
+  for (std::size_t i = 0; i < secret.size(); ++i) {
+    const char c = i < given.size() ? given[i] : '\0';
+    differs |= static_cast<unsigned char>(c ^ secret[i]);
+  }
+  return differs == 0;
+}
+
+}  // namespace softkin::view

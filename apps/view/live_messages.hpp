@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <softkin/core/error.hpp>
+#include <softkin/model/equilibrium.hpp>
+#include <softkin/model/model.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace softkin::view {
+
+// What server and page say to each other, as text and bytes; nothing here knows the network.
+
+/// A message is no longer than this [bytes].
+inline constexpr std::size_t longest_message = 4096;
+
+/// Of a request, given by who asks: 1 to 2^53. 0: of none.
+using RequestId = std::uint64_t;
+
+struct Hello {
+  std::string secret;
+};
+/// Forward kinematics.
+struct CommandRequest {
+  RequestId id = 0;
+  Actuation commands;  // m, inside the ranges
+};
+/// Inverse kinematics.
+struct TargetRequest {
+  RequestId id = 0;
+  Index marker = 0;
+  Vec3 at = Vec3::Zero();  // [mm]
+};
+struct Take {};
+struct Release {};
+using ClientMessage = std::variant<Hello, CommandRequest, TargetRequest, Take, Release>;
+
+/// What is refused, in a sentence, and of which request, where it tells.
+class Refusal : public InvalidInput {
+ public:
+  explicit Refusal(const std::string& why, std::optional<RequestId> id = {}) : InvalidInput(why), id_(id) {}
+  [[nodiscard]] std::optional<RequestId> id() const { return id_; }
+
+ private:
+  std::optional<RequestId> id_;
+};
+
+/// How far from the robot a target may be asked for, in each coordinate [mm]: a hundred of its diagonals from where it
+/// is at rest.
+[[nodiscard]] double farthest_target_mm(const Model& model);
+
+/// A page's message, JSON; keys that are not known do not count.
+///
+/// returns  with as many commands as there are actuators, inside their ranges, or a marker that there is and a place
+///          within farthest_target_mm()
+/// throws   Refusal, and nothing else, on whatever is not that
+[[nodiscard]] ClientMessage read_client_message(std::string_view text, const Model& model);
+
+/// How a search for a target ended.
+struct TargetAnswer {
+  Index marker = 0;
+  Vec3 at = Vec3::Zero();  // asked for [mm]
+  double error_mm = 0;     // of the shape that is shown
+  bool reached = false;
+  std::string why;  // not reached: why; else empty
+};
+
+/// A shape as all who watch get it.
+struct LiveShape {
+  RequestId id = 0;  // that it answers; 0: none
+  std::string status, remark;
+  Actuation commands;                        // m, of the shape
+  std::vector<std::optional<double>> loads;  // m: tension [N] or gauge pressure [kPa]; none: it has none
+  std::vector<Vec3> markers;                 // [mm]
+  int iterations = 0;
+  double seconds = 0;
+  std::optional<TargetAnswer> target;
+  std::vector<std::string> arrays;  // that follow the positions
+  std::vector<float> numbers;       // positions, x y z by vertex [mm]; then a number per vertex of each of the arrays
+  std::size_t vertices = 0;
+};
+
+/// Length of the head (uint32), the head (JSON, padded with blanks to a multiple of four), the numbers as float32; all
+/// little-endian.
+///
+/// id  instead of the shape's
+[[nodiscard]] std::string frame_bytes(const LiveShape& shape, RequestId id);
+
+/// How a connection stands.
+struct LiveState {
+  std::string model;  // what the page shows, hexadecimal
+  bool secret = false, control = false, free = true;
+  std::size_t watchers = 0;  // that said hello, without who has control
+};
+[[nodiscard]] std::string state_text(const LiveState& state);
+[[nodiscard]] std::string refused_text(const Refusal& refusal);
+
+/// Are both the same? Takes as long wherever they differ.
+[[nodiscard]] bool same_secret(std::string_view given, std::string_view secret);
+
+}  // namespace softkin::view

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <softkin/kinematics/inverse.hpp>
+#include <softkin/runs/page_document.hpp>
+#include <softkin/statics/statics.hpp>
+#include <thread>
+#include <variant>
+
+#include "live_messages.hpp"
+
+namespace softkin::view {
+
+/// What a robot is asked for.
+struct LiveRequest {
+  std::uint64_t asker = 0;  // who has control, for who gets the answer
+  std::variant<CommandRequest, TargetRequest> what;
+};
+
+/// A shape, and for whom it was solved.
+struct LiveAnswer {
+  std::uint64_t asker = 0;
+  LiveShape shape;
+};
+
+/// What the solver found, as the page shows it; none where it is not finite.
+///
+/// page  of the same model
+[[nodiscard]] std::optional<LiveShape> live_shape(const Model& model, const Statics& statics,
+                                                  const runs::PageDocument& page, const Equilibrium& found);
+
+/// A robot that is bent while it is asked: a thread that solves the newest request, each from the last equilibrium.
+///
+/// Where something newer is asked for, a search for a target ends, and so does an equilibrium that takes longer than
+/// 0.3 s; neither is answered then. What does not converge is answered with the last shape that did. What is out of
+/// reach is answered at once from the last shape, and again where another start then finds better.
+class LiveRobot {
+ public:
+  /// Called by the robot's thread for every answer.
+  using Publish = std::function<void(std::shared_ptr<const LiveAnswer>)>;
+
+  /// All must outlive the object. rest: an equilibrium, where it begins; page: of the same model
+  LiveRobot(const Model& model, const Statics& statics, const runs::PageDocument& page, const StaticsOptions& options,
+            Equilibrium rest, Publish publish);
+  ~LiveRobot();
+  LiveRobot(const LiveRobot&) = delete;
+  LiveRobot& operator=(const LiveRobot&) = delete;
+
+  /// Instead of what was asked before and is not begun. May be called on any thread.
+  void ask(LiveRequest request);
+
+  /// No further answers. false: the solver has not ended within so many seconds, and the object cannot be destroyed
+  /// before it does.
+  bool stop(double seconds);
+
+ private:
+  void work();
+  void answer(const LiveRequest& request);
+  void solve(const CommandRequest& request, std::uint64_t asker);
+  void search(const TargetRequest& request, std::uint64_t asker);
+  [[nodiscard]] InverseResult searched(const std::vector<Goal>& goals, int other_starts) const;
+  [[nodiscard]] ProgressCallback patience(double seconds) const;
+  [[nodiscard]] bool has_newer() const;
+  [[nodiscard]] bool is_stopped() const;
+  void stand(Equilibrium found, LiveShape shape);
+  void say(std::uint64_t asker, LiveShape shape) const;
+
+  const Model& model_;
+  const Statics& statics_;
+  const runs::PageDocument& page_;
+  StaticsOptions options_;
+  Publish publish_;
+
+  // of the thread alone
+  Equilibrium last_;                        // converged
+  std::optional<Sensitivity> sensitivity_;  // of it
+  LiveShape shape_;                         // of it
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  std::optional<LiveRequest> next_;
+  bool stopped_ = false, ended_ = false;
+  std::thread thread_;
+};
+
+}  // namespace softkin::view

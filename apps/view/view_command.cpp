@@ -1,0 +1,192 @@
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/random.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <softkin/io/file.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/answers.hpp>
+#include <softkin/runs/page.hpp>
+#include <thread>
+
+#include "cli/command.hpp"
+#include "cli/run_text.hpp"
+#include "cli/solve_options.hpp"
+#include "cli/terminal.hpp"
+#include "view/live_server.hpp"
+
+namespace softkin::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What the user asks of `softkin view`. An empty file name: not given.
+struct ViewOptions : SolveOptions {
+  std::string map;
+  int port = 0;
+  bool no_open = false;
+};
+
+void add_view_options(CLI::App& command, ViewOptions& options) {
+  add_scene(command, options);
+  add_value(command, "--map", options.map, "F.skmap",
+            "Kinematic map of the robot (softkin map): bends it in the page at\nonce, until the solver's shape comes");
+  add_value(command, "--port", options.port, "N", "Of 127.0.0.1 to listen at (default: 0, any that is free)",
+            integer_from(0, 65535));
+  command.add_flag("--no-open", options.no_open, "Start no browser");
+  add_force(command, options);
+  add_solver(command, options);
+}
+
+/// What nobody guesses: 128 bits, hexadecimal.
+std::string fresh_secret() {
+  unsigned char bytes[16];
+  if (::getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes))
+    throw InvalidInput("this machine gives no random numbers, of which the page's secret is made");
+  std::string text;
+  for (const unsigned char byte : bytes) {
+    text += "0123456789abcdef"[byte >> 4];
+    text += "0123456789abcdef"[byte & 15];
+  }
+  return text;
+}
+
+/// Starts what opens addresses on this desktop, where there is one; tells where that fails. In a group of its own:
+/// Ctrl-C is not for the browser.
+void open_browser(const std::string& address) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, descriptor, "/dev/null", O_RDWR, 0);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  std::string program = "xdg-open", word = address;
+  char* const words[] = {program.data(), word.data(), nullptr};
+  pid_t process = -1;
+  const bool started = ::posix_spawnp(&process, program.c_str(), &files, &attributes, words, environ) == 0;
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  if (!started) return;
+  std::thread([process] {
+    int status = 0;
+    if (::waitpid(process, &status, 0) == process && !(WIFEXITED(status) && WEXITSTATUS(status) == 0))
+      std::fprintf(stderr, "softkin: warning: no browser could be started: open the address above in one\n");
+  }).detach();
+}
+
+/// The answers of two servers with the same fingerprint are the same.
+std::string fingerprint_of(const Model& model, const ViewOptions& options) {
+  const std::string solver = options.solver_name + " " + exact(options.tolerance_mm) + " " +
+                             std::to_string(options.max_iterations) + " " + std::to_string(options.statics().anderson) +
+                             (options.stable ? " stable" : "");
+  return view::fingerprint_of_texts(
+      {SOFTKIN_VERSION, softkin::fingerprint_of(model), solver, options.map.empty() ? "" : read_file(options.map)});
+}
+
+/// The shape at rest; Ctrl-C ends the search for it.
+Equilibrium at_rest(const Model& model, const Statics& statics, const StaticsOptions& options) {
+  ProgressLine line;
+  EquilibriumProgress share;
+  return statics.solve(model.rest_actuation(), statics.rest(), options, [&](const Progress& p) {
+    line.show(share.share(p), EquilibriumProgress::text(p));
+    return !interrupted();
+  });
+}
+
+class ViewRun {
+ public:
+  ViewRun(const Model& model, const ViewOptions& options)
+      : model_(model), options_(options), statics_(model), document_(model, runs::kept_command()) {
+    if (!options.map.empty()) map_.emplace(runs::read_map_of(model, options.map));
+  }
+
+  int run(view::LiveServer& server) {
+    Equilibrium rest = at_rest(model_, statics_, options_.statics());
+    const ElementDeformation deformation = deformation_of_rest(rest);
+    const StepRecord record = runs::step_record(model_, rest, deformation);
+    if (rest.report.status != Status::converged) {
+      std::fprintf(stderr, "softkin: %s: %s\n", name_of(rest.report.status), shortfall_text(model_, record).c_str());
+      return not_converged;
+    }
+    document_.add(record, rest.state.positions, deformation);
+    return serve(server, std::move(rest));
+  }
+
+ private:
+  [[nodiscard]] ElementDeformation deformation_of_rest(const Equilibrium& rest) const {
+    return rest.report.status == Status::converged ? statics_.measured(rest.state)
+                                                   : deformation_of(model_, rest.state.positions);
+  }
+
+  int serve(view::LiveServer& server, Equilibrium rest) {
+    const std::string model = fingerprint_of(model_, options_);
+    view::LiveContent content{
+        view::live_page(runs::embedded_page(), document_.text(map_ ? &map_->data() : nullptr), model, server.port()),
+        model, fresh_secret()};
+    const std::string address = "http://127.0.0.1:" + std::to_string(server.port()) + "/#" + content.secret;
+    view::LiveRobot robot(model_, statics_, document_, options_.statics(), std::move(rest),
+                          [&server](auto answer) { server.show(std::move(answer)); });
+    print("view: " + address + "\nCtrl-C ends it; whoever has the address bends the robot\n");
+    if (!options_.no_open) open_browser(address);
+    ProgressLine line;
+    server.run(
+        model_, std::move(content), [&robot](view::LiveRequest request) { robot.ask(std::move(request)); },
+        [&line](const view::Presence& there) {
+          line.show(-1, counted(there.watchers, "page watches", "pages watch") +
+                            (there.controlled ? ", one has control" : ", none has control") + "; Ctrl-C ends");
+        },
+        true);
+    line.clear();
+    if (robot.stop(0.3)) return done;
+    // a large robot's factorisation cannot be stopped, and nobody waits for it
+    std::fflush(nullptr);
+    std::_Exit(done);
+  }
+
+  const Model& model_;
+  const ViewOptions& options_;
+  Statics statics_;
+  std::optional<KinematicMap> map_;
+  runs::PageDocument document_;
+};
+
+int run_view(const ViewOptions& options) {
+  check_solver(options);
+  if (!runs::page_is_there())
+    throw InvalidInput("view: this softkin was built without its page; npm, or its registry, was not there");
+  view::LiveServer server(options.port);
+  std::vector<fs::path> inputs{options.scene};
+  ProgressLine line;
+  line.show(-1, "reading the scene");
+  const Model model = asked_robot(options, inputs);
+  line.show(-1, "assembling");
+  ViewRun run(model, options);
+  line.clear();
+  catch_interrupt();
+  print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+  return run.run(server);
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, Run& run) {
+  add_command(app, run, "view", "The robot live in a browser: bent while it is dragged, by the solver",
+              "Serves a page at 127.0.0.1 until Ctrl-C. Who opens the printed address has control; who opens it "
+              "without what\n"
+              "follows the # only watches. Exit code: 0 ended by Ctrl-C, 1 no equilibrium at rest, 2 bad usage or bad "
+              "input.\n"
+              "Example:\n"
+              "  softkin view examples/pneumatic_finger/pneumatic_finger.yaml",
+              add_view_options, run_view);
+}
+
+}  // namespace softkin::cli

@@ -1,0 +1,60 @@
+export type Rgb = [number, number, number];
+
+// Cividis (Nunez, Anderton and Renslow 2018) at even distances: equal to eyes with and without colour blindness.
+const cividis: Rgb[] = [[0, 34, 78], [18, 53, 112], [59, 73, 108], [87, 93, 109], [112, 113, 115], [138, 134, 120],
+                        [166, 157, 117], [197, 181, 102], [228, 207, 91], [254, 232, 56]];
+// From blue over grey to orange, as dark on both sides, for values about one in the middle.
+const diverging: Rgb[] = [[5, 72, 138], [68, 133, 194], [146, 190, 223], [225, 225, 225], [238, 176, 112],
+                          [206, 111, 32], [138, 61, 5]];
+// Okabe and Ito 2008.
+const regions = ['#56b4e9', '#e69f00', '#009e73', '#cc79a7', '#f0e442', '#0072b2', '#d55e00', '#999999'];
+
+export const regionColour = (i: number): string => regions[i % regions.length];
+
+/** share: from 0 to 1, else the nearer end. */
+export function colourAt(share: number, about: boolean): Rgb {
+  const list = about ? diverging : cividis;
+  const x = Math.min(Math.max(Number.isFinite(share) ? share : 0, 0), 1) * (list.length - 1);
+  const i = Math.min(Math.floor(x), list.length - 2), f = x - i;
+  return [0, 1, 2].map((k) => list[i][k] + f * (list[i + 1][k] - list[i][k])) as Rgb;
+}
+
+export interface Scale { low: number; high: number; about: boolean }
+
+/** about: the value in the middle, such as 1 of a volume ratio. */
+export function scaleOf(lists: ArrayLike<number>[], about: number | null, fromZero: boolean): Scale {
+  let low = fromZero ? 0 : Infinity, high = -Infinity;
+  for (const values of lists)
+    for (let i = 0; i < values.length; ++i) {
+      if (values[i] < low) low = values[i];
+      if (values[i] > high) high = values[i];
+    }
+  if (!(high > low)) high = (low = Number.isFinite(low) ? low : 0) + 1e-6;
+  if (about === null) return {low, high, about: false};
+  const reach = Math.max(high - about, about - low);
+  return {low: about - reach, high: about + reach, about: true};
+}
+
+/** Linear light, as shaders have it, of a share of 255. */
+const linear = (c: number): number => {
+  const s = c / 255;
+  return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4;
+};
+
+const steps = 256;
+const tables = [false, true].map((about) => {
+  const table = new Float32Array(3 * steps);
+  for (let i = 0; i < steps; ++i) colourAt(i / (steps - 1), about).forEach((c, k) => { table[3 * i + k] = linear(c); });
+  return table;
+});
+
+/** Colours of values, three numbers each. */
+export function paint(values: ArrayLike<number>, {low, high, about}: Scale, to: Float32Array): void {
+  const table = tables[about ? 1 : 0], factor = (steps - 1) / (high - low);
+  for (let i = 0; i < values.length; ++i) {
+    const at = 3 * Math.round(Math.min(Math.max((values[i] - low) * factor, 0), steps - 1) || 0);
+    to[3 * i] = table[at];
+    to[3 * i + 1] = table[at + 1];
+    to[3 * i + 2] = table[at + 2];
+  }
+}

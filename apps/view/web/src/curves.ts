@@ -1,0 +1,67 @@
+import type {Actuator} from './document';
+import type {Robot} from './robot';
+import {digits, plain} from './text';
+import {commandWords} from './words';
+
+const width = 340, height = 150, left = 46, right = 10, top = 20, bottom = 32;
+const sweepPoints = 33, trailPoints = 400;
+
+/** An element of a drawing. */
+export function drawn(tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  made.textContent = text;
+  return made;
+}
+
+/** Load against command of each actuator: the steps of the run, what the map says with the others as they are, and
+    where the robot was moved. Returns what brings them up to date. */
+export function makeCurves(box: HTMLElement, robot: Robot): () => void {
+  const {steps, document: {actuators}} = robot;
+  const trails: [number, number][][] = actuators.map(() => []);
+  const svgs = actuators.map(({name, load_unit: unit}) => {
+    const svg = drawn('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img',
+                              'aria-label': `Load of ${plain(name)} against its command`});
+    if (unit) box.append(svg);
+    return svg;
+  });
+  return () => actuators.forEach((actuator, i) => {
+    if (!actuator.load_unit) return;
+    const {commands, loads, step} = robot.pose, now: [number, number] = [commands[i], loads[i] ?? 0];
+    const trail = trails[i], last = trail.at(-1);
+    if (step < 0 && (robot.map || robot.link) && (!last || last[0] !== now[0] || last[1] !== now[1])) trail.push(now);
+    if (trail.length > trailPoints) trail.shift();
+    const ran = steps.map((one): [number, number] => [one.commands[i], one.loads[i] ?? 0]);
+    const sweep: [number, number][] = [];
+    for (let k = 0; robot.map && k < sweepPoints; ++k) {
+      const command = actuator.low + k / (sweepPoints - 1) * (actuator.high - actuator.low);
+      const load = robot.ask(commands.map((c, j) => j === i ? command : c))?.loads[i];
+      if (load !== undefined && load !== null) sweep.push([command, load]);
+    }
+    plot(svgs[i], actuator, {ran, sweep, trail, now});
+  });
+}
+
+interface Lists { ran: [number, number][]; sweep: [number, number][]; trail: [number, number][]; now: [number, number] }
+
+function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lists): void {
+  const values = [...ran, ...sweep, ...trail, now].map(([, load]) => load);
+  const low = Math.min(0, ...values), high = Math.max(...values, low + 1e-9);
+  const x = (c: number) => left + (c - actuator.low) / (actuator.high - actuator.low) * (width - left - right);
+  const y = (l: number) => height - bottom - (l - low) / (high - low) * (height - top - bottom);
+  const line = (list: [number, number][]) => list.map(([c, l]) => `${x(c).toFixed(1)},${y(l).toFixed(1)}`).join(' ');
+  const dots = (list: [number, number][], name: string, r: number) =>
+    list.map(([c, l]) => drawn('circle', {class: name, cx: x(c).toFixed(1), cy: y(l).toFixed(1), r}));
+  const base = height - bottom;
+  svg.replaceChildren(
+    drawn('path', {class: 'axis', d: `M${left},${top}V${base}H${width - right}`}),
+    drawn('text', {x: left, y: 12}, `${plain(actuator.name)}: load [${actuator.load_unit}]`),
+    drawn('text', {x: left - 4, y: top + 5, 'text-anchor': 'end'}, digits(high, 3)),
+    drawn('text', {x: left - 4, y: base, 'text-anchor': 'end'}, digits(low, 3)),
+    drawn('text', {x: left, y: base + 13}, digits(actuator.low, 3)),
+    drawn('text', {x: width - right, y: base + 13, 'text-anchor': 'end'}, digits(actuator.high, 3)),
+    drawn('text', {x: (left + width - right) / 2, y: base + 26, 'text-anchor': 'middle'},
+          `command [${commandWords(actuator)}]`),
+    ...dots(trail, 'trail', 1.2), drawn('polyline', {class: 'sweep', points: line(sweep)}),
+    drawn('polyline', {class: 'steps', points: line(ran)}), ...dots(ran, 'step', 3), ...dots([now], 'now', 5));
+}

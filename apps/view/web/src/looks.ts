@@ -1,0 +1,120 @@
+import {colourAt, regionColour, type Scale, scaleOf} from './colours';
+import type {Robot} from './robot';
+import type {Part, RobotScene} from './scene';
+import {byId, digits, element, plain} from './text';
+
+interface Field { name: string; words: string; unit: string; about: number | null; fromZero: boolean }
+
+/** Fields that the program writes; others are shown by their names. */
+const known: Record<string, Omit<Field, 'name'>> = {
+  strain: {words: 'Greatest principal strain', unit: '%', about: null, fromZero: false},
+  volume_ratio: {words: 'Volume over that at rest', unit: '×', about: 1, fromZero: false},
+  contact_pressure: {words: 'Contact pressure', unit: 'kPa', about: null, fromZero: true},
+};
+
+const moved: Field = {name: 'displacement', words: 'Moved from rest', unit: 'mm', about: null, fromZero: true};
+
+export function displacement(positions: Float32Array, rest: Float32Array): Float32Array {
+  const far = new Float32Array(rest.length / 3);
+  for (let v = 0, k = 0; v < far.length; ++v, k += 3)
+    far[v] = Math.hypot(positions[k] - rest[k], positions[k + 1] - rest[k + 1], positions[k + 2] - rest[k + 2]);
+  return far;
+}
+
+/** Values in colours; a scale of the running program grows with what it shows. */
+class Colours {
+  private readonly seen = new Map<string, Float32Array>();  // least and greatest value
+  private readonly last = new Map<string, Float32Array>();
+
+  constructor(private readonly robot: Robot, shapes: Float32Array[]) {
+    for (const shape of shapes) this.see(moved.name, displacement(shape, robot.document.rest));
+    for (const {fields} of robot.document.steps)
+      for (const [name, values] of Object.entries(fields)) this.see(name, values);
+  }
+
+  private see(name: string, values: Float32Array): void {
+    const {low, high} = scaleOf([values, ...(this.seen.has(name) ? [this.seen.get(name) as Float32Array] : [])], null,
+                                false);
+    this.seen.set(name, Float32Array.of(low, high));
+  }
+
+  /** Of the shape shown; what the running program is still computing is as it was before; null: unknown. */
+  values({name}: Field): Float32Array | null {
+    const {pose, document, link} = this.robot;
+    const now = name === moved.name ? displacement(pose.positions, document.rest) : pose.fields[name];
+    if (now && (link || pose.from === 'map')) this.see(name, now);
+    if (now) this.last.set(name, now);
+    return now ?? (link && this.last.get(name)) ?? null;
+  }
+
+  scale({name, about, fromZero}: Field): Scale { return scaleOf([this.seen.get(name) ?? []], about, fromZero); }
+}
+
+function makeLegend(regions: string[]): HTMLElement {
+  return element('div', {class: 'legend'}, ...regions.map((name, r) => {
+    const dot = element('i');
+    dot.style.background = regionColour(r);
+    return element('span', {}, dot, plain(name));
+  }));
+}
+
+function makeSwitches(robot: Robot, scene: RobotScene): HTMLElement[] {
+  const {cables, workspace, obstacles, bodies, markers} = robot.document;
+  const around = obstacles.length + bodies.length > 0, who = markers[workspace?.marker ?? 0]?.name ?? 'it';
+  const switches: [Part, string, boolean, boolean][] = [
+    ['ghost', 'shape at rest', true, true], ['traces', 'ways of markers', true, robot.steps.length > 1],
+    ['markers', 'markers', true, true], ['workspace', `where ${plain(who)} can go`, true, workspace !== null],
+    ['around', 'what is around', true, around], ['grid', 'grid', true, true],
+    ['clear', 'see through', cables.length > 0, true],
+  ];
+  return switches.filter(([, , , is]) => is).map(([part, words, on]) => {
+    const check = element('input', {type: 'checkbox'});
+    check.checked = on;
+    check.addEventListener('change', () => scene.show(part, check.checked));
+    scene.show(part, on);
+    return element('label', {}, check, words);
+  });
+}
+
+/** Colour of the body, and what is shown; returns what brings them up to date. */
+export function makeLooks(robot: Robot, scene: RobotScene, shapes: Float32Array[]): () => void {
+  const {steps, regions} = robot.document, box = byId('looks');
+  const names = [...new Set(steps.flatMap((step) => Object.keys(step.fields)))];
+  const fields = names.map((name): Field =>
+    ({name, ...(known[name] ?? {words: plain(name), unit: '', about: null, fromZero: false})}));
+  const colours = new Colours(robot, shapes);
+  const choose = element('select', {id: 'colour'},
+    element('option', {value: moved.name}, 'how far it moved'),
+    ...fields.map(({name, words}) => element('option', {value: name}, words)),
+    element('option', {value: 'region'}, 'parts'));
+  const legend = makeLegend(regions), note = element('p', {class: 'explain'});
+  box.append(element('div', {class: 'choose'}, element('label', {for: 'colour'}, 'Colour'), choose), legend, note,
+             ...makeSwitches(robot, scene));
+  const update = () => {
+    const field = [moved, ...fields].find(({name}) => name === choose.value);
+    const values = field ? colours.values(field) : null, bar = byId('colour-bar');
+    legend.hidden = field !== undefined;
+    note.textContent = field && !values
+      ? `${field.words} is known at the computed steps alone: play them below the picture.` : '';
+    bar.hidden = !field || !values;
+    if (!field || !values) return scene.setColours(null, null);
+    const scale = colours.scale(field);
+    scene.setColours(values, scale);
+    drawBar(scale, field);
+  };
+  choose.addEventListener('change', update);
+  return update;
+}
+
+function drawBar({low, high, about}: Scale, {words, unit}: Field): void {
+  const canvas = byId<HTMLCanvasElement>('bar'), context = canvas.getContext('2d');
+  for (let i = 0; context && i < canvas.width; ++i) {
+    context.fillStyle = `rgb(${colourAt(i / (canvas.width - 1), about).join()})`;
+    context.fillRect(i, 0, 1, 1);
+  }
+  const shown = (value: number) => digits(unit === '%' ? 100 * value : value, 3);
+  byId('bar-title').textContent = unit ? `${words} [${unit}]` : words;
+  byId('bar-low').textContent = shown(low);
+  byId('bar-middle').textContent = shown((low + high) / 2);
+  byId('bar-high').textContent = shown(high);
+}

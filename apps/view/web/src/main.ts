@@ -1,0 +1,135 @@
+import './style.css';
+import {type ComparisonDocument, readComparison, showComparison} from './comparison';
+import {makeCurves} from './curves';
+import {readDocument, type RobotDocument, robotName} from './document';
+import {makeDrag, placeOfHandles} from './drag';
+import {listenToKeys} from './keys';
+import {Live} from './live';
+import {makeLivePanel} from './live_panel';
+import {makeLooks} from './looks';
+import {eventTime, Meter} from './meter';
+import {makeTable, stateWords, tellOrigin} from './numbers';
+import {makePathPanel} from './path_panel';
+import {makePlayer} from './player';
+import {Robot} from './robot';
+import {download, makeSave} from './save';
+import {RobotScene} from './scene';
+import {makeSliders} from './sliders';
+import {makeTarget} from './target';
+import {cornersOf, makeTensions} from './tensions';
+import {byId} from './text';
+import {makeLabels, tellAtSliders, tellAtTop} from './top';
+
+function chooseTheme(dark: boolean): void {
+  document.documentElement.dataset.theme = dark ? 'dark' : 'light';
+  byId('theme').textContent = dark ? 'Light' : 'Dark';
+}
+
+async function savePicture(robot: Robot, scene: RobotScene): Promise<void> {
+  const picture = await scene.picture();
+  if (picture) download(`${robotName(robot.document)}.png`, picture);
+}
+
+/** Connects the robot with the program that serves the page. */
+function goLive(robot: Robot, meter: Meter, {path, model}: NonNullable<RobotDocument['live']>): Live {
+  const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}${path}`;
+  const live = new Live(url, location.hash.slice(1), model, robot.document.rest.length / 3, {
+    onFrame: (frame, mine, newest) => {
+      meter.answer(frame.id);
+      robot.answered(frame, mine, newest);
+    },
+    onState: () => robot.onChange(),
+    onOtherModel: () => location.reload(),
+  });
+  robot.link = {
+    get state() { return live.state; },
+    get busy() { return live.busy; },
+    send: (ask) => {
+      const since = eventTime(), id = live.send(ask);
+      meter.ask(id, since);
+      return id;
+    },
+  };
+  return live;
+}
+
+function readPage(): RobotDocument {
+  const read = readDocument(byId('softkin-page').textContent ?? 'null');
+  if (!read) throw new Error('There is no robot in this page: softkin writes it into a copy.');
+  // A page that was saved has no program behind it.
+  return location.protocol.startsWith('http') ? read : {...read, live: null};
+}
+
+function startComparison(read: ComparisonDocument): void {
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  chooseTheme(dark.matches);
+  dark.addEventListener('change', () => chooseTheme(dark.matches));
+  byId('theme').addEventListener('click', () => chooseTheme(document.documentElement.dataset.theme !== 'dark'));
+  showComparison(read);
+}
+
+function start(): void {
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  chooseTheme(dark.matches);
+  const read = readPage(), robot = new Robot(read), canvas = byId<HTMLCanvasElement>('canvas'), meter = new Meter();
+  tellAtTop(robot);
+  const corners = cornersOf(robot);
+  const shapes = [...read.steps.map(({positions}) => positions), ...corners.flatMap((at) => robot.shapeAt(at) ?? [])];
+  const scene = new RobotScene(canvas, read, shapes);
+  makeDrag(canvas, robot, scene);
+  scene.listen();
+  const live = read.live && goLive(robot, meter, read.live), player = makePlayer(robot);
+  const undo = byId<HTMLButtonElement>('undo'), reset = byId<HTMLButtonElement>('reset'), state = byId('state');
+  const parts = [makePathPanel(robot, scene, player), makeSliders(byId('sliders'), robot), makeTarget(robot),
+                 makeLooks(robot, scene, shapes), makeTensions(robot, scene, byId('looks'), corners),
+                 makeCurves(byId('curves'), robot), makeTable(robot), makeSave(robot), player.update,
+                 ...(live ? [makeLivePanel(live)] : [])];
+  const labels = makeLabels(robot, scene);
+  byId('curves-section').hidden = !read.actuators.some((actuator) => actuator.load_unit);
+  tellOrigin(robot);
+  byId('grid-size').textContent = `Grid: ${scene.gridMm} mm`;
+  scene.onDrawn = () => {
+    labels();
+    meter.drawn();
+  };
+  robot.onChange = () => {
+    for (const part of parts) part();
+    scene.setShape(robot.pose.positions, robot.pose.markers);
+    scene.setTarget(robot.target?.at ?? null, robot.target?.marker ?? 0);
+    scene.handles.set(placeOfHandles(robot));
+    if (!live && robot.pose.from === 'map') meter.show(eventTime());
+    tellAtSliders(robot, live && live.state);
+    undo.disabled = !robot.canUndo;
+    reset.disabled = !robot.able && !robot.steps.length;
+    byId('hint').hidden ||= robot.canUndo;  // has been understood
+    const {text, bad} = stateWords(robot);
+    if (state.textContent !== text) state.textContent = text;
+    state.classList.toggle('bad', bad);
+  };
+  if (robot.steps.length > 1)
+    read.markers.forEach((_, i) => scene.setTrace(i, robot.steps.map((step) => step.markers[i])));
+  const acts = {undo: () => robot.undo(), reset: () => robot.reset(), play: () => player.toggle(),
+                picture: () => void savePicture(robot, scene)};
+  undo.addEventListener('click', acts.undo);
+  reset.addEventListener('click', acts.reset);
+  byId('snapshot').addEventListener('click', acts.picture);
+  const theme = (on: boolean) => {
+    chooseTheme(on);
+    scene.dress();
+  };
+  byId('theme').addEventListener('click', () => theme(document.documentElement.dataset.theme !== 'dark'));
+  dark.addEventListener('change', () => theme(dark.matches));
+  listenToKeys(scene, acts);
+  if (robot.steps.length) robot.showStep(robot.steps.length - 1);
+  else if (robot.map && !live) robot.command(read.actuators.map(({low, high}) => low + 0.6 * (high - low)));
+  else robot.onChange();
+  live?.connect();
+}
+
+try {
+  const comparison = readComparison(byId('softkin-page').textContent ?? 'null');
+  if (comparison) startComparison(comparison);
+  else start();
+} catch (error) {
+  byId('hint').textContent = `The robot can't be shown: ${error instanceof Error ? error.message : String(error)}`;
+}

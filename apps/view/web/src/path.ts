@@ -1,0 +1,88 @@
+import type {PathFile} from './csv';
+import type {Track} from './player';
+import type {Place, Robot} from './robot';
+
+/** So long it seeks commands before the page may draw [ms]. */
+const sliceMs = 20;
+
+/** Rows of a file, played through the map or the running program. */
+export class FileTrack implements Track {
+  readonly name: string;
+  readonly count: number;
+  /** Of each waypoint, the largest distance of a marker [mm]; NaN: not known yet. Empty: the file has commands. */
+  readonly errors: Float64Array;
+  private readonly commands: (number[] | null)[];
+  private timer = 0;
+
+  /** onFound: some more waypoints have been sought. */
+  constructor(private readonly robot: Robot, readonly file: PathFile, readonly fileName: string,
+              private readonly onFound: () => void) {
+    this.name = `rows of ${fileName}`;
+    this.count = file.rows.length;
+    this.commands = file.kind === 'commands' ? file.rows : file.rows.map(() => null);
+    this.errors = new Float64Array(file.kind === 'waypoints' ? this.count : 0).fill(NaN);
+  }
+
+  /** Seeks what leads to the waypoints. */
+  start(): void { if (this.file.kind === 'waypoints' && this.robot.map) this.seekFrom(0, this.robot.commands); }
+
+  get at(): number { return this.robot.row; }
+
+  time(i: number): number | null { return this.file.times?.[i] ?? null; }
+
+  /** Why this page cannot play the file; empty: it can. */
+  static refusal(robot: Robot, file: PathFile | null = null): string {
+    const {link, map, document: {live}} = robot;
+    if (!map && !live) return 'This page has no map (softkin fk --map), so it cannot move the robot.';
+    if (live && !link?.state.control) return 'Take control first: this window only watches.';
+    if (!file || file.kind === 'commands' || map) return '';
+    return file.rows.some((row) => row.length > 1 || row[0].at.includes(null))
+      ? 'Without a map (softkin view --map) waypoints need x_mm, y_mm and z_mm of one marker.' : '';
+  }
+
+  end(): void { clearTimeout(this.timer); }
+
+  private seekFrom(first: number, start: number[]): void {
+    const {rows} = this.file, until = performance.now() + sliceMs;
+    let i = first, from = start;
+    for (; i < rows.length && performance.now() < until; ++i) {
+      const found = this.robot.seek(rows[i] as Place[], from);
+      this.commands[i] = from = found?.commands ?? from;
+      const markers = this.robot.ask(from)?.markers;
+      if (markers && !this.robot.link) this.errors[i] = this.errorOf(i, markers);
+    }
+    this.onFound();
+    if (i < rows.length) this.timer = window.setTimeout(() => this.seekFrom(i, from));
+  }
+
+  private places(i: number): Place[] { return this.file.kind === 'waypoints' ? this.file.rows[i] : []; }
+
+  private errorOf(i: number, markers: number[][]): number {
+    return Math.max(...this.places(i).map(({marker, at}) =>
+      Math.hypot(...at.map((value, k) => value === null ? 0 : value - markers[marker][k]))));
+  }
+
+  show(i: number): void {
+    const {robot} = this, commands = this.commands[i], [place] = this.places(i);
+    if (commands) robot.command(commands, i);
+    else if (place && robot.link) robot.reach(place.marker, place.at.map((value) => value ?? 0), i);
+  }
+
+  /** After the robot has moved: how far its markers are from the row's. */
+  update(): void {
+    const {robot} = this, {row, pose} = robot, [place] = row < 0 || row >= this.count ? [] : this.places(row);
+    if (!place) return;
+    if (!robot.link || (!robot.link.busy && pose.from === 'live')) this.errors[row] = this.errorOf(row, pose.markers);
+    const errorMm = Number.isNaN(this.errors[row]) ? null : this.errors[row];
+    const at = place.at.map((value, k) => value ?? pose.markers[place.marker][k]);
+    robot.target = {marker: place.marker, at, errorMm, reached: false, why: robot.target?.why ?? ''};
+  }
+
+  /** Of the first marker, for the picture; a coordinate that does not count is that at rest. */
+  way(): number[][] {
+    const {file, robot} = this;
+    if (file.kind === 'commands') return [];
+    return file.rows.map(([{marker, at}]) =>
+      at.map((value, k) => value ?? robot.document.markers[marker].at[k]));
+  }
+}

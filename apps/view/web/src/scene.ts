@@ -1,0 +1,286 @@
+import {
+  AmbientLight, Box3, BufferAttribute, BufferGeometry, DirectionalLight, type GridHelper, Line, LineBasicMaterial, Mesh,
+  MeshBasicMaterial, type MeshLambertMaterial, PerspectiveCamera, type Points, type PointsMaterial, Scene,
+  SphereGeometry, Vector3, WebGLRenderer,
+} from 'three';
+import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {colourAt, paint, type Scale} from './colours';
+import type {RobotDocument} from './document';
+import {Handles} from './handles';
+import {
+  bodyColour, CableLine, makeBodies, makeBody, makeCloud, makeGhost, makeGrid, makeObstacle, ofTheme,
+} from './scene_parts';
+
+export type Part = 'ghost' | 'traces' | 'markers' | 'grid' | 'clear' | 'workspace' | 'around';
+type Thread = Line<BufferGeometry, LineBasicMaterial>;
+type Ball = Mesh<SphereGeometry, MeshBasicMaterial>;
+
+const threadOf = (): Thread =>
+  new Line(new BufferGeometry(), new LineBasicMaterial({depthTest: false, transparent: true}));
+
+const wayFrom = new Vector3(-0.55, -1, 0.45);
+
+/** Where the processor draws, smooth edges cost several times the rest. */
+function drawnByProcessor(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2'), told = gl?.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl?.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER) ?? '');
+  gl?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}
+
+/** The robot in 3-D; draws when something changed. */
+export class RobotScene {
+  readonly camera = new PerspectiveCamera(35, 1, 0.1, 1e5);
+  readonly controls: OrbitControls;
+  readonly gridMm: number;
+  readonly handles = new Handles((at) => this.project(at));
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly body: Mesh<BufferGeometry, MeshLambertMaterial[]>;
+  private readonly ghost: Mesh<BufferGeometry, MeshBasicMaterial>;
+  private readonly around: Mesh[];
+  private readonly cloud: Points<BufferGeometry, PointsMaterial> | null;
+  private readonly positions: BufferAttribute;
+  private readonly colours: BufferAttribute;
+  private readonly balls: Ball[];
+  private readonly rings: Ball[];
+  private readonly traces: Thread[];
+  private readonly cables: CableLine[];
+  private readonly target: Ball;
+  private readonly gap = threadOf();
+  private readonly wanted = threadOf();  // way of waypoints
+  private readonly grid: GridHelper;
+  private readonly size: number;
+  private readonly box = new Box3();
+  private tensions: (number | null)[] = [];
+  private waiting = false;
+  private eyeIsChosen = false;  // by hand
+  onDrawn: () => void = () => {};
+
+  constructor(private readonly canvas: HTMLCanvasElement, robot: RobotDocument, shapes: Float32Array[]) {
+    this.renderer = new WebGLRenderer({canvas, antialias: !drawnByProcessor()});
+    for (const shape of [robot.rest, ...shapes, ...(robot.workspace ? [robot.workspace.points] : [])])
+      this.box.union(new Box3().setFromArray(shape as unknown as number[]));
+    this.size = this.box.getSize(new Vector3()).length() || 1;
+    this.positions = new BufferAttribute(Float32Array.from(robot.rest), 3);
+    this.colours = new BufferAttribute(new Float32Array(robot.rest.length).fill(1), 3);
+    this.body = makeBody(robot, this.positions, this.colours);
+    this.ghost = makeGhost(robot);
+    this.around = [...robot.obstacles.map(makeObstacle), makeBodies(robot, this.positions)];
+    this.cloud = robot.workspace && makeCloud(robot.workspace);
+    const ball = new SphereGeometry(this.size / 80, 20, 14);
+    const onTop = () => new MeshBasicMaterial({depthTest: false, transparent: true});
+    this.balls = robot.markers.map(() => new Mesh(ball, onTop()));
+    this.rings = robot.markers.map(() => new Mesh(ball, onTop()));
+    this.rings.forEach((ring, i) => this.balls[i].add(ring));
+    this.target = new Mesh(new SphereGeometry(this.size / 55, 20, 14),
+                           new MeshBasicMaterial({wireframe: true, depthTest: false, transparent: true}));
+    this.traces = robot.markers.map(threadOf);
+    this.cables = robot.cables.map((cable) => new CableLine(cable));
+    for (const part of [...this.traces, this.gap, this.wanted, ...this.balls, this.target]) {
+      part.frustumCulled = false;
+      part.renderOrder = 4;
+    }
+    for (const marker of this.balls) marker.renderOrder = 7;
+    for (const ring of this.rings) {
+      ring.scale.setScalar(1.4);
+      ring.renderOrder = 6;
+    }
+    this.gap.visible = this.target.visible = this.wanted.visible = false;
+    ({grid: this.grid, cellMm: this.gridMm} =
+      makeGrid(this.size, this.box.getCenter(new Vector3()), this.box.min.z));
+    const sun = new DirectionalLight(0xffffff, 2.2);
+    sun.position.set(-0.4, -1, 1.4);
+    this.camera.add(sun);
+    this.scene.add(new AmbientLight(0xffffff, 1.3), this.camera, this.grid, this.body, this.ghost, ...this.around,
+                   ...this.traces, ...this.cables.flatMap(({rim, core}) => [rim, core]), ...this.balls, this.target,
+                   this.gap, this.wanted, this.handles.group);
+    if (this.cloud) this.scene.add(this.cloud);
+    this.controls = new OrbitControls(this.camera);
+    this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('start', () => this.keepEye());
+    this.camera.up.set(0, 0, 1);
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+    this.lookFrom(wayFrom.clone());
+    this.dress();
+  }
+
+  /** Colours of the theme. */
+  dress(): void {
+    this.scene.background = ofTheme('--stage');
+    for (const {rim} of this.cables) rim.material.color = ofTheme('--cable');
+    this.ghost.material.color = ofTheme('--ghost');
+    for (const ball of [...this.balls, this.target]) ball.material.color = ofTheme('--target');
+    for (const ring of this.rings) ring.material.color = ofTheme('--paper');
+    for (const line of this.traces) line.material.color = ofTheme('--trace');
+    if (this.cloud && !this.cloud.material.vertexColors) this.cloud.material.color = ofTheme('--accent');
+    this.gap.material.color = ofTheme('--bad');
+    this.wanted.material.color = ofTheme('--accent');
+    const grid = this.grid.material;
+    this.grid.geometry.deleteAttribute('color');
+    grid.vertexColors = false;
+    grid.color = ofTheme('--grid');
+    grid.needsUpdate = true;
+    this.setTensions(this.tensions);
+  }
+
+  private resize(): void {
+    const {clientWidth: width, clientHeight: height} = this.canvas;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** The camera follows the pointer; who listens before comes first. */
+  listen(): void { this.controls.connect(this.canvas); }
+
+  /** All of the robot is seen, also where the picture is narrow. */
+  lookFrom(direction: Vector3): void {
+    const middle = this.box.getCenter(new Vector3()), half = Math.tan(this.camera.fov * Math.PI / 360);
+    const size = this.box.getSize(new Vector3()).length();
+    const distance = 0.56 * size / half / Math.min(1, this.camera.aspect) + 0.1 * size;
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).addScaledVector(direction.normalize(), distance);
+    this.camera.near = this.size / 200;
+    this.camera.far = this.size * 50;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+  }
+
+  /** Farther away where the robot leaves what was thought of, but for an eye that was chosen by hand. */
+  private keepInSight(positions: Float32Array): void {
+    const shape = new Box3().setFromArray(positions as unknown as number[]);
+    if (this.box.containsBox(shape)) return;
+    this.box.union(shape.expandByScalar(0.1 * this.size));
+    if (!this.eyeIsChosen) this.lookFrom(wayFrom.clone());
+  }
+
+  /** The eye stays where it is, whatever the robot does. */
+  keepEye(): void { this.eyeIsChosen = true; }
+
+  /** By angles of the keyboard [rad], and nearer by a factor. */
+  turn(right: number, up: number, nearer: number): void {
+    this.keepEye();
+    const off = this.camera.position.clone().sub(this.controls.target), flat = Math.hypot(off.x, off.y);
+    const length = off.length() / nearer, azimuth = Math.atan2(off.y, off.x) + right;
+    const height = Math.min(Math.max(Math.atan2(off.z, flat) + up, -1.5), 1.5);
+    off.set(Math.cos(azimuth) * Math.cos(height), Math.sin(azimuth) * Math.cos(height), Math.sin(height));
+    this.camera.position.copy(this.controls.target).addScaledVector(off, length);
+    this.controls.update();
+    this.draw();
+  }
+
+  setShape(positions: Float32Array, markers: number[][]): void {
+    this.positions.copyArray(positions);
+    this.keepInSight(positions);
+    this.positions.needsUpdate = true;
+    this.balls.forEach((ball, i) => { if (markers[i]) ball.position.fromArray(markers[i]); });
+    for (const cable of this.cables) cable.follow(positions);
+    this.draw();
+  }
+
+  /** null: by region. */
+  setColours(values: ArrayLike<number> | null, scale: Scale | null): void {
+    const coloured = values !== null && scale !== null;
+    if (coloured) {
+      paint(values, scale, this.colours.array as Float32Array);
+      this.colours.needsUpdate = true;
+    }
+    this.body.material.forEach((material, r, all) => {
+      if (material.vertexColors !== coloured) material.needsUpdate = true;
+      material.vertexColors = coloured;
+      material.color.set(coloured ? '#ffffff' : bodyColour(r, all.length));
+    });
+    this.draw();
+  }
+
+  /** Of each cable, from 0 to 1; null: unknown. */
+  setTensions(shares: (number | null)[]): void {
+    this.tensions = shares;
+    this.cables.forEach(({core}, c) => {
+      const share = shares[c] ?? null;
+      if (share === null) core.material.color = ofTheme('--cable');
+      else core.material.color.set(`rgb(${colourAt(share, false).map(Math.round).join()})`);
+    });
+    this.draw();
+  }
+
+  setTrace(marker: number, points: number[][]): void { this.lead(this.traces[marker], points); }
+
+  /** The way on which a marker should go. */
+  setWanted(points: number[][]): void {
+    this.wanted.visible = points.length > 0;
+    this.lead(this.wanted, points);
+  }
+
+  private lead(line: Thread, points: number[][]): void {
+    line.geometry.dispose();
+    line.geometry = new BufferGeometry().setFromPoints(points.map((at) => new Vector3().fromArray(at)));
+    this.draw();
+  }
+
+  setTarget(target: number[] | null, marker: number): void {
+    this.target.visible = this.gap.visible = target !== null;
+    if (target) {
+      this.target.position.fromArray(target);
+      this.gap.geometry.setFromPoints([this.target.position, this.balls[marker].position]);
+    }
+    this.draw();
+  }
+
+  show(part: Part, on: boolean): void {
+    if (part === 'ghost') this.ghost.visible = on;
+    if (part === 'grid') this.grid.visible = on;
+    if (part === 'workspace' && this.cloud) this.cloud.visible = on;
+    if (part === 'around') for (const mesh of this.around) mesh.visible = on;
+    if (part === 'traces') for (const line of this.traces) line.visible = on;
+    if (part === 'markers') for (const ball of this.balls) ball.visible = on;
+    if (part === 'clear') for (const material of this.body.material) {
+      material.needsUpdate = material.transparent !== on;
+      material.transparent = on;
+      material.opacity = on ? 0.45 : 1;
+      material.depthWrite = !on;
+    }
+    this.draw();
+  }
+
+  /** On the canvas [px]. */
+  project(at: number[]): {x: number; y: number} {
+    const p = new Vector3().fromArray(at).project(this.camera);
+    return {x: (p.x + 1) / 2 * this.canvas.clientWidth, y: (1 - p.y) / 2 * this.canvas.clientHeight};
+  }
+
+  /** Where the pointer is on the plane of the screen through a point. */
+  under(x: number, y: number, through: number[]): number[] {
+    const at = new Vector3().fromArray(through), normal = this.camera.getWorldDirection(new Vector3());
+    const ray = new Vector3(2 * x / this.canvas.clientWidth - 1, 1 - 2 * y / this.canvas.clientHeight, 0.5)
+      .unproject(this.camera).sub(this.camera.position).normalize();
+    const far = at.sub(this.camera.position).dot(normal) / ray.dot(normal);
+    return this.camera.position.clone().addScaledVector(ray, far).toArray();
+  }
+
+  draw(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.drawNow();
+    });
+  }
+
+  private drawNow(): void {
+    this.camera.updateMatrixWorld();
+    this.handles.fit(this.camera, 2 * Math.tan(this.camera.fov * Math.PI / 360) / (this.canvas.clientHeight || 1));
+    this.renderer.render(this.scene, this.camera);
+    this.onDrawn();
+  }
+
+  picture(): Promise<Blob | null> {
+    this.drawNow();
+    return new Promise((done) => this.canvas.toBlob(done, 'image/png'));
+  }
+}

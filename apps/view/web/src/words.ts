@@ -1,0 +1,16 @@
+import type {Actuator, Kind} from './document';
+
+export const kindWords: Record<Kind, string> = {
+  cable: 'cable', pneumatic: 'air chamber', dea: 'dielectric elastomer', motion: 'moved obstacle', force: 'force',
+  hold: 'hold on a body',
+};
+
+/** Not done to what is around the robot, such as a force on a body that it holds. */
+export const drives = ({kind}: Actuator): boolean => kind === 'cable' || kind === 'pneumatic' || kind === 'dea';
+
+/** What is commanded, as a unit: "× rest length", "kPa". */
+export function commandWords({unit, control}: Actuator): string {
+  return unit || (/^(length|area|volume)$/.test(control) ? `× rest ${control}` : '');
+}
+
+export const loadWords = ({kind}: Actuator): string => kind === 'cable' ? 'tension' : 'pressure';

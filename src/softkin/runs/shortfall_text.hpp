@@ -1,0 +1,16 @@
+#pragma once
+
+#include <softkin/kinematics/inverse.hpp>
+#include <softkin/runs/records.hpp>
+#include <string>
+
+namespace softkin::runs {
+
+/// How far a step that did not converge came: "air reached 1.62 of 1.8, tendon reached 2 N of 3 N".
+[[nodiscard]] std::string reached_text(const Model& model, const StepRecord& step);
+
+/// Why goals are not reached: "not reached: 4.2 mm off at the nearest point; no change ...; tendon1 is at the low end
+/// of its range, 0.5 [-]". found: has errors
+[[nodiscard]] std::string shortfall_text(const Model& model, const InverseResult& found);
+
+}  // namespace softkin::runs

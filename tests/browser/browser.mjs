@@ -1,0 +1,95 @@
+// Pages in a browser without network, and what tests do with them.
+import axe from 'axe-core';
+import {chromium} from 'playwright-core';
+
+const chromiumFile = process.env.SOFTKIN_CHROMIUM ?? '/usr/bin/chromium';
+const flags = ['--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+               '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
+
+/** Browsers' own words on a connection that is gone: live mode tries again. */
+const expected = /WebSocket connection to|ERR_CONNECTION_REFUSED/;
+
+/** What a page said that it should not have said, and what it asked for beside itself. */
+export class Watch {
+  errors = [];
+  requests = [];
+
+  constructor(page, own) {
+    page.on('console', (message) => {
+      if (/error|warning/.test(message.type()) && !/GPU stall|swiftshader/i.test(message.text()) &&
+          !expected.test(message.text())) this.errors.push(message.text());
+    });
+    page.on('pageerror', (error) => this.errors.push(String(error.stack ?? error)));
+    page.on('request', (request) => {
+      const url = request.url();
+      if (url.split('#')[0] !== own && !/^(blob|data):/.test(url)) this.requests.push(url);
+    });
+  }
+}
+
+export const launch = () => chromium.launch({executablePath: chromiumFile, args: flags});
+
+/** offline: nothing but the file itself can be had. */
+export async function open(browser, url, {width = 1280, height = 720, scheme = 'light', offline = true} = {}) {
+  const context = await browser.newContext({viewport: {width, height}, colorScheme: scheme, hasTouch: width < 600,
+                                            acceptDownloads: true, offline});
+  const page = await context.newPage(), watch = new Watch(page, url.split('#')[0]);
+  await page.goto(url);
+  await page.waitForSelector('#table td');
+  return {page, watch, context};
+}
+
+const number = (text) => Number(text.replace('−', '-'));
+
+/** Of the first marker [mm], as the page writes it. */
+export async function tipText(page) {
+  return (await page.locator('#table tbody tr').first().locator('td').allTextContents()).slice(1, 4);
+}
+
+export const tip = async (page) => (await tipText(page)).map(number);
+
+export async function moveSlider(page, actuator, value) {
+  await page.locator(`#actuator-${actuator}`).fill(String(value));
+}
+
+/** So many frames have been drawn. */
+export const frames = (page, count = 2) => page.evaluate((left) => new Promise((done) => {
+  const next = () => left-- > 0 ? requestAnimationFrame(next) : done();
+  next();
+}), count);
+
+/** Where the first marker is on the screen. */
+export async function tipOnScreen(page) {
+  const box = await page.locator('#canvas').boundingBox();
+  const moved = await page.locator('#labels span').first().evaluate((label) => label.style.transform);
+  const [x, y] = /translate\((.*)px, (.*)px\)/.exec(moved).slice(1).map(Number);
+  return {x: box.x + x - 14, y: box.y + y - 8};
+}
+
+export async function drag(page, from, to) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(to.x, to.y, {steps: 5});
+  await page.mouse.up();
+  await frames(page);
+}
+
+export async function dropFile(page, name, text) {
+  const data = await page.evaluateHandle(([file, content]) => {
+    const made = new DataTransfer();
+    made.items.add(new File([content], file, {type: 'text/csv'}));
+    return made;
+  }, [name, text]);
+  await page.dispatchEvent('body', 'drop', {dataTransfer: data});
+  await frames(page, 4);
+}
+
+/** What breaks the rules of accessibility (WCAG 2 AA and good practice), with where. */
+export async function violations(page) {
+  const session = await page.context().newCDPSession(page);
+  const {result} = await session.send('Runtime.evaluate', {
+    expression: `${axe.source};axe.run().then((found) => JSON.stringify(found.violations.map((each) =>
+      each.id + ' (' + each.impact + '): ' + each.nodes.map((node) => node.html.slice(0, 150)).join(' | '))))`,
+    awaitPromise: true, returnByValue: true});
+  return JSON.parse(result.value);
+}

@@ -1,0 +1,53 @@
+// How long a page of softkin view takes from a moved slider to the drawn shape:
+//   node latency.mjs SOFTKIN OUT_FOLDER SCENE [MAP [MOVES]]
+// Each move waits for the exact shape of the one before. Also pictures a second while a map or the eye moves.
+import {launch, open} from './browser.mjs';
+import {serve} from './softkin.mjs';
+
+const [scene, map, asked] = process.argv.slice(4);
+const moves = Number(asked ?? 40);
+const sorted = (list) => [...list].sort((a, b) => a - b);
+const at = (list, share) => sorted(list)[Math.min(list.length - 1, Math.floor(share * list.length))];
+const told = (list) => `median ${at(list, 0.5).toFixed(0)} ms, 95th of a hundred ${at(list, 0.95).toFixed(0)} ms`;
+
+const server = await serve(scene, 0, ...(map ? ['--map', map] : []));
+const browser = await launch();
+try {
+  const {page} = await open(browser, server.url, {offline: false});
+  await page.waitForFunction(() => !document.querySelector('#actuator-0').disabled);
+  const [low, high] = await page.locator('#actuator-0').evaluate((slider) => [Number(slider.min), Number(slider.max)]);
+  const waits = [], drawn = [];
+  for (let i = 0; i < moves; ++i) {
+    const value = low + (high - low) * (0.1 + 0.01 * i);
+    const [first, exact] = await page.evaluate(async (to) => {
+      const slider = document.querySelector('#actuator-0'), count = window.softkinPage.latencies.length;
+      const start = performance.now();
+      slider.value = String(to);
+      slider.dispatchEvent(new Event('input', {bubbles: true}));
+      const frame = () => new Promise(requestAnimationFrame);
+      await frame();
+      await frame();
+      const once = performance.now() - start;
+      while (window.softkinPage.latencies.length === count) await frame();
+      slider.dispatchEvent(new Event('change', {bubbles: true}));
+      return [once, performance.now() - start];
+    }, value);
+    drawn.push(first);
+    waits.push(exact);
+  }
+  console.log(`slider to exact shape drawn: ${told(waits)} (${moves} moves of 1 % of the range)`);
+  if (map) console.log(`slider to the map's shape drawn: ${told(drawn)}`);
+  const turned = await page.evaluate(async () => {
+    const canvas = document.querySelector('#canvas'), frame = () => new Promise(requestAnimationFrame);
+    const start = performance.now();
+    for (let i = 0; i < 30; ++i) {
+      canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight', bubbles: true}));
+      await frame();
+    }
+    return 30 / (performance.now() - start) * 1000;
+  });
+  console.log(`pictures a second while the eye moves: ${turned.toFixed(1)}`);
+} finally {
+  await browser.close();
+  await server.stop();
+}

@@ -1,0 +1,33 @@
+// Tests of the page in a browser:  node run.mjs SOFTKIN OUT_FOLDER
+// Writes screenshots into the folder, to be looked at. SOFTKIN_CHROMIUM: the browser, default /usr/bin/chromium.
+import {mkdirSync} from 'node:fs';
+import {launch} from './browser.mjs';
+import {liveTests} from './live.mjs';
+import {reportTests} from './report.mjs';
+import {hasView} from './softkin.mjs';
+
+mkdirSync(process.argv[3], {recursive: true});
+const browser = await launch();
+let failed = 0, passed = 0;
+
+async function test(name, act) {
+  const start = performance.now();
+  try {
+    await act();
+    ++passed;
+    console.log(`ok: ${name} (${((performance.now() - start) / 1000).toFixed(1)} s)`);
+  } catch (error) {
+    ++failed;
+    console.log(`FAILED: ${name}\n${error.stack ?? error}`);
+  }
+}
+
+try {
+  await reportTests(browser, test);
+  if (await hasView()) await liveTests(browser, test);
+  else console.log('skipped: live mode, this softkin has no view');
+} finally {
+  await browser.close();
+}
+console.log(`${passed} passed, ${failed} failed`);
+process.exitCode = failed ? 1 : 0;

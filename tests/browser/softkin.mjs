@@ -1,0 +1,67 @@
+// Runs softkin.
+import {execFile, spawn} from 'node:child_process';
+import {existsSync} from 'node:fs';
+import {dirname, join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {promisify} from 'node:util';
+
+const run = promisify(execFile);
+const [program, folder] = process.argv.slice(2);
+if (!program || !folder) {
+  console.error('usage: node run.mjs SOFTKIN OUT_FOLDER');
+  process.exit(2);
+}
+
+export const out = (name) => join(folder, name);
+// scripts/test_page.sh runs a copy of this folder
+const source = process.env.SOFTKIN_SOURCE ?? join(dirname(fileURLToPath(import.meta.url)), '../..');
+const examples = join(source, 'examples');
+export const example = (name, file = `${name}.yaml`) => join(examples, name, file);
+
+export async function softkin(...words) {
+  const {stdout} = await run(program, words.map(String), {maxBuffer: 1 << 28});
+  return stdout;
+}
+
+/** The map of an example; kept in the folder for the next time. */
+export async function mapOf(name) {
+  const file = out(`${name}.skmap`);
+  if (!existsSync(file)) await softkin('map', example(name), '-o', file, '--check', 10);
+  return file;
+}
+
+/** Steps of fk for rows of commands, as its report tells them. */
+export async function forward(scene, names, rows, ...more) {
+  const {writeFileSync} = await import('node:fs');
+  writeFileSync(out('rows.csv'), [names, ...rows].map((row) => row.join()).join('\n') + '\n');
+  return JSON.parse(await softkin('fk', scene, '--path', out('rows.csv'), '--json', ...more)).steps;
+}
+
+export async function hasView() {
+  try {
+    await softkin('view', '--help');
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** softkin view until stop(). port: 0: any */
+export async function serve(scene, port, ...more) {
+  const child = spawn(program, ['view', scene, '--no-open', '--port', String(port), ...more],
+                      {stdio: ['ignore', 'pipe', 'inherit']});
+  const ended = new Promise((done) => child.on('exit', done));
+  const url = await new Promise((found, failed) => {
+    let text = '';
+    child.stdout.on('data', (data) => {
+      text += data;
+      const match = /view: (http:\S+)/.exec(text);
+      if (match) found(match[1]);
+    });
+    void ended.then((code) => failed(new Error(`softkin view ended with ${code}: ${text}`)));
+  });
+  return {url, port: Number(new URL(url).port), stop: () => {
+    child.kill('SIGINT');
+    return ended;
+  }};
+}

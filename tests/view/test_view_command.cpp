@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include "cli/fk_samples.hpp"
+#include "cli/start_program.hpp"
+#include "served_robot.hpp"
+
+namespace softkin::view {
+namespace {
+
+using namespace softkin::testing;
+using testing::LiveClient;
+
+/// softkin view of the block, once it serves.
+class Viewed {
+ public:
+  explicit Viewed(const std::vector<std::string>& options = {}, bool terminal = false)
+      : folder(physical_scene()), program_(folder, arguments(folder, options), terminal) {
+    const bool serves = program_.wait_until([&] { return read_text(folder / "stdout.txt").find("Ctrl-C") != npos; });
+    const std::string output = read_text(folder / "stdout.txt"), begin = "view: http://127.0.0.1:";
+    const std::size_t at = output.find(begin), mark = output.find("/#", at);
+    if (!serves || at == npos || mark == npos) throw std::runtime_error("it does not serve: " + output);
+    port = std::stoi(output.substr(at + begin.size()));
+    secret = output.substr(mark + 2, output.find('\n', mark) - mark - 2);
+  }
+
+  /// Its end after a signal, and the seconds until then.
+  std::pair<ProgramResult, double> end(int signal_number) {
+    const auto begin = std::chrono::steady_clock::now();
+    program_.send(signal_number);
+    ProgramResult result = program_.wait();
+    return {result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+  }
+
+  BlockFolder folder;
+  int port = 0;
+  std::string secret;
+
+ private:
+  static constexpr std::size_t npos = std::string::npos;
+
+  static std::vector<std::string> arguments(const BlockFolder& folder, const std::vector<std::string>& options) {
+    std::vector<std::string> all{"view", folder.scene, "--no-open", "--threads", "1"};
+    all.insert(all.end(), options.begin(), options.end());
+    return all;
+  }
+
+  StartedProgram program_;
+};
+
+TEST(ViewCommand, RefusesWhatCannotBe) {
+  const BlockFolder folder(physical_scene());
+  const auto refuses = [&](const std::vector<std::string>& options, const std::string& why) {
+    std::vector<std::string> arguments{"view", folder.scene, "--no-open"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 2) << why;
+    EXPECT_EQ(result.output, "") << why;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    EXPECT_NE(result.errors.find(why), std::string::npos) << result.errors;
+  };
+  refuses({"--port", "65536"}, "must be an integer from 0 to 65535");
+  refuses({"--anderson", "3"}, "it needs --solver local-global");
+  if (!runs::page_is_there()) return refuses({}, "this softkin was built without its page");
+  refuses({"--map", folder / "none.skmap"}, "none.skmap");
+  const LiveServer other(0);
+  refuses({"--port", std::to_string(other.port())}, "--port " + std::to_string(other.port()) + ": cannot listen");
+}
+
+TEST(ViewCommand, BendsTheRobotAsFkDoes) {
+  if (!runs::page_is_there()) GTEST_SKIP() << "built without the page";
+  Viewed viewed;
+  EXPECT_EQ(viewed.secret.size(), 32u);
+  const std::string page =
+      testing::answer_to(viewed.port, "GET / HTTP/1.1\r\nHost: " + testing::host_of(viewed.port) + "\r\n\r\n");
+  EXPECT_NE(page.find("\"live\":{\"path\":\"/live\",\"model\":\""), std::string::npos);
+  EXPECT_EQ(page.find(viewed.secret), std::string::npos);
+  LiveClient client(viewed.port);
+  client.hello(viewed.secret);
+  const nlohmann::json state = client.next("state");
+  EXPECT_EQ(state.at("control"), true);
+  EXPECT_NE(page.find("\"model\":\"" + state.at("model").get<std::string>() + "\""), std::string::npos);
+  client.command(1, {1.4, 0.97});
+  const auto shape = client.shape(1);
+  ASSERT_TRUE(shape.has_value());
+  const BlockFolder& folder = viewed.folder;
+  ASSERT_EQ(run_fk(folder.scene, {"--set", "air=1.4", "--set", "tendon=0.97", "--report", folder / "r.json"}).exit_code,
+            0);
+  const auto step = nlohmann::json::parse(read_text(folder / "r.json")).at("steps").at(0);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(shape->head.at("markers").at(0).at(axis).get<double>(),
+                step.at("markers").at("tip").at(axis).get<double>(), 1e-6);
+  EXPECT_NEAR(shape->head.at("loads").at(0).get<double>(),
+              step.at("actuators").at("air").at("pressure_kPa").get<double>(), 1e-4);
+  const auto [result, seconds] = viewed.end(SIGINT);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  EXPECT_LT(seconds, 1);
+  EXPECT_EQ(client.close_code(), 1001);
+}
+
+TEST(ViewCommand, EndsAtOnceWhateverIsUnderWay) {
+  if (!runs::page_is_there()) GTEST_SKIP() << "built without the page";
+  Viewed viewed({}, true);
+  LiveClient client(viewed.port), mute(viewed.port, 4096);
+  const testing::PlainSocket silent(viewed.port);
+  client.hello(viewed.secret);
+  client.next("state");
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  client.target(1, 0, {500, 500, 500});
+  const auto [result, seconds] = viewed.end(SIGTERM);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_LT(seconds, 1);
+  EXPECT_NE(result.errors.find("0 pages watch, one has control; Ctrl-C ends"), std::string::npos) << result.errors;
+}
+
+TEST(ViewCommand, ServersOfTheSameSceneAreTold) {
+  if (!runs::page_is_there()) GTEST_SKIP() << "built without the page";
+  const auto model_of = [](const std::vector<std::string>& options) {
+    const Viewed viewed(options);
+    LiveClient client(viewed.port);
+    client.hello("");
+    return client.next("state").at("model").get<std::string>();
+  };
+  const std::string first = model_of({});
+  EXPECT_EQ(model_of({}), first);
+  EXPECT_NE(model_of({"--force", "payload=0,0,0.1"}), first);
+  EXPECT_NE(model_of({"--solver-tolerance", "1e-3"}), first);
+}
+
+}  // namespace
+}  // namespace softkin::view
