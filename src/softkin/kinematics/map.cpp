@@ -123,7 +123,7 @@ KinematicMap::Place KinematicMap::evaluate_bits(Index taut, const double* comman
 }
 
 /// With all cables taut at first: one that would push goes slack, one that is longer than it may be is taken up. Pieces
-/// are approximate: where that goes round in circles, or to a piece that there is not (as at rest, where no command goes
+/// are approximate: where that goes round in circles, or to a piece that there is not (at rest, where no command goes
 /// farther), less than their accuracy is not wrong.
 ///
 /// taut     the bits of the last that were
