@@ -203,6 +203,10 @@ std::string refused_text(const Refusal& refusal) {
       {{"type", "refused"}, {"id", refusal.id() ? Json(*refusal.id()) : Json()}, {"why", refusal.what()}});
 }
 
+std::string map_text(std::string_view map) {
+  return R"({"type":"map","map":)" + std::string(map) + "}";
+}
+
 bool same_secret(std::string_view given, std::string_view secret) {
   unsigned differs = given.size() == secret.size() ? 0 : 1;
   for (std::size_t i = 0; i < secret.size(); ++i) {

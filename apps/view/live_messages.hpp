@@ -97,6 +97,8 @@ struct LiveState {
 };
 [[nodiscard]] std::string state_text(const LiveState& state);
 [[nodiscard]] std::string refused_text(const Refusal& refusal);
+/// map: as runs::PageDocument tells it
+[[nodiscard]] std::string map_text(std::string_view map);
 
 /// Are both the same? Takes as long wherever they differ.
 [[nodiscard]] bool same_secret(std::string_view given, std::string_view secret);

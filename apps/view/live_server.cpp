@@ -109,10 +109,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
     state_due_ = true;
     write();
   }
+  void tell(Bytes text) {
+    texts_.push_back(std::move(text));
+    write();
+  }
   void refuse(const Refusal& refusal) {
     if (++refusals_ >= host_.limits().refusals) return close(websocket::close_code::policy_error);
-    texts_.push_back(std::make_shared<const std::string>(refused_text(refusal)));
-    write();
+    tell(std::make_shared<const std::string>(refused_text(refusal)));
   }
 
   /// Says why it ends; without a word where there is no WebSocket yet.
@@ -336,7 +339,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   bool writing_ = false;
   std::size_t written_ = 0;
-  std::deque<Bytes> texts_;  // fewer than the refusals that end it, and a state
+  std::deque<Bytes> texts_;  // fewer than the refusals that end it, a state and a map
   bool state_due_ = false;
   std::string told_state_;
   Bytes frame_;  // the newest
@@ -378,6 +381,7 @@ struct LiveServer::Parts : Host {
     } else {
       connection.tell_state();  // the others with the next sweep
     }
+    if (map_) connection.tell(map_);
     if (current_) connection.show(nobodys_frame());
   }
 
@@ -435,6 +439,11 @@ struct LiveServer::Parts : Host {
     if (controller_ != nullptr) controller_->show(frame);
     for (Connection* each : greeted_)
       if (each != controller_) each->show(frame);
+  }
+
+  void take_map(Bytes text) {
+    map_ = std::move(text);
+    for (Connection* each : greeted_) each->tell(map_);
   }
 
   void accept() {
@@ -505,6 +514,7 @@ struct LiveServer::Parts : Host {
   Presence told_;
   std::shared_ptr<const LiveAnswer> current_;
   Bytes nobodys_frame_;
+  Bytes map_;  // that was made meanwhile
   bool stopping_ = false;
 };
 
@@ -536,6 +546,12 @@ void LiveServer::run(const Model& model, LiveContent content, Ask ask, const Not
 
 void LiveServer::show(std::shared_ptr<const LiveAnswer> answer) {
   net::post(parts_->context_, [parts = parts_.get(), answer = std::move(answer)] { parts->take_shape(answer); });
+}
+
+void LiveServer::give_map(const std::string& map) {
+  net::post(parts_->context_, [parts = parts_.get(), text = std::make_shared<const std::string>(map_text(map))] {
+    parts->take_map(text);
+  });
 }
 
 void LiveServer::stop() {

@@ -63,6 +63,8 @@ class LiveServer {
 
   /// To all who watch.
   void show(std::shared_ptr<const LiveAnswer> answer);
+  /// To all who watch, and to who comes. map: as runs::PageDocument tells it
+  void give_map(const std::string& map);
   /// Tells all that it goes, and ends within half a second.
   void stop();
 

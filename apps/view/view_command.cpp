@@ -6,6 +6,8 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
+#include <optional>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
@@ -18,6 +20,7 @@
 #include "cli/run_text.hpp"
 #include "cli/solve_options.hpp"
 #include "cli/terminal.hpp"
+#include "view/background_map.hpp"
 #include "view/live_server.hpp"
 
 namespace softkin::cli {
@@ -29,6 +32,7 @@ namespace {
 /// What the user asks of `softkin view`. An empty file name: not given.
 struct ViewOptions : SolveOptions {
   std::string map;
+  bool make_map = false;
   int port = 0;
   bool no_open = false;
 };
@@ -37,6 +41,9 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
   add_scene(command, options);
   add_value(command, "--map", options.map, "F.skmap",
             "Kinematic map of the robot (softkin map): bends it in the page at\nonce, until the solver's shape comes");
+  command.add_flag(
+      "--make-map", options.make_map,
+      "Make such a map meanwhile, by one thread that gives way to\nothers; the page takes it when it is made");
   add_value(command, "--port", options.port, "N", "Of 127.0.0.1 to listen at (default: 0, any that is free)",
             integer_from(0, 65535));
   command.add_flag("--no-open", options.no_open, "Start no browser");
@@ -102,6 +109,33 @@ Equilibrium at_rest(const Model& model, const Statics& statics, const StaticsOpt
   });
 }
 
+/// The line on stderr while it serves. May be called on any thread.
+class ServingLine {
+ public:
+  void there(const std::string& text) { show(there_, text); }
+  void making(const std::string& text) { show(making_, text); }
+  void say(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    line_.clear();
+    std::fputs(text.c_str(), stderr);
+  }
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    line_.clear();
+  }
+
+ private:
+  void show(std::string& part, const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    part = text;
+    line_.show(-1, there_ + making_ + "; Ctrl-C ends");
+  }
+
+  std::mutex mutex_;
+  ProgressLine line_;
+  std::string there_ = "0 pages watch, none has control", making_;
+};
+
 class ViewRun {
  public:
   ViewRun(const Model& model, const ViewOptions& options)
@@ -137,19 +171,39 @@ class ViewRun {
                           [&server](auto answer) { server.show(std::move(answer)); });
     print("view: " + address + "\nCtrl-C ends it; whoever has the address bends the robot\n");
     if (!options_.no_open) open_browser(address);
-    ProgressLine line;
+    ServingLine line;
+    std::optional<view::BackgroundMap> maker;
+    if (options_.make_map) make_map(server, line, maker);
     server.run(
         model_, std::move(content), [&robot](view::LiveRequest request) { robot.ask(std::move(request)); },
         [&line](const view::Presence& there) {
-          line.show(-1, counted(there.watchers, "page watches", "pages watch") +
-                            (there.controlled ? ", one has control" : ", none has control") + "; Ctrl-C ends");
+          line.there(counted(there.watchers, "page watches", "pages watch") +
+                     (there.controlled ? ", one has control" : ", none has control"));
         },
         true);
     line.clear();
-    if (robot.stop(0.3)) return done;
+    const bool made = !maker || maker->stop(0.3);
+    if (robot.stop(0.3) && made) return done;
     // a large robot's factorisation cannot be stopped, and nobody waits for it
     std::fflush(nullptr);
     std::_Exit(done);
+  }
+
+  void make_map(view::LiveServer& server, ServingLine& line, std::optional<view::BackgroundMap>& maker) {
+    MapOptions map;
+    map.checks = 50;  // the solver follows anyway
+    map.statics = options_.statics();
+    maker.emplace(
+        model_, map,
+        [&line](const MapProgress& at) {
+          line.making("; map: " + counted(static_cast<std::size_t>(at.equilibria + at.checks), "shape") + " solved");
+          return true;
+        },
+        [this, &server, &line](const MapData* made, const std::string& why) {
+          line.making("");
+          if (made != nullptr) return server.give_map(document_.map_text(*made));
+          line.say("softkin: warning: no map was made, the solver alone answers: " + why + "\n");
+        });
   }
 
   const Model& model_;
@@ -161,6 +215,7 @@ class ViewRun {
 
 int run_view(const ViewOptions& options) {
   check_solver(options);
+  if (options.make_map && !options.map.empty()) throw InvalidInput("--make-map: --map gives one");
   if (!runs::page_is_there())
     throw InvalidInput("view: this softkin was built without its page; npm, or its registry, was not there");
   view::LiveServer server(options.port);

@@ -107,16 +107,16 @@ def test_predicted_pressures(examples: Path, command: str) -> None:
 
 def test_material_goes_on_where_it_was(examples: Path, tmp_path: Path) -> None:
     file, store = examples / "two_material_bar/specimens.csv", tmp_path / "tests.run"
-    whole = calibrate.material(file, formulation="physical", cells=1)
+    whole = calibrate.material(file, formulation="physical", cells=2)
 
     def stop(share: float) -> None:
         if store.exists() and share > 0:
             raise InterruptedError
 
     with pytest.raises(InterruptedError):
-        calibrate.material(file, formulation="physical", cells=1, store=store, progress=stop)
+        calibrate.material(file, formulation="physical", cells=2, store=store, progress=stop)
     assert store.exists()
-    again = calibrate.material(file, formulation="physical", cells=1, store=store)
+    again = calibrate.material(file, formulation="physical", cells=2, store=store)
     assert again.report == whole.report and not store.exists()
 
 

@@ -124,12 +124,12 @@ def test_memory_does_not_grow() -> None:
     assert resident_kib() - before < 4096
 
 
-def test_signals_of_the_user_are_handled(robot: softkin.Robot) -> None:
+def test_signals_of_the_user_are_handled() -> None:
     called: list[int] = []
-    big = beam(24, 10)
+    big = beam(32, 14)
     before = signal.signal(signal.SIGALRM, lambda number, _: called.append(number))
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        signal.setitimer(signal.ITIMER_REAL, 0.02)
         assert big.solve(air1=1.5, air2=1.2).converged
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)

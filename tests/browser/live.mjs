@@ -128,7 +128,21 @@ async function allOf(browser, test, more, kind) {
   await server.stop();
 }
 
+async function checkMapMadeMeanwhile(browser) {
+  const server = await serve(example(name), 0, '--make-map');
+  const {page, watch} = await open(browser, server.url, {offline: false});
+  page.setDefaultTimeout(120000);
+  await until(page, 'origin', /What is shown at once, .* is a closed formula made of \d+ solved shapes/);
+  await until(page, 'live-words', /^You control/);
+  await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));  // which needs a map
+  await until(page, 'path', /waypoints sought/);
+  assert.deepEqual(watch.errors, []);
+  await page.context().close();
+  await server.stop();
+}
+
 export async function liveTests(browser, test) {
   await allOf(browser, test, [], 'live');
+  await test('live: a map is made meanwhile', () => checkMapMadeMeanwhile(browser));
   await allOf(browser, test, ['--map', await mapOf(name)], 'live with a map');
 }

@@ -307,6 +307,18 @@ TEST(LiveServer, HasRoomForSoMany) {
   EXPECT_TRUE(comes_true([&] { return is_status(answer_to(served.port(), request), 200); }));
 }
 
+TEST(LiveServer, MapsReachAllWhoWatch) {
+  Served served(some_model());
+  LiveClient client = served.client(), watcher = served.client("");
+  client.next("state");
+  watcher.next("state");
+  const std::string map = R"({"tables":")" + std::string(1'000'000, 'x') + R"("})";
+  served.server.give_map(map);
+  for (LiveClient* each : {&client, &watcher}) EXPECT_EQ(each->next("map").at("map").dump(), map);
+  LiveClient late = served.client();
+  EXPECT_EQ(late.next("map").at("map").dump(), map);
+}
+
 TEST(LiveServer, SaysThatItGoes) {
   auto served = std::make_unique<Served>(some_model());
   LiveClient client = served->client(), slow = served->client("", 4096);

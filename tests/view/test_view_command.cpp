@@ -62,6 +62,7 @@ TEST(ViewCommand, RefusesWhatCannotBe) {
   refuses({"--anderson", "3"}, "it needs --solver local-global");
   if (!runs::page_is_there()) return refuses({}, "this softkin was built without its page");
   refuses({"--map", folder / "none.skmap"}, "none.skmap");
+  refuses({"--map", folder / "none.skmap", "--make-map"}, "--make-map: --map gives one");
   const LiveServer other(0);
   refuses({"--port", std::to_string(other.port())}, "--port " + std::to_string(other.port()) + ": cannot listen");
 }
@@ -96,6 +97,23 @@ TEST(ViewCommand, BendsTheRobotAsFkDoes) {
   EXPECT_EQ(result.errors, "");
   EXPECT_LT(seconds, 1);
   EXPECT_EQ(client.close_code(), 1001);
+}
+
+/// Its commands lead where fk leads.
+TEST(ViewCommand, MakesAMapMeanwhile) {
+  if (!runs::page_is_there()) GTEST_SKIP() << "built without the page";
+  Viewed viewed({"--make-map"}, true);
+  LiveClient client(viewed.port);
+  client.hello(viewed.secret);
+  nlohmann::json map;
+  for (int tries = 0; tries < 12 && map.is_null(); ++tries) map = client.next("map");  // 5 s each
+  ASSERT_FALSE(map.is_null());
+  EXPECT_EQ(map.at("map").at("inputs").size(), 2u);
+  EXPECT_GT(map.at("map").at("checked").at("points").get<int>(), 0);
+  EXPECT_TRUE(map.at("map").contains("shapeTables"));
+  const auto [result, seconds] = viewed.end(SIGINT);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.errors.find(" shapes solved; Ctrl-C ends"), std::string::npos) << result.errors;
 }
 
 TEST(ViewCommand, EndsAtOnceWhateverIsUnderWay) {

@@ -273,6 +273,10 @@ void PageDocument::show_reach(Index marker, const Points& positions) {
   reach_ = line_of({{"marker", marker}, {"points", page_points(positions)}});
 }
 
+std::string PageDocument::map_text(const MapData& map) const {
+  return line_of(page_map(map, model_, vertices_));
+}
+
 std::string PageDocument::text(const MapData* map) const {
   const Numbering numbering = [this](Index v) { return static_cast<std::uint32_t>(number(v)); };
   Json document{{"softkin", version()},

@@ -44,6 +44,8 @@ class PageDocument {
   /// map     to bend the robot by in the page; null: none
   /// throws  InvalidInput where the shape of the map has other vertices than the model
   [[nodiscard]] std::string text(const MapData* map) const;
+  /// The map alone, as text() has it. Throws as that
+  [[nodiscard]] std::string map_text(const MapData& map) const;
 
  private:
   void take(const std::vector<Index>& more);

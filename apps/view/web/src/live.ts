@@ -1,4 +1,5 @@
 import {type Frame, readFrame} from './frame';
+import type {MapDocument} from './map';
 
 /** What the page asks of softkin view; the newest alone counts. */
 export type Ask = {type: 'command'; commands: number[]} | {type: 'target'; marker: number; at: number[]};
@@ -10,8 +11,11 @@ export interface LiveEvents {
   onFrame(frame: Frame, mine: boolean, newest: boolean): void;
   onState(state: LiveState): void;
   onOtherModel(): void;
+  /** softkin has made it meanwhile. */
+  onMap(map: MapDocument): void;
 }
 interface StateText { type: 'state'; model: string; secret: boolean; control: boolean; free: boolean; watchers: number }
+interface MapText { type: 'map'; map: MapDocument }
 interface RefusedText { type: 'refused'; id: number | null; why: string }
 
 /** Of pauses before it tries again [ms]. */
@@ -43,7 +47,7 @@ export class Live {
     socket.addEventListener('message', ({data}: MessageEvent<string | ArrayBuffer>) => {
       if (socket !== this.socket) return;
       try {
-        if (typeof data === 'string') this.hear(JSON.parse(data) as StateText | RefusedText);
+        if (typeof data === 'string') this.hear(JSON.parse(data) as StateText | RefusedText | MapText);
         else this.show(readFrame(data, this.vertices));
       } catch (error) {
         socket.close();  // and begins anew
@@ -107,7 +111,7 @@ export class Live {
     this.events.onState(state);
   }
 
-  private hear(message: StateText | RefusedText): void {
+  private hear(message: StateText | RefusedText | MapText): void {
     if (message.type === 'state') {
       if (message.model !== this.model) {
         this.events.onOtherModel();
@@ -121,6 +125,8 @@ export class Live {
       if (message.id !== null && message.id === this.onWay?.id) this.onWay = null;
       this.tell({...this.state, refused: message.why});
       this.next();
+    } else if (message.type === 'map') {
+      this.events.onMap(message.map);
     }
   }
 

@@ -40,6 +40,11 @@ function goLive(robot: Robot, meter: Meter, {path, model}: NonNullable<RobotDocu
     },
     onState: () => robot.onChange(),
     onOtherModel: () => location.reload(),
+    onMap: (map) => {
+      robot.takeMap(map);
+      tellOrigin(robot);
+      robot.onChange();
+    },
   });
   robot.link = {
     get state() { return live.state; },

@@ -21,7 +21,7 @@ const cell = (text: string): HTMLElement => element('td', {}, text);
 /** Command, version, and how far the map may be off. */
 export function tellOrigin(robot: Robot): void {
   const {command, softkin, formulation} = robot.document, box = byId('origin'), {map, steps} = robot;
-  box.append(element('p', {}, `Computed by softkin ${softkin}, a finite-element program for soft robots ` +
+  box.replaceChildren(element('p', {}, `Computed by softkin ${softkin}, a finite-element program for soft robots ` +
     `(${formulation} formulation), with`), element('code', {}, command));
   if (steps.length) {
     const seconds = steps.reduce((sum, step) => sum + step.seconds, 0), s = steps.length > 1 ? 's were' : ' was';

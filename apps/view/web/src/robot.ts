@@ -2,7 +2,7 @@ import type {RobotDocument, Step, Told} from './document';
 import type {Frame} from './frame';
 import type {Goal} from './inverse';
 import type {Ask} from './live';
-import {KinematicMap} from './map';
+import {KinematicMap, type MapDocument} from './map';
 
 /** What is shown: a step of the run (step: its number, else -1), an answer of the map or of the running program. */
 export interface Pose {
@@ -19,7 +19,7 @@ interface Memory { commands: number[]; step: number }
 
 /** The robot of a document, its commands, and what was before. */
 export class Robot {
-  readonly map: KinematicMap | null;
+  map: KinematicMap | null = null;
   readonly steps: Step[];
   pose: Pose;
   /** What the user asks for; the pose follows. */
@@ -34,28 +34,32 @@ export class Robot {
   link: Link | null = null;
   onChange: () => void = () => {};
   private past: Memory[] = [];
-  private readonly loadOutputs: number[];
-  private readonly order: number[];  // of each input of the map: its actuator
-  private readonly markerOutputs: number[];
+  private loadOutputs: number[] = [];
+  private order: number[] = [];  // of each input of the map: its actuator
+  private markerOutputs: number[] = [];
 
   constructor(readonly document: RobotDocument) {
-    const map = document.map ? new KinematicMap(document.map) : null;
     const {actuators, markers, rest} = document;
-    const known = map?.inputs.map(({name}) => actuators.findIndex((actuator) => actuator.name === name)) ?? [];
-    // Shapes of a map without modes of this surface can't be drawn: the steps are shown.
-    const fits = map?.hasShape === true && known.every((a) => a >= 0) &&
-      map.shape(map.inputs.map(({low, high}) => (low + high) / 2))?.length === rest.length;
-    this.map = fits ? map : null;
-    this.order = known;
+    this.takeMap(document.map);
     this.steps = document.live ? [] : document.steps;
-    this.markerOutputs = markers.map(({name}) => this.map?.markers.indexOf(name) ?? -1);
-    this.loadOutputs = actuators.map(({name}) => this.map?.outputs.findIndex((output) =>
-      /^(kPa|N)$/.test(output.unit) && output.name.startsWith(`${name}_`)) ?? -1);
     this.commands = actuators.map((a) => a.rest);
     this.pose = {commands: this.commands, loads: actuators.map(() => null), markers: markers.map((m) => m.at),
                  positions: rest, fields: {}, step: -1, from: 'rest', told: null};
     const first = document.live ? document.steps[0] : undefined;
     if (first) this.pose = {...first, step: -1, from: 'live', told: first};
+  }
+
+  /** Shapes of a map without modes of this surface can't be drawn: it is not taken. */
+  takeMap(document: MapDocument | null): void {
+    const {actuators, markers, rest} = this.document, map = document && new KinematicMap(document);
+    const known = map?.inputs.map(({name}) => actuators.findIndex((actuator) => actuator.name === name)) ?? [];
+    const fits = map?.hasShape === true && known.every((a) => a >= 0) &&
+      map.shape(map.inputs.map(({low, high}) => (low + high) / 2))?.length === rest.length;
+    this.map = fits ? map : null;
+    this.order = known;
+    this.markerOutputs = markers.map(({name}) => this.map?.markers.indexOf(name) ?? -1);
+    this.loadOutputs = actuators.map(({name}) => this.map?.outputs.findIndex((output) =>
+      /^(kPa|N)$/.test(output.unit) && output.name.startsWith(`${name}_`)) ?? -1);
   }
 
   /** Someone can move it here. */

@@ -52,12 +52,14 @@ class FakeSocket {
   answer(id: unknown): void { this.happen('message', {data: shape(headOf(id as number), 1, 2, 3, 0)}); }
 }
 
-let states: LiveState[] = [], frames: [number, boolean, boolean][] = [], reloads = 0;
+let states: LiveState[] = [], frames: [number, boolean, boolean][] = [], reloads = 0,
+  maps: unknown[] = [];
 const start = (): {live: Live; socket: FakeSocket} => {
   const live = new Live('ws://here/live', 'secret', 'abc', 1, {
     onFrame: (frame: Frame, mine, newest) => { frames.push([frame.id, mine, newest]); },
     onState: (state) => { states.push(state); },
     onOtherModel: () => { ++reloads; },
+    onMap: (map) => { maps.push(map); },
   });
   live.connect();
   return {live, socket: FakeSocket.all[0]};
@@ -66,9 +68,16 @@ const start = (): {live: Live; socket: FakeSocket} => {
 beforeEach(() => {
   (mock.timers.enable as (options: object) => void)({apis: ['setTimeout', 'Date']});
   Object.assign(globalThis, {WebSocket: FakeSocket, window: globalThis});
-  [FakeSocket.all, states, frames, reloads] = [[], [], [], 0];
+  [FakeSocket.all, states, frames, reloads, maps] = [[], [], [], 0, []];
 });
 afterEach(() => mock.timers.reset());
+
+test('a map that was made meanwhile is taken', () => {
+  const {socket} = start();
+  socket.open();
+  socket.hear({type: 'map', map: {inputs: []}});
+  assert.deepEqual(maps, [{inputs: []}]);
+});
 
 test('one request is on its way, and the newest waits', () => {
   const {live, socket} = start();
