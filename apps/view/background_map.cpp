@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <softkin/core/error.hpp>
+#include <exception>
 #include <utility>
 
 namespace softkin::view {
@@ -33,7 +33,7 @@ void BackgroundMap::work() {
       made_(&result->data, "");
     else if (result)
       made_(nullptr, result->remark);
-  } catch (const InvalidInput& error) {
+  } catch (const std::exception& error) {
     made_(nullptr, error.what());
   }
   const std::lock_guard lock(mutex_);

@@ -216,8 +216,7 @@ class ViewRun {
 int run_view(const ViewOptions& options) {
   check_solver(options);
   if (options.make_map && !options.map.empty()) throw InvalidInput("--make-map: --map gives one");
-  if (!runs::page_is_there())
-    throw InvalidInput("view: this softkin was built without its page; npm, or its registry, was not there");
+  if (!runs::page_is_there()) throw InvalidInput(std::string("view: ") + runs::no_page);
   view::LiveServer server(options.port);
   std::vector<fs::path> inputs{options.scene};
   ProgressLine line;

@@ -19,8 +19,7 @@ namespace {
 std::string page_of(const RobotPtr& robot, const std::vector<ShapePtr>& shapes, const MapPtr& map,
                     const std::string& command) {
   const nb::gil_scoped_release released;
-  if (!runs::page_is_there())
-    throw InvalidInput("this softkin was built without its page; npm, or its registry, was not there");
+  if (!runs::page_is_there()) throw InvalidInput(runs::no_page);
   if (map) runs::check_robot(map->map.data(), robot->model(), map->name);
   if (map && !map->map.data().shape) throw InvalidInput(map->name + ": the map has no shape to bend");
   runs::PageDocument document(robot->model(), command);

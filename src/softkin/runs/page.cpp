@@ -10,7 +10,7 @@ namespace softkin::runs {
 
 std::string page_refusal(const std::string& file) {
   if (std::filesystem::path(file).extension() != ".html") return "must end in .html, not " + file;
-  return page_is_there() ? "" : "this softkin was built without its page; npm, or its registry, was not there";
+  return page_is_there() ? "" : no_page;
 }
 
 std::string page_html(std::string_view page, std::string_view document) {

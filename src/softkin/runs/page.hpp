@@ -18,6 +18,8 @@ namespace softkin::runs {
   return !embedded_page().empty();
 }
 
+inline constexpr const char* no_page = "this softkin was built without its page; npm, or its registry, was not there";
+
 /// Why no page can be written into a file of that name, also where softkin was built without its page; empty: it can.
 [[nodiscard]] std::string page_refusal(const std::string& file);
 
