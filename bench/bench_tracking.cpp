@@ -14,7 +14,7 @@ using namespace softkin::physical;
 using namespace softkin::bench;
 
 struct Options {
-  std::vector<double> sizes{5000, 45000};
+  std::vector<double> sizes{5000, 45000}, quadratic_sizes{15000};
   int steps = 50, threads = 0;
   double chamber_weight = 0.05;
   double rate_of_factor = 0, rate_of_memory = 0;  // measured [flop/s, byte/s]
@@ -127,6 +127,14 @@ int run(Options options) {
     spec.actuators[0].weight = options.chamber_weight;
     print_path("target-shape", body_tetrahedra(cell), track(compile(spec), face, options));
   }
+  for (const double size : options.quadratic_sizes) {
+    const double cell = cell_for(size);
+    const Mesh mesh = bellows_finger(cell);
+    const Model quadratic = compile(finger_robot(mesh, FingerKind::physical_quadratic, "finger"));
+    const Path path = track(quadratic, tip_face(mesh, "finger"), options);
+    print_path("quadratic", body_tetrahedra(cell), path);
+    if (path.middle.positions.rows() > 0) print_parts(quadratic, path, options);
+  }
   return 0;
 }
 
@@ -138,6 +146,7 @@ int main(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   Options options;
   app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers")->delimiter(',');
+  app.add_option("--quadratic-sizes", options.quadratic_sizes, "the same of order 2, physical")->delimiter(',');
   app.add_option("--steps", options.steps, "of 1 %")->check(CLI::Range(1, 100));
   app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
   app.add_option("--chamber-weight", options.chamber_weight, "w of the chamber's elements, target-shape")

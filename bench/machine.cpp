@@ -41,9 +41,9 @@ double dgemm_rate(Team& team) {
 }
 
 double front_rate(Team& team) {
-  constexpr Index size = 4000, stride = linear::front_stride(size);
+  constexpr Index size = 4000, stride = linear::front_stride<double>(size);
   std::vector<double> front(static_cast<std::size_t>(size) * stride), diagonal(size);
-  linear::FrontWork work;
+  linear::FrontWork<double> work;
   double best = 0;
   for (int run = 0; run < 3; ++run) {
     std::fill(front.begin(), front.end(), 0.01);

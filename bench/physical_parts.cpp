@@ -40,7 +40,7 @@ int PhysicalParts::factorise() {
   using Stiffness = physical::System::Stiffness;
   system_.evaluate(at_, demand_, active_, work_, balance_, team_);
   (void)system_.factorise(at_, demand_, active_, Stiffness::exact, 0, work_, team_);
-  const int negative = work_.factor.factorise(work_.values, 0, team_).negative;
+  const int negative = work_.negative;
   if (negative > 0) (void)system_.factorise(at_, demand_, active_, Stiffness::projected, 0, work_, team_);
   return negative;
 }
@@ -51,7 +51,9 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   const double whole = seconds_of(repeat, [&] {
     (void)system_.factorise(at_, demand_, active_, physical::System::Stiffness::exact, 0, work_, team_);
   });
-  times.factor = seconds_of(repeat, [&] { (void)work_.factor.factorise(work_.values, 0, team_); });
+  Eigen::MatrixXd none(unknowns(), 0);
+  times.factor =
+      seconds_of(repeat, [&] { (void)work_.factor.factorise(work_.values, 0, work_.precision, none, team_); });
   Eigen::VectorXd step, change;
   system_.step(balance_, work_, step, change, team_);
   Eigen::MatrixXd column;

@@ -25,7 +25,7 @@ class PhysicalParts {
   /// Of the factorisation.
   [[nodiscard]] double flops() const { return work_.factor.flops(); }
   [[nodiscard]] double nonzeros() const { return static_cast<double>(work_.factor.nonzeros()); }
-  [[nodiscard]] Index unknowns() const { return work_.factor.size(); }
+  [[nodiscard]] Index unknowns() const { return pattern().size(); }
 
   /// The last stiffness, lower triangle in elimination order, as softkin's factorisation takes it.
   [[nodiscard]] const linear::BlockColumns& pattern() const { return work_.layout->reduced.columns(); }
@@ -34,7 +34,6 @@ class PhysicalParts {
   /// Was it made positive definite element by element?
   [[nodiscard]] bool projected() const { return projected_; }
   [[nodiscard]] Team& team() { return team_; }
-  [[nodiscard]] linear::SparseLdlt& factor() { return work_.factor; }
 
  private:
   int factorise();

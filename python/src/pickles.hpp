@@ -22,10 +22,10 @@ void members(A& archive, IterationRecord& r) {
 }
 template <class A>
 void members(A& archive, SolveReport& r) {
-  archive(r.status, r.solver, r.iterations, r.factorisations, r.projections, r.shifts, r.continuation_steps, r.reached,
-          r.remark, r.energy, r.step_mm, r.tolerance_mm, r.gradient_norm, r.residual_N, r.pull_N, r.unstable_modes,
-          r.buckled, r.buckled_mm, r.snapped_mm, r.snapped_from, r.friction_change, r.unstable_from,
-          r.estimated_error_mm, r.history, r.seconds);
+  archive(r.status, r.solver, r.iterations, r.factorisations, r.factorisations_in_double, r.projections, r.shifts,
+          r.continuation_steps, r.reached, r.remark, r.energy, r.step_mm, r.tolerance_mm, r.gradient_norm, r.residual_N,
+          r.pull_N, r.unstable_modes, r.buckled, r.buckled_mm, r.snapped_mm, r.snapped_from, r.friction_change,
+          r.unstable_from, r.estimated_error_mm, r.history, r.seconds);
 }
 template <class A>
 void members(A& archive, Anchor& a) {

@@ -294,7 +294,9 @@ TEST(Parts, HoldTheHessianThatIsFactorised) {
   PhysicalParts parts(model, actuation, found.state, 1);
   const Eigen::SparseMatrix<double> matrix = parts.matrix();
   Eigen::MatrixXd x = Eigen::MatrixXd::Ones(matrix.rows(), 1);
-  parts.factor().solve(x, parts.team());
+  linear::SparseLdlt factor(parts.pattern());
+  (void)factor.factorise(parts.values(), 0, parts.team());
+  factor.solve(x, parts.team());
   const Eigen::VectorXd left = matrix.selfadjointView<Eigen::Lower>() * x.col(0) - Eigen::VectorXd::Ones(matrix.rows());
   EXPECT_LT(left.norm(), 1e-6 * std::sqrt(static_cast<double>(matrix.rows())));
   const PhysicalParts::Times times = parts.measure(1);

@@ -95,6 +95,7 @@ void expect_step_form(const json& step, const std::vector<std::string>& more) {
                                 "remark",
                                 "shape_actuation",
                                 "factorisations",
+                                "factorisations_in_double",
                                 "projections",
                                 "shifts",
                                 "continuation_steps"};

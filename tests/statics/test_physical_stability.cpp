@@ -29,7 +29,7 @@ struct Equations {
   Eigen::VectorXd eigenvalues() {
     (void)system.factorise(at, demand, active, physical::System::Stiffness::exact, 0, work, team);
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(system.freedoms().size(), system.freedoms().size());
-    work.factor.solve(inverse, team);
+    work.solve(inverse, team);
     Eigen::MatrixXd stiffness = inverse.inverse();
     if (const Eigen::MatrixXd& slopes = work.constraint_slopes; slopes.cols() > 0) {
       const Eigen::MatrixXd kept = singular_values(slopes.transpose()).right.rightCols(slopes.rows() - slopes.cols());

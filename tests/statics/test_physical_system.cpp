@@ -108,7 +108,7 @@ TEST(System, CountsUnstableDirections) {
     const Index n = sample.system.freedoms().size();
     const Eigen::MatrixXd slopes = sample.work.constraint_slopes;
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(n, n);
-    sample.work.factor.solve(inverse, sample.team);
+    sample.work.solve(inverse, sample.team);
     const Eigen::MatrixXd stiffness = inverse.inverse();
     const Eigen::MatrixXd kept = singular_values(slopes.transpose()).right.rightCols(n - slopes.cols());
     const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(kept.transpose() * stiffness * kept);

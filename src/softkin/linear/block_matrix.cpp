@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 #include <softkin/linear/block_matrix.hpp>
+#include <type_traits>
 
 namespace softkin::linear {
 
@@ -84,6 +85,55 @@ void BlockPattern::multiply(const LargeVector<double>& blocks, const Points& x, 
       for (int r = 0; r < 3; ++r) result(v, r) = sum[r];
     }
   });
+}
+
+namespace {
+
+/// row -= B x_column and, but on the diagonal, column -= B^T x_row, for one column-major block.
+template <class Height, class Width>
+void subtract_block(const double* block, Height height, Width width, bool diagonal, const double* x_row,
+                    const double* x_column, double* row, double* column) {
+  for (Index c = 0; c < width; ++c) {
+    double across = 0;
+    for (Index r = 0; r < height; ++r) {
+      const double value = block[c * height + r];
+      row[r] -= value * x_column[c];
+      across += value * x_row[r];
+    }
+    if (!diagonal) column[c] -= across;
+  }
+}
+
+}  // namespace
+
+void subtract_product(const BlockColumns& pattern, const LargeVector<double>& values,
+                      const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::MatrixXd& left, Team& team) {
+  const Index count = static_cast<Index>(pattern.pieces.size()) - 1, size = pattern.size();
+  const Index top = pattern.unknowns[pattern.pieces.back()];
+  const auto subtract = [&](Index node, Index column, double* below, Index from) {  // rows from `from` on: `below`
+    using Three = std::integral_constant<Index, 3>;
+    const double* xs = x.col(column).data();
+    double* own = left.col(column).data();
+    const Index begin = pattern.unknowns[node], width = pattern.width(node);
+    for (Index e = pattern.starts[node]; e < pattern.starts[node + 1]; ++e) {
+      const Index row = pattern.unknowns[pattern.rows[e]], height = pattern.width(pattern.rows[e]);
+      const double* block = values.data() + pattern.offsets[e];
+      double* to = row >= from ? below + (row - from) : own + row;
+      if (width == 3 && height == 3)
+        subtract_block(block, Three(), Three(), row == begin, xs + row, xs + begin, to, own + begin);
+      else
+        subtract_block(block, height, width, row == begin, xs + row, xs + begin, to, own + begin);
+    }
+  };
+  for (Index column = 0; column < static_cast<Index>(x.cols()); ++column) {
+    Eigen::MatrixXd above = Eigen::MatrixXd::Zero(size - top, count);  // of each piece
+    team.each(count, [&](Index p) {
+      for (Index node = pattern.pieces[p]; node < pattern.pieces[p + 1]; ++node)
+        subtract(node, column, above.col(p).data(), top);
+    });
+    left.col(column).tail(size - top) += above.rowwise().sum();
+    for (Index node = pattern.pieces.back(); node < pattern.nodes(); ++node) subtract(node, column, nullptr, size);
+  }
 }
 
 }  // namespace softkin::linear

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
@@ -85,5 +86,9 @@ struct BlockColumns {
   [[nodiscard]] Index size() const { return unknowns.back(); }
   [[nodiscard]] Index width(Index node) const { return unknowns[node + 1] - unknowns[node]; }
 };
+
+/// left -= A x, columns of the pattern's order of unknowns, the same for any team.
+void subtract_product(const BlockColumns& pattern, const LargeVector<double>& values,
+                      const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::MatrixXd& left, Team& team);
 
 }  // namespace softkin::linear

@@ -8,28 +8,35 @@
 namespace softkin::linear {
 
 /// Work space of factor_front, kept from front to front.
+template <class Number>
 struct FrontWork {
-  LargeVector<double> scaled, plain;  // rows below the pivot block: L, and L D, eight rows to a panel
-  std::vector<double> corner;         // L of the pivot block, by rows
+  LargeVector<Number> scaled, plain;  // rows below the pivot block: L, and L D, in panels of 64 bytes a column
+  std::vector<Number> corner;         // L of the pivot block, by rows
 };
 
 /// Rows that a front's columns need for `size` rows: kernels write past the end.
+template <class Number>
 [[nodiscard]] constexpr Index front_stride(Index size) {
-  return (size + 14) / 8 * 8;
+  return (size + 64 / static_cast<Index>(sizeof(Number)) + 6) / 8 * 8;
 }
 
 /// Values after a front's last column that kernels may read.
-inline constexpr Index front_slack = 8;
+inline constexpr Index front_slack = 16;
 
 /// First columns of a dense symmetric matrix eliminated: A = L D L^T without pivoting.
 ///
-/// front     size columns of front_stride(size) rows, column-major, lower triangle; the rows beyond `size` hold finite
-///           numbers. On return: unit lower L in the first `pivots` columns (its diagonal undefined), the Schur
-///           complement in the lower triangle of the others. The upper triangle is scratch.
+/// pivots    at least 1
+/// front     size columns of front_stride(size) rows, column-major, lower triangle: the first `pivots` columns of the
+///           matrix, their rows beyond `size` finite numbers. On return: unit lower L in those, its diagonal undefined,
+///           and in the lower triangle of the others what the elimination adds to them. The upper triangle is scratch.
 /// diagonal  D, `pivots` values
 /// returns   how many of D are negative; a pivot smaller in magnitude than `least` counts as one, and becomes -least
 /// team      for large fronts; the result does not depend on it
-Index factor_front(double* front, Index size, Index pivots, double least, double* diagonal, FrontWork& work,
+template <class Number>
+Index factor_front(Number* front, Index size, Index pivots, Number least, Number* diagonal, FrontWork<Number>& work,
                    Team& team);
+
+extern template Index factor_front(double*, Index, Index, double, double*, FrontWork<double>&, Team&);
+extern template Index factor_front(float*, Index, Index, float, float*, FrontWork<float>&, Team&);
 
 }  // namespace softkin::linear

@@ -1,3 +1,7 @@
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 #include <softkin/linear/front_rows.hpp>
 #include <softkin/linear/front_solve.hpp>
 
@@ -5,14 +9,32 @@ namespace softkin::linear {
 
 namespace {
 
-inline double sum(const Rows& r) {
+using Eight = Rows<double>;
+constexpr Index height = panel_rows<double>;
+
+/// Eight values of L, in double precision.
+Eight values(const double* l) {
+  return load(l);
+}
+Eight values(const float* l) {
+#ifdef __AVX512F__
+  return _mm512_cvtps_pd(_mm256_loadu_ps(l));  // gcc 12 makes two halves of the conversion below
+#else
+  typedef float Half __attribute__((vector_size(32)));
+  Half r;
+  std::memcpy(&r, l, sizeof r);
+  return __builtin_convertvector(r, Eight);
+#endif
+}
+
+double sum(const Eight& r) {
   return ((r[0] + r[4]) + (r[2] + r[6])) + ((r[1] + r[5]) + (r[3] + r[7]));
 }
 
 /// Forward by `Width` columns of L that begin at column k: their triangle, then all rows below it.
-template <int Columns, int Width>
-void forward_block(const double* panel, Index size, Index k, double* y, Index stride) {
-  const double* l = panel + static_cast<std::ptrdiff_t>(k) * size;
+template <int Columns, int Width, class Number>
+void forward_block(const Number* panel, Index size, Index k, double* y, Index stride) {
+  const Number* l = panel + static_cast<std::ptrdiff_t>(k) * size;
   double own[Columns][Width];
   for (int c = 0; c < Columns; ++c) {
     double* at = y + c * static_cast<std::ptrdiff_t>(stride) + k;
@@ -21,12 +43,12 @@ void forward_block(const double* panel, Index size, Index k, double* y, Index st
       for (int i = j + 1; i < Width; ++i) own[c][i] -= l[static_cast<std::ptrdiff_t>(j) * size + k + i] * own[c][j];
     for (int i = 0; i < Width; ++i) at[i] = own[c][i];
   }
-  for (Index r = k + Width; r < size; r += panel_rows) {
-    Rows rest[Columns];
+  for (Index r = k + Width; r < size; r += height) {
+    Eight rest[Columns];
     for (int c = 0; c < Columns; ++c) rest[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Rows column = load(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Eight column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
       for (int c = 0; c < Columns; ++c) rest[c] -= own[c][j] * column;
     }
     for (int c = 0; c < Columns; ++c) store(y + c * static_cast<std::ptrdiff_t>(stride) + r, rest[c]);
@@ -34,16 +56,16 @@ void forward_block(const double* panel, Index size, Index k, double* y, Index st
 }
 
 /// Backward by `Width` columns of L that begin at column k: all rows below their triangle, then that.
-template <int Columns, int Width>
-void backward_block(const double* panel, Index size, Index k, double* y, Index stride) {
-  const double* l = panel + static_cast<std::ptrdiff_t>(k) * size;
-  Rows sums[Columns][Width] = {};
-  for (Index r = k + Width; r < size; r += panel_rows) {
-    Rows known[Columns];
+template <int Columns, int Width, class Number>
+void backward_block(const Number* panel, Index size, Index k, double* y, Index stride) {
+  const Number* l = panel + static_cast<std::ptrdiff_t>(k) * size;
+  Eight sums[Columns][Width] = {};
+  for (Index r = k + Width; r < size; r += height) {
+    Eight known[Columns];
     for (int c = 0; c < Columns; ++c) known[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Rows column = load(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Eight column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
       for (int c = 0; c < Columns; ++c) sums[c][j] += column * known[c];
     }
   }
@@ -57,21 +79,31 @@ void backward_block(const double* panel, Index size, Index k, double* y, Index s
   }
 }
 
-constexpr Index forward_width = 8;
-
-template <int Columns>
-void forward(const double* panel, Index size, Index pivots, double* y, Index stride) {
-  Index k = 0;
-  for (; k + forward_width <= pivots; k += forward_width)
-    forward_block<Columns, forward_width>(panel, size, k, y, stride);
-  for (; k < pivots; ++k) forward_block<Columns, 1>(panel, size, k, y, stride);
+/// Columns of L by eights, the few that are left by fours, twos and ones.
+template <int Columns, int Width, class Number>
+void forward_rest(const Number* panel, Index size, Index k, Index pivots, double* y, Index stride) {
+  if (k + Width <= pivots) {
+    forward_block<Columns, Width>(panel, size, k, y, stride);
+    k += Width;
+  }
+  if constexpr (Width > 1) forward_rest<Columns, Width / 2>(panel, size, k, pivots, y, stride);
 }
 
-template <int Columns>
-void backward(const double* panel, Index size, Index pivots, double* y, Index stride) {
+template <int Columns, class Number>
+void forward(const Number* panel, Index size, Index pivots, double* y, Index stride) {
+  constexpr int width = 8;
+  Index k = 0;
+  for (; k + width <= pivots; k += width) forward_block<Columns, width>(panel, size, k, y, stride);
+  forward_rest<Columns, width / 2>(panel, size, k, pivots, y, stride);
+}
+
+template <int Columns, class Number>
+void backward(const Number* panel, Index size, Index pivots, double* y, Index stride) {
   constexpr int width = Columns <= 2 ? 8 : 4;  // sums that the vector registers hold
   Index k = pivots;
-  for (; k % width != 0; --k) backward_block<Columns, 1>(panel, size, k - 1, y, stride);
+  if (k % 2 != 0) backward_block<Columns, 1>(panel, size, k -= 1, y, stride);
+  if (k % 4 != 0) backward_block<Columns, 2>(panel, size, k -= 2, y, stride);
+  if (k % width != 0) backward_block<Columns, 4>(panel, size, k -= 4, y, stride);
   for (; k > 0; k -= width) backward_block<Columns, width>(panel, size, k - width, y, stride);
 }
 
@@ -92,12 +124,19 @@ void with_columns(Index columns, const Visit& visit) {
 
 }  // namespace
 
-void solve_forward(const double* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
+template <class Number>
+void solve_forward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
   with_columns(columns, [&]<int Columns>() { forward<Columns>(panel, size, pivots, y, stride); });
 }
 
-void solve_backward(const double* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
+template <class Number>
+void solve_backward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
   with_columns(columns, [&]<int Columns>() { backward<Columns>(panel, size, pivots, y, stride); });
 }
+
+template void solve_forward(const double*, Index, Index, double*, Index, Index);
+template void solve_forward(const float*, Index, Index, double*, Index, Index);
+template void solve_backward(const double*, Index, Index, double*, Index, Index);
+template void solve_backward(const float*, Index, Index, double*, Index, Index);
 
 }  // namespace softkin::linear

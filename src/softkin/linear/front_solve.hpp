@@ -9,13 +9,20 @@ inline constexpr Index columns_together = 4;
 /// Values after a column, and after L, that kernels may read; after a column they may write them, too.
 inline constexpr Index solve_slack = 8;
 
-/// One front's part of a solution, in place, L unit lower trapezoidal.
+/// One front's part of a solution, in place, L unit lower trapezoidal, in either precision; the sums are in double.
 ///
 /// panel    L: size rows, `pivots` columns, column-major; the upper triangle and the diagonal hold finite numbers
 /// y        `columns` <= columns_together columns, `stride` >= size + solve_slack apart
 /// forward  y_own := L_own^-1 y_own, y_below := y_below - L_below y_own
-void solve_forward(const double* panel, Index size, Index pivots, double* y, Index stride, Index columns);
+template <class Number>
+void solve_forward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);
 /// backward  y_own := L_own^-T (y_own - L_below^T y_below). y holds zeros in the slack of its columns.
-void solve_backward(const double* panel, Index size, Index pivots, double* y, Index stride, Index columns);
+template <class Number>
+void solve_backward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);
+
+extern template void solve_forward(const double*, Index, Index, double*, Index, Index);
+extern template void solve_forward(const float*, Index, Index, double*, Index, Index);
+extern template void solve_backward(const double*, Index, Index, double*, Index, Index);
+extern template void solve_backward(const float*, Index, Index, double*, Index, Index);
 
 }  // namespace softkin::linear

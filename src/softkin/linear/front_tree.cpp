@@ -172,8 +172,10 @@ class Arena {
   std::int64_t size_ = 0;
 };
 
+/// In values of either precision.
 std::int64_t place_of(const Front& front) {
-  return static_cast<std::int64_t>(front_stride(front.size())) * front.size();
+  static_assert(front_stride<float>(1) >= front_stride<double>(1));
+  return static_cast<std::int64_t>(front_stride<float>(front.size())) * front.size();
 }
 
 /// Offsets of the fronts. Those of a piece's roots, which outlive the piece, stand in the top's arena.
@@ -271,10 +273,10 @@ FrontTree make_front_tree(BlockColumns columns) {
   return tree;
 }
 
-void require_memory(const FrontTree& tree) {
+void require_memory(const FrontTree& tree, std::size_t value_bytes) {
   double values = static_cast<double>(tree.values);
   for (const std::int64_t arena : tree.arena_sizes) values += static_cast<double>(arena);
-  const double needed = values * sizeof(double), there = free_memory_bytes();
+  const double needed = values * static_cast<double>(value_bytes), there = free_memory_bytes();
   if (needed > there)
     throw InvalidInput("the factor of a robot with " + std::to_string(tree.pattern.size()) + " unknowns takes " +
                        memory_text(needed) + " of memory, and " + memory_text(there) +

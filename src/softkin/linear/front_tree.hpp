@@ -42,7 +42,8 @@ struct FrontTree {
 ///         zeros that this stores are few
 [[nodiscard]] FrontTree make_front_tree(BlockColumns pattern);
 
-/// throws  InvalidInput where the machine has not the memory that a factorisation takes
-void require_memory(const FrontTree& tree);
+/// value_bytes  of a value of L
+/// throws       InvalidInput where the machine has not the memory that a factorisation takes
+void require_memory(const FrontTree& tree, std::size_t value_bytes);
 
 }  // namespace softkin::linear

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <softkin/linear/front_rows.hpp>
 #include <softkin/linear/front_solve.hpp>
 #include <softkin/linear/sparse_ldlt.hpp>
 #include <utility>
@@ -22,15 +23,18 @@ void each_column(Index columns, Index rows, Team& team, const Body& body) {
 
 }  // namespace
 
-SparseLdlt::SparseLdlt(const BlockColumns& pattern)
-    : SparseLdlt(std::make_shared<const FrontTree>(make_front_tree(pattern))) {}
+template <class Number>
+SparseLdltOf<Number>::SparseLdltOf(const BlockColumns& pattern)
+    : SparseLdltOf(std::make_shared<const FrontTree>(make_front_tree(pattern))) {}
 
-SparseLdlt::SparseLdlt(std::shared_ptr<const FrontTree> tree)
+template <class Number>
+SparseLdltOf<Number>::SparseLdltOf(std::shared_ptr<const FrontTree> tree)
     : tree_(std::move(tree)),
       diagonal_(static_cast<std::size_t>(tree_->pattern.size())),
       pieces_(tree_->arena_sizes.size()) {}
 
-void SparseLdlt::change(std::shared_ptr<const FrontTree> tree) {
+template <class Number>
+void SparseLdltOf<Number>::change(std::shared_ptr<const FrontTree> tree) {
   tree_ = std::move(tree);
   diagonal_.resize(static_cast<std::size_t>(tree_->pattern.size()));
   pieces_ = std::vector<Piece>(tree_->arena_sizes.size());
@@ -38,9 +42,10 @@ void SparseLdlt::change(std::shared_ptr<const FrontTree> tree) {
 }
 
 /// A bench for the time of a piece.
-class SparseLdlt::Seat {
+template <class Number>
+class SparseLdltOf<Number>::Seat {
  public:
-  Seat(SparseLdlt& owner, std::int64_t arena_size) : owner_(owner) {
+  Seat(SparseLdltOf& owner, std::int64_t arena_size) : owner_(owner) {
     {
       const std::lock_guard lock(owner_.benches_mutex_);
       if (!owner_.benches_.empty()) {
@@ -61,14 +66,15 @@ class SparseLdlt::Seat {
   [[nodiscard]] Bench& bench() { return *bench_; }
 
  private:
-  SparseLdlt& owner_;
+  SparseLdltOf& owner_;
   std::unique_ptr<Bench> bench_;
 };
 
-void SparseLdlt::take_memory() {
+template <class Number>
+void SparseLdltOf<Number>::take_memory() {
   has_memory_ = true;
   lower_.resize(static_cast<std::size_t>(tree_->values) + solve_slack);
-  std::fill(lower_.end() - solve_slack, lower_.end(), 0.0);
+  std::fill(lower_.end() - solve_slack, lower_.end(), Number(0));
   top_.arena.resize(static_cast<std::size_t>(tree_->arena_sizes.back()) + front_slack);
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     Index size = 0;
@@ -77,80 +83,99 @@ void SparseLdlt::take_memory() {
   }
 }
 
-double SparseLdlt::bytes() const {
+template <class Number>
+double SparseLdltOf<Number>::bytes() const {
   double values = static_cast<double>(lower_.size() + diagonal_.size());
   const auto add = [&](const Bench& bench) {
     values += static_cast<double>(bench.arena.size() + bench.work.plain.size() + bench.work.scaled.size());
   };
   add(top_);
   for (const auto& bench : benches_) add(*bench);
-  return 8 * values + 4.0 * static_cast<double>(tree_->rows.size() + 3 * tree_->runs.size() +
-                                                tree_->pattern.rows.size() + tree_->entry_places.size());
+  return static_cast<double>(sizeof(Number)) * values +
+         4.0 * static_cast<double>(tree_->rows.size() + 3 * tree_->runs.size() + tree_->pattern.rows.size() +
+                                   tree_->entry_places.size());
 }
 
-void SparseLdlt::assemble(Index index, const LargeVector<double>& values, double* front, const Bench& bench,
-                          Team& team) const {
+/// The columns of a front's pivots.
+template <class Number>
+void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& values, Number* front, const Bench& bench,
+                                    Team& team) const {
   const Front& own = tree_->fronts[index];
-  const Index stride = front_stride(own.size());
-  each_column(own.size(), stride, team, [&](Index c) {
-    double* column = front + static_cast<std::ptrdiff_t>(c) * stride;
-    std::fill(column + c / 8 * 8, column + stride, 0.0);
+  const Index stride = front_stride<Number>(own.size());
+  each_column(own.pivots(), stride, team, [&](Index c) {
+    Number* column = front + static_cast<std::ptrdiff_t>(c) * stride;
+    std::fill(column + c / 8 * 8, column + stride, Number(0));
   });
   for (Index node = own.begin_node; node < own.end_node; ++node) {
     const Index width = tree_->pattern.width(node);
-    double* columns = front + static_cast<std::ptrdiff_t>(tree_->pattern.unknowns[node] - own.begin) * stride;
+    Number* columns = front + static_cast<std::ptrdiff_t>(tree_->pattern.unknowns[node] - own.begin) * stride;
     for (Index e = tree_->pattern.starts[node]; e < tree_->pattern.starts[node + 1]; ++e) {
       const Index height = tree_->pattern.width(tree_->pattern.rows[e]);
       const double* block = values.data() + tree_->pattern.offsets[e];
-      double* target = columns + tree_->entry_places[e];
+      Number* target = columns + tree_->entry_places[e];
       for (Index c = 0; c < width; ++c)
-        for (Index r = 0; r < height; ++r) target[static_cast<std::ptrdiff_t>(c) * stride + r] = block[c * height + r];
+        for (Index r = 0; r < height; ++r)
+          target[static_cast<std::ptrdiff_t>(c) * stride + r] = static_cast<Number>(block[c * height + r]);
     }
   }
+  add_children(index, 0, own.pivots(), front, bench, team);
+}
+
+/// What the children leave in columns [begin, end) of a front.
+template <class Number>
+void SparseLdltOf<Number>::add_children(Index index, Index begin, Index end, Number* front, const Bench& bench,
+                                        Team& team) const {
+  const Index stride = front_stride<Number>(tree_->fronts[index].size());
   for (Index i = tree_->first_child[index]; i >= 0; i = tree_->next_sibling[i]) {
     const Front& child = tree_->fronts[i];
-    const Index child_stride = front_stride(child.size()), pivots = child.pivots();
-    const double* update =
+    const Index child_stride = front_stride<Number>(child.size()), pivots = child.pivots();
+    const Number* update =
         bench.arena.data() + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
     const RowRun* first = tree_->runs.data() + tree_->first_run[i];
     const RowRun* last = tree_->runs.data() + tree_->first_run[i + 1];
-    each_column(static_cast<Index>(last - first), child.below, team, [&](Index k) {
-      for (Index c = 0; c < first[k].length; ++c) {
-        const Index column = first[k].from + c;
-        double* to = front + static_cast<std::ptrdiff_t>(first[k].to + c) * stride;
-        const double* from = update + static_cast<std::ptrdiff_t>(column) * child_stride;
-        for (Index r = c; r < first[k].length; ++r) to[first[k].to + r] += from[first[k].from + r];
-        for (const RowRun* run = first + k + 1; run < last; ++run)
-          for (Index r = 0; r < run->length; ++r) to[run->to + r] += from[run->from + r];
+    while (first < last && first->to + first->length <= begin) ++first;
+    const RowRun* beyond = first;
+    while (beyond < last && beyond->to < end) ++beyond;
+    each_column(static_cast<Index>(beyond - first), child.below, team, [&](Index k) {
+      const Index low = std::max(0, begin - first[k].to), high = std::min(first[k].length, end - first[k].to);
+      for (Index c = low; c < high; ++c) {
+        Number* to = front + static_cast<std::ptrdiff_t>(first[k].to + c) * stride;
+        const Number* from = update + static_cast<std::ptrdiff_t>(first[k].from + c) * child_stride;
+        add_run(to + first[k].to + c, from + first[k].from + c, first[k].length - c);
+        for (const RowRun* run = first + k + 1; run < last; ++run) add_run(to + run->to, from + run->from, run->length);
       }
     });
   }
 }
 
 /// Returns how many pivots are negative.
-Index SparseLdlt::factor(Index index, const LargeVector<double>& values, double least, Bench& bench, Team& team) {
+template <class Number>
+Index SparseLdltOf<Number>::factor(Index index, const LargeVector<double>& values, Number least, Bench& bench,
+                                   Team& team) {
   const Front& own = tree_->fronts[index];
-  const Index size = own.size(), pivots = own.pivots(), stride = front_stride(size);
-  double* front = (own.parent >= top_front() ? top_ : bench).arena.data() + own.offset;
+  const Index size = own.size(), pivots = own.pivots(), stride = front_stride<Number>(size);
+  Number* front = (own.parent >= top_front() ? top_ : bench).arena.data() + own.offset;
   assemble(index, values, front, bench, team);
   const Index negative = factor_front(front, size, pivots, least, diagonal_.data() + own.begin, bench.work, team);
+  add_children(index, pivots, size, front, bench, team);
   const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
   each_column(pivots, size, team, [&](Index c) {
-    double* to = lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size;
-    std::fill_n(to, c, 0.0);
+    Number* to = lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size;
+    std::fill_n(to, c, Number(0));
     std::copy(column(c) + c, column(c) + size, to + c);
   });
   return negative;
 }
 
-SparseLdlt::Pivots SparseLdlt::factorise(const LargeVector<double>& values, double least, Team& team) {
+template <class Number>
+Pivots SparseLdltOf<Number>::factorise(const LargeVector<double>& values, double least, Team& team) {
   if (!has_memory_) take_memory();
   const Index count = static_cast<Index>(pieces_.size()) - 1;
   Team alone(1);
   const auto run = [&](Index p, Bench& bench, Team& helpers) {
     pieces_[p].negative = 0;
     for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f)
-      pieces_[p].negative += factor(f, values, least, bench, helpers);
+      pieces_[p].negative += factor(f, values, static_cast<Number>(least), bench, helpers);
   };
   team.each(count, [&](Index p) {
     Seat seat(*this, tree_->arena_sizes[p]);
@@ -159,13 +184,14 @@ SparseLdlt::Pivots SparseLdlt::factorise(const LargeVector<double>& values, doub
   run(count, top_, team);
   Pivots pivots;
   for (const Piece& piece : pieces_) pivots.negative += piece.negative;
-  pivots.replaced = static_cast<Index>(std::count(diagonal_.begin(), diagonal_.end(), -least));
+  pivots.replaced = static_cast<Index>(std::count(diagonal_.begin(), diagonal_.end(), static_cast<Number>(-least)));
   return pivots;
 }
 
 /// `columns` columns of the solution from `begin` on, through a front. What unknowns from `top` on lose stands in the
 /// piece's `above`.
-void SparseLdlt::forward(const Front& front, Index begin, Index columns, Piece& piece, Index top) {
+template <class Number>
+void SparseLdltOf<Number>::forward(const Front& front, Index begin, Index columns, Piece& piece, Index top) {
   const Index* rows = tree_->rows.data() + front.first_row;
   const Index stride = static_cast<Index>(piece.rows.rows());
   for (Index c = 0; c < columns; ++c) {
@@ -186,7 +212,8 @@ void SparseLdlt::forward(const Front& front, Index begin, Index columns, Piece& 
   }
 }
 
-void SparseLdlt::backward(const Front& front, Index begin, Index columns, Piece& piece) {
+template <class Number>
+void SparseLdltOf<Number>::backward(const Front& front, Index begin, Index columns, Piece& piece) {
   const Index* rows = tree_->rows.data() + front.first_row;
   const Index stride = static_cast<Index>(piece.rows.rows());
   for (Index c = 0; c < columns; ++c) {
@@ -201,7 +228,8 @@ void SparseLdlt::backward(const Front& front, Index begin, Index columns, Piece&
     std::copy_n(piece.rows.col(c).data(), front.pivots(), solution_.col(begin + c).data() + front.begin);
 }
 
-void SparseLdlt::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+template <class Number>
+void SparseLdltOf<Number>::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   const Index count = static_cast<Index>(pieces_.size()) - 1, first_top = top_front();
   const Index end = static_cast<Index>(tree_->fronts.size());
   const Index top = first_top < end ? tree_->fronts[first_top].begin : size();
@@ -227,5 +255,8 @@ void SparseLdlt::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   });
   right_sides = solution_;
 }
+
+template class SparseLdltOf<double>;
+template class SparseLdltOf<float>;
 
 }  // namespace softkin::linear

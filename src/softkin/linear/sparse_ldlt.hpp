@@ -9,22 +9,25 @@
 
 namespace softkin::linear {
 
+struct Pivots {
+  Index negative = 0;  // as many as the matrix has negative eigenvalues
+  Index replaced = 0;  // too small to divide by; they count as negative
+};
+
 /// LDL^T of a symmetric sparse matrix without pivoting, multifrontal: analysed once, factorised many times, also by
 /// several objects that share the analysis. Memory for L is taken at the first factorisation. The number of negative
-/// pivots is the number of negative eigenvalues. Independent subtrees and large fronts run on the team; the result does
-/// not depend on its size.
-class SparseLdlt {
+/// pivots is the number of negative eigenvalues, where rounding leaves it. Independent subtrees and large fronts run on
+/// the team; the result does not depend on its size.
+///
+/// Number  double, or float: half the memory and twice the rate; right-hand sides and sums of solves stay in double
+template <class Number>
+class SparseLdltOf {
  public:
-  explicit SparseLdlt(const BlockColumns& pattern);
-  explicit SparseLdlt(std::shared_ptr<const FrontTree> tree);
+  explicit SparseLdltOf(const BlockColumns& pattern);
+  explicit SparseLdltOf(std::shared_ptr<const FrontTree> tree);
 
   /// Goes on with another pattern, in the memory that there is; nothing is factorised.
   void change(std::shared_ptr<const FrontTree> tree);
-
-  struct Pivots {
-    Index negative = 0;  // as many as the matrix has negative eigenvalues
-    Index replaced = 0;  // pivots too small to divide by; they count as negative
-  };
 
   /// values: as the pattern's offsets say. least: magnitude below which a pivot is replaced.
   Pivots factorise(const LargeVector<double>& values, double least, Team& team);
@@ -40,8 +43,8 @@ class SparseLdlt {
  private:
   /// What one thread writes while it factorises pieces, one after the other: small enough for its cache.
   struct Bench {
-    FrontWork work;
-    LargeVector<double> arena;  // fronts that wait for their parents
+    FrontWork<Number> work;
+    LargeVector<Number> arena;  // fronts that wait for their parents
   };
   struct Piece {
     Eigen::MatrixXd above, rows;  // of a solve: what goes to the top, and columns of one front
@@ -50,21 +53,26 @@ class SparseLdlt {
   class Seat;
 
   void take_memory();
-  Index factor(Index front, const LargeVector<double>& values, double least, Bench& bench, Team& team);
-  void assemble(Index index, const LargeVector<double>& values, double* front, const Bench& bench, Team& team) const;
+  Index factor(Index front, const LargeVector<double>& values, Number least, Bench& bench, Team& team);
+  void assemble(Index index, const LargeVector<double>& values, Number* front, const Bench& bench, Team& team) const;
+  void add_children(Index index, Index begin, Index end, Number* front, const Bench& bench, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_->pieces[tree_->pieces.size() - 2]; }
   void forward(const Front& front, Index begin, Index columns, Piece& piece, Index top);
   void backward(const Front& front, Index begin, Index columns, Piece& piece);
 
   std::shared_ptr<const FrontTree> tree_;
   bool has_memory_ = false;  // for this tree
-  LargeVector<double> lower_;
-  std::vector<double> diagonal_;
+  LargeVector<Number> lower_;
+  std::vector<Number> diagonal_;
   std::vector<Piece> pieces_;  // the top's is the last
   Bench top_;
   std::vector<std::unique_ptr<Bench>> benches_;  // of the other pieces; those that no thread sits at
   std::mutex benches_mutex_;
   Eigen::MatrixXd solution_;
 };
+
+extern template class SparseLdltOf<double>;
+extern template class SparseLdltOf<float>;
+using SparseLdlt = SparseLdltOf<double>;
 
 }  // namespace softkin::linear

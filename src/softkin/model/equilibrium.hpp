@@ -43,15 +43,16 @@ struct SolveReport {
   Status status = Status::not_converged;
   std::string solver;
   int iterations = 0;
-  int factorisations = 0;      // of the stiffness; newton
-  int projections = 0;         // iterations in which element Hessians were made positive semidefinite
-  int shifts = 0;              // iterations in which a multiple of the diagonal was added
-  int continuation_steps = 0;  // equilibria on the way, the last one included; newton
-  double reached = 1;          // share of the way from the start's actuation to the one asked for [-]
-  std::string remark;          // why it stopped, where status is not converged; or how it is unstable
-  double energy = 0;           // at the last shape evaluated
-  double step_mm = 0;          // last step [mm]
-  double tolerance_mm = 0;     // step at which the iteration stops [mm]; NaN: a map answered, see answered()
+  int factorisations = 0;            // of the stiffness; newton
+  int factorisations_in_double = 0;  // of them, as single precision was not enough; physical
+  int projections = 0;               // iterations in which element Hessians were made positive semidefinite
+  int shifts = 0;                    // iterations in which a multiple of the diagonal was added
+  int continuation_steps = 0;        // equilibria on the way, the last one included; newton
+  double reached = 1;                // share of the way from the start's actuation to the one asked for [-]
+  std::string remark;                // why it stopped, where status is not converged; or how it is unstable
+  double energy = 0;                 // at the last shape evaluated
+  double step_mm = 0;                // last step [mm]
+  double tolerance_mm = 0;           // step at which the iteration stops [mm]; NaN: a map answered, see answered()
   double gradient_norm = 0;
   double residual_N = 0;   // physical: the largest force out of balance at a vertex or on a rigid region [N]
   double pull_N = 0;       // physical: the largest sum of what elements pull at a vertex [N], which it is compared with

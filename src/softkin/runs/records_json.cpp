@@ -253,6 +253,7 @@ template <class Record, class Visit>
 void counts_and_measures(Record& record, const Visit& visit) {
   visit("iterations", record.iterations);
   visit("factorisations", record.factorisations);
+  visit("factorisations_in_double", record.factorisations_in_double);
   visit("projections", record.projections);
   visit("shifts", record.shifts);
   visit("continuation_steps", record.continuation_steps);

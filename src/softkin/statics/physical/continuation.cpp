@@ -57,15 +57,25 @@ Continuation::Continuation(const System& system, System::Workspace& work, Team& 
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
+  const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
+  bool led = false;
   const auto prediction = [&] {
+    led = whole && !led && !system_.contact() && work_.trail.lead(there, active_, tolerance_mm_, trial);
+    if (led) {
+      system_.hold(there, trial.positions);
+      predicted_ = begun_ = trial.positions;
+      move_mm_ = largest_move(at.positions, predicted_);
+      return true;
+    }
     const auto move = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_);
     move_mm_ = move.value_or(largest_move(at.positions, predicted_));
     begun_ = trial.positions;
     return move.has_value();
   };
   if (!prediction()) return Newton::Outcome::blocked;
-  const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   auto outcome = settle(there, Newton::Policy::descend, trial, whole && factorised_nearby(trial.positions));
+  if (outcome == Newton::Outcome::converged && !led && whole)
+    work_.trail.note_tangent(here, there, largest_move(begun_, trial.positions));
   if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
     if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);
@@ -102,6 +112,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   (void)release(to, at, false);
   from_ = at.positions;
   (void)system_.renew_friction(from_, at, work_, team_);
+  if (!same_shape(work_.home, at.positions)) work_.trail.clear();
   way_.factorised = same_shape(work_.home, at.positions) && factor_holds_active();
   work_.home.resize(0, 3);
   if (!way_.factorised && from.actuation == to.actuation && from.share == to.share) {
@@ -343,7 +354,11 @@ Status Continuation::arrive(const Demand& demand, Iterate& at) {
                      number(100 * report_.friction_change, 2) + " % when they were found anew";
     return Status::not_converged;
   }
-  if (last_.balanced) return Status::converged;
+  if (last_.balanced) {
+    if (report_.snapped_mm > 0) work_.trail.clear();
+    work_.trail.add(demand, active_, at);
+    return Status::converged;
+  }
   report_.remark = "the steps have become small, but " + number(last_.forces.residual, 2) +
                    " N are out of balance, where elements pull with at most " + number(last_.forces.pull, 2) +
                    " N at a vertex";
@@ -365,6 +380,7 @@ int Continuation::prepare(const Demand& here, const Iterate& at) {
   system_.evaluate(at, here, active_, work_, balance, team_);
   ++report_.factorisations;
   const int modes = system_.factorise(at, here, active_, System::Stiffness::exact, 0, work_, team_);
+  report_.factorisations_in_double += work_.factor.in_double();
   return balance.force.allFinite() ? modes : -1;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/statics/physical/system.hpp>
+#include <softkin/statics/physical/bordered.hpp>
 #include <softkin/statics/sensitivity.hpp>
 
 namespace softkin::physical {
@@ -17,14 +17,8 @@ class Derivative {
   [[nodiscard]] Sensitivity of(const Iterate& at, const Demand& demand);
 
  private:
-  struct Columns {
-    Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the held measures
-  };
-
   void hold(const Iterate& at, const Demand& demand);
   void ask(const Iterate& at, const Demand& demand);
-  void precondition(Columns& columns);
-  void multiply(const Iterate& at, const Columns& columns, Columns& product);
   bool solve(const Iterate& at, bool exact_factor);
   [[nodiscard]] Sensitivity result(const Iterate& at) const;
 
@@ -34,7 +28,6 @@ class Derivative {
   Team& team_;
   std::vector<bool> active_;
   std::vector<Index> held_;
-  Eigen::MatrixXd slopes_;  // G
   Columns right_, found_;
   std::vector<Points> moves_;  // per actuator: of what its command moves itself; no rows: nothing
 };

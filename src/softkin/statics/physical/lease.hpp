@@ -22,7 +22,9 @@ class Equilibria::Lease {
       }
     }
     if (!work_) work_ = std::make_unique<System::Workspace>(owner_.system_);
-    if (!reuse || !is_at(*work_, start)) work_->home.resize(0, 3);
+    if (reuse && is_at(*work_, start)) return;
+    work_->home.resize(0, 3);
+    work_->factor.forget();
   }
   ~Lease() {
     const std::lock_guard lock(owner_.mutex_);

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <softkin/statics/physical/bordered.hpp>
 #include <softkin/statics/physical/newton.hpp>
 #include <softkin/statics/physical/stability.hpp>
 #include <utility>
@@ -17,8 +18,13 @@ constexpr double most_rise = 1e-8;
 /// factorisation.
 constexpr double worthwhile_contraction = 0.6;
 constexpr int most_updates = 8;
-/// The first step with a factor from nearby must be followed by one so much shorter.
-constexpr double nearby_contraction = 0.1;
+/// Of a step, that may be left to do along it.
+constexpr double most_along = 0.5;
+/// The same where rounding has made a factor too stiff along few directions, which these steps find: a new factor would
+/// be so again. Not where things touch: steps lead to other equilibria when they are followed for too long.
+constexpr double much_rounded = 5e-3, rounded_contraction = 0.8, rounded_along = 0.8;
+/// In steps with one that is there.
+constexpr double cost_of_factor = 6;
 /// By which a stiffness that is hardly unstable is made positive, over its mean diagonal.
 constexpr double slight_shift = 1e-7, clear_shift = 1;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
@@ -54,7 +60,9 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   const auto attempted = [&](Stiffness kind, double shift) {
     if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
     ++report_.factorisations;
+    secants_.clear();
     negative = system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
+    report_.factorisations_in_double += work_.factor.in_double();
     return negative == 0 ? Advance::made : Advance::none;
   };
   Advance end = attempted(Stiffness::exact, 0);
@@ -75,6 +83,16 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
     end = attempted(Stiffness::projected, shift);
   }
   return end;
+}
+
+/// Is a step the last? What it leaves is what it is of the one before, or with a factor in double precision nothing.
+///
+/// before  the whole step that it follows; 0: none
+bool Newton::last(const Step& step, double before) const {
+  constexpr double most_left = 0.2;  // of the tolerance
+  const double size = step.size.largest, share = before > 0 ? std::min(1.0, size / before) : 1;
+  return size < settings_.tolerance_mm &&
+         (work_.factor.in_double() || share * size < most_left * settings_.tolerance_mm);
 }
 
 /// Moves by `damping` times a step, less where something is in the way. False where the law has no energy, or where
@@ -117,6 +135,11 @@ double Newton::weigh_constraints(const Iterate& at) {
 /// Step that the factor at hand asks for.
 void Newton::find(const System::Balance& balance, const Points& positions, Step& step) {
   system_.step(balance, work_, step.move, step.change, team_);
+  for (const Secant& secant : secants_) {
+    const double part = secant.step.dot(step.move);
+    step.move += part * secant.left;
+    step.change += part * secant.left_change;
+  }
   step.size = system_.size_of(step.move, positions);
 }
 
@@ -161,8 +184,8 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
+      if (last(step_, 0)) return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
       find(trial_balance_, trial_.positions, next_);
-      if (step_.size.largest < settings_.tolerance_mm) break;
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
       if (rise < worthwhile_descent * damping * slope) break;
       // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
@@ -191,37 +214,36 @@ Newton::Advance Newton::reject(const Iterate& at) {
   return Advance::made;
 }
 
-/// Turns the simplified step next_ into Broyden's, given the steps made with this factor. False where it does not fit.
+/// Turns the simplified step next_ that follows a whole step into Broyden's. False where it does not fit.
 bool Newton::update_next() {
-  const auto share = [&](const Step& step) { return step.move.dot(next_.move) / step.move.squaredNorm(); };
-  for (std::size_t k = 0; k + 1 < made_.size(); ++k) {
-    const double part = share(made_[k]);
-    next_.move += part * made_[k + 1].move;
-    next_.change += part * made_[k + 1].change;
-  }
-  const double part = share(made_.back());
-  if (!(part < 0.5)) return false;
+  const double square = step_.move.squaredNorm(), part = step_.move.dot(next_.move) / square;
+  const double size = next_.size.mean / step_.size.mean;
+  const bool rounded = work_.factor.rounded() > much_rounded;
+  if (rounded && !system_.contact() ? !(part < rounded_along && size < rounded_contraction)
+                                    : !(part < most_along && size < worthwhile_contraction * (1 - part)))
+    return false;
+  const double scale = 1 / (square * (1 - part));
+  secants_.push_back({step_.move, scale * next_.move, scale * next_.change});
   next_.move /= 1 - part;
   next_.change /= 1 - part;
   next_.size = system_.size_of(next_.move, trial_.positions);
-  return next_.size.mean < worthwhile_contraction * made_.back().size.mean;
+  return true;
 }
 
-/// Broyden's steps from made_, the last of which has just been made, with next_ the simplified step that follows.
+/// Broyden's steps after the whole step step_, with next_ the simplified one that follows it.
 ///
-/// source  Deuflhard 2011, QNERR: the "good" rank-1 updates, by recursion
+/// source  Deuflhard 2011, QNERR: the "good" rank-1 updates, which serve as long as the factor does
 Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
-  while (static_cast<int>(made_.size()) <= most_updates && update_next()) {
-    made_.push_back(next_);
-    const Step& step = made_.back();
-    if (!attempt_whole(step, at)) return reject(at);
-    const bool last = step.size.largest < settings_.tolerance_mm;
-    if (!last) {
+  for (int made = 1; made <= most_updates && update_next(); ++made) {
+    std::swap(step_, next_);
+    if (!attempt_whole(step_, at)) return reject(at);
+    const bool arrives = last(step_, next_.size.largest);
+    if (!arrives) {
       find(trial_balance_, trial_.positions, next_);
-      if (!(next_.size.mean < step.size.mean)) return reject(at);
+      if (!(next_.size.mean < step_.size.mean)) return reject(at);
     }
-    if (!accept(step.size.largest, at)) return Advance::interrupted;
-    if (last) return Advance::arrived;
+    if (!accept(step_.size.largest, at)) return Advance::interrupted;
+    if (arrives) return Advance::arrived;
   }
   return Advance::made;
 }
@@ -230,24 +252,30 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
 Newton::Advance Newton::steps_from_here(Iterate& at, double& damping) {
   const Advance advance = damped_step(at, damping);
   if (advance != Advance::made || damping < 1) return advance;
-  if (step_.size.largest < settings_.tolerance_mm) return Advance::arrived;
-  made_.assign(1, step_);
+  if (last(step_, 0)) return Advance::arrived;
   return quasi_newton_steps(at);
 }
 
-/// Steps with the factor of a shape close by, as long as they shrink as fast as they would with that of the iterate.
+/// Do steps shrink so fast that a new factor costs more than they do?
+bool Newton::shrink_fast() const {
+  const double rate = next_.size.largest / step_.size.largest;
+  if (!(rate < worthwhile_contraction)) return false;
+  const double left = std::log(settings_.tolerance_mm / next_.size.largest) / std::log(rate);
+  return left < cost_of_factor;
+}
+
+/// Steps with the factor of a shape close by, as long as they shrink fast enough.
 Newton::Advance Newton::steps_from_nearby(Iterate& at) {
   if (!as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_)) return reject(at);
   find(balance_, at.positions, step_);
   if (!std::isfinite(step_.size.mean) || !attempt_whole(step_, at)) return reject(at);
-  const bool last = step_.size.largest < settings_.tolerance_mm;
-  if (!last) {
+  const bool arrives = last(step_, 0);
+  if (!arrives) {
     find(trial_balance_, trial_.positions, next_);
-    if (!(next_.size.mean < nearby_contraction * step_.size.mean)) return reject(at);
+    if (!shrink_fast()) return reject(at);
   }
   if (!accept(step_.size.largest, at)) return Advance::interrupted;
-  if (last) return Advance::arrived;
-  made_.assign(1, step_);
+  if (arrives) return Advance::arrived;
   return quasi_newton_steps(at);
 }
 
@@ -288,6 +316,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   Advance advance = Advance::made;
   double damping = 1;
+  secants_.clear();
   poor_ = same_ = 0;
   slow_ = false;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
@@ -327,11 +356,37 @@ struct Tangent {
   Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
           System::Workspace& work, Team& team, const Iterate& at) {
     System::Balance balance;
+    const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
+    const bool refined = !of_here || !work.factor.in_double();
+    if (refined) {
+      system.hold_friction(at, work, team);
+      system.evaluate(at, here, active, work, balance, team);
+      system.assemble(at, here, System::Stiffness::exact, work, team);
+    }
     system.upset(at, here, there, active, work, balance, team);
-    system.step(balance, work, step, change, team);
+    if (!refined || !refine(system, balance, work, team, at)) system.step(balance, work, step, change, team);
     if (step.allFinite() && change.allFinite()) return;
     step.setZero();
     change.setZero();
+  }
+
+ private:
+  /// The step of the stiffness here; false where there is none.
+  bool refine(const System& system, const System::Balance& balance, System::Workspace& work, Team& team,
+              const Iterate& at) {
+    constexpr double accuracy = 1e-3;
+    constexpr int rounds = 6;
+    Bordered equations(system, work, team);
+    equations.set(at);
+    Columns right{-balance.force, Eigen::MatrixXd(work.active.size(), 1)}, found;
+    for (Index i = 0; i < static_cast<Index>(work.active.size()); ++i)
+      right.multipliers(i, 0) = -system.sign(work.active[i]) * balance.constraint[work.active[i]];
+    system.gather(work, team);
+    if (!(equations.solve(right, accuracy, rounds, found).left < 1)) return false;
+    step = found.moves.col(0);
+    change.setZero(system.actuators());
+    for (Index i = 0; i < static_cast<Index>(work.active.size()); ++i) change[work.active[i]] = found.multipliers(i, 0);
+    return true;
   }
 };
 

@@ -51,11 +51,16 @@ class Newton {
     Eigen::VectorXd move, change;  // of unknowns and of multipliers
     System::Size size;
   };
+  /// A step and what it left to do over step . (step - left): Broyden's update.
+  struct Secant {
+    Eigen::VectorXd step, left, left_change;
+  };
   enum class Advance { none, made, arrived, interrupted };
 
   [[nodiscard]] bool goes_on() const;
   Advance factorise(const Iterate& at, Policy policy);
   void find(const System::Balance& balance, const Points& positions, Step& step);
+  [[nodiscard]] bool last(const Step& step, double before) const;
   bool attempt(const Step& step, double& damping, const Iterate& from);
   bool attempt_whole(const Step& step, const Iterate& from);
   bool labours(double damping);
@@ -65,6 +70,7 @@ class Newton {
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
   bool update_next();
+  [[nodiscard]] bool shrink_fast() const;
   Advance quasi_newton_steps(Iterate& at);
   Advance steps_from_here(Iterate& at, double& damping);
   Advance steps_from_nearby(Iterate& at);
@@ -84,7 +90,7 @@ class Newton {
   const std::vector<bool>* active_ = nullptr;
   System::Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
-  std::vector<Step> made_;              // with the last factor
+  std::vector<Secant> secants_;         // of the factor at hand
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
   Iterate trial_;
   int poor_ = 0;       // steps in a row that were much shorter than Newton's

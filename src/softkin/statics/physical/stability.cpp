@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/statics/physical/stability.hpp>
+#include <utility>
 
 namespace softkin::physical {
 
@@ -23,6 +24,20 @@ Eigen::VectorXd lopsided(Index size) {
   for (Index i = 0; i < size; ++i) vector[i] = std::sin(1.0 + 1.618 * static_cast<double>(i));
   return vector.normalized();
 }
+
+/// Factors in double precision while it lives.
+class InDouble {
+ public:
+  explicit InDouble(System::Workspace& work)
+      : work_(work), before_(std::exchange(work.precision, linear::MixedLdlt::Precision::twice)) {}
+  ~InDouble() { work_.precision = before_; }
+  InDouble(const InDouble&) = delete;
+  InDouble& operator=(const InDouble&) = delete;
+
+ private:
+  System::Workspace& work_;
+  linear::MixedLdlt::Precision before_;
+};
 
 }  // namespace
 
@@ -58,10 +73,12 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   double mean = 0;
   const auto negative = [&](double shift) {
     ++report.factorisations;
+    ++report.factorisations_in_double;
     const int count = system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team);
     if (shift == 0) mean = work.mean;
     return count;
   };
+  const InDouble scope(work);  // curvatures are differences of what hardly differs
   LowestMode mode;
   mode.unstable = negative(0);
   mode.mean = mean;
@@ -115,7 +132,9 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
   for (; shift < most_shift; shift *= 4) {
     system.evaluate(at, demand, active, work, balance, team);
     ++report.factorisations;
-    if (system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team) > 0) continue;
+    const int modes = system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team);
+    report.factorisations_in_double += work.factor.in_double();
+    if (modes > 0) continue;
     system.step(balance, work, step, change, team);
     if (!step.allFinite() || !change.allFinite()) continue;
     Iterate trial = at;

@@ -39,7 +39,7 @@ System::System(const Model& model)
   freedoms_ = std::make_unique<supports::Freedoms>(model, pattern);
   supports::ReducedMatrix reduced(*freedoms_, pattern);
   auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
-  linear::require_memory(*symbolic);  // before what takes long
+  linear::require_memory(*symbolic, sizeof(float));  // before what takes long
   layout_ = std::make_shared<const Layout>(Layout{
       std::move(pattern), std::move(reduced), std::move(symbolic), cliques_.slots.back(), {}, cliques_.slots.back()});
   check_contact_at_rest(model);
@@ -57,7 +57,8 @@ System::Workspace::Workspace(const System& system)
       factorised_layout(layout),
       slots(9 * static_cast<std::size_t>(layout->slots)),
       slopes(system.model_.actuators.size()),
-      factor(layout->symbolic) {}
+      factor(layout->symbolic),
+      precision(contacts ? linear::MixedLdlt::Precision::good : linear::MixedLdlt::Precision::enough) {}
 
 void System::Workspace::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   const supports::ReducedMatrix& reduced = factorised_layout->reduced;
@@ -162,15 +163,31 @@ int System::factorise(const Iterate& at, const Demand& demand, const std::vector
     work.factor.change(layout.symbolic);
     work.factorised_layout = work.layout;
   }
-  work.negative = work.factor.factorise(work.values, 1e-13 * mean, team).negative;
+  ask(at, active, work, balance);
+  const auto made = [&](Eigen::MatrixXd& right_sides) {
+    work.negative = work.factor.factorise(work.values, 1e-13 * mean, work.precision, right_sides, team).negative;
+  };
+  if (layout.reduced.in_order()) {
+    made(work.solutions);
+  } else {
+    layout.reduced.to_columns(work.solutions, work.in_columns);
+    made(work.in_columns);
+    layout.reduced.to_unknowns(work.in_columns, work.solutions);
+  }
   work.exact = kind == Stiffness::exact && shift == 0;
   work.factorised = at.positions;
-  couple(at, active, work, team, balance);
+  close(work);
   return work.unstable;
 }
 
-void System::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
-                    const Balance* balance) const {
+void System::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team) const {
+  ask(at, active, work, nullptr);
+  work.solve(work.solutions, team);
+  close(work);
+}
+
+/// What a factorisation is to solve for: the active constraints' slopes, and the force of the balance.
+void System::ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const {
   work.active.clear();
   for (Index a = 0; a < actuators(); ++a)
     if (active[a]) work.active.push_back(a);
@@ -183,7 +200,11 @@ void System::couple(const Iterate& at, const std::vector<bool>& active, Workspac
   work.solutions.resize(freedoms_->size(), count + (balance ? 1 : 0));
   work.solutions.leftCols(count) = work.constraint_slopes;
   if (balance) work.solutions.col(count) = -balance->force;
-  work.solve(work.solutions, team);
+}
+
+/// What the constraints leave of the stiffness, from their responses.
+void System::close(Workspace& work) const {
+  const Index count = static_cast<Index>(work.active.size());
   work.unstable = work.negative;
   work.softest.resize(0);
   if (count == 0) return;

@@ -3,33 +3,18 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <functional>
-#include <softkin/linear/sparse_ldlt.hpp>
+#include <softkin/linear/mixed_ldlt.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
 #include <softkin/statics/physical/surroundings.hpp>
+#include <softkin/statics/physical/trail.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
 #include <softkin/statics/supports/global_step.hpp>
 #include <softkin/statics/supports/reduced_matrix.hpp>
 
 namespace softkin::physical {
-
-/// What is asked of a robot in the physical formulation.
-struct Demand {
-  Eigen::VectorXd actuation;  // m, as the user commands it
-  double share = 1;           // of dead loads and of the displacement of what is held [-]
-};
-
-/// At a share of the way from one to another.
-[[nodiscard]] Demand between(const Demand& from, const Demand& to, double share);
-
-/// Shape and multipliers; a point of the path that Newton follows.
-struct Iterate {
-  Points positions;               // #V by 3 [mm]
-  Eigen::VectorXd multipliers;    // m: tension [N], gauge pressure [MPa]; 0: dea
-  std::vector<Anchor> anchors{};  // of friction
-};
 
 /// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
 /// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers.
@@ -52,7 +37,7 @@ class System {
     explicit Workspace(const System& system);
 
     Body::Scratch elastic;
-    /// Every column becomes its solution with the last factorisation.
+    /// Every column becomes nearly its solution, as linear::MixedLdlt says, with the last factorisation.
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
     std::unique_ptr<Contacts::Scratch> contacts;      // where there is contact
@@ -64,11 +49,12 @@ class System {
     Points gradient;             // of the Lagrangian in x
     Points moves, lacking;       // of advance()
     std::vector<Points> slopes;  // of each active measure
-    linear::SparseLdlt factor;
-    Eigen::MatrixXd solutions;          // of the last factorisation: responses, then the step without constraints
-    Eigen::MatrixXd responses;          // K^-1 G, a column per active constraint, in the order of `active`
-    Eigen::MatrixXd constraint_slopes;  // G: sign_a times the gradient of measure_a
-    Eigen::VectorXd scale;              // S: makes the diagonal of the next 1
+    linear::MixedLdlt factor;
+    linear::MixedLdlt::Precision precision;  // asked of the next
+    Eigen::MatrixXd solutions;               // of the last factorisation: responses, then the step without constraints
+    Eigen::MatrixXd responses;               // K^-1 G, a column per active constraint, in the order of `active`
+    Eigen::MatrixXd constraint_slopes;       // G: sign_a times the gradient of measure_a
+    Eigen::VectorXd scale;                   // S: makes the diagonal of the next 1
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> schur;  // S G^T K^-1 G S; singular where constraints depend
                                                                     // on each other
     std::vector<Index> active;                                      // constraints of the factorisation
@@ -81,6 +67,7 @@ class System {
     Eigen::VectorXd softest;  // nearly its softest change that the constraints leave, of length 1; empty: not asked for
     double softness = 0;      // its curvature along that
     Points home;              // equilibrium at which the last solve ended, and near which it factorised
+    Trail trail;              // that led there
   };
 
   struct Balance {
@@ -113,8 +100,7 @@ class System {
                 Workspace& work, Team& team, const Balance* balance = nullptr) const;
 
   /// What the last factorisation holds of the active measures, from their slopes at an iterate that was just evaluated.
-  void couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team,
-              const Balance* balance = nullptr) const;
+  void couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team) const;
 
   /// Stiffness of the elements and measures at an iterate, as factorise() makes it itself.
   void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
@@ -229,6 +215,8 @@ class System {
 
  private:
   void hold_contacts(const Iterate& at, Workspace& work, Team& team) const;
+  void ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const;
+  void close(Workspace& work) const;
   void meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
   const Model& model_;

@@ -10,7 +10,7 @@ namespace softkin::supports {
 Freedoms::Freedoms(const Model& model, const linear::BlockPattern& pattern)
     : rest_(model.rest), held_(model.held), fixed_(model.fixed), region_of_(model.rest.rows(), -1) {
   find_regions(model);
-  number(pattern);
+  number(model, pattern);
 }
 
 void Freedoms::find_regions(const Model& model) {
@@ -29,7 +29,20 @@ void Freedoms::find_regions(const Model& model) {
   }
 }
 
-void Freedoms::number(const linear::BlockPattern& pattern) {
+/// Per node, those of the ends of the edge that it stands in the middle of; -1: none.
+std::vector<std::array<Index, 2>> Freedoms::ends_of(const Model& model) const {
+  const Index count = 1 + *std::max_element(node_of_.begin(), node_of_.end());
+  std::vector<std::array<Index, 2>> ends(static_cast<std::size_t>(count), {-1, -1});
+  for (std::size_t t = 0; t < model.edge_nodes.size(); ++t)
+    for (int e = 0; e < 6; ++e) {
+      const Index middle = model.edge_nodes[t][e];
+      if (node_of_[middle] < 0 || region_of_[middle] >= 0) continue;
+      for (int i = 0; i < 2; ++i) ends[node_of_[middle]][i] = node_of_[model.tetrahedra[t][tetrahedron_edges[e][i]]];
+    }
+  return ends;
+}
+
+void Freedoms::number(const Model& model, const linear::BlockPattern& pattern) {
   node_of_.assign(static_cast<std::size_t>(rest_.rows()), -1);
   std::vector<Index> vertex_of;
   for (Index v = 0; v < rest_.rows(); ++v)
@@ -41,7 +54,9 @@ void Freedoms::number(const linear::BlockPattern& pattern) {
   const Index count = vertex_nodes + static_cast<Index>(regions_.size());
   for (Index v = 0; v < rest_.rows(); ++v)
     if (region_of_[v] >= 0) node_of_[v] = vertex_nodes + region_of_[v];
-  const linear::Ordering ordering = linear::nested_dissection(node_graph(pattern, node_of_, count));
+  const Eigen::SparseMatrix<double> graph = node_graph(pattern, node_of_, count);
+  const linear::Ordering ordering =
+      model.edge_nodes.empty() ? linear::nested_dissection(graph) : linear::nested_dissection(graph, ends_of(model));
   pieces_ = ordering.pieces;
 
   std::vector<Index> place(static_cast<std::size_t>(count));

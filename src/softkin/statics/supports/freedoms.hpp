@@ -48,7 +48,8 @@ class Freedoms {
 
   [[nodiscard]] static Mat3 bend_of(const Region& region, const Points& gradient, const Points& positions);
   void find_regions(const Model& model);
-  void number(const linear::BlockPattern& pattern);
+  [[nodiscard]] std::vector<std::array<Index, 2>> ends_of(const Model& model) const;
+  void number(const Model& model, const linear::BlockPattern& pattern);
   [[nodiscard]] Index nodes() const { return static_cast<Index>(vertex_of_.size()); }
   [[nodiscard]] Index width(Index node) const { return unknowns_[node + 1] - unknowns_[node]; }
   [[nodiscard]] Eigen::Matrix<double, 3, Eigen::Dynamic> tangent(Index vertex, const std::vector<Vec3>& centers,

@@ -136,7 +136,7 @@ Unknowns::Unknowns(const Model& robot, const System& target_shapes)
 
 Tangent::Tangent(const Unknowns& unknowns)
     : unknowns_(unknowns), factor_(unknowns.symbolic), work_(unknowns.system.make_scratch()) {
-  linear::require_memory(*unknowns.symbolic);
+  linear::require_memory(*unknowns.symbolic, sizeof(double));
   const Index size = unknowns.freedoms.size();
   column_.resize(size, 1);
   turned_.resize(size);
@@ -162,7 +162,7 @@ bool Tangent::factorise_values(double shift, Team& team, SolveReport& report) {
   if (!std::isfinite(largest)) return false;
   constexpr double negligible = 1e-14;
   ++report.factorisations;
-  const linear::SparseLdlt::Pivots pivots = factor_.factorise(shifted_, negligible * largest, team);
+  const linear::Pivots pivots = factor_.factorise(shifted_, negligible * largest, team);
   return pivots.negative == 0;
 }
 

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/linear/mixed_ldlt.hpp>
+#include <utility>
+
+namespace softkin::linear {
+
+namespace {
+
+/// Share of x . M x that rounding may change, and contraction.
+constexpr double most_rounded = 0.15, slowest = 0.3;
+/// Pivots below this share of what `least` is a share of are rounding.
+constexpr double single_least = 1e6;
+constexpr int most_patience = 64;
+
+/// A vector that no symmetry of a robot shares, the same each time.
+Eigen::VectorXd lopsided(Index size) {
+  Eigen::VectorXd vector(size);
+  for (Index i = 0; i < size; ++i) vector[i] = std::sin(1.0 + 1.618 * static_cast<double>(i));
+  return vector;
+}
+
+}  // namespace
+
+void MixedLdlt::change(std::shared_ptr<const FrontTree> tree) {
+  tree_ = std::move(tree);
+  if (single_) single_->change(tree_);
+  if (twice_) twice_->change(tree_);
+}
+
+void MixedLdlt::forget() {
+  wait_ = 0;
+  patience_ = 1;
+}
+
+/// Solves with the factor in single precision. False where that is not to be trusted; right_sides are as they were.
+bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy,
+                              Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+  const Index count = static_cast<Index>(right_sides.cols());
+  if (lopsided_.size() != right_sides.rows()) lopsided_ = lopsided(static_cast<Index>(right_sides.rows()));
+  found_.resize(right_sides.rows(), count + 1);
+  found_.leftCols(count) = right_sides;
+  found_.col(count) = lopsided_;
+  single_->solve(found_, team);
+  left_ = lopsided_;
+  subtract_product(tree_->pattern, values, found_.col(count), left_, team);
+  rounded_ = std::abs(found_.col(count).dot(left_.col(0)) / found_.col(count).dot(lopsided_));
+  if (by_energy) {
+    if (!(rounded_ <= most_rounded)) return false;
+  } else {
+    single_->solve(left_, team);
+    if (!(left_.norm() <= slowest * found_.col(count).norm())) return false;
+  }
+  right_sides = found_.leftCols(count);
+  return true;
+}
+
+Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Precision precision,
+                            Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+  in_double_ = precision == Precision::twice || wait_ > 0;
+  if (precision != Precision::twice && wait_ > 0) --wait_;
+  if (!in_double_) {
+    if (!single_) single_.emplace(tree_);
+    const Pivots pivots = single_->factorise(values, single_least * least, team);
+    if (pivots.replaced == 0 &&
+        solve_trusted(values, pivots.negative == 0 && precision == Precision::enough, right_sides, team)) {
+      patience_ = 1;
+      return pivots;
+    }
+    in_double_ = true;
+    wait_ = patience_;
+    patience_ = std::min(2 * patience_, most_patience);
+  }
+  if (!twice_) {
+    require_memory(*tree_, sizeof(double));
+    twice_.emplace(tree_);
+  }
+  const Pivots pivots = twice_->factorise(values, least, team);
+  twice_->solve(right_sides, team);
+  return pivots;
+}
+
+void MixedLdlt::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+  if (in_double_)
+    twice_->solve(right_sides, team);
+  else
+    single_->solve(right_sides, team);
+}
+
+double MixedLdlt::bytes() const {
+  return (single_ ? single_->bytes() : 0) + (twice_ ? twice_->bytes() : 0);
+}
+
+}  // namespace softkin::linear

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <softkin/linear/krylov.hpp>
+#include <softkin/statics/physical/system.hpp>
+
+namespace softkin::physical {
+
+/// A column per right-hand side.
+struct Columns {
+  Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the active measures
+};
+
+/// K X + G L = right.moves, G^T X = right.multipliers with the stiffness K and the slopes G of one shape, solved by
+/// Krylov's method with the factor that the workspace has, of a shape nearby, or of a lower precision.
+class Bordered {
+ public:
+  /// All must outlive the object.
+  Bordered(const System& system, System::Workspace& work, Team& team) : system_(system), work_(work), team_(team) {}
+
+  /// The shape, at an iterate that was just evaluated. The measures must be those of the last factorisation, or of
+  /// couple(); the stiffness is that which was gathered last.
+  void set(const Iterate& at);
+
+  /// accuracy  of each column, over the right-hand side, both as the factor answers
+  /// rounds    at most
+  /// returns   what is left; 1 or more where the constraints depend on each other or a number is not finite
+  linear::Remainder solve(const Columns& right, double accuracy, int rounds, Columns& found);
+
+ private:
+  void precondition(Columns& columns);
+  void multiply(const Columns& columns, Columns& product);
+
+  const System& system_;
+  System::Workspace& work_;
+  Team& team_;
+  const Iterate* at_ = nullptr;
+  Eigen::MatrixXd slopes_;  // G
+};
+
+}  // namespace softkin::physical

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <softkin/model/equilibrium.hpp>
+
+namespace softkin::physical {
+
+/// What is asked of a robot in the physical formulation.
+struct Demand {
+  Eigen::VectorXd actuation;  // m, as the user commands it
+  double share = 1;           // of dead loads and of the displacement of what is held [-]
+};
+
+/// At a share of the way from one to another.
+[[nodiscard]] Demand between(const Demand& from, const Demand& to, double share);
+
+/// Shape and multipliers; a point of the path that Newton follows.
+struct Iterate {
+  Points positions;               // #V by 3 [mm]
+  Eigen::VectorXd multipliers;    // m: tension [N], gauge pressure [MPa]; 0: dea
+  std::vector<Anchor> anchors{};  // of friction
+};
+
+}  // namespace softkin::physical

@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <softkin/statics/physical/trail.hpp>
+#include <softkin/statics/statics.hpp>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin::physical {
+
+namespace {
+
+using namespace testing;
+
+constexpr double tolerance = 1e-5;  // [mm]
+
+Demand demand_at(double way) {
+  return {Eigen::Vector2d(1 + way, 3 - 2 * way), 1};
+}
+
+/// A way whose vertices move by polynomials.
+struct Curve {
+  std::vector<Points> coefficients;
+
+  explicit Curve(int degree) {
+    std::mt19937 engine(5);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i <= degree; ++i)
+      coefficients.emplace_back(Points::NullaryExpr(20, 3, [&] { return normal(engine); }));
+  }
+  [[nodiscard]] Iterate at(double way) const {
+    Points positions = Points::Zero(20, 3);
+    double power = 1;
+    for (const Points& coefficient : coefficients) {
+      positions += power * coefficient;
+      power *= way;
+    }
+    return {positions, Eigen::Vector2d(positions(0, 0), positions(1, 1))};
+  }
+};
+
+Trail walked(const Curve& curve, const std::vector<double>& ways) {
+  Trail trail;
+  for (const double way : ways) trail.add(demand_at(way), {true, true}, curve.at(way));
+  return trail;
+}
+
+}  // namespace
+
+TEST(Trail, PolynomialsAreFollowed) {
+  const std::vector<double> even{0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}, uneven{0, 0.1, 0.15, 0.22, 0.31, 0.47, 0.53};
+  for (const int degree : {1, 3, 5})
+    for (const auto& ways : {even, uneven})
+      for (const double next : {0.6, 0.65, 0.4, 0.55}) {
+        if (next == ways.back()) continue;
+        const Curve curve(degree);
+        const Trail trail = walked(curve, ways);
+        Iterate at = curve.at(ways.back());
+        ASSERT_TRUE(trail.lead(demand_at(next), {true, true}, tolerance, at)) << degree << " " << next;
+        EXPECT_LT((at.positions - curve.at(next).positions).norm(), 1e-10) << degree << " " << next;
+        EXPECT_LT((at.multipliers - curve.at(next).multipliers).norm(), 1e-10);
+      }
+}
+
+TEST(Trail, NothingIsToldOfWhatCannotBeForetold) {
+  const Curve curve(9);
+  const std::vector<double> ways{0, 0.4, 0.8, 1.2, 1.6, 2};
+  const Trail trail = walked(curve, ways);
+  Iterate at = curve.at(2);
+  EXPECT_FALSE(trail.lead(demand_at(2.4), {true, true}, tolerance, at));
+  EXPECT_EQ(at.positions, curve.at(2).positions);
+  // a straight way that is foretold, but with other constraints, from elsewhere, or to where one is
+  const Curve straight(1);
+  const Trail other = walked(straight, ways);
+  at = straight.at(2);
+  EXPECT_FALSE(other.lead(demand_at(2.4), {true, false}, tolerance, at));
+  EXPECT_FALSE(other.lead(demand_at(2), {true, true}, tolerance, at));
+  at.positions(3, 1) += 1e-9;
+  EXPECT_FALSE(other.lead(demand_at(2.4), {true, true}, tolerance, at));
+  at = straight.at(0.4);
+  EXPECT_FALSE(walked(straight, {0, 0.4}).lead(demand_at(0.8), {true, true}, tolerance, at));
+}
+
+/// Where tangents do better they are not given up.
+TEST(Trail, FirstOrderIsKeptWhereItIsBetter) {
+  const Curve curve(9);
+  const std::vector<double> ways{0, 0.01, 0.02, 0.03};
+  Trail trail = walked(curve, ways);
+  Iterate at = curve.at(0.03);
+  ASSERT_TRUE(trail.lead(demand_at(0.04), {true, true}, tolerance, at));
+  const double missed = largest_move(at.positions, curve.at(0.04).positions);
+  EXPECT_GT(missed, 0);
+  at = curve.at(0.03);
+  trail.note_tangent(demand_at(0.02), demand_at(0.03), missed);
+  EXPECT_FALSE(trail.lead(demand_at(0.04), {true, true}, tolerance, at));
+  trail.note_tangent(demand_at(0.02), demand_at(0.03), 1e3 * missed);
+  EXPECT_TRUE(trail.lead(demand_at(0.04), {true, true}, tolerance, at));
+}
+
+/// Steps of one length come to the same equilibria as each would alone, in half the iterations.
+TEST(Trail, PathsTakeFewerIterations) {
+  const Model model = compile(bending_finger());
+  const Statics together(model), apart(model);
+  StaticsOptions alone;
+  alone.reuse_factor = false;
+  State state = together.rest();
+  int iterations = 0, iterations_alone = 0;
+  for (int step = 1; step <= 30; ++step) {
+    const Actuation command = Actuation::Constant(1, 1 + 0.02 * step);
+    const Equilibrium found = together.solve(command, state), fresh = apart.solve(command, state, alone);
+    ASSERT_EQ(found.report.status, Status::converged);
+    ASSERT_EQ(fresh.report.status, Status::converged);
+    EXPECT_LT(largest_move(found.state.positions, fresh.state.positions), 1e-6) << step;
+    if (step > 10) {
+      iterations += found.report.iterations;
+      iterations_alone += fresh.report.iterations;
+    }
+    state = found.state;
+  }
+  EXPECT_LE(2 * iterations, iterations_alone);
+}
+
+}  // namespace softkin::physical
