@@ -56,7 +56,8 @@ TEST(Trail, PolynomialsAreFollowed) {
         const Curve curve(degree);
         const Trail trail = walked(curve, ways);
         Iterate at = curve.at(ways.back());
-        ASSERT_TRUE(trail.lead(demand_at(next), {true, true}, tolerance, at)) << degree << " " << next;
+        ASSERT_TRUE(trail.lead(demand_at(ways.back()), demand_at(next), {true, true}, tolerance, at))
+            << degree << " " << next;
         EXPECT_LT((at.positions - curve.at(next).positions).norm(), 1e-10) << degree << " " << next;
         EXPECT_LT((at.multipliers - curve.at(next).multipliers).norm(), 1e-10);
       }
@@ -67,18 +68,21 @@ TEST(Trail, NothingIsToldOfWhatCannotBeForetold) {
   const std::vector<double> ways{0, 0.4, 0.8, 1.2, 1.6, 2};
   const Trail trail = walked(curve, ways);
   Iterate at = curve.at(2);
-  EXPECT_FALSE(trail.lead(demand_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(trail.lead(demand_at(2), demand_at(2.4), {true, true}, tolerance, at));
   EXPECT_EQ(at.positions, curve.at(2).positions);
   // a straight way that is foretold, but with other constraints, from elsewhere, or to where one is
   const Curve straight(1);
   const Trail other = walked(straight, ways);
   at = straight.at(2);
-  EXPECT_FALSE(other.lead(demand_at(2.4), {true, false}, tolerance, at));
-  EXPECT_FALSE(other.lead(demand_at(2), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(demand_at(2), demand_at(2.4), {true, false}, tolerance, at));
+  EXPECT_FALSE(other.lead(demand_at(2), demand_at(2), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(demand_at(1.9), demand_at(2.4), {true, true}, tolerance, at));
+  EXPECT_TRUE(other.lead(demand_at(2), demand_at(2.4), {true, true}, tolerance, at));
+  at = straight.at(2);
   at.positions(3, 1) += 1e-9;
-  EXPECT_FALSE(other.lead(demand_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(demand_at(2), demand_at(2.4), {true, true}, tolerance, at));
   at = straight.at(0.4);
-  EXPECT_FALSE(walked(straight, {0, 0.4}).lead(demand_at(0.8), {true, true}, tolerance, at));
+  EXPECT_FALSE(walked(straight, {0, 0.4}).lead(demand_at(0.4), demand_at(0.8), {true, true}, tolerance, at));
 }
 
 /// Where tangents do better they are not given up.
@@ -87,14 +91,14 @@ TEST(Trail, FirstOrderIsKeptWhereItIsBetter) {
   const std::vector<double> ways{0, 0.01, 0.02, 0.03};
   Trail trail = walked(curve, ways);
   Iterate at = curve.at(0.03);
-  ASSERT_TRUE(trail.lead(demand_at(0.04), {true, true}, tolerance, at));
+  ASSERT_TRUE(trail.lead(demand_at(0.03), demand_at(0.04), {true, true}, tolerance, at));
   const double missed = largest_move(at.positions, curve.at(0.04).positions);
   EXPECT_GT(missed, 0);
   at = curve.at(0.03);
   trail.note_tangent(demand_at(0.02), demand_at(0.03), missed);
-  EXPECT_FALSE(trail.lead(demand_at(0.04), {true, true}, tolerance, at));
+  EXPECT_FALSE(trail.lead(demand_at(0.03), demand_at(0.04), {true, true}, tolerance, at));
   trail.note_tangent(demand_at(0.02), demand_at(0.03), 1e3 * missed);
-  EXPECT_TRUE(trail.lead(demand_at(0.04), {true, true}, tolerance, at));
+  EXPECT_TRUE(trail.lead(demand_at(0.03), demand_at(0.04), {true, true}, tolerance, at));
 }
 
 /// Steps of one length come to the same equilibria as each would alone, in half the iterations.

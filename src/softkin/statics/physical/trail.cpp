@@ -62,11 +62,12 @@ std::vector<double> Trail::parameters(const Demand& to) const {
   return result;
 }
 
-bool Trail::lead(const Demand& to, const std::vector<bool>& active, double tolerance_mm, Iterate& at) const {
+bool Trail::lead(const Demand& here, const Demand& to, const std::vector<bool>& active, double tolerance_mm,
+                 Iterate& at) const {
   if (passed_.size() < 3 || passed_.front().active != active || passed_.front().at.positions != at.positions)
     return false;
-  const double length = length_of(passed_.front().demand, to);
-  if (!(length > 0)) return false;
+  const double length = length_of(here, to);
+  if (length_of(passed_.front().demand, here) > 0 || !(length > 0)) return false;
   const std::vector<double> nodes = parameters(to);
   if (nodes.size() < 3) return false;
   // how each degree would have foretold the last equilibrium, and from that what it misses at the next one
