@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <softkin/statics/physical/bordered.hpp>
 #include <softkin/statics/physical/derivative.hpp>
@@ -105,7 +106,11 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   solved = solved || solve_anew(work_.precision) || (!work_.factor.in_double() && solve_anew(Precision::twice));
   if (!solved) return no_sensitivity(static_cast<Index>(at.positions.rows()), system_.actuators());
   if (work_.home.rows() == 0) work_.home = at.positions;
-  return result(at);
+  const Sensitivity sensitivity = result(at);
+  const bool moves = std::any_of(moves_.begin(), moves_.end(), [](const Points& move) { return move.rows() > 0; });
+  if (!system_.contact() && !moves)
+    work_.tangents = {at.positions, held_, std::move(found_.moves), std::move(found_.multipliers)};
+  return sensitivity;
 }
 
 Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {

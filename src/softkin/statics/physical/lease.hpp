@@ -24,6 +24,7 @@ class Equilibria::Lease {
     if (!work_) work_ = std::make_unique<System::Workspace>(owner_.system_);
     if (reuse && is_at(*work_, start)) return;
     work_->home.resize(0, 3);
+    work_->tangents.at.resize(0, 3);
     work_->factor.forget();
   }
   ~Lease() {

@@ -355,6 +355,7 @@ struct Tangent {
 
   Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
           System::Workspace& work, Team& team, const Iterate& at) {
+    if (known(system, here, there, active, work.tangents, at)) return;
     System::Balance balance;
     const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
     const bool refined = !of_here || !work.factor.in_double();
@@ -371,6 +372,21 @@ struct Tangent {
   }
 
  private:
+  /// What a derivative at the same shape found before; false where there was none.
+  bool known(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+             const System::Slopes& slopes, const Iterate& at) {
+    if (here.share != there.share || slopes.at.rows() != at.positions.rows() || slopes.at != at.positions) return false;
+    std::vector<bool> held(active.size());
+    for (const Index a : slopes.held) held[static_cast<std::size_t>(a)] = true;
+    if (held != active) return false;
+    const Eigen::VectorXd way = there.actuation - here.actuation;
+    const Eigen::VectorXd multipliers = slopes.multipliers * way;
+    step = slopes.moves * way;
+    change.setZero(system.actuators());
+    for (std::size_t i = 0; i < slopes.held.size(); ++i) change[slopes.held[i]] = multipliers[static_cast<Index>(i)];
+    return true;
+  }
+
   /// The step of the stiffness here; false where there is none.
   bool refine(const System& system, const System::Balance& balance, System::Workspace& work, Team& team,
               const Iterate& at) {

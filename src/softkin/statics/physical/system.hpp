@@ -32,6 +32,13 @@ class System {
     std::int64_t first_touching = 0;  // slot
   };
 
+  /// How an equilibrium changes with the commands: what a derivative found.
+  struct Slopes {
+    Points at;                           // no rows: not known
+    std::vector<Index> held;             // the constraints that were
+    Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the constraints, per unit of each command
+  };
+
   /// Everything that is written while solving; one per thread of control. Nothing is allocated per iteration.
   struct Workspace {
     explicit Workspace(const System& system);
@@ -68,6 +75,7 @@ class System {
     double softness = 0;      // its curvature along that
     Points home;              // equilibrium at which the last solve ended, and near which it factorised
     Trail trail;              // that led there
+    Slopes tangents;          // of an equilibrium
   };
 
   struct Balance {
