@@ -17,8 +17,8 @@ class Trail {
   /// What a first-order prediction missed, on a way of so much actuation [mm].
   void note_tangent(const Demand& from, const Demand& to, double missed_mm);
 
-  /// Moves `at`, the last equilibrium and that of `here`, to where the polynomials through the last equilibria lead. Their degree is the
-  /// one that would have foretold the last of them best.
+  /// Moves `at`, the last equilibrium and that of `here`, to where the polynomials through the last equilibria lead.
+  /// Their degree is the one that would have foretold the last of them best.
   ///
   /// returns  false where they tell less than a first-order prediction does; `at` is unchanged then
   /// source   Allgower, Georg 1990, Numerical continuation methods, 6.3: predictors by interpolation; steps of any
