@@ -89,7 +89,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
 ///
 /// before  the whole step that it follows; 0: none
 bool Newton::last(const Step& step, double before) const {
-  constexpr double most_left = 0.2;  // of the tolerance
+  constexpr double most_left = 0.02;  // of the tolerance
   const double size = step.size.largest, share = before > 0 ? std::min(1.0, size / before) : 1;
   return size < settings_.tolerance_mm &&
          (work_.factor.in_double() || share * size < most_left * settings_.tolerance_mm);
