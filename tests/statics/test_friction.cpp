@@ -107,7 +107,7 @@ void expect_derivatives(const Model& model) {
     ASSERT_FALSE(balance.forbidden);
     const Eigen::VectorXd force = balance.force;
     system.assemble(from, demand, physical::System::Stiffness::exact, work, team);
-    system.gather(work, team);
+    system.gather(from, work, team);
     Eigen::VectorXd way(size);
     for (Index i = 0; i < size; ++i) way[i] = normal(engine);
     Eigen::MatrixXd product(size, 1);

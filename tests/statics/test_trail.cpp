@@ -101,7 +101,7 @@ TEST(Trail, FirstOrderIsKeptWhereItIsBetter) {
   EXPECT_TRUE(trail.lead(demand_at(0.03), demand_at(0.04), {true, true}, tolerance, at));
 }
 
-/// Steps of one length come to the same equilibria as each would alone, in half the iterations.
+/// Steps of one length come to the same equilibria as each would alone, in two thirds of the iterations.
 TEST(Trail, PathsTakeFewerIterations) {
   const Model model = compile(bending_finger());
   const Statics together(model), apart(model);
@@ -121,7 +121,7 @@ TEST(Trail, PathsTakeFewerIterations) {
     }
     state = found.state;
   }
-  EXPECT_LE(2 * iterations, iterations_alone);
+  EXPECT_LE(3 * iterations, 2 * iterations_alone);
 }
 
 }  // namespace softkin::physical

@@ -92,7 +92,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   if (work_.home.rows() > 0) {
     if (work_.active != held_) system_.couple(at, active_, work_, team_);
     system_.assemble(at, demand, System::Stiffness::exact, work_, team_);
-    system_.gather(work_, team_);
+    system_.gather(at, work_, team_);
     solved = solve(at, false);
   }
   const auto solve_anew = [&](Precision precision) {
@@ -100,7 +100,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
     const Precision before = std::exchange(work_.precision, precision);
     (void)system_.factorise(at, demand, active_, System::Stiffness::exact, 0, work_, team_);
     work_.precision = before;
-    system_.gather(work_, team_);
+    system_.gather(at, work_, team_);
     return solve(at, work_.factor.in_double());
   };
   solved = solved || solve_anew(work_.precision) || (!work_.factor.in_double() && solve_anew(Precision::twice));

@@ -397,7 +397,7 @@ struct Tangent {
     Columns right{-balance.force, Eigen::MatrixXd(work.active.size(), 1)}, found;
     for (Index i = 0; i < static_cast<Index>(work.active.size()); ++i)
       right.multipliers(i, 0) = -system.sign(work.active[i]) * balance.constraint[work.active[i]];
-    system.gather(work, team);
+    system.gather(at, work, team);
     if (!(equations.solve(right, accuracy, rounds, found).left < 1)) return false;
     step = found.moves.col(0);
     change.setZero(system.actuators());

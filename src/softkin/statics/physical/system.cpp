@@ -401,12 +401,26 @@ System::Size System::size_of(const Eigen::VectorXd& unknowns, const Points& posi
   return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(moves.rows()))};
 }
 
-void System::gather(Workspace& work, Team& team) const {
-  work.layout->pattern.gather(work.slots, work.blocks, team);
+bool System::multiplies_unknowns(const Workspace& work) const {
+  return !friction() && work.layout->reduced.in_order();
+}
+
+void System::gather(const Iterate& at, Workspace& work, Team& team) const {
+  const Layout& layout = *work.layout;
+  if (multiplies_unknowns(work))
+    layout.reduced.reduce(layout.pattern, work.slots, work.gradient, at.positions, work.values, team);
+  else
+    layout.pattern.gather(work.slots, work.blocks, team);
 }
 
 void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
                       Team& team) const {
+  if (multiplies_unknowns(work)) {
+    product.setZero();
+    linear::subtract_product(work.layout->reduced.columns(), work.values, vectors, product, team);
+    product = -product;
+    return;
+  }
   Points force;
   for (Index i = 0; i < vectors.cols(); ++i) {
     freedoms_->expand(vectors.col(i), at.positions, work.moves);
@@ -425,7 +439,7 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
     surroundings_.command_force(actuator, demand.actuation, at.positions, force);
     if (command.kind != ActuatorKind::motion) return;
     assemble(at, demand, Stiffness::exact, work, team);
-    gather(work, team);
+    work.layout->pattern.gather(work.slots, work.blocks, team);
     work.layout->pattern.multiply(work.blocks, moves, force, team);
     if (friction()) contacts_->add_friction_response(at.positions, *work.contacts, moves, force);
     return;

@@ -112,8 +112,8 @@ class System {
 
   /// Stiffness of the elements and measures at an iterate, as factorise() makes it itself.
   void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
-  /// Makes the stiffness that was assembled or factorised last ready for multiply().
-  void gather(Workspace& work, Team& team) const;
+  /// Makes the stiffness that was assembled last, at an iterate that was just evaluated, ready for multiply().
+  void gather(const Iterate& at, Workspace& work, Team& team) const;
   /// K times every column, over the unknowns, at an iterate that was just evaluated, and what the normal forces that
   /// limit friction add to it, which no factor holds. product: of vectors' size
   void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
@@ -222,6 +222,7 @@ class System {
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
 
  private:
+  [[nodiscard]] bool multiplies_unknowns(const Workspace& work) const;
   void hold_contacts(const Iterate& at, Workspace& work, Team& team) const;
   void ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const;
   void close(Workspace& work) const;
