@@ -344,6 +344,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;
   if (!meets_constraints()) return Outcome::unmet;
+  system_.correct_multipliers(balance_, work_, at.multipliers);
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }
 

@@ -244,6 +244,16 @@ void System::meet_constraints(const Balance& balance, Workspace& work, Eigen::Ve
   for (Index i = 0; i < count; ++i) change[work.active[i]] = multipliers[i];
 }
 
+void System::correct_multipliers(const Balance& balance, const Workspace& work, Eigen::VectorXd& multipliers) const {
+  const Index count = static_cast<Index>(work.active.size());
+  if (count == 0) return;
+  Eigen::VectorXd asked(count);
+  for (Index i = 0; i < count; ++i) asked[i] = sign(work.active[i]) * balance.constraint[work.active[i]];
+  asked -= work.responses.transpose() * balance.force;
+  const Eigen::VectorXd change = work.scale.cwiseProduct(work.schur.solve(work.scale.cwiseProduct(asked)));
+  for (Index i = 0; i < count; ++i) multipliers[work.active[i]] += change[i];
+}
+
 void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
                    Workspace& work, Balance& balance, Team& team) const {
   balance.constraint.setZero(actuators());

@@ -131,6 +131,9 @@ class System {
   /// contradict each other, what misses them least.
   void step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change, Team& team) const;
 
+  /// What the next step would change multipliers by, without one: G^T K^-1 force needs no solve.
+  void correct_multipliers(const Balance& balance, const Workspace& work, Eigen::VectorXd& multipliers) const;
+
   /// Balance that a change of demand upsets, to first order: for the tangent predictor.
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
