@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <cmath>
 #include <softkin/core/dense.hpp>
 
 namespace softkin {
@@ -22,6 +23,12 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
 LeastSquares least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
   return {qr.solve(right), qr.rank()};
+}
+
+Eigen::VectorXd lopsided(Eigen::Index size) {
+  Eigen::VectorXd vector(size);
+  for (Eigen::Index i = 0; i < size; ++i) vector[i] = std::sin(1.0 + 1.618 * static_cast<double>(i));
+  return vector;
 }
 
 }  // namespace softkin

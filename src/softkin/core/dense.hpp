@@ -22,6 +22,9 @@ struct SymmetricEigen {
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 [[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
+/// A vector that no symmetry of a robot shares, the same each time.
+[[nodiscard]] Eigen::VectorXd lopsided(Eigen::Index size);
+
 /// Minimises |A x - b| by QR with pivoting of columns.
 struct LeastSquares {
   Eigen::VectorXd solution;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/linear/mixed_ldlt.hpp>
 #include <utility>
 
@@ -12,13 +13,6 @@ constexpr double most_rounded = 0.15, slowest = 0.3;
 /// Pivots below this share of what `least` is a share of are rounding.
 constexpr double single_least = 1e6;
 constexpr int most_patience = 64;
-
-/// A vector that no symmetry of a robot shares, the same each time.
-Eigen::VectorXd lopsided(Index size) {
-  Eigen::VectorXd vector(size);
-  for (Index i = 0; i < size; ++i) vector[i] = std::sin(1.0 + 1.618 * static_cast<double>(i));
-  return vector;
-}
 
 }  // namespace
 
@@ -37,7 +31,7 @@ void MixedLdlt::forget() {
 bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy,
                               Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   const Index count = static_cast<Index>(right_sides.cols());
-  if (lopsided_.size() != right_sides.rows()) lopsided_ = lopsided(static_cast<Index>(right_sides.rows()));
+  if (lopsided_.size() != right_sides.rows()) lopsided_ = lopsided(right_sides.rows());
   found_.resize(right_sides.rows(), count + 1);
   found_.leftCols(count) = right_sides;
   found_.col(count) = lopsided_;

@@ -5,11 +5,7 @@ namespace softkin::physical {
 
 void Bordered::set(const Iterate& at) {
   at_ = &at;
-  slopes_.resize(system_.freedoms().size(), static_cast<Index>(work_.active.size()));
-  for (Index i = 0; i < slopes_.cols(); ++i) {
-    system_.freedoms().reduce(work_.slopes[work_.active[i]], at.positions, slopes_.col(i));
-    slopes_.col(i) *= system_.sign(work_.active[i]);
-  }
+  system_.reduce_slopes(at, work_, slopes_);
 }
 
 /// Solves with the factor, in place.

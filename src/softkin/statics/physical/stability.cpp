@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/stability.hpp>
 #include <utility>
 
@@ -17,13 +18,6 @@ constexpr double settled = 1e-6;  // relative change of the curvature
 // of its curvature by which that may have changed.
 constexpr int soft_iterations = 3;
 constexpr double difference = 1e-6, as_stiff = 0.25;
-
-/// A start that no symmetry of a robot shares, the same each time.
-Eigen::VectorXd lopsided(Index size) {
-  Eigen::VectorXd vector(size);
-  for (Index i = 0; i < size; ++i) vector[i] = std::sin(1.0 + 1.618 * static_cast<double>(i));
-  return vector.normalized();
-}
 
 /// Factors in double precision while it lives.
 class InDouble {
@@ -48,7 +42,7 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
     System::Balance right;
     right.constraint = Eigen::VectorXd::Zero(system.actuators());
     Eigen::VectorXd next, multipliers;
-    work.softest = lopsided(system.freedoms().size());
+    work.softest = lopsided(system.freedoms().size()).normalized();
     for (int i = 0; i < soft_iterations; ++i) {
       right.force = -work.softest;
       system.step(right, work, next, multipliers, team);
@@ -96,7 +90,7 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   // the constraints are met by every step, so that the iteration stays among the directions that keep them
   System::Balance right;
   right.constraint = Eigen::VectorXd::Zero(system.actuators());
-  Eigen::VectorXd vector = lopsided(system.freedoms().size()), next, multipliers;
+  Eigen::VectorXd vector = lopsided(system.freedoms().size()).normalized(), next, multipliers;
   for (int i = 0; i < most_inverse_iterations; ++i) {
     right.force = -vector;
     system.step(right, work, next, multipliers, team);

@@ -192,14 +192,18 @@ void System::ask(const Iterate& at, const std::vector<bool>& active, Workspace& 
   for (Index a = 0; a < actuators(); ++a)
     if (active[a]) work.active.push_back(a);
   const Index count = static_cast<Index>(work.active.size());
-  work.constraint_slopes.resize(freedoms_->size(), count);
-  for (Index i = 0; i < count; ++i) {
-    freedoms_->reduce(work.slopes[work.active[i]], at.positions, work.constraint_slopes.col(i));
-    work.constraint_slopes.col(i) *= sign(work.active[i]);
-  }
+  reduce_slopes(at, work, work.constraint_slopes);
   work.solutions.resize(freedoms_->size(), count + (balance ? 1 : 0));
   work.solutions.leftCols(count) = work.constraint_slopes;
   if (balance) work.solutions.col(count) = -balance->force;
+}
+
+void System::reduce_slopes(const Iterate& at, const Workspace& work, Eigen::MatrixXd& slopes) const {
+  slopes.resize(freedoms_->size(), static_cast<Index>(work.active.size()));
+  for (Index i = 0; i < static_cast<Index>(slopes.cols()); ++i) {
+    freedoms_->reduce(work.slopes[work.active[i]], at.positions, slopes.col(i));
+    slopes.col(i) *= sign(work.active[i]);
+  }
 }
 
 /// What the constraints leave of the stiffness, from their responses.
@@ -230,28 +234,28 @@ void System::first_step(const Balance& balance, Workspace& work, Eigen::VectorXd
   meet_constraints(balance, work, step, change);
 }
 
+/// Change of the multipliers that closes the constraints, of which a step without them misses so much more.
+Eigen::VectorXd System::closing(const Balance& balance, const Workspace& work, const Eigen::VectorXd& more) const {
+  Eigen::VectorXd asked = more;
+  for (Index i = 0; i < static_cast<Index>(asked.size()); ++i)
+    asked[i] += sign(work.active[i]) * balance.constraint[work.active[i]];
+  return work.scale.cwiseProduct(work.schur.solve(work.scale.cwiseProduct(asked)));
+}
+
 /// Adds to a step without constraints what closes them.
 void System::meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step,
                               Eigen::VectorXd& change) const {
   change.setZero(actuators());
-  const Index count = static_cast<Index>(work.active.size());
-  if (count == 0) return;
-  Eigen::VectorXd asked(count);
-  for (Index i = 0; i < count; ++i) asked[i] = sign(work.active[i]) * balance.constraint[work.active[i]];
-  asked += work.constraint_slopes.transpose() * step;
-  const Eigen::VectorXd multipliers = work.scale.cwiseProduct(work.schur.solve(work.scale.cwiseProduct(asked)));
+  if (work.active.empty()) return;
+  const Eigen::VectorXd multipliers = closing(balance, work, work.constraint_slopes.transpose() * step);
   step -= work.responses * multipliers;
-  for (Index i = 0; i < count; ++i) change[work.active[i]] = multipliers[i];
+  for (Index i = 0; i < static_cast<Index>(multipliers.size()); ++i) change[work.active[i]] = multipliers[i];
 }
 
 void System::correct_multipliers(const Balance& balance, const Workspace& work, Eigen::VectorXd& multipliers) const {
-  const Index count = static_cast<Index>(work.active.size());
-  if (count == 0) return;
-  Eigen::VectorXd asked(count);
-  for (Index i = 0; i < count; ++i) asked[i] = sign(work.active[i]) * balance.constraint[work.active[i]];
-  asked -= work.responses.transpose() * balance.force;
-  const Eigen::VectorXd change = work.scale.cwiseProduct(work.schur.solve(work.scale.cwiseProduct(asked)));
-  for (Index i = 0; i < count; ++i) multipliers[work.active[i]] += change[i];
+  if (work.active.empty()) return;
+  const Eigen::VectorXd change = closing(balance, work, -(work.responses.transpose() * balance.force));
+  for (Index i = 0; i < static_cast<Index>(change.size()); ++i) multipliers[work.active[i]] += change[i];
 }
 
 void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,

@@ -124,6 +124,9 @@ class System {
   void command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
                      Points& moves, Team& team) const;
 
+  /// Slopes of the active measures by the unknowns, with their signs, at an iterate that was just evaluated.
+  void reduce_slopes(const Iterate& at, const Workspace& work, Eigen::MatrixXd& slopes) const;
+
   /// Newton step of the balance with which the last factorisation was made.
   void first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
@@ -229,6 +232,8 @@ class System {
   void hold_contacts(const Iterate& at, Workspace& work, Team& team) const;
   void ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const;
   void close(Workspace& work) const;
+  [[nodiscard]] Eigen::VectorXd closing(const Balance& balance, const Workspace& work,
+                                        const Eigen::VectorXd& more) const;
   void meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
   const Model& model_;
