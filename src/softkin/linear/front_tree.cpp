@@ -19,7 +19,7 @@ struct Group {
 
 class Symbolic {
  public:
-  explicit Symbolic(const BlockColumns& pattern) : pattern_(pattern), mark_(pattern.nodes(), -1) {
+  Symbolic(const BlockColumns& pattern, Fill fill) : pattern_(pattern), fill_(fill), mark_(pattern.nodes(), -1) {
     find_groups();
     amalgamate();
   }
@@ -121,10 +121,12 @@ class Symbolic {
     const double missing = wide + below - unknowns(child.below);
     zeros_together_ = child.zeros + parent.zeros + narrow * missing;
     const double share = zeros_together_ / (width * (0.5 * width + below));
+    if (fill_ == Fill::for_solves) return zeros_together_ <= 8 || share < 0.1;
     return width <= 16 || (width <= 48 && share < 0.4) || (width <= 144 && share < 0.12) || share < 0.05;
   }
 
   const BlockColumns& pattern_;
+  Fill fill_;
   std::vector<Group> groups_;
   std::vector<Index> mark_;
   double zeros_together_ = 0;
@@ -231,11 +233,11 @@ void place_rows(const BlockColumns& pattern, FrontTree& tree) {
 
 }  // namespace
 
-FrontTree make_front_tree(BlockColumns columns) {
+FrontTree make_front_tree(BlockColumns columns, Fill fill) {
   FrontTree tree;
   tree.pattern = std::move(columns);
   const BlockColumns& pattern = tree.pattern;
-  const std::vector<Group> groups = Symbolic(pattern).groups();
+  const std::vector<Group> groups = Symbolic(pattern, fill).groups();
   std::vector<Index> front_of(static_cast<std::size_t>(pattern.nodes()));
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (Index node = groups[g].begin; node < groups[g].end; ++node) front_of[node] = static_cast<Index>(g);

@@ -38,9 +38,13 @@ struct FrontTree {
   double flops = 0;                              // of a factorisation
 };
 
+/// Zeros that are stored to make fronts wider: those that pay where matrices are factorised again and again, or few,
+/// where one is solved with far more often.
+enum class Fill { for_factors, for_solves };
+
 /// source  supernodes with relaxed amalgamation as in Ashcraft and Grimes 1989; a front joins its parent where the
 ///         zeros that this stores are few
-[[nodiscard]] FrontTree make_front_tree(BlockColumns pattern);
+[[nodiscard]] FrontTree make_front_tree(BlockColumns pattern, Fill fill = Fill::for_factors);
 
 /// value_bytes  of a value of L
 /// throws       InvalidInput where the machine has not the memory that a factorisation takes

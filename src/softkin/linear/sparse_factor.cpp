@@ -1,8 +1,10 @@
-#include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/linear/ordering.hpp>
 #include <softkin/linear/sparse_factor.hpp>
+#include <softkin/linear/sparse_ldlt.hpp>
+#include <thread>
 
 namespace softkin::linear {
 
@@ -10,88 +12,64 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-Index entries(const Matrix& lower, Index column) {
-  return lower.outerIndexPtr()[column + 1] - lower.outerIndexPtr()[column];
-}
-
-/// First row below the diagonal: the column's parent in the elimination tree; -1 at a root.
-Index parent(const Matrix& lower, Index column) {
-  return entries(lower, column) > 1 ? lower.innerIndexPtr()[lower.outerIndexPtr()[column] + 1] : -1;
-}
-
-/// Last column + 1 of the supernode that starts at `begin`. A column joins its child where that fills up few zeros: the
-/// rows of a parent contain its child's.
-Index supernode_end(const Matrix& lower, Index begin, Index limit) {
-  std::int64_t entered = entries(lower, begin);
-  Index end = begin + 1;
-  for (; end < limit && parent(lower, end - 1) == end; ++end) {
-    const std::int64_t width = end + 1 - begin, height = entries(lower, end);
-    const std::int64_t filled = width * height + width * (width - 1) / 2;
-    entered += height;
-    if (const std::int64_t zeros = filled - entered; zeros > 8 && 5 * zeros > filled) break;
+/// The lower triangle in an order of elimination: its pattern, a node per row, and its values.
+BlockColumns in_order(const Matrix& matrix, const Ordering& ordering, LargeVector<double>& values) {
+  const Index n = static_cast<Index>(ordering.order.size());
+  std::vector<Index> place(static_cast<std::size_t>(n));
+  for (Index k = 0; k < n; ++k) place[ordering.order[k]] = k;
+  std::vector<std::vector<std::pair<Index, double>>> columns(static_cast<std::size_t>(n));
+  for (Index column = 0; column < n; ++column)
+    for (Matrix::InnerIterator it(matrix, column); it; ++it) {
+      if (it.row() < column) continue;
+      const auto [first, last] = std::minmax(place[column], place[it.row()]);
+      columns[first].emplace_back(last, it.value());
+    }
+  BlockColumns pattern;
+  for (Index k = 0; k < n; ++k) {
+    std::sort(columns[k].begin(), columns[k].end());
+    for (const auto& [row, value] : columns[k]) {
+      pattern.rows.push_back(row);
+      values.push_back(value);
+      pattern.offsets.push_back(static_cast<std::int64_t>(values.size()));
+    }
+    pattern.starts.push_back(static_cast<Index>(pattern.rows.size()));
+    pattern.unknowns.push_back(k + 1);
   }
-  return end;
+  pattern.pieces = ordering.pieces;
+  return pattern;
 }
 
 }  // namespace
 
 SparseFactor::SparseFactor(const Matrix& matrix, const std::vector<Index>& order) {
   Ordering ordering = order.empty() ? nested_dissection(matrix) : postordered(matrix, order);
+  LargeVector<double> values;
+  const auto tree =
+      std::make_shared<const FrontTree>(make_front_tree(in_order(matrix, ordering, values), Fill::for_solves));
   order_ = std::move(ordering.order);
   top_ = ordering.pieces.back();
 
-  const Index n = size();
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> permutation(n);
-  for (Index k = 0; k < n; ++k) permutation.indices()[order_[k]] = k;
-  Matrix permuted(n, n);
-  permuted.selfadjointView<Eigen::Lower>() = matrix.selfadjointView<Eigen::Lower>().twistedBy(permutation);
-  const Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::NaturalOrdering<int>> ldlt(permuted);
-  if (ldlt.info() != Eigen::Success || (n > 0 && !(ldlt.vectorD().minCoeff() > 0)))
+  SparseLdlt ldlt(tree);
+  Team team(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+  if (ldlt.factorise(values, std::numeric_limits<double>::min(), team).negative > 0)
     throw InvalidInput("the system matrix is not positive definite: some part of the robot is not held");
-
-  const Matrix lower = ldlt.matrixL();
-  for (Index j = 0; j < n; ++j) inverse_diagonal_.push_back(1 / ldlt.vectorD()[j]);
-  ordering.pieces.push_back(n);
-  for (std::size_t p = 0; p + 1 < ordering.pieces.size(); ++p) {
-    piece_nodes_.push_back(static_cast<Index>(nodes_.size()));
-    for (Index begin = ordering.pieces[p]; begin < ordering.pieces[p + 1];) {
-      const Index end = supernode_end(lower, begin, ordering.pieces[p + 1]);
-      add_supernode(lower, begin, end);
-      begin = end;
-    }
-  }
+  for (const double pivot : ldlt.diagonal()) inverse_diagonal_.push_back(1 / pivot);
+  piece_nodes_.assign(tree->pieces.begin(), tree->pieces.end() - 1);
+  rows_ = tree->rows;
+  for (const Front& front : tree->fronts) add_supernode(front, ldlt.lower().data() + front.first_value);
 }
 
-void SparseFactor::add_supernode(const Matrix& lower, Index begin, Index end) {
-  Supernode node{begin,
-                 end,
-                 static_cast<std::int64_t>(rows_.size()),
-                 0,
-                 entries(lower, end - 1) - 1,
-                 static_cast<std::int64_t>(values_.size())};
-  for (Matrix::InnerIterator it(lower, end - 1); it; ++it) {
-    if (it.row() == end - 1) continue;
-    rows_.push_back(static_cast<Index>(it.row()));
-    if (it.row() < top_) ++node.inner_rows;
-  }
+/// lower: the front's columns of L
+void SparseFactor::add_supernode(const Front& front, const double* lower) {
+  const Supernode node{front.begin, front.end,   front.first_row,
+                       0,           front.below, static_cast<std::int64_t>(values_.size())};
   const Index width = node.width();
-  values_.resize(values_.size() + static_cast<std::size_t>(node.first_below() - node.first_value) +
-                     static_cast<std::size_t>(width) * node.row_count,
-                 0.0);
-  for (Index c = 0; c < width; ++c)
-    for (Matrix::InnerIterator it(lower, begin + c); it; ++it) {
-      const Index row = static_cast<Index>(it.row());
-      if (row == begin + c) continue;
-      if (row < end) {
-        const std::int64_t i = row - begin;
-        values_[node.first_value + i * (i - 1) / 2 + c] = it.value();
-      } else {
-        const auto first = rows_.begin() + node.first_row;
-        const std::int64_t r = std::lower_bound(first, rows_.end(), row) - first;
-        values_[node.first_below() + r * width + c] = it.value();
-      }
-    }
+  for (Index r = 1; r < front.size(); ++r)
+    for (Index c = 0; c < std::min(r, width); ++c)
+      values_.push_back(lower[static_cast<std::int64_t>(c) * front.size() + r]);
   nodes_.push_back(node);
+  const Index* rows = rows_.data() + node.first_row;
+  nodes_.back().inner_rows = static_cast<Index>(std::lower_bound(rows, rows + node.row_count, top_) - rows);
 }
 
 void SparseFactor::forward(const Supernode& node, Row* rows, Row* above) const {

@@ -6,6 +6,8 @@
 
 namespace softkin::linear {
 
+struct Front;
+
 /// Cholesky factor of a symmetric positive definite matrix, made once and solved many times, the three coordinates
 /// together. Columns with (nearly) the same rows form supernodes, solved as dense blocks; independent subtrees of the
 /// elimination tree are solved on several threads, and the result does not depend on their number.
@@ -41,7 +43,7 @@ class SparseFactor {
     }
   };
 
-  void add_supernode(const Eigen::SparseMatrix<double>& lower, Index begin, Index end);
+  void add_supernode(const Front& front, const double* lower);
   void forward(const Supernode& node, Row* rows, Row* above) const;
   void backward(const Supernode& node, Row* rows) const;
 

@@ -35,6 +35,10 @@ class SparseLdltOf {
   /// Every column of right_sides, in the pattern's order of unknowns, becomes its solution.
   void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
+  /// Columns of L, front after front as the tree says; zero above the diagonal, which is 1 and not stored.
+  [[nodiscard]] const LargeVector<Number>& lower() const { return lower_; }
+  [[nodiscard]] const std::vector<Number>& diagonal() const { return diagonal_; }
+
   [[nodiscard]] Index size() const { return tree_->pattern.size(); }
   [[nodiscard]] std::int64_t nonzeros() const { return tree_->values; }
   [[nodiscard]] double flops() const { return tree_->flops; }
