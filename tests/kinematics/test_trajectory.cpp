@@ -89,7 +89,7 @@ TEST_P(FollowPath, LeadsTheTipAlongAReachableCurve) {
 INSTANTIATE_TEST_SUITE_P(Formulations, FollowPath, ::testing::Values(Formulation::physical, Formulation::target_shape));
 
 TEST(Trajectory, PredictionSavesEquilibria) {
-  const Robot robot;
+  const Robot robot(Formulation::target_shape);
   const MarkerPath path = made_by_actuation(robot, 41);
   TrajectoryOptions without;
   without.predict = false;
@@ -97,6 +97,15 @@ TEST(Trajectory, PredictionSavesEquilibria) {
   const auto predicted = follow_path(robot.model, robot.statics, path);
   expect_reached(robot, path, predicted, 1e-3);
   EXPECT_LT(mean_equilibria(predicted), 0.9 * mean_equilibria(plain));
+}
+
+/// Where the search looks ahead one equilibrium a waypoint does.
+TEST(Trajectory, AWaypointCostsOneEquilibrium) {
+  const Robot robot;
+  const MarkerPath path = made_by_actuation(robot, 41);
+  const auto found = follow_path(robot.model, robot.statics, path);
+  expect_reached(robot, path, found, 1e-3);
+  EXPECT_LT(mean_equilibria(found), 1.2);
 }
 
 TEST(Trajectory, OutsideTheWorkspaceItKeepsToTheNearestPointsAndComesBack) {

@@ -88,6 +88,22 @@ TEST(MixedLdlt, WhatIsNearlySingularIsFactorisedInDouble) {
   }
 }
 
+/// Where the sign is all that matters single precision does for what is not definite, and says that it is a guess.
+TEST(MixedLdlt, ASignNeedsNoDouble) {
+  Team alone(1);
+  for (const double negative_share : {0.0, 0.3}) {
+    const Symmetric sample =
+        shifted_to(make_sample(mixed_widths(60, 1), grid_links(5, 4, 3), negative_share, 7), 1e-10);
+    MixedLdlt factor = factor_of(sample);
+    const Index negative = factorise(factor, sample, 1e-15, Precision::sign, alone).negative;
+    EXPECT_EQ(negative > 0, negative_share > 0);
+    EXPECT_EQ(factor.in_double(), negative == 0);
+    EXPECT_EQ(factor.trusted(), negative == 0);
+    EXPECT_EQ(factorise(factor, sample, 1e-15, Precision::enough, alone).negative, negative_eigenvalues(sample));
+    EXPECT_TRUE(factor.in_double() && factor.trusted());
+  }
+}
+
 /// After a failure single precision is left alone for a while, the longer the more often it fails; as new after forget.
 TEST(MixedLdlt, SinglePrecisionIsTriedAgain) {
   Team alone(1);

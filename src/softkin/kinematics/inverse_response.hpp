@@ -35,6 +35,13 @@ class Response {
   enum class Outcome { arrived, halfway, failed, interrupted };
   virtual Outcome go(const Eigen::VectorXd& shares, const Pose& from, Pose& to) = 0;
 
+  /// The terms at shares near a pose whose slopes were asked for, by second order; go() from there to them or near by
+  /// is quicker then. False where that is not to be had.
+  virtual bool foresee(const Eigen::VectorXd& shares, const Pose& from, Eigen::VectorXd& terms) {
+    (void)shares, (void)from, (void)terms;
+    return false;
+  }
+
   /// False where the pose has no regular slopes.
   virtual bool slopes(const Pose& at, Slopes& slopes) = 0;
 

@@ -140,6 +140,14 @@ Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& f
   return converged ? Outcome::arrived : Outcome::halfway;
 }
 
+bool RobotResponse::foresee(const Eigen::VectorXd& shares, const Pose& from, Eigen::VectorXd& terms) {
+  const State& state = from.equilibrium.state;
+  Points positions;
+  if (!statics_.foresee(actuation_of(shares, state.actuation), state, options_.statics, positions)) return false;
+  terms = goal_terms(model_, goals_, positions);
+  return terms.allFinite();
+}
+
 bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   const State& state = at.equilibrium.state;
   const bool given = options_.start_sensitivity != nullptr && history_.empty() && at.idle.isZero(0);

@@ -24,6 +24,7 @@ class RobotResponse : public Response {
   bool solve(const Actuation& actuation, const State& from, Equilibrium& found);
 
   Outcome go(const Eigen::VectorXd& shares, const Pose& from, Pose& to) override;
+  bool foresee(const Eigen::VectorXd& shares, const Pose& from, Eigen::VectorXd& terms) override;
   bool slopes(const Pose& at, Slopes& slopes) override;
   [[nodiscard]] bool any_left() const override { return static_cast<int>(history_.size()) < most_; }
 

@@ -84,8 +84,21 @@ class Search {
     return slope <= std::max(relative_slope, known) * result_.slopes.terms.norm();
   }
 
+  /// Of a step that is to meet the goals, what it is foreseen to leave is met as well, where that is little.
+  void look_ahead() {
+    constexpr double little = 0.3;  // of the errors, and of the step
+    if (!fresh_ || pose().miss <= 1 || !(step_.predicted_norm < meets * pose().terms.norm())) return;
+    Pose ahead = pose();
+    ahead.shares += step_.move;
+    if (!response_.foresee(ahead.shares, pose(), ahead.terms)) return;
+    if (!(ahead.terms.norm() < little * pose().terms.norm())) return;
+    const InverseStep rest = find_step(ahead, result_.slopes, none_, ahead.shares, limits_);
+    if (rest.move.norm() < little * step_.move.norm()) step_.move += rest.move;
+  }
+
   void advance() {
     ++result_.iterations;
+    look_ahead();
     Pose trial;
     const auto outcome = response_.go(pose().shares + step_.move, pose(), trial);
     if (outcome == Response::Outcome::interrupted) return end_at_once(SearchEnd::interrupted);

@@ -179,9 +179,11 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
 }
 
 /// Commands for the goals by the markers' Taylor series from the waypoint before: slopes, and along the last move their
-/// change. Nothing where that change is not known: solve_inverse itself begins with the slopes.
+/// change. Nothing where that change is not known, as solve_inverse itself begins with the slopes, and where that looks
+/// ahead to second order.
 std::optional<Actuation> PathFollower::predicted(const std::vector<Goal>& goals) const {
-  if (!options_.predict || slopes_.size() == 0 || slopes_before_.size() == 0) return std::nullopt;
+  const bool search_looks_ahead = options_.inverse.method == InverseMethod::newton && statics_.foresees();
+  if (!options_.predict || search_looks_ahead || slopes_.size() == 0 || slopes_before_.size() == 0) return std::nullopt;
   const Eigen::VectorXd shares = shares_of(state_.actuation);
   const Eigen::VectorXd terms = inverse::goal_terms(model_, goals, state_.positions);
   const Eigen::VectorXd straight = move_to(terms, slopes_, shares);

@@ -17,7 +17,8 @@ namespace softkin {
 struct TrajectoryOptions {
   InverseOptions inverse{};  // start_sensitivity is set here; other_starts is for the first waypoint alone, as a jump
                              // to another shape would tear the path
-  bool predict = true;       // newton: the next actuation from the Jacobian and its change
+  bool predict = true;       // newton: the next actuation from the Jacobian and its change, where
+                             // Statics::foresee does not do
   Actuation start{};         // m: from where the first waypoint is sought, such as that of the nearest sample of a
                              // workspace; empty: rest
 };

@@ -133,7 +133,7 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
     remainder.left = 0;
     for (const Eigen::Index i : open) raise(remainder.left, share_left(i));
     if (images.size() == known) break;
-    if (round > 0 && std::pow(remainder.left, static_cast<double>(rounds) / (round + 1)) > tolerance) break;
+    if (round > 1 && std::pow(remainder.left, static_cast<double>(rounds) / (round + 1)) > tolerance) break;
   }
   return remainder;
 }

@@ -27,9 +27,10 @@ void MixedLdlt::forget() {
   patience_ = 1;
 }
 
-/// Solves with the factor in single precision. False where that is not to be trusted; right_sides are as they were.
-bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy,
-                              Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+/// Solves with the factor in single precision; found_ becomes the solutions, with one more. False where they are not to
+/// be trusted.
+bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy, const Eigen::MatrixXd& right_sides,
+                              Team& team) {
   const Index count = static_cast<Index>(right_sides.cols());
   if (lopsided_.size() != right_sides.rows()) lopsided_ = lopsided(right_sides.rows());
   found_.resize(right_sides.rows(), count + 1);
@@ -39,14 +40,9 @@ bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy,
   left_ = lopsided_;
   subtract_product(tree_->pattern, values, found_.col(count), left_, team);
   rounded_ = std::abs(found_.col(count).dot(left_.col(0)) / found_.col(count).dot(lopsided_));
-  if (by_energy) {
-    if (!(rounded_ <= most_rounded)) return false;
-  } else {
-    single_->solve(left_, team);
-    if (!(left_.norm() <= slowest * found_.col(count).norm())) return false;
-  }
-  right_sides = found_.leftCols(count);
-  return true;
+  if (by_energy) return rounded_ <= most_rounded;
+  single_->solve(left_, team);
+  return left_.norm() <= slowest * found_.col(count).norm();
 }
 
 Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Precision precision,
@@ -56,9 +52,12 @@ Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Pre
   if (!in_double_) {
     if (!single_) single_.emplace(tree_);
     const Pivots pivots = single_->factorise(values, single_least * least, team);
-    if (pivots.replaced == 0 &&
-        solve_trusted(values, pivots.negative == 0 && precision == Precision::enough, right_sides, team)) {
-      patience_ = 1;
+    const bool by_energy = pivots.negative == 0 && precision != Precision::good;
+    trusted_ = pivots.replaced == 0 && solve_trusted(values, by_energy, right_sides, team);
+    const bool guess = precision == Precision::sign && pivots.replaced == 0 && pivots.negative > 0;
+    if (trusted_) patience_ = 1;
+    if (trusted_ || guess) {
+      right_sides = found_.leftCols(right_sides.cols());
       return pivots;
     }
     in_double_ = true;
@@ -69,6 +68,7 @@ Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Pre
     require_memory(*tree_, sizeof(double));
     twice_.emplace(tree_);
   }
+  trusted_ = true;
   const Pivots pivots = twice_->factorise(values, least, team);
   twice_->solve(right_sides, team);
   return pivots;

@@ -24,14 +24,15 @@ class MixedLdlt {
   /// As if nothing had been factorised before: results are then those of a new object.
   void forget();
 
-  /// What solutions are to be, as factorise() and solve() say.
-  enum class Precision { enough, good, twice };
+  /// What solutions are to be, as factorise() and solve() say. sign: as enough, and a
+  /// guess where the matrix seems not to be positive definite.
+  enum class Precision { sign, enough, good, twice };
 
   /// Factorises, and solves for every column of right_sides, as solve() does.
   ///
   /// values     as the pattern's offsets say
   /// least      magnitude below which a pivot is replaced
-  /// precision  enough, good: in single precision where that does; twice: in double whatever single does
+  /// precision  sign, enough, good: in single precision where that does; twice: in double whatever single does
   /// throws     InvalidInput where double precision is called for and there is not the memory
   Pivots factorise(const LargeVector<double>& values, double least, Precision precision,
                    Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
@@ -43,6 +44,8 @@ class MixedLdlt {
 
   /// Is the last factor in double precision?
   [[nodiscard]] bool in_double() const { return in_double_; }
+  /// Is it as the precision asked for says? Where it is not, with `sign`, negative pivots and solutions are a guess.
+  [[nodiscard]] bool trusted() const { return trusted_; }
   /// Share of x . M x that rounding has changed for the x that was tried; 0 in double precision.
   [[nodiscard]] double rounded() const { return in_double_ ? 0 : rounded_; }
   [[nodiscard]] double bytes() const;
@@ -50,13 +53,12 @@ class MixedLdlt {
   [[nodiscard]] std::int64_t nonzeros() const { return tree_->values; }
 
  private:
-  bool solve_trusted(const LargeVector<double>& values, bool by_energy, Eigen::Ref<Eigen::MatrixXd> right_sides,
-                     Team& team);
+  bool solve_trusted(const LargeVector<double>& values, bool by_energy, const Eigen::MatrixXd& right_sides, Team& team);
 
   std::shared_ptr<const FrontTree> tree_;
   std::optional<SparseLdltOf<float>> single_;
   std::optional<SparseLdlt> twice_;
-  bool in_double_ = false;
+  bool in_double_ = false, trusted_ = true;
   double rounded_ = 0;
   int wait_ = 0,
       patience_ = 1;  // factorisations in double before single is tried again, now and after the next failure

@@ -199,6 +199,18 @@ Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options,
   return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, accuracy, *team);
 }
 
+bool Statics::foresee(const Actuation& actuation, const State& at, const StaticsOptions& options,
+                      Points& positions) const {
+  check_actuation(parts_->model, actuation);
+  parts_->check_known(at, options, "what is foreseen from a shape");
+  if (!foresees() || !options.reuse_factor) return false;
+  return parts_->physical->foresee(actuation, at, positions, *parts_->team(options));
+}
+
+bool Statics::foresees() const {
+  return parts_->physical && !parts_->model.contact.any();
+}
+
 ElementDeformation Statics::measured(const State& at) const {
   ElementDeformation deformation = deformation_of(parts_->model, at.positions);
   if (!parts_->physical) return deformation;

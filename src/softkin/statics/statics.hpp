@@ -89,6 +89,18 @@ class Statics {
   [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {},
                                         double accuracy = 1e-8) const;
 
+  /// The shape under another actuation by second order, at the price of a small part of a solve. One that follows, from
+  /// the same equilibrium to that actuation or near it, begins there.
+  ///
+  /// at         an equilibrium that solve() returned and whose sensitivity() was asked for
+  /// positions  n x 3 [mm]
+  /// returns    false where that is not known any more, where something may touch, and of target shapes
+  /// throws     InvalidInput as solve() and sensitivity() do
+  bool foresee(const Actuation& actuation, const State& at, const StaticsOptions& options, Points& positions) const;
+
+  /// Does foresee() do for this robot: in the physical formulation, where nothing may touch?
+  [[nodiscard]] bool foresees() const;
+
   /// What a shape measures: deformation_of and, physical, the stress of the elements and what holds the robot.
   ///
   /// at       an equilibrium that solve() returned; physical: its actuation and multipliers must be known

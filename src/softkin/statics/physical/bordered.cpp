@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <softkin/statics/physical/bordered.hpp>
 
 namespace softkin::physical {
@@ -6,6 +8,11 @@ namespace softkin::physical {
 void Bordered::set(const Iterate& at) {
   at_ = &at;
   system_.reduce_slopes(at, work_, slopes_);
+}
+
+void Bordered::set_factorised(const Iterate& at) {
+  at_ = &at;
+  slopes_ = work_.constraint_slopes;
 }
 
 /// Solves with the factor, in place.
@@ -25,16 +32,23 @@ void Bordered::multiply(const Columns& columns, Columns& product) {
   product.multipliers.noalias() = slopes_.transpose() * columns.moves;
 }
 
-linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rounds, Columns& found) {
+linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rounds, Columns& found,
+                                  const Columns* guess) {
   constexpr linear::Remainder failed{1, 1};
   const Index size = static_cast<Index>(slopes_.rows()), count = static_cast<Index>(slopes_.cols());
   if (count > 0 && work_.schur.rank() < count) return failed;
-  found = right;
-  precondition(found);
-  if (!found.moves.allFinite() || !found.multipliers.allFinite()) return failed;
+  Columns begin = right;
+  if (guess != nullptr) {
+    multiply(*guess, begin);
+    begin.moves = right.moves - begin.moves;
+    begin.multipliers = right.multipliers - begin.multipliers;
+  }
+  precondition(begin);
+  if (!begin.moves.allFinite() || !begin.multipliers.allFinite()) return failed;
   // moves and multipliers in one norm: that of the moves, and of those that would cost the multipliers' energy
-  const double squares = found.moves.squaredNorm();
-  const double energy = std::abs(found.moves.cwiseProduct(right.moves - slopes_ * found.multipliers).sum());
+  const Columns& about = guess != nullptr ? *guess : begin;
+  const double squares = about.moves.squaredNorm();
+  const double energy = std::abs(about.moves.cwiseProduct(right.moves - slopes_ * about.multipliers).sum());
   const double stiffness = squares > 0 && energy > 0 ? energy / squares : 1;
   Eigen::VectorXd weights(count);
   for (Index i = 0; i < count; ++i) weights[i] = 1 / (work_.scale[i] * std::sqrt(stiffness));
@@ -51,11 +65,39 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
     precondition(answer);
     join(answer, out);
   };
-  Eigen::MatrixXd left(size + count, found.moves.cols()), x;
-  join(found, left);
-  const linear::Remainder remainder = linear::conjugate_residuals(product, accuracy, rounds, left, x);
+  Eigen::MatrixXd left(size + count, begin.moves.cols()), x;
+  join(begin, left);
+  double known = 1;  // what columns are over what the guess leaves of them, the least
+  if (guess != nullptr) {
+    Eigen::MatrixXd all(left.rows(), left.cols());
+    join(*guess, all);
+    known = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i < left.cols(); ++i)
+      if (!left.col(i).isZero(0)) known = std::min(known, all.col(i).norm() / left.col(i).norm());
+    if (!(known > 1)) return solve(right, accuracy, rounds, found);
+  }
+  linear::Remainder remainder = linear::conjugate_residuals(product, accuracy * known, rounds, left, x);
+  remainder.left /= known;
   if (!x.allFinite()) return failed;
   found = split(x);
+  if (guess != nullptr) {
+    found.moves += guess->moves;
+    found.multipliers += guess->multipliers;
+  }
+  return remainder;
+}
+
+linear::Remainder Bordered::step(const System::Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
+                                 Eigen::VectorXd& change) {
+  const Index count = static_cast<Index>(work_.active.size());
+  Columns right{-balance.force, Eigen::MatrixXd(count, 1)}, found;
+  for (Index i = 0; i < count; ++i)
+    right.multipliers(i, 0) = -system_.sign(work_.active[i]) * balance.constraint[work_.active[i]];
+  const linear::Remainder remainder = solve(right, accuracy, rounds, found);
+  if (!(remainder.left < 1)) return remainder;
+  step = found.moves.col(0);
+  change.setZero(system_.actuators());
+  for (Index i = 0; i < count; ++i) change[work_.active[i]] = found.multipliers(i, 0);
   return remainder;
 }
 

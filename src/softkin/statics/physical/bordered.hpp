@@ -17,14 +17,23 @@ class Bordered {
   /// All must outlive the object.
   Bordered(const System& system, System::Workspace& work, Team& team) : system_(system), work_(work), team_(team) {}
 
+  /// The equations of the last factorisation themselves.
+  void set_factorised(const Iterate& at);
+
   /// The shape, at an iterate that was just evaluated. The measures must be those of the last factorisation, or of
   /// couple(); the stiffness is that which was gathered last.
   void set(const Iterate& at);
 
   /// accuracy  of each column, over the right-hand side, both as the factor answers
   /// rounds    at most
+  /// guess     nearly the solution; null: none is known
   /// returns   what is left; 1 or more where the constraints depend on each other or a number is not finite
-  linear::Remainder solve(const Columns& right, double accuracy, int rounds, Columns& found);
+  linear::Remainder solve(const Columns& right, double accuracy, int rounds, Columns& found,
+                          const Columns* guess = nullptr);
+
+  /// The step of a balance, as System::step() says, from zero; change: of all multipliers.
+  linear::Remainder step(const System::Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
+                         Eigen::VectorXd& change);
 
  private:
   void precondition(Columns& columns);

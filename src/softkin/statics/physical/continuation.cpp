@@ -60,7 +60,9 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   bool led = false;
   const auto prediction = [&] {
-    led = whole && !led && !system_.contact() && work_.trail.lead(here, there, active_, tolerance_mm_, trial);
+    led = whole && !led && !system_.contact() &&
+          (follow_foreseen(system_, here, there, active_, work_, team_, trial) ||
+           work_.trail.lead(here, there, active_, tolerance_mm_, trial));
     if (led) {
       system_.hold(there, trial.positions);
       predicted_ = begun_ = trial.positions;

@@ -52,7 +52,9 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
   moves_.resize(static_cast<std::size_t>(system_.actuators()));
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (system_.constrains(a)) continue;
-    system_.command_force(at, demand, a, work_, force, moves_[static_cast<std::size_t>(a)], team_);
+    Points& moves = moves_[static_cast<std::size_t>(a)];
+    system_.command_force(at, demand, a, work_, force, moves, team_);
+    if (moves.isZero(0)) moves.resize(0, 3);
     system_.freedoms().reduce(-force, at.positions, right_.moves.col(a));
   }
 }
@@ -63,7 +65,12 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
   equations.set(at);
   const bool symmetric = !system_.friction();
   const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : most_rounds;
-  const linear::Remainder remainder = equations.solve(right_, asked * accuracy_, rounds, found_);
+  // those of the last derivative, of a shape nearby; what they leave would not tell of the factor's own rounding
+  const System::Slopes& last = work_.tangents;
+  const bool like_last = !exact_factor && last.at.rows() == at.positions.rows() && last.held == held_;
+  const Columns guess = like_last ? Columns{last.moves, last.multipliers} : Columns{};
+  const linear::Remainder remainder =
+      equations.solve(right_, asked * accuracy_, rounds, found_, like_last ? &guess : nullptr);
   const bool rounded = exact_factor && symmetric && !(remainder.apart <= singular);
   return remainder.left <= asked * accuracy_ && !rounded;
 }

@@ -33,6 +33,13 @@ void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) c
   out.multipliers = at.multipliers;
 }
 
+bool Equilibria::foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const {
+  if (system_.contact()) return false;
+  Lease lease(*this, at.positions, true);
+  return physical::foresee(system_, {at.actuation, at.share}, {actuation, at.share}, lease.work(), team,
+                           system_.iterate(at), positions);
+}
+
 void Equilibria::forget() const {
   const std::lock_guard lock(mutex_);
   idle_.clear();

@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <softkin/statics/physical/newton.hpp>
+#include <softkin/statics/physical/prediction.hpp>
 #include <softkin/statics/sensitivity.hpp>
 
 namespace softkin::physical {
@@ -30,6 +31,9 @@ class Equilibria {
 
   /// Of an equilibrium; see Statics::sensitivity.
   [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
+
+  /// See Statics::foresee.
+  bool foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const;
 
   /// Adds stress and reactions of an equilibrium; see Statics::measured.
   void measure(const State& at, ElementDeformation& out, Team& team) const;

@@ -56,31 +56,40 @@ bool Newton::goes_on() const {
 /// shift where that is slow, then by both. none: no shift makes it positive.
 Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = System::Stiffness;
+  using Precision = linear::MixedLdlt::Precision;
+  const Precision usual = work_.precision;
+  // one that is not stable is not stepped with where Newton descends; and where its sign is a guess, one that is hardly
+  // stiffer wants a closer look
+  const bool guess = policy == Policy::descend && usual == Precision::enough;
   int negative = 0;
-  const auto attempted = [&](Stiffness kind, double shift) {
+  const auto attempted = [&](Stiffness kind, double shift, Precision precision) {
     if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
     ++report_.factorisations;
     secants_.clear();
+    work_.precision = precision;
     negative = system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
+    work_.precision = usual;
     report_.factorisations_in_double += work_.factor.in_double();
     return negative == 0 ? Advance::made : Advance::none;
   };
-  Advance end = attempted(Stiffness::exact, 0);
+  Advance end = attempted(Stiffness::exact, 0, guess ? Precision::sign : usual);
   if (end == Advance::interrupted) return end;
   negative_ = negative;
+  doubtful_ = !work_.factor.trusted();
+  const Precision closer = doubtful_ ? Precision::good : usual;
   if (end == Advance::made || policy == Policy::follow) return Advance::made;
   for (double shift = std::max(slight_shift, last_shift_); slow_ && end == Advance::none && shift < clear_shift;
        shift *= 8) {
     ++report_.shifts;
-    end = attempted(Stiffness::exact, shift);
+    end = attempted(Stiffness::exact, shift, closer);
     last_shift_ = shift / 3;
   }
   if (end != Advance::none) return end;
   ++report_.projections;
-  end = attempted(Stiffness::projected, 0);
+  end = attempted(Stiffness::projected, 0, closer);
   for (double shift = 1e-4; end == Advance::none && shift < 100; shift *= 10) {
     ++report_.shifts;
-    end = attempted(Stiffness::projected, shift);
+    end = attempted(Stiffness::projected, shift, closer);
   }
   return end;
 }
@@ -132,15 +141,42 @@ double Newton::weigh_constraints(const Iterate& at) {
   return slope;
 }
 
+/// Step that what was factorised last asks for, closer than the factor's precision gives it.
+///
+/// returns  how far from it the factor's own is, over that; 0 where none comes out
+double Newton::refine(const System::Balance& balance, const Iterate& at, Step& step) {
+  constexpr double accuracy = 0.03, worthwhile = 0.3;
+  constexpr int rounds = 6;
+  Bordered equations(system_, work_, team_);
+  equations.set_factorised(at);
+  Step found;
+  const linear::Remainder remainder = equations.step(balance, accuracy, rounds, found.move, found.change);
+  if (!(remainder.left < worthwhile)) return 0;
+  found.size = system_.size_of(found.move, at.positions);
+  step = std::move(found);
+  return remainder.apart;
+}
+
+/// Where rounding of the factor may be why step_ leads no farther, refines it; and so all that follow, if that is why.
+bool Newton::refine_first(const Iterate& at) {
+  constexpr double slow = 0.25, much = 0.15;
+  if (rounding_looked_at_ || work_.factor.in_double() || system_.contact()) return false;
+  if (next_.size.mean < slow * step_.size.mean) return false;
+  rounding_looked_at_ = true;
+  refines_ = refine(balance_, at, step_) > much;
+  return refines_;
+}
+
 /// Step that the factor at hand asks for.
-void Newton::find(const System::Balance& balance, const Points& positions, Step& step) {
-  system_.step(balance, work_, step.move, step.change, team_);
+void Newton::find(const System::Balance& balance, const Iterate& at, Step& step) {
+  const bool refined = refines_ && !work_.factor.in_double() && refine(balance, at, step) > 0;
+  if (!refined) system_.step(balance, work_, step.move, step.change, team_);
   for (const Secant& secant : secants_) {
     const double part = secant.step.dot(step.move);
     step.move += part * secant.left;
     step.change += part * secant.left_change;
   }
-  step.size = system_.size_of(step.move, positions);
+  step.size = system_.size_of(step.move, at.positions);
 }
 
 bool Newton::accept(double moved_mm, Iterate& at) {
@@ -175,6 +211,7 @@ void Newton::note_pace(double damping) {
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   system_.first_step(balance_, work_, step_.move, step_.change);
   step_.size = system_.size_of(step_.move, at.positions);
+  if (refines_ && !work_.factor.in_double()) (void)refine(balance_, at, step_);
   if (!std::isfinite(step_.size.mean)) return Advance::none;
   damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
@@ -185,7 +222,8 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
       if (last(step_, 0)) return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
-      find(trial_balance_, trial_.positions, next_);
+      find(trial_balance_, trial_, next_);
+      if (refine_first(at)) continue;
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
       if (rise < worthwhile_descent * damping * slope) break;
       // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
@@ -239,7 +277,7 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
     if (!attempt_whole(step_, at)) return reject(at);
     const bool arrives = last(step_, next_.size.largest);
     if (!arrives) {
-      find(trial_balance_, trial_.positions, next_);
+      find(trial_balance_, trial_, next_);
       if (!(next_.size.mean < step_.size.mean)) return reject(at);
     }
     if (!accept(step_.size.largest, at)) return Advance::interrupted;
@@ -267,11 +305,11 @@ bool Newton::shrink_fast() const {
 /// Steps with the factor of a shape close by, as long as they shrink fast enough.
 Newton::Advance Newton::steps_from_nearby(Iterate& at) {
   if (!as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_)) return reject(at);
-  find(balance_, at.positions, step_);
+  find(balance_, at, step_);
   if (!std::isfinite(step_.size.mean) || !attempt_whole(step_, at)) return reject(at);
   const bool arrives = last(step_, 0);
   if (!arrives) {
-    find(trial_balance_, trial_.positions, next_);
+    find(trial_balance_, trial_, next_);
     if (!shrink_fast()) return reject(at);
   }
   if (!accept(step_.size.largest, at)) return Advance::interrupted;
@@ -308,6 +346,16 @@ bool Newton::improve_constraints() {
   return missed > promised && missed < worthwhile_balance * std::exchange(missed_, missed);
 }
 
+/// The number of negative eigenvalues at an iterate, without a doubt.
+void Newton::make_sure(const Iterate& at) {
+  const auto precision = std::exchange(work_.precision, linear::MixedLdlt::Precision::twice);
+  negative_ = system_.factorise(at, *demand_, *active_, System::Stiffness::exact, 0, work_, team_);
+  work_.precision = precision;
+  ++report_.factorisations;
+  ++report_.factorisations_in_double;
+  doubtful_ = false;
+}
+
 Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised,
                               Iterate& at) {
   demand_ = &demand;
@@ -318,7 +366,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   double damping = 1;
   secants_.clear();
   poor_ = same_ = 0;
-  slow_ = false;
+  slow_ = refines_ = rounding_looked_at_ = false;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (factorised && iteration == 0) {
@@ -345,155 +393,8 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   report_.energy = balance_.energy;
   if (!meets_constraints()) return Outcome::unmet;
   system_.correct_multipliers(balance_, work_, at.multipliers);
+  if (negative_ != 0 && doubtful_) make_sure(at);
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
-}
-
-namespace {
-
-/// First-order change of unknowns and multipliers.
-struct Tangent {
-  Eigen::VectorXd step, change;
-
-  Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-          System::Workspace& work, Team& team, const Iterate& at) {
-    if (known(system, here, there, active, work.tangents, at)) return;
-    System::Balance balance;
-    const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
-    const bool refined = !of_here || !work.factor.in_double();
-    if (refined) {
-      system.hold_friction(at, work, team);
-      system.evaluate(at, here, active, work, balance, team);
-      system.assemble(at, here, System::Stiffness::exact, work, team);
-    }
-    system.upset(at, here, there, active, work, balance, team);
-    if (!refined || !refine(system, balance, work, team, at)) system.step(balance, work, step, change, team);
-    if (step.allFinite() && change.allFinite()) return;
-    step.setZero();
-    change.setZero();
-  }
-
- private:
-  /// What a derivative at the same shape found before; false where there was none.
-  bool known(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-             const System::Slopes& slopes, const Iterate& at) {
-    if (here.share != there.share || slopes.at.rows() != at.positions.rows() || slopes.at != at.positions) return false;
-    std::vector<bool> held(active.size());
-    for (const Index a : slopes.held) held[static_cast<std::size_t>(a)] = true;
-    if (held != active) return false;
-    const Eigen::VectorXd way = there.actuation - here.actuation;
-    const Eigen::VectorXd multipliers = slopes.multipliers * way;
-    step = slopes.moves * way;
-    change.setZero(system.actuators());
-    for (std::size_t i = 0; i < slopes.held.size(); ++i) change[slopes.held[i]] = multipliers[static_cast<Index>(i)];
-    return true;
-  }
-
-  /// The step of the stiffness here; false where there is none.
-  bool refine(const System& system, const System::Balance& balance, System::Workspace& work, Team& team,
-              const Iterate& at) {
-    constexpr double accuracy = 1e-3;
-    constexpr int rounds = 6;
-    Bordered equations(system, work, team);
-    equations.set(at);
-    Columns right{-balance.force, Eigen::MatrixXd(work.active.size(), 1)}, found;
-    for (Index i = 0; i < static_cast<Index>(work.active.size()); ++i)
-      right.multipliers(i, 0) = -system.sign(work.active[i]) * balance.constraint[work.active[i]];
-    system.gather(at, work, team);
-    if (!(equations.solve(right, accuracy, rounds, found).left < 1)) return false;
-    step = found.moves.col(0);
-    change.setZero(system.actuators());
-    for (Index i = 0; i < static_cast<Index>(work.active.size()); ++i) change[work.active[i]] = found.multipliers(i, 0);
-    return true;
-  }
-};
-
-/// Multipliers at a share of a tangent; those that are given are those of `there`.
-void follow(const Tangent& tangent, double share, const System& system, const Demand& there,
-            const std::vector<bool>& active, Eigen::VectorXd& multipliers) {
-  multipliers += share * tangent.change;
-  for (Index a = 0; a < system.actuators(); ++a)
-    if (!active[a] && !system.constrains(a) && system.measures().measures(a))
-      multipliers[a] = system.unit(a) * there.actuation[a];
-}
-
-}  // namespace
-
-double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-               System::Workspace& work, Team& team, Iterate& at) {
-  const Tangent tangent(system, here, there, active, work, team, at);
-  const Points before = at.positions;
-  system.advance(tangent.step, 1, work, at.positions, team);
-  system.hold(there, at.positions);
-  follow(tangent, 1, system, there, active, at.multipliers);
-  return largest_move(before, at.positions);
-}
-
-std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
-                                    const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
-                                    Points& predicted) {
-  constexpr double shorter = 0.9;                    // than what is clear
-  constexpr double most_cut = 0.5, long_way = 0.05;  // of the way, of the diagonal
-  constexpr double least = 1e-3;
-  const Tangent tangent(system, here, there, active, work, team, at);
-  const Points from = at.positions;
-  // what is held comes to its place whatever is left of the way
-  double held = 1;
-  const System::Way way = [&](double share, Points& out) {
-    out = from;
-    system.advance(tangent.step, share, work, out, team);
-    system.hold(between(here, there, share / held), out);
-  };
-  double end = 1;
-  for (bool first = true;; first = false) {
-    held = end;
-    const double share = system.clear_share(from, way, end, work, at.positions, team);
-    if (first) predicted = at.positions;
-    if (share >= end) break;
-    end = shorter * share;
-    if (end < most_cut && largest_move(from, predicted) > long_way * system.model().diagonal_mm) return std::nullopt;
-    if (end >= least) continue;
-    end = 0;  // only what is held moves
-    const System::Way alone = [&](double part, Points& out) {
-      out = from;
-      system.hold(between(here, there, part), out);
-    };
-    if (system.clear_share(from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
-    break;
-  }
-  follow(tangent, end, system, there, active, at.multipliers);
-  return largest_move(from, at.positions);
-}
-
-Predictor::Predictor(const System& system, System::Workspace& work, const State& at, Team& team)
-    : system_(system),
-      work_(work),
-      at_(at),
-      iterate_(system.iterate(at)),
-      active_(static_cast<std::size_t>(system.actuators())) {
-  for (Index a = 0; a < system.actuators(); ++a) {
-    // chambers are held always, cables where they pull
-    active_[a] = system.constrains(a) && (!system.only_pulls(a) || iterate_.multipliers[a] > 0);
-  }
-  System::Balance balance;
-  const Demand demand{at.actuation, at.share};
-  system.hold_friction(iterate_, work_, team);
-  system.evaluate(iterate_, demand, active_, work_, balance, team);
-  (void)system.factorise(iterate_, demand, active_, System::Stiffness::exact, 0, work_, team);
-}
-
-State Predictor::predict(const Actuation& actuation, Team& team) {
-  Iterate there = iterate_;
-  Points predicted;
-  if (!predict_clear(system_, {at_.actuation, at_.share}, {actuation, 1}, active_, work_, team, there, predicted))
-    return at_;
-  if (!there.positions.allFinite() || !there.multipliers.allFinite()) return at_;
-  State state{std::move(there.positions), actuation, std::move(there.multipliers), 1, std::move(there.anchors)};
-  for (Index a = 0; a < system_.actuators(); ++a) {
-    state.multipliers[a] /= system_.unit(a);
-    // no cable pushes
-    if (system_.constrains(a) && system_.only_pulls(a)) state.multipliers[a] = std::max(0.0, state.multipliers[a]);
-  }
-  return state;
 }
 
 }  // namespace softkin::physical

@@ -59,7 +59,9 @@ class Newton {
 
   [[nodiscard]] bool goes_on() const;
   Advance factorise(const Iterate& at, Policy policy);
-  void find(const System::Balance& balance, const Points& positions, Step& step);
+  void find(const System::Balance& balance, const Iterate& at, Step& step);
+  double refine(const System::Balance& balance, const Iterate& at, Step& step);
+  bool refine_first(const Iterate& at);
   [[nodiscard]] bool last(const Step& step, double before) const;
   bool attempt(const Step& step, double& damping, const Iterate& from);
   bool attempt_whole(const Step& step, const Iterate& from);
@@ -76,6 +78,7 @@ class Newton {
   Advance steps_from_nearby(Iterate& at);
   [[nodiscard]] bool meets_constraints() const;
   bool improve_balance();
+  void make_sure(const Iterate& at);
   bool improve_constraints();
   Advance reject(const Iterate& at);
   void record(double step_mm);
@@ -97,40 +100,12 @@ class Newton {
   int same_ = 0;       // steps in a row that left as much to go
   bool slow_ = false;  // are steps of a stiffness that was made positive element by element
   double last_shift_ = 0;
-  int negative_ = 0;  // of the last factorisation
+  bool doubtful_ = false;  // is there a doubt about negative_
+  bool rounding_looked_at_ = false;
+  bool refines_ = false;  // do steps want more than what the factor's precision gives
+  int negative_ = 0;      // of the last factorisation
   System::Imbalance imbalance_;
   double missed_ = 0;  // the worst constraint, over its measure at rest [-]
-};
-
-/// First-order change of shape and multipliers from one demand to another, with the factor at hand.
-///
-/// returns  the largest move of a vertex [mm]
-double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-               System::Workspace& work, Team& team, Iterate& at);
-
-/// The same, less far where otherwise something would pass through something.
-///
-/// predicted  becomes what predict() gives
-/// returns    the largest move of a vertex [mm]; none where a shorter way is better: supports are in each other's way,
-///            or little of a long one is left
-std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
-                                    const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
-                                    Points& predicted);
-
-/// The stiffness at an equilibrium, for predictions of those around it.
-class Predictor {
- public:
-  /// at: of a known actuation, with multipliers.
-  Predictor(const System& system, System::Workspace& work, const State& at, Team& team);
-
-  [[nodiscard]] State predict(const Actuation& actuation, Team& team);
-
- private:
-  const System& system_;
-  System::Workspace& work_;
-  State at_;
-  Iterate iterate_;
-  std::vector<bool> active_;
 };
 
 }  // namespace softkin::physical

@@ -163,21 +163,42 @@ int System::factorise(const Iterate& at, const Demand& demand, const std::vector
     work.factor.change(layout.symbolic);
     work.factorised_layout = work.layout;
   }
-  ask(at, active, work, balance);
-  const auto made = [&](Eigen::MatrixXd& right_sides) {
-    work.negative = work.factor.factorise(work.values, 1e-13 * mean, work.precision, right_sides, team).negative;
+  using Precision = linear::MixedLdlt::Precision;
+  const auto made = [&](Precision precision) {
+    ask(at, active, work, balance);
+    if (!layout.reduced.in_order()) layout.reduced.to_columns(work.solutions, work.in_columns);
+    Eigen::MatrixXd& right_sides = layout.reduced.in_order() ? work.solutions : work.in_columns;
+    work.negative = work.factor.factorise(work.values, 1e-13 * mean, precision, right_sides, team).negative;
+    if (!layout.reduced.in_order()) layout.reduced.to_unknowns(work.in_columns, work.solutions);
+    close(work);
   };
-  if (layout.reduced.in_order()) {
-    made(work.solutions);
-  } else {
-    layout.reduced.to_columns(work.solutions, work.in_columns);
-    made(work.in_columns);
-    layout.reduced.to_unknowns(work.in_columns, work.solutions);
-  }
+  made(work.precision);
+  if (!work.factor.trusted() && (work.unstable == 0 || !loses_energy(work, team))) made(Precision::twice);
   work.exact = kind == Stiffness::exact && shift == 0;
   work.factorised = at.positions;
-  close(work);
   return work.unstable;
+}
+
+/// Is there a change of shape that keeps the active measures and loses energy? Rayleigh's and Ritz's method on inverse
+/// iterates of the last factorisation, however it is rounded: energies are those of the stiffness itself.
+bool System::loses_energy(Workspace& work, Team& team) const {
+  constexpr int iterates = 5;
+  constexpr double rounding = 1e-12;  // over the mean diagonal
+  Balance right;
+  right.constraint.setZero(actuators());
+  Eigen::VectorXd next = lopsided(freedoms_->size()), multipliers;
+  Eigen::MatrixXd basis(next.size(), iterates);
+  for (int i = 0; i < iterates; ++i) {
+    right.force = -next;
+    step(right, work, next, multipliers, team);
+    for (int again = 0; again < 2; ++again) next -= basis.leftCols(i) * (basis.leftCols(i).transpose() * next);
+    next.normalize();
+    if (!next.allFinite()) return false;
+    basis.col(i) = next;
+  }
+  Eigen::MatrixXd image = Eigen::MatrixXd::Zero(basis.rows(), iterates);
+  linear::subtract_product(work.layout->reduced.columns(), work.values, basis, image, team);
+  return symmetric_eigenvalues(-(basis.transpose() * image)).minCoeff() < -rounding * work.mean;
 }
 
 void System::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team) const {

@@ -37,6 +37,8 @@ class System {
     Points at;                           // no rows: not known
     std::vector<Index> held;             // the constraints that were
     Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the constraints, per unit of each command
+    Eigen::VectorXd foreseen_for{};      // an actuation whose equilibrium was foreseen from here; empty: none
+    Iterate foreseen{};
   };
 
   /// Everything that is written while solving; one per thread of control. Nothing is allocated per iteration.
@@ -228,6 +230,7 @@ class System {
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
 
  private:
+  bool loses_energy(Workspace& work, Team& team) const;
   [[nodiscard]] bool multiplies_unknowns(const Workspace& work) const;
   void hold_contacts(const Iterate& at, Workspace& work, Team& team) const;
   void ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const;

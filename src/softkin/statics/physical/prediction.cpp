@@ -1,0 +1,213 @@
+#include <softkin/statics/physical/bordered.hpp>
+#include <softkin/statics/physical/prediction.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+bool are_of(const System::Slopes& slopes, const Iterate& at) {
+  return slopes.at.rows() == at.positions.rows() && slopes.at == at.positions;
+}
+
+std::vector<bool> held(const System::Slopes& slopes, Index actuators) {
+  std::vector<bool> active(static_cast<std::size_t>(actuators));
+  for (const Index a : slopes.held) active[static_cast<std::size_t>(a)] = true;
+  return active;
+}
+
+/// First-order change of unknowns and multipliers.
+struct Tangent {
+  Eigen::VectorXd step, change;
+
+  /// What a derivative found before.
+  Tangent(const System::Slopes& slopes, const Demand& here, const Demand& there) {
+    const Eigen::VectorXd way = there.actuation - here.actuation;
+    const Eigen::VectorXd multipliers = slopes.multipliers * way;
+    step = slopes.moves * way;
+    change.setZero(way.size());
+    for (std::size_t i = 0; i < slopes.held.size(); ++i) change[slopes.held[i]] = multipliers[static_cast<Index>(i)];
+  }
+
+  Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+          System::Workspace& work, Team& team, const Iterate& at) {
+    const System::Slopes& slopes = work.tangents;
+    if (here.share == there.share && are_of(slopes, at) && held(slopes, system.actuators()) == active) {
+      *this = Tangent(slopes, here, there);
+      return;
+    }
+    System::Balance balance;
+    const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
+    const bool refined = !of_here || !work.factor.in_double();
+    if (refined) {
+      system.hold_friction(at, work, team);
+      system.evaluate(at, here, active, work, balance, team);
+      system.assemble(at, here, System::Stiffness::exact, work, team);
+    }
+    system.upset(at, here, there, active, work, balance, team);
+    if (!refined || !refine(system, balance, work, team, at)) system.step(balance, work, step, change, team);
+    if (step.allFinite() && change.allFinite()) return;
+    step.setZero();
+    change.setZero();
+  }
+
+ private:
+  /// The step of the stiffness here; false where there is none.
+  bool refine(const System& system, const System::Balance& balance, System::Workspace& work, Team& team,
+              const Iterate& at) {
+    constexpr double accuracy = 1e-3;
+    constexpr int rounds = 6;
+    Bordered equations(system, work, team);
+    equations.set(at);
+    system.gather(at, work, team);
+    return equations.step(balance, accuracy, rounds, step, change).left < 1;
+  }
+};
+
+/// Multipliers at a share of a tangent; those that are given are those of `there`.
+void follow(const Tangent& tangent, double share, const System& system, const Demand& there,
+            const std::vector<bool>& active, Eigen::VectorXd& multipliers) {
+  multipliers += share * tangent.change;
+  for (Index a = 0; a < system.actuators(); ++a)
+    if (!active[a] && !system.constrains(a) && system.measures().measures(a))
+      multipliers[a] = system.unit(a) * there.actuation[a];
+}
+
+}  // namespace
+
+double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+               System::Workspace& work, Team& team, Iterate& at) {
+  const Tangent tangent(system, here, there, active, work, team, at);
+  const Points before = at.positions;
+  system.advance(tangent.step, 1, work, at.positions, team);
+  system.hold(there, at.positions);
+  follow(tangent, 1, system, there, active, at.multipliers);
+  return largest_move(before, at.positions);
+}
+
+std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
+                                    const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
+                                    Points& predicted) {
+  constexpr double shorter = 0.9;                    // than what is clear
+  constexpr double most_cut = 0.5, long_way = 0.05;  // of the way, of the diagonal
+  constexpr double least = 1e-3;
+  const Tangent tangent(system, here, there, active, work, team, at);
+  const Points from = at.positions;
+  // what is held comes to its place whatever is left of the way
+  double held = 1;
+  const System::Way way = [&](double share, Points& out) {
+    out = from;
+    system.advance(tangent.step, share, work, out, team);
+    system.hold(between(here, there, share / held), out);
+  };
+  double end = 1;
+  for (bool first = true;; first = false) {
+    held = end;
+    const double share = system.clear_share(from, way, end, work, at.positions, team);
+    if (first) predicted = at.positions;
+    if (share >= end) break;
+    end = shorter * share;
+    if (end < most_cut && largest_move(from, predicted) > long_way * system.model().diagonal_mm) return std::nullopt;
+    if (end >= least) continue;
+    end = 0;  // only what is held moves
+    const System::Way alone = [&](double part, Points& out) {
+      out = from;
+      system.hold(between(here, there, part), out);
+    };
+    if (system.clear_share(from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
+    break;
+  }
+  follow(tangent, end, system, there, active, at.multipliers);
+  return largest_move(from, at.positions);
+}
+
+bool foresee(const System& system, const Demand& here, const Demand& there, System::Workspace& work, Team& team,
+             const Iterate& at, Points& positions) {
+  constexpr double longest = 5e-3;  // of the diagonal, that the difference moves
+  System::Slopes& slopes = work.tangents;
+  if (system.contact() || !are_of(slopes, at)) return false;
+  const std::vector<bool> active = held(slopes, system.actuators());
+  slopes.foreseen_for.resize(0);
+  Tangent way(slopes, here, there);
+  const double length = system.size_of(way.step, at.positions).largest;
+  const double reach = std::min(1.0, longest * system.model().diagonal_mm / length);
+  // what the way upsets on both sides but for its first order, which are the equations of the tangent
+  System::Balance balance;
+  Eigen::VectorXd force, constraint;
+  for (const double share : {reach, -reach}) {
+    Iterate beside = at;
+    system.advance(way.step, share, work, beside.positions, team);
+    follow(way, share, system, between(here, there, share), active, beside.multipliers);
+    system.evaluate(beside, between(here, there, share), active, work, balance, team);
+    if (balance.forbidden || !balance.force.allFinite()) return false;
+    if (share > 0) {
+      force = balance.force;
+      constraint = balance.constraint;
+    }
+  }
+  balance.force = (balance.force + force) / (2 * reach * reach);
+  balance.constraint = (balance.constraint + constraint) / (2 * reach * reach);
+  Eigen::VectorXd bend, change;
+  system.step(balance, work, bend, change, team);
+  if (!bend.allFinite() || !change.allFinite()) return false;
+  way.step += bend;
+  way.change += change;
+  slopes.foreseen = at;
+  system.advance(way.step, 1, work, slopes.foreseen.positions, team);
+  follow(way, 1, system, there, active, slopes.foreseen.multipliers);
+  slopes.foreseen_for = there.actuation;
+  positions = slopes.foreseen.positions;
+  return true;
+}
+
+bool follow_foreseen(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+                     System::Workspace& work, Team& team, Iterate& at) {
+  constexpr double most_left = 0.03;  // of the way: what is left is gone along tangents at its begin
+  const System::Slopes& slopes = work.tangents;
+  if (slopes.foreseen_for.size() == 0 || !are_of(slopes, at) || held(slopes, system.actuators()) != active ||
+      here.share != there.share)
+    return false;
+  const Demand foreseen{slopes.foreseen_for, there.share};
+  if (!((there.actuation - foreseen.actuation).norm() < most_left * (there.actuation - here.actuation).norm()))
+    return false;
+  // what is left of the way, along the tangents that were known before it
+  const Tangent tangent(slopes, foreseen, there);
+  at = slopes.foreseen;
+  system.advance(tangent.step, 1, work, at.positions, team);
+  system.hold(there, at.positions);
+  follow(tangent, 1, system, there, active, at.multipliers);
+  return true;
+}
+
+Predictor::Predictor(const System& system, System::Workspace& work, const State& at, Team& team)
+    : system_(system),
+      work_(work),
+      at_(at),
+      iterate_(system.iterate(at)),
+      active_(static_cast<std::size_t>(system.actuators())) {
+  for (Index a = 0; a < system.actuators(); ++a) {
+    // chambers are held always, cables where they pull
+    active_[a] = system.constrains(a) && (!system.only_pulls(a) || iterate_.multipliers[a] > 0);
+  }
+  System::Balance balance;
+  const Demand demand{at.actuation, at.share};
+  system.hold_friction(iterate_, work_, team);
+  system.evaluate(iterate_, demand, active_, work_, balance, team);
+  (void)system.factorise(iterate_, demand, active_, System::Stiffness::exact, 0, work_, team);
+}
+
+State Predictor::predict(const Actuation& actuation, Team& team) {
+  Iterate there = iterate_;
+  Points predicted;
+  if (!predict_clear(system_, {at_.actuation, at_.share}, {actuation, 1}, active_, work_, team, there, predicted))
+    return at_;
+  if (!there.positions.allFinite() || !there.multipliers.allFinite()) return at_;
+  State state{std::move(there.positions), actuation, std::move(there.multipliers), 1, std::move(there.anchors)};
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    state.multipliers[a] /= system_.unit(a);
+    // no cable pushes
+    if (system_.constrains(a) && system_.only_pulls(a)) state.multipliers[a] = std::max(0.0, state.multipliers[a]);
+  }
+  return state;
+}
+
+}  // namespace softkin::physical

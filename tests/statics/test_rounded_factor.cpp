@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <softkin/core/team.hpp>
+#include <softkin/statics/physical/bordered.hpp>
+#include <softkin/statics/physical/newton.hpp>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+using Precision = linear::MixedLdlt::Precision;
+
+/// A strip of 2 x 2 mm, so long, with a tendon along its upper side.
+RobotSpec strip(int cells, double length) {
+  RobotSpec spec = physical_robot(block_mesh({cells, 2, 2}, {length, 2, 2}));
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 10; ++i) points.emplace_back(length * i / 10, 1, 1.8);
+  spec.actuators = {cable("top", points)};
+  return spec;
+}
+
+struct Bent {
+  physical::Newton::Outcome outcome;
+  SolveReport report;
+  Points shape;
+};
+
+Bent bend(const Model& model, Precision precision) {
+  const physical::System system(model);
+  physical::System::Workspace work(system);
+  work.precision = precision;
+  Team team(1);
+  Bent bent;
+  const ProgressCallback silent;
+  physical::Newton newton(system, work, team, {1e-7 * model.diagonal_mm, 1e-6, 200, true}, silent, bent.report);
+  physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
+  bent.outcome = newton.solve({Actuation::Constant(1, 0.99), 1}, {true}, physical::Newton::Policy::descend, false, at);
+  bent.shape = at.positions;
+  return bent;
+}
+
+}  // namespace
+
+/// A factor in single precision makes a long strip too stiff in bending, and where that shows steps are refined, or a
+/// factor is made in double precision: there are hardly more of them than with that alone, and they lead to the same.
+TEST(RoundedFactor, LongStripsBendAsInDouble) {
+  int single_factors = 0;
+  for (const double cell : {2.0, 1.0, 0.5})
+    for (const int cells : {50, 100, 200, 400}) {
+      const Model model = compile(strip(cells, cells * cell));
+      const Bent single = bend(model, Precision::enough), twice = bend(model, Precision::twice);
+      EXPECT_EQ(single.outcome, twice.outcome) << cell << " " << cells;
+      EXPECT_LE(single.report.factorisations, twice.report.factorisations + 1) << cell << " " << cells;
+      EXPECT_LE(single.report.iterations, 2 * twice.report.iterations) << cell << " " << cells;
+      EXPECT_LT(distance(single.shape, twice.shape), 1e-6) << cell << " " << cells;
+      single_factors += single.report.factorisations - single.report.factorisations_in_double;
+    }
+  EXPECT_GT(single_factors, 5);
+}
+
+/// A step that is refined is that of a factor in double precision.
+TEST(RoundedFactor, ARefinedStepIsExact) {
+  const Model model = compile(strip(50, 50));
+  const physical::System system(model);
+  Team team(1);
+  const physical::Demand demand{Actuation::Constant(1, 0.99), 1};
+  const physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
+  struct Found {
+    Eigen::VectorXd step, change, refined, refined_change;
+  };
+  const auto step_of = [&](Precision precision) {
+    physical::System::Workspace work(system);
+    work.precision = precision;
+    physical::System::Balance balance;
+    system.evaluate(at, demand, {true}, work, balance, team);
+    (void)system.factorise(at, demand, {true}, physical::System::Stiffness::exact, 0, work, team, &balance);
+    EXPECT_EQ(work.factor.in_double(), precision == Precision::twice);
+    Found found;
+    system.step(balance, work, found.step, found.change, team);
+    physical::Bordered equations(system, work, team);
+    equations.set_factorised(at);
+    EXPECT_LT(equations.step(balance, 1e-9, 20, found.refined, found.refined_change).left, 1e-9);
+    return found;
+  };
+  const Found single = step_of(Precision::enough), twice = step_of(Precision::twice);
+  EXPECT_LT((single.refined - twice.step).norm(), 1e-7 * twice.step.norm());
+  EXPECT_LT((single.refined_change - twice.change).norm(), 1e-7 * twice.change.norm());
+  EXPECT_GT((single.step - twice.step).norm(), 1e-5 * twice.step.norm());
+}
+
+}  // namespace softkin
