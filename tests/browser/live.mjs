@@ -6,8 +6,8 @@ import {example, forward, mapOf, out, serve} from './softkin.mjs';
 
 const name = 'three_tendon_finger', actuators = ['tendon1', 'tendon2', 'tendon3'];
 const far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
-const until = (page, id, pattern) => page.waitForFunction(([of, text]) =>
-  new RegExp(text).test(document.getElementById(of).textContent), [id, pattern.source], {timeout: 60000});
+const until = (page, id, pattern, timeout = 60000) => page.waitForFunction(([of, text]) =>
+  new RegExp(text).test(document.getElementById(of).textContent), [id, pattern.source], {timeout});
 const off = (page) => page.locator('#actuator-0').isDisabled();
 
 /** Waits until softkin has answered what was asked last. */
@@ -131,8 +131,8 @@ async function allOf(browser, test, more, kind) {
 async function checkMapMadeMeanwhile(browser) {
   const server = await serve(example(name), 0, '--make-map');
   const {page, watch} = await open(browser, server.url, {offline: false});
-  page.setDefaultTimeout(120000);
-  await until(page, 'origin', /What is shown at once, .* is a closed formula made of \d+ solved shapes/);
+  const whileOthersWork = 300000;  // maps are made at the lowest priority
+  await until(page, 'origin', /What is shown at once, .* is a closed formula made of \d+ solved shapes/, whileOthersWork);
   await until(page, 'live-words', /^You control/);
   await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));  // which needs a map
   await until(page, 'path', /waypoints sought/);

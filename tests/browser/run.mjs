@@ -4,7 +4,7 @@ import {mkdirSync} from 'node:fs';
 import {launch} from './browser.mjs';
 import {liveTests} from './live.mjs';
 import {reportTests} from './report.mjs';
-import {hasView} from './softkin.mjs';
+import {hasView, stopAll} from './softkin.mjs';
 
 mkdirSync(process.argv[3], {recursive: true});
 const browser = await launch();
@@ -28,6 +28,7 @@ try {
   else console.log('skipped: live mode, this softkin has no view');
 } finally {
   await browser.close();
+  stopAll();
 }
 console.log(`${passed} passed, ${failed} failed`);
 process.exitCode = failed ? 1 : 0;

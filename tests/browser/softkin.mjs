@@ -46,11 +46,19 @@ export async function hasView() {
   }
 }
 
+const serving = new Set();
+/** Ends what a test that failed has left, which would keep this program from ending. */
+export const stopAll = () => serving.forEach((child) => child.kill('SIGKILL'));
+
 /** softkin view until stop(). port: 0: any */
 export async function serve(scene, port, ...more) {
   const child = spawn(program, ['view', scene, '--no-open', '--port', String(port), ...more],
                       {stdio: ['ignore', 'pipe', 'inherit']});
-  const ended = new Promise((done) => child.on('exit', done));
+  serving.add(child);
+  const ended = new Promise((done) => child.on('exit', (code) => {
+    serving.delete(child);
+    done(code);
+  }));
   const url = await new Promise((found, failed) => {
     let text = '';
     child.stdout.on('data', (data) => {
