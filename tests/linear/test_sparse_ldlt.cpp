@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <Eigen/Cholesky>
 #include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
@@ -72,6 +74,30 @@ TEST(SparseLdlt, FactorisesAgain) {
   used.solve(a, alone);
   fresh.solve(b, alone);
   EXPECT_EQ(a, b);
+}
+
+/// Memory that is lent, whatever stands in it, grows where it is too small and changes nothing.
+TEST(SparseLdlt, WorksInMemoryThatIsLent) {
+  Team alone(1);
+  const Symmetric sample = make_sample(mixed_widths(180, 1), grid_links(9, 5, 4), 0.3, 1);
+  SparseLdltOf<float> own(sample.pattern), lent(sample.pattern);
+  (void)own.factorise(sample.values, 1e-12, alone);
+  Eigen::MatrixXd expected = random_matrix(sample.pattern.size(), 2);
+  const Eigen::MatrixXd right_sides = expected;
+  own.solve(expected, alone);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{100}, std::size_t{1000000}}) {
+    LargeVector<double> spare(size, std::numeric_limits<double>::quiet_NaN());
+    (void)lent.factorise(sample.values, 1e-12, alone, &spare);
+    EXPECT_GT(spare.size(), 100u);
+    Eigen::MatrixXd found = right_sides;
+    lent.solve(found, alone);
+    EXPECT_EQ(found, expected);
+    std::fill(spare.begin(), spare.end(), std::numeric_limits<double>::quiet_NaN());
+    found = right_sides;
+    lent.solve(found, alone);
+    EXPECT_EQ(found, expected);
+  }
+  EXPECT_LT(lent.bytes(), own.bytes());
 }
 
 TEST(SparseLdlt, ResultDoesNotDependOnThreads) {

@@ -46,12 +46,12 @@ bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy,
 }
 
 Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Precision precision,
-                            Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+                            Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team, LargeVector<double>* spare) {
   in_double_ = precision == Precision::twice || wait_ > 0;
   if (precision != Precision::twice && wait_ > 0) --wait_;
   if (!in_double_) {
     if (!single_) single_.emplace(tree_);
-    const Pivots pivots = single_->factorise(values, single_least * least, team);
+    const Pivots pivots = single_->factorise(values, single_least * least, team, spare);
     const bool by_energy = pivots.negative == 0 && precision != Precision::good;
     trusted_ = pivots.replaced == 0 && solve_trusted(values, by_energy, right_sides, team);
     const bool guess = precision == Precision::sign && pivots.replaced == 0 && pivots.negative > 0;
@@ -69,7 +69,7 @@ Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Pre
     twice_.emplace(tree_);
   }
   trusted_ = true;
-  const Pivots pivots = twice_->factorise(values, least, team);
+  const Pivots pivots = twice_->factorise(values, least, team, spare);
   twice_->solve(right_sides, team);
   return pivots;
 }

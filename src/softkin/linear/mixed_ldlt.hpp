@@ -33,9 +33,10 @@ class MixedLdlt {
   /// values     as the pattern's offsets say
   /// least      magnitude below which a pivot is replaced
   /// precision  sign, enough, good: in single precision where that does; twice: in double whatever single does
+  /// spare      as SparseLdltOf::factorise() takes it
   /// throws     InvalidInput where double precision is called for and there is not the memory
   Pivots factorise(const LargeVector<double>& values, double least, Precision precision,
-                   Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
+                   Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team, LargeVector<double>* spare = nullptr);
 
   /// Every column of right_sides, in the pattern's order of unknowns, becomes its solution: to rounding in double
   /// precision; in single it may miss half of what is along the eigenvalues nearest 0 (enough), or three tenths (good),

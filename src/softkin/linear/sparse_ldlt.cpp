@@ -21,6 +21,16 @@ void each_column(Index columns, Index rows, Team& team, const Body& body) {
   }
 }
 
+/// Room for a front's arena; what stood in the memory is lost.
+template <class Number>
+Number* arena_in(LargeVector<double>& memory, std::int64_t arena_size) {
+  const std::size_t bytes = (static_cast<std::size_t>(arena_size) + front_slack) * sizeof(Number);
+  const std::size_t needed = (bytes + sizeof(double) - 1) / sizeof(double);
+  if (memory.capacity() < needed) LargeVector<double>().swap(memory);  // first, so that the two never stand together
+  if (memory.size() < needed) memory.resize(needed);
+  return reinterpret_cast<Number*>(memory.data());
+}
+
 }  // namespace
 
 template <class Number>
@@ -54,8 +64,7 @@ class SparseLdltOf<Number>::Seat {
       }
     }
     if (!bench_) bench_ = std::make_unique<Bench>();
-    const std::size_t needed = static_cast<std::size_t>(arena_size) + front_slack;
-    if (bench_->arena.size() < needed) bench_->arena.resize(needed);
+    bench_->arena = arena_in<Number>(bench_->memory, arena_size);
   }
   ~Seat() {
     const std::lock_guard lock(owner_.benches_mutex_);
@@ -75,7 +84,6 @@ void SparseLdltOf<Number>::take_memory() {
   has_memory_ = true;
   lower_.resize(static_cast<std::size_t>(tree_->values) + solve_slack);
   std::fill(lower_.end() - solve_slack, lower_.end(), Number(0));
-  top_.arena.resize(static_cast<std::size_t>(tree_->arena_sizes.back()) + front_slack);
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     Index size = 0;
     for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f) size = std::max(size, tree_->fronts[f].size());
@@ -85,13 +93,14 @@ void SparseLdltOf<Number>::take_memory() {
 
 template <class Number>
 double SparseLdltOf<Number>::bytes() const {
-  double values = static_cast<double>(lower_.size() + diagonal_.size());
+  double values = static_cast<double>(lower_.size() + diagonal_.size()), own = 0;
   const auto add = [&](const Bench& bench) {
-    values += static_cast<double>(bench.arena.size() + bench.work.plain.size() + bench.work.scaled.size());
+    values += static_cast<double>(bench.work.plain.size() + bench.work.scaled.size());
+    own += static_cast<double>(sizeof(double) * bench.memory.size());
   };
   add(top_);
   for (const auto& bench : benches_) add(*bench);
-  return static_cast<double>(sizeof(Number)) * values +
+  return own + static_cast<double>(sizeof(Number)) * values +
          4.0 * static_cast<double>(tree_->rows.size() + 3 * tree_->runs.size() + tree_->pattern.rows.size() +
                                    tree_->entry_places.size());
 }
@@ -130,7 +139,7 @@ void SparseLdltOf<Number>::add_children(Index index, Index begin, Index end, Num
     const Front& child = tree_->fronts[i];
     const Index child_stride = front_stride<Number>(child.size()), pivots = child.pivots();
     const Number* update =
-        bench.arena.data() + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
+        bench.arena + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
     const RowRun* first = tree_->runs.data() + tree_->first_run[i];
     const RowRun* last = tree_->runs.data() + tree_->first_run[i + 1];
     while (first < last && first->to + first->length <= begin) ++first;
@@ -154,7 +163,7 @@ Index SparseLdltOf<Number>::factor(Index index, const LargeVector<double>& value
                                    Team& team) {
   const Front& own = tree_->fronts[index];
   const Index size = own.size(), pivots = own.pivots(), stride = front_stride<Number>(size);
-  Number* front = (own.parent >= top_front() ? top_ : bench).arena.data() + own.offset;
+  Number* front = (own.parent >= top_front() ? top_ : bench).arena + own.offset;
   assemble(index, values, front, bench, team);
   const Index negative = factor_front(front, size, pivots, least, diagonal_.data() + own.begin, bench.work, team);
   add_children(index, pivots, size, front, bench, team);
@@ -168,8 +177,10 @@ Index SparseLdltOf<Number>::factor(Index index, const LargeVector<double>& value
 }
 
 template <class Number>
-Pivots SparseLdltOf<Number>::factorise(const LargeVector<double>& values, double least, Team& team) {
+Pivots SparseLdltOf<Number>::factorise(const LargeVector<double>& values, double least, Team& team,
+                                       LargeVector<double>* spare) {
   if (!has_memory_) take_memory();
+  top_.arena = arena_in<Number>(spare ? *spare : top_.memory, tree_->arena_sizes.back());
   const Index count = static_cast<Index>(pieces_.size()) - 1;
   Team alone(1);
   const auto run = [&](Index p, Bench& bench, Team& helpers) {

@@ -29,8 +29,10 @@ class SparseLdltOf {
   /// Goes on with another pattern, in the memory that there is; nothing is factorised.
   void change(std::shared_ptr<const FrontTree> tree);
 
-  /// values: as the pattern's offsets say. least: magnitude below which a pivot is replaced.
-  Pivots factorise(const LargeVector<double>& values, double least, Team& team);
+  /// values  as the pattern's offsets say
+  /// least   magnitude below which a pivot is replaced
+  /// spare   memory to work in instead of the object's own: what stands in it is lost, and it may grow
+  Pivots factorise(const LargeVector<double>& values, double least, Team& team, LargeVector<double>* spare = nullptr);
 
   /// Every column of right_sides, in the pattern's order of unknowns, becomes its solution.
   void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
@@ -48,7 +50,8 @@ class SparseLdltOf {
   /// What one thread writes while it factorises pieces, one after the other: small enough for its cache.
   struct Bench {
     FrontWork<Number> work;
-    LargeVector<Number> arena;  // fronts that wait for their parents
+    Number* arena = nullptr;  // fronts that wait for their parents
+    LargeVector<double> memory;
   };
   struct Piece {
     Eigen::MatrixXd above, rows;  // of a solve: what goes to the top, and columns of one front

@@ -107,7 +107,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
     const Precision before = std::exchange(work_.precision, precision);
     (void)system_.factorise(at, demand, active_, System::Stiffness::exact, 0, work_, team_);
     work_.precision = before;
-    system_.gather(at, work_, team_);
+    if (system_.contact()) system_.gather(at, work_, team_);  // else what was factorised is what is multiplied with
     return solve(at, work_.factor.in_double());
   };
   solved = solved || solve_anew(work_.precision) || (!work_.factor.in_double() && solve_anew(Precision::twice));

@@ -168,7 +168,8 @@ int System::factorise(const Iterate& at, const Demand& demand, const std::vector
     ask(at, active, work, balance);
     if (!layout.reduced.in_order()) layout.reduced.to_columns(work.solutions, work.in_columns);
     Eigen::MatrixXd& right_sides = layout.reduced.in_order() ? work.solutions : work.in_columns;
-    work.negative = work.factor.factorise(work.values, 1e-13 * mean, precision, right_sides, team).negative;
+    LargeVector<double>* spare = contacts_ ? nullptr : &work.slots;  // nothing else is to be multiplied with them
+    work.negative = work.factor.factorise(work.values, 1e-13 * mean, precision, right_sides, team, spare).negative;
     if (!layout.reduced.in_order()) layout.reduced.to_unknowns(work.in_columns, work.solutions);
     close(work);
   };

@@ -102,7 +102,8 @@ class System {
   [[nodiscard]] Imbalance imbalance(const Balance& balance, const Workspace& work, Team& team) const;
 
   enum class Stiffness { exact, projected };
-  /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added.
+  /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added. Where nothing can
+  /// touch, what was assembled is lost; multiply() is as ready as after gather() if nothing was shifted.
   /// balance  of that iterate, if first_step() is to follow: its step is solved for together with the responses
   /// returns  how many negative eigenvalues it has on the changes that keep the active measures: 0 at a stable
   ///          equilibrium

@@ -162,7 +162,7 @@ bool Tangent::factorise_values(double shift, Team& team, SolveReport& report) {
   if (!std::isfinite(largest)) return false;
   constexpr double negligible = 1e-14;
   ++report.factorisations;
-  const linear::Pivots pivots = factor_.factorise(shifted_, negligible * largest, team);
+  const linear::Pivots pivots = factor_.factorise(shifted_, negligible * largest, team, &slots_);
   return pivots.negative == 0;
 }
 
