@@ -12,6 +12,7 @@
 
 #include "child_process.hpp"
 #include "command_line.hpp"
+#include "critical_path.hpp"
 #include "finger.hpp"
 #include "machine.hpp"
 #include "physical_parts.hpp"
@@ -191,6 +192,15 @@ void print_times(const char* name, const FactorTimes& times, double flops) {
   std::fflush(stdout);
 }
 
+/// What cores could gain at best, by counts.
+void print_sharing(const linear::BlockColumns& pattern) {
+  const CriticalPath path = critical_path(linear::make_front_tree(pattern));
+  std::printf("           by counts: %d pieces, the heaviest %.0f %%, above them %.0f %% of the work; at most",
+              path.pieces, 100 * path.heaviest / path.total, 100 * path.top / path.total);
+  for (const int cores : {2, 4, 8, 16}) std::printf("%s %.1f", cores == 2 ? "" : ",", path.speedup(cores));
+  std::printf(" times one core's rate on 2, 4, 8, 16\n");
+}
+
 struct Ratios {
   std::vector<double> factor, solve;
 
@@ -233,6 +243,7 @@ int run_with(int threads, const Options& options) {
                 parts.projected() ? "; made positive definite element by element" : "");
     const FactorTimes own = time_softkin(parts, matrix, options.repeat);
     print_times("softkin", own, parts.flops());
+    print_sharing(parts.pattern());
     if (const std::optional<FactorTimes> cholmod = time_cholmod_supernodal(matrix, options.repeat)) {
       print_times("CHOLMOD supernodal", *cholmod, parts.flops());
       cholmod_ratios.add(*cholmod, own);

@@ -7,7 +7,7 @@ namespace softkin::linear {
 
 namespace {
 
-constexpr Index block = 64;
+constexpr Index block = front_block;
 constexpr Index tile_columns = 8;
 #ifdef __AVX512F__
 constexpr Index strip_panels = 3;  // 3 x 8 sums fill the vector registers
@@ -110,8 +110,7 @@ void each_strip(Index begin, Index end, const Visit& visit) {
 /// Loops over ranges of strips, on the team where there is enough to do.
 template <class Body>
 void share(Team& team, Index panels, double work, const Body& body) {
-  constexpr double worthwhile = 4e6;  // multiplications
-  if (team.size() == 1 || work < worthwhile) return body(0, panels);
+  if (team.size() == 1 || work < worth_sharing) return body(0, panels);
   const Index strips = (panels + strip_panels - 1) / strip_panels;
   team.each(strips, [&](Index s) { body(s * strip_panels, std::min(panels, (s + 1) * strip_panels)); });
 }

@@ -23,6 +23,10 @@ template <class Number>
 /// Values after a front's last column that kernels may read.
 inline constexpr Index front_slack = 16;
 
+/// Columns of a front that are eliminated together, and multiplications for which a loop is shared by a team.
+inline constexpr Index front_block = 64;
+inline constexpr double worth_sharing = 4e6;
+
 /// First columns of a dense symmetric matrix eliminated: A = L D L^T without pivoting.
 ///
 /// pivots    at least 1
