@@ -96,9 +96,10 @@ TEST(MixedLdlt, ASignNeedsNoDouble) {
         shifted_to(make_sample(mixed_widths(60, 1), grid_links(5, 4, 3), negative_share, 7), 1e-10);
     MixedLdlt factor = factor_of(sample);
     const Index negative = factorise(factor, sample, 1e-15, Precision::sign, alone).negative;
-    EXPECT_EQ(negative > 0, negative_share > 0);
-    EXPECT_EQ(factor.in_double(), negative == 0);
-    EXPECT_EQ(factor.trusted(), negative == 0);
+    const bool guessed = !factor.in_double();  // so near 0 rounding may turn what is definite into what is not
+    EXPECT_TRUE(guessed || negative_share == 0);
+    EXPECT_NE(factor.trusted(), guessed);
+    EXPECT_EQ(guessed, negative > 0);
     EXPECT_EQ(factorise(factor, sample, 1e-15, Precision::enough, alone).negative, negative_eigenvalues(sample));
     EXPECT_TRUE(factor.in_double() && factor.trusted());
   }

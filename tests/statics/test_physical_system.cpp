@@ -135,6 +135,7 @@ TEST(System, UpsetIsTheSlopeInTheDemand) {
   const physical::Demand from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
   sample.demand = from;
   (void)sample.factorise();
+  sample.system.assemble(sample.at, from, physical::System::Stiffness::exact, sample.work, sample.team);
   physical::System::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-4;
@@ -165,6 +166,7 @@ TEST(System, UpsetFollowsDisplacedSupports) {
   sample.demand = from;
   sample.system.freedoms().hold(from.share, sample.at.positions);
   (void)sample.factorise();
+  sample.system.assemble(sample.at, from, physical::System::Stiffness::exact, sample.work, sample.team);
   physical::System::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-5;

@@ -61,6 +61,17 @@ TEST(RoundedFactor, LongStripsBendAsInDouble) {
   EXPECT_GT(single_factors, 5);
 }
 
+/// Far from straight a rounded factor may lead where no step helps: then double precision begins again.
+TEST(RoundedFactor, WhatGetsStuckIsTriedInDouble) {
+  for (const int cells : {340, 360}) {
+    const Model model = compile(strip(cells, cells));
+    const Bent single = bend(model, Precision::enough), twice = bend(model, Precision::twice);
+    EXPECT_EQ(single.outcome, physical::Newton::Outcome::converged) << cells;
+    EXPECT_EQ(single.outcome, twice.outcome) << cells;
+    EXPECT_LT(distance(single.shape, twice.shape), 1e-6) << cells;
+  }
+}
+
 /// A step that is refined is that of a factor in double precision.
 TEST(RoundedFactor, ARefinedStepIsExact) {
   const Model model = compile(strip(50, 50));

@@ -138,8 +138,7 @@ void SparseLdltOf<Number>::add_children(Index index, Index begin, Index end, Num
   for (Index i = tree_->first_child[index]; i >= 0; i = tree_->next_sibling[i]) {
     const Front& child = tree_->fronts[i];
     const Index child_stride = front_stride<Number>(child.size()), pivots = child.pivots();
-    const Number* update =
-        bench.arena + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
+    const Number* update = bench.arena + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
     const RowRun* first = tree_->runs.data() + tree_->first_run[i];
     const RowRun* last = tree_->runs.data() + tree_->first_run[i + 1];
     while (first < last && first->to + first->length <= begin) ++first;

@@ -104,9 +104,8 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   }
   const auto solve_anew = [&](Precision precision) {
     work_.home.resize(0, 3);
-    const Precision before = std::exchange(work_.precision, precision);
+    const InPrecision scope(work_, precision);
     (void)system_.factorise(at, demand, active_, System::Stiffness::exact, 0, work_, team_);
-    work_.precision = before;
     if (system_.contact()) system_.gather(at, work_, team_);  // else what was factorised is what is multiplied with
     return solve(at, work_.factor.in_double());
   };

@@ -66,9 +66,8 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
     if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
     ++report_.factorisations;
     secants_.clear();
-    work_.precision = precision;
+    const InPrecision scope(work_, precision);
     negative = system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
-    work_.precision = usual;
     report_.factorisations_in_double += work_.factor.in_double();
     return negative == 0 ? Advance::made : Advance::none;
   };
@@ -348,9 +347,8 @@ bool Newton::improve_constraints() {
 
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
-  const auto precision = std::exchange(work_.precision, linear::MixedLdlt::Precision::twice);
+  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
   negative_ = system_.factorise(at, *demand_, *active_, System::Stiffness::exact, 0, work_, team_);
-  work_.precision = precision;
   ++report_.factorisations;
   ++report_.factorisations_in_double;
   doubtful_ = false;
@@ -360,7 +358,18 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
                               Iterate& at) {
   demand_ = &demand;
   active_ = &active;
-  system_.evaluate(at, demand, active, work_, balance_, team_);
+  const auto in_single = [&] { return report_.factorisations - report_.factorisations_in_double; };
+  const int before = in_single();
+  start_ = at;
+  const Outcome outcome = descend(policy, factorised, at);
+  if (outcome != Outcome::stuck || in_single() == before || system_.contact()) return outcome;
+  at = start_;  // rounding may be why
+  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
+  return descend(policy, false, at);
+}
+
+Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
+  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   Advance advance = Advance::made;
   double damping = 1;

@@ -31,7 +31,7 @@ class Newton {
   enum class Policy { descend, follow };
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
-  /// factorisation.
+  /// factorisation. What gets stuck with factors in single precision is tried again with others.
   ///
   /// factorised  the workspace holds a stable, exact stiffness of a shape close to `at`: steps are tried with it first
   Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised, Iterate& at);
@@ -57,6 +57,7 @@ class Newton {
   };
   enum class Advance { none, made, arrived, interrupted };
 
+  Outcome descend(Policy policy, bool factorised, Iterate& at);
   [[nodiscard]] bool goes_on() const;
   Advance factorise(const Iterate& at, Policy policy);
   void find(const System::Balance& balance, const Iterate& at, Step& step);
@@ -95,7 +96,7 @@ class Newton {
   Step step_, next_;
   std::vector<Secant> secants_;         // of the factor at hand
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
-  Iterate trial_;
+  Iterate start_, trial_;
   int poor_ = 0;       // steps in a row that were much shorter than Newton's
   int same_ = 0;       // steps in a row that left as much to go
   bool slow_ = false;  // are steps of a stiffness that was made positive element by element

@@ -38,7 +38,7 @@ struct Tangent {
     System::Balance balance;
     const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
     const bool refined = !of_here || !work.factor.in_double();
-    if (refined) {
+    if (refined || here.share != there.share) {
       system.hold_friction(at, work, team);
       system.evaluate(at, here, active, work, balance, team);
       system.assemble(at, here, System::Stiffness::exact, work, team);

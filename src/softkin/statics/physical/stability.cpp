@@ -2,7 +2,6 @@
 #include <cmath>
 #include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/stability.hpp>
-#include <utility>
 
 namespace softkin::physical {
 
@@ -18,20 +17,6 @@ constexpr double settled = 1e-6;  // relative change of the curvature
 // of its curvature by which that may have changed.
 constexpr int soft_iterations = 3;
 constexpr double difference = 1e-6, as_stiff = 0.25;
-
-/// Factors in double precision while it lives.
-class InDouble {
- public:
-  explicit InDouble(System::Workspace& work)
-      : work_(work), before_(std::exchange(work.precision, linear::MixedLdlt::Precision::twice)) {}
-  ~InDouble() { work_.precision = before_; }
-  InDouble(const InDouble&) = delete;
-  InDouble& operator=(const InDouble&) = delete;
-
- private:
-  System::Workspace& work_;
-  linear::MixedLdlt::Precision before_;
-};
 
 }  // namespace
 
@@ -72,7 +57,8 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
     if (shift == 0) mean = work.mean;
     return count;
   };
-  const InDouble scope(work);  // curvatures are differences of what hardly differs
+  const InPrecision twice(work,
+                          linear::MixedLdlt::Precision::twice);  // curvatures are differences of what hardly differs
   LowestMode mode;
   mode.unstable = negative(0);
   mode.mean = mean;

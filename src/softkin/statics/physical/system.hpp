@@ -13,6 +13,7 @@
 #include <softkin/statics/supports/freedoms.hpp>
 #include <softkin/statics/supports/global_step.hpp>
 #include <softkin/statics/supports/reduced_matrix.hpp>
+#include <utility>
 
 namespace softkin::physical {
 
@@ -102,8 +103,8 @@ class System {
   [[nodiscard]] Imbalance imbalance(const Balance& balance, const Workspace& work, Team& team) const;
 
   enum class Stiffness { exact, projected };
-  /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added. Where nothing can
-  /// touch, what was assembled is lost; multiply() is as ready as after gather() if nothing was shifted.
+  /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added. Where nothing
+  /// can touch, what was assembled is lost; multiply() is as ready as after gather() if nothing was shifted.
   /// balance  of that iterate, if first_step() is to follow: its step is solved for together with the responses
   /// returns  how many negative eigenvalues it has on the changes that keep the active measures: 0 at a stable
   ///          equilibrium
@@ -140,7 +141,8 @@ class System {
   /// What the next step would change multipliers by, without one: G^T K^-1 force needs no solve.
   void correct_multipliers(const Balance& balance, const Workspace& work, Eigen::VectorXd& multipliers) const;
 
-  /// Balance that a change of demand upsets, to first order: for the tangent predictor.
+  /// Balance that a change of demand upsets, to first order: for the tangent predictor. Where it moves what holds the
+  /// robot the stiffness is to be assembled.
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
 
@@ -250,6 +252,20 @@ class System {
   std::shared_ptr<const Layout> layout_;  // of the body alone
   std::unique_ptr<Contacts> contacts_;
   std::unique_ptr<supports::GlobalStep> turning_;
+};
+
+/// What is asked of factors while it lives; then again what was.
+class InPrecision {
+ public:
+  InPrecision(System::Workspace& work, linear::MixedLdlt::Precision precision)
+      : work_(work), before_(std::exchange(work.precision, precision)) {}
+  ~InPrecision() { work_.precision = before_; }
+  InPrecision(const InPrecision&) = delete;
+  InPrecision& operator=(const InPrecision&) = delete;
+
+ private:
+  System::Workspace& work_;
+  linear::MixedLdlt::Precision before_;
 };
 
 }  // namespace softkin::physical
