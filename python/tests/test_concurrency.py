@@ -87,7 +87,7 @@ WORK = {
 @pytest.mark.parametrize("what", WORK)
 def test_ctrl_c(what: str) -> None:
     prepare, work = WORK[what]
-    code = INTERRUPTED.format(tests=str(Path(__file__).parent), prepare=prepare, work=work, after=0.5)
+    code = INTERRUPTED.format(tests=str(Path(__file__).parent), prepare=prepare, work=work, after=0.2)
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     words = done.stdout.split()
