@@ -82,18 +82,19 @@ MapOptions map_options(double accuracy_mm, double load_accuracy, double shape_ac
 
 using SlopesOut = Array<double, nb::ndim<3>>;
 
-/// A row per row of commands, of those outside the map zeros.
+/// A row per row of commands, of those outside the map zeros. What is not yet written is not touched: a system that
+/// hands out pages when they are written would take longer for all of them than Ctrl-C may wait.
 struct Rows {
-  std::vector<double> outputs, slopes;
+  std::unique_ptr<double[]> outputs, slopes;
   std::vector<std::uint8_t> inside;
 };
 
 /// Hands memory over to Python.
 template <class Out>
-Out given_away(std::vector<double>&& values, std::initializer_list<std::size_t> sizes) {
-  auto* kept = new std::vector<double>(std::move(values));
-  const nb::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<double>*>(memory); });
-  return Out(kept->data(), sizes, owner);
+Out given_away(std::unique_ptr<double[]> values, std::initializer_list<std::size_t> sizes) {
+  double* const kept = values.release();
+  const nb::capsule owner(kept, [](void* memory) noexcept { delete[] static_cast<double*>(memory); });
+  return Out(kept, sizes, owner);
 }
 
 class Batch {
@@ -101,8 +102,9 @@ class Batch {
   Batch(const KinematicMap& map, const TableIn& commands, bool sloped)
       : map_(map), commands_(commands.data()), count_(commands.shape(0)), sloped_(sloped) {
     const std::size_t outputs = count_ * static_cast<std::size_t>(map.outputs());
-    rows_.outputs.resize(outputs);
-    if (sloped) rows_.slopes.resize(outputs * static_cast<std::size_t>(map.inputs()));
+    rows_.outputs = std::make_unique_for_overwrite<double[]>(outputs);
+    if (sloped)
+      rows_.slopes = std::make_unique_for_overwrite<double[]>(outputs * static_cast<std::size_t>(map.inputs()));
     rows_.inside.resize(count_);
   }
 
@@ -132,8 +134,8 @@ class Batch {
   void solve_block(std::size_t number) {
     const auto inputs = static_cast<std::size_t>(map_.inputs()), outputs = static_cast<std::size_t>(map_.outputs());
     for (std::size_t n = number * block; n < std::min(count_, (number + 1) * block); ++n) {
-      double* const values = rows_.outputs.data() + n * outputs;
-      double* const slopes = sloped_ ? rows_.slopes.data() + n * inputs * outputs : nullptr;
+      double* const values = rows_.outputs.get() + n * outputs;
+      double* const slopes = sloped_ ? rows_.slopes.get() + n * inputs * outputs : nullptr;
       rows_.inside[n] = map_.evaluate(commands_ + n * inputs, values, slopes).has_value();
       if (rows_.inside[n]) continue;
       std::fill_n(values, outputs, 0.0);

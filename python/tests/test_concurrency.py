@@ -36,7 +36,7 @@ def test_process_pools(robot: softkin.Robot) -> None:
 
 
 def test_the_gil_is_free_while_it_solves() -> None:
-    big = beam(24, 10)
+    big = beam(46, 13)
     ticks: list[float] = []
     with ThreadPoolExecutor(1) as pool:
         working = pool.submit(big.solve, air1=1.5, air2=1.2)

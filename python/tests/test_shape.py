@@ -184,7 +184,7 @@ def test_target_shapes() -> None:
 
 def test_progress(robot: softkin.Robot) -> None:
     told: list[softkin.Progress] = []
-    big = beam(24, 10)
+    big = beam(46, 13)
     stopped = big.solve(air1=1.5, air2=1.2, progress=lambda p: told.append(p) or False)
     assert stopped.status == "interrupted" and len(told) == 1
     assert told[0].tolerance_mm > 0 and told[0].iteration >= 0 and -1 <= told[0].share <= 1 and told[0].step_mm >= 0
