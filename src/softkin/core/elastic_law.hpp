@@ -9,7 +9,8 @@ enum class Law {
   corotational,         // mu |F - R|^2 + lambda/2 tr(R^T F - I)^2, R the best rotation
   neo_hookean,          // mu/2 (I1 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2: Smith et al. 2018, Eq. (13)
   mooney_rivlin,        // c10 (bar I1 - 3) + c01 (bar I2 - 3) + bulk/2 (J - 1)^2
-  yeoh                  // c10 (bar I1 - 3) + c20 (bar I1 - 3)^2 + c30 (bar I1 - 3)^3 + bulk/2 (J - 1)^2
+  yeoh,                 // c10 (bar I1 - 3) + c20 (bar I1 - 3)^2 + c30 (bar I1 - 3)^3 + bulk/2 (J - 1)^2
+  gent                  // -mu/2 jm ln(1 - (bar I1 - 3) / jm) + bulk/2 (J - 1)^2: Gent 1996
 };
 
 /// A law and its constants [MPa]; those that the law does not use are 0.
@@ -17,11 +18,12 @@ struct ElasticLaw {
   Law law = Law::neo_hookean;
   double mu = 0, lambda = 0;
   double c10 = 0, c01 = 0, c20 = 0, c30 = 0, bulk = 0;
+  double jm = 0;  // [-]: the limit of bar I1 - 3
 };
 
 /// Has the law no energy for J <= 0?
 [[nodiscard]] constexpr bool forbids_inversion(Law law) {
-  return law == Law::mooney_rivlin || law == Law::yeoh;
+  return law == Law::mooney_rivlin || law == Law::yeoh || law == Law::gent;
 }
 
 }  // namespace softkin

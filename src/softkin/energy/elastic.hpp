@@ -9,7 +9,7 @@ namespace softkin::energy {
 /// Constants of a law, one set per lane [MPa]; meaning as in ElasticLaw.
 struct LawBlock {
   Law law = Law::neo_hookean;
-  Pack mu{}, lambda{}, c10{}, c01{}, c20{}, c30{}, bulk{};
+  Pack mu{}, lambda{}, c10{}, c01{}, c20{}, c30{}, bulk{}, jm{};
 };
 
 /// Elements of K nodes and Q quadrature points (4, 1: linear tetrahedra; 10, 4: quadratic ones; 6, 6: prisms), one per

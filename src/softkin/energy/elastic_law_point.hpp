@@ -32,7 +32,7 @@ constexpr bool couples_jacobian(Law law) {
   return forbids_inversion(law);
 }
 constexpr bool curved_in_first(Law law) {
-  return law == Law::st_venant_kirchhoff || law == Law::yeoh;
+  return law == Law::st_venant_kirchhoff || law == Law::yeoh || law == Law::gent;
 }
 
 inline Pack33 transposed(const Pack33& a) {
@@ -162,6 +162,31 @@ inline InvariantEnergy yeoh(const LawBlock& law, const Deformation& d) {
   return w;
 }
 
+/// Share of the limit that is left, as the law sees it: flat where hardly anything is, so that all stays finite.
+inline Pack room_below_limit(const LawBlock& law, const Pack& stretch) {
+  return max(1 - stretch / law.jm, pack(1e-9));
+}
+
+inline InvariantEnergy gent(const LawBlock& law, const Deformation& d) {
+  const Pack j = positive_jacobian(d.jacobian);
+  const Pack per_j = 1 / j;
+  const Pack root = 1 / cbrt(j);
+  const Pack scale = root * root;
+  const Pack barred = scale * d.first, swelling = j - 1;
+  const Pack per_room = 1 / room_below_limit(law, barred - 3);
+  const Pack slope = 0.5 * law.mu * per_room, curvature = slope * per_room / law.jm;
+  const Pack barred_by_j = (-2.0 / 3) * barred * per_j;
+  InvariantEnergy w;
+  w.energy = 0.5 * law.mu * law.jm * log(per_room) + 0.5 * law.bulk * swelling * swelling;
+  w.by_first = slope * scale;
+  w.by_jacobian = slope * barred_by_j + law.bulk * swelling;
+  w.by_first_first = curvature * scale * scale;
+  w.by_first_jacobian = scale * (curvature * barred_by_j - (2.0 / 3) * slope * per_j);
+  w.by_jacobian_jacobian =
+      curvature * barred_by_j * barred_by_j + (10.0 / 9) * slope * barred * per_j * per_j + law.bulk;
+  return w;
+}
+
 /// W and its derivatives for a law that is a function of the invariants.
 template <Law law>
 InvariantEnergy invariant_energy(const LawBlock& constants, const Deformation& d) {
@@ -170,6 +195,7 @@ InvariantEnergy invariant_energy(const LawBlock& constants, const Deformation& d
   if constexpr (law == Law::neo_hookean) return neo_hookean(constants, d);
   if constexpr (law == Law::mooney_rivlin) return mooney_rivlin(constants, d);
   if constexpr (law == Law::yeoh) return yeoh(constants, d);
+  if constexpr (law == Law::gent) return gent(constants, d);
 }
 
 /// Calls work.template operator()<law>() for the law given: once per block, so that no inner loop asks.
@@ -186,6 +212,8 @@ void dispatch(Law law, const Work& work) {
       return work.template operator()<Law::mooney_rivlin>();
     case Law::yeoh:
       return work.template operator()<Law::yeoh>();
+    case Law::gent:
+      return work.template operator()<Law::gent>();
   }
   throw InvalidInput("elastic law " + std::to_string(static_cast<int>(law)) + ": there is no such law");
 }

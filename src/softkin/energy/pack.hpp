@@ -21,6 +21,12 @@ inline Pack sqrt(const Pack& a) {
   return root;
 }
 
+inline Pack log(const Pack& a) {
+  Pack logarithm;
+  for (int l = 0; l < lanes; ++l) logarithm[l] = std::log(a[l]);
+  return logarithm;
+}
+
 inline Pack cbrt(const Pack& a) {
   Pack root;
   for (int l = 0; l < lanes; ++l) root[l] = std::cbrt(a[l]);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <softkin/core/types.hpp>
 #include <string>
 #include <vector>
@@ -17,13 +19,20 @@ struct Anchor {
   double slipped_mm = 0;         // way that it slipped since it touches [mm]
 };
 
+/// What the Maxwell elements of a body remember: C_v of every quadrature point and branch, as Statics orders them.
+struct ViscousHistory {
+  std::vector<double> strains;  // six entries each: xx, yy, zz, xy, yz, xz [-]; determinant 1
+};
+
 /// Where a search begins or ended.
 struct State {
   Points positions;               // #V by 3 [mm]
   Actuation actuation{};          // of which positions is an equilibrium; empty: not known
   Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa], 0 for a dea; empty: not known
   double share = 1;  // of dead loads and displacements of supports; -1: of no equilibrium that is known [-]
-  std::vector<Anchor> anchors{};  // of friction, sorted by vertex, then part; empty: nothing rubs yet
+  std::vector<Anchor> anchors{};                    // of friction, sorted by vertex, then part; empty: nothing rubs yet
+  std::shared_ptr<const ViscousHistory> history{};  // viscous: at the beginning of the time step; none: relaxed at rest
+  double elapsed_s = std::numeric_limits<double>::infinity();  // since then; 0: instant, infinity: relaxed
 
   /// Whether it tells of which actuation, of so many values, positions is an equilibrium.
   [[nodiscard]] bool knows(Eigen::Index actuators) const { return actuation.size() == actuators && share >= 0; }

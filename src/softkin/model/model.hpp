@@ -6,6 +6,8 @@
 
 namespace softkin {
 
+struct Magnetism;  // magnetic_field.hpp
+
 /// A point that moves with the mesh: the weighted sum of some vertices; the weights sum to 1.
 struct EmbeddedPoint {
   std::vector<Index> vertices;
@@ -20,7 +22,9 @@ struct Material {
   double shape_ratio = 1;  // target-shape
   double weight = 1;       // target-shape
   ElasticLaw elastic;      // physical
-  double density = 0;      // [kg/m^3]
+  std::vector<ViscousBranch> viscosity;
+  double permittivity = 1;  // over that of the vacuum [-]
+  double density = 0;       // [kg/m^3]
   std::optional<double> linear_range;
 };
 
@@ -59,8 +63,9 @@ struct Actuator {
   std::vector<CableGap> gaps;          // cable, target-shape
   std::optional<ActuatorCurve> curve;  // ratio by pressure or voltage
   Branch branch = Branch::loading;     // of the curve, where a command names none
-  Index other = -1;                    // motion: part of ContactModel; force, hold: index into Model::bodies
-  int axis = -1;                       // motion, force
+  Index other = -1;                    // motion: part of ContactModel; force, hold: index into Model::bodies;
+                                       // magnetic: index into Magnetism::sources
+  int axis = -1;                       // motion, force; magnetic: which of the source's commands
   bool pushes = false;                 // cable: held to its length whatever that takes, as a rod would be
   double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
                                        // a dea's ratio 1
@@ -129,10 +134,11 @@ struct Model {
                      // or -1; a rigid region that is held is borne as a whole
   Points dead_load;  // #V by 3 [N]: weight and forces; physical, else empty
   ContactModel contact;
-  std::vector<bool> used;             // per vertex: is it a vertex of an element
-  double diagonal_mm = 0;             // of the bounding box of the used vertices
-  std::vector<std::string> notes;     // what compile() changed or the user should know, a sentence each
-  std::vector<std::string> warnings;  // what is probably not meant, a sentence each: units, elements that lock
+  std::shared_ptr<const Magnetism> magnetism;  // physical; none: nothing is magnetic
+  std::vector<bool> used;                      // per vertex: is it a vertex of an element
+  double diagonal_mm = 0;                      // of the bounding box of the used vertices
+  std::vector<std::string> notes;              // what compile() changed or the user should know, a sentence each
+  std::vector<std::string> warnings;           // what is probably not meant, a sentence each: units, elements that lock
 
   /// How many vertices are the mesh's: the first ones.
   [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.other_vertices; }

@@ -4,7 +4,7 @@
 namespace softkin {
 
 const char* kind_name(const Actuator& actuator) {
-  constexpr const char* names[] = {"cable",  "dea",   "pneumatic",
+  constexpr const char* names[] = {"cable",  "dea",   "pneumatic", "magnetic",
                                    "motion", "force", "hold"};  // in the order of ActuatorKind
   return names[static_cast<std::size_t>(actuator.kind)];
 }
@@ -53,7 +53,8 @@ std::string range_text(const Actuator& actuator) {
 }
 
 const char* law_name(Law law) {
-  constexpr const char* names[] = {"st-venant-kirchhoff", "corotational", "neo-hookean", "mooney-rivlin", "yeoh"};
+  constexpr const char* names[] = {"st-venant-kirchhoff", "corotational", "neo-hookean",
+                                   "mooney-rivlin",       "yeoh",         "gent"};
   return names[static_cast<std::size_t>(law)];
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <softkin/core/elastic_law.hpp>
 #include <softkin/core/error.hpp>
@@ -10,6 +11,9 @@
 #include <variant>
 
 namespace softkin {
+
+struct FieldSpec;      // magnetic_field.hpp
+struct RemanenceSpec;  // the same
 
 // Selectors choose vertices (inside or on the boundary) and elements (centroid inside); shapes are in mm.
 struct VertexList {
@@ -54,6 +58,14 @@ struct ElasticSpec {
   std::optional<double> poisson_ratio;       // [-], -1 < nu < 0.5
   std::optional<double> c10, c01, c20, c30;  // [MPa]
   std::optional<double> bulk_modulus;        // [MPa], > 0
+  std::optional<double> shear_modulus;       // [MPa], > 0; gent
+  std::optional<double> jm;                  // limit of bar I1 - 3 [-], > 0; gent
+};
+
+/// A Maxwell element beside the elastic law: a spring and a damper in series.
+struct ViscousBranch {
+  double modulus_MPa = 0;  // shear modulus of the spring, > 0
+  double time_s = 0;       // relaxation time, > 0
 };
 
 /// Later entries override earlier ones where their regions overlap. The region "all" is every element.
@@ -62,8 +74,11 @@ struct MaterialSpec {
   std::optional<double> shape_ratio = 1;  // target-shape: R_omega, 0 <= shape_ratio <= 1; none: the scene has none
   double weight = 1;                      // target-shape: w of Eq. (9), > 0
   std::optional<ElasticSpec> elastic;     // physical
-  double density = 0;                     // [kg/m^3], >= 0; physical with gravity
-  std::optional<double> linear_range;     // largest |principal strain| of the linear range [-], > 0
+  std::vector<ViscousBranch> viscosity;   // physical
+  std::optional<double> permittivity;     // over that of the vacuum [-], >= 1; physical, of a dea under voltage
+  std::shared_ptr<const RemanenceSpec> remanence;  // physical; none: not magnetic
+  double density = 0;                              // [kg/m^3], >= 0; physical with gravity
+  std::optional<double> linear_range;              // largest |principal strain| of the linear range [-], > 0
   Origin origin;
 };
 
@@ -76,10 +91,10 @@ struct FixedSpec {
 
 /// The last three are no drives of the robot but what is done to its surroundings: the motion of an obstacle, a force
 /// on a body, and how firmly a body is held.
-enum class ActuatorKind { cable, dea, pneumatic, motion, force, hold };
+enum class ActuatorKind { cable, dea, pneumatic, magnetic, motion, force, hold };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
-/// [kPa].
+/// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by.
 enum class Control { ratio, load };
 
 struct ActuatorSpec {
@@ -98,6 +113,7 @@ struct ActuatorSpec {
   bool least_norm = true;                  // false: every element takes the actuator's ratio
   std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
   Branch branch = Branch::loading;         // of the curve, where a command names none
+  std::shared_ptr<const FieldSpec> field;  // magnetic
   Origin origin;
 };
 

@@ -18,6 +18,8 @@ Json elastic_json(const ElasticLaw& e) {
       return {{"c10_MPa", e.c10}, {"c01_MPa", e.c01}, {"bulk_modulus_MPa", e.bulk}};
     case Law::yeoh:
       return {{"c10_MPa", e.c10}, {"c20_MPa", e.c20}, {"c30_MPa", e.c30}, {"bulk_modulus_MPa", e.bulk}};
+    case Law::gent:
+      return {{"mu_MPa", e.mu}, {"jm", e.jm}, {"bulk_modulus_MPa", e.bulk}};
     case Law::st_venant_kirchhoff:
     case Law::corotational:
     case Law::neo_hookean:

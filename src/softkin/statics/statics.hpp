@@ -30,6 +30,10 @@ struct StaticsOptions {
   /// The factor of an earlier solve that ended at the start, where no other thread has taken it by then: the same
   /// result within the tolerance. false: bit for bit that of a new object.
   bool reuse_factor = true;
+  /// Viscous: what the material remembers, none: relaxed at rest; and the time that passes until the shape asked for
+  /// [s], >= 0: 0 is the instant answer, infinity the relaxed one, which does not depend on the history.
+  std::shared_ptr<const ViscousHistory> history{};
+  double elapsed_s = std::numeric_limits<double>::infinity();
 };
 
 /// Equilibria that are known without being solved.

@@ -53,6 +53,7 @@ void set_law(LawBlock& block, int lane, const ElasticLaw& law) {
   block.c20[lane] = law.c20;
   block.c30[lane] = law.c30;
   block.bulk[lane] = law.bulk;
+  block.jm[lane] = law.jm;
 }
 
 void set_lane(Pack3& vector, int lane, const Vec3& value) {

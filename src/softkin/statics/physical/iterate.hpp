@@ -8,6 +8,7 @@ namespace softkin::physical {
 struct Demand {
   Eigen::VectorXd actuation;  // m, as the user commands it
   double share = 1;           // of dead loads and of the displacement of what is held [-]
+  double elapsed_s = std::numeric_limits<double>::infinity();  // viscous: since the workspace's history
 };
 
 /// At a share of the way from one to another.

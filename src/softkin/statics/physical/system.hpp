@@ -47,6 +47,7 @@ class System {
     explicit Workspace(const System& system);
 
     Body::Scratch elastic;
+    std::shared_ptr<const ViscousHistory> history;  // viscous: of which a demand's time is counted; none: relaxed
     /// Every column becomes nearly its solution, as linear::MixedLdlt says, with the last factorisation.
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
