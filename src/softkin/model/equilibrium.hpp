@@ -24,6 +24,12 @@ struct ViscousHistory {
   std::vector<double> strains;  // six entries each: xx, yy, zz, xy, yz, xz [-]; determinant 1
 };
 
+/// What Maxwell elements do in a time step.
+struct ViscousFlow {
+  std::shared_ptr<const ViscousHistory> history{};  // at its end
+  double lost_mJ = 0;                               // energy that they lose at the shape at its end, >= 0
+};
+
 /// Where a search begins or ended.
 struct State {
   Points positions;               // #V by 3 [mm]

@@ -115,6 +115,13 @@ struct Statics::Parts {
       throw InvalidInput(of + " needs the tensions and pressures of its equilibrium");
   }
 
+  void check_history(const ViscousHistory* history, double elapsed_s) const {
+    if (!(elapsed_s >= 0))
+      throw InvalidInput("the time of a step must be 0 s or more, not " + number(elapsed_s) + " s");
+    if (history && (!physical || history->strains.size() != physical->system().remembered()))
+      throw InvalidInput("the history of the material is of another robot");
+  }
+
   const Model& model;
   std::atomic<int> worthwhile = 1;  // threads
   TeamPool teams;
@@ -165,12 +172,14 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
 
   const double tolerance = options.step_tolerance_mm > 0 ? options.step_tolerance_mm : paper_tolerance;
   Equilibrium result;
+  parts_->check_history(options.history.get(), options.elapsed_s);
   if (parts_->physical) {
     if (options.solver == Solver::local_global)
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
     result = parts_->physical->solve(actuation, begun,
                                      {tolerance, options.max_iterations, options.keep_history, options.reuse_factor,
-                                      options.stable, 1e-6 * std::max(1.0, tolerance / paper_tolerance)},
+                                      options.stable, 1e-6 * std::max(1.0, tolerance / paper_tolerance),
+                                      options.history, options.elapsed_s},
                                      progress, *team);
   } else {
     if (options.stable)
@@ -218,6 +227,18 @@ ElementDeformation Statics::measured(const State& at) const {
   parts_->check_known(at, options, "the stress in a shape");
   parts_->physical->measure(at, deformation, *parts_->team(options));
   return deformation;
+}
+
+bool Statics::viscous() const {
+  return parts_->physical && parts_->physical->system().viscous();
+}
+
+ViscousFlow Statics::flow(const State& at) const {
+  const StaticsOptions options;
+  parts_->check_known(at, options, "what is remembered of a shape");
+  if (!parts_->physical) return {};
+  parts_->check_history(at.history.get(), at.elapsed_s);
+  return parts_->physical->flow(at, *parts_->team(options));
 }
 
 void Statics::forget() const {

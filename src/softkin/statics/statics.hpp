@@ -111,6 +111,16 @@ class Statics {
   /// throws   InvalidInput as sensitivity() does
   [[nodiscard]] ElementDeformation measured(const State& at) const;
 
+  /// Has the robot Maxwell branches? Then solve() takes a history and a time.
+  [[nodiscard]] bool viscous() const;
+
+  /// What the material remembers of an equilibrium, the history of what follows it.
+  ///
+  /// at       an equilibrium that solve() returned, with its history and time
+  /// returns  no history where the robot is not viscous
+  /// throws   InvalidInput as sensitivity() does
+  [[nodiscard]] ViscousFlow flow(const State& at) const;
+
   /// Drops the factors that earlier solves left behind: the next result is that of a new object. Not while another
   /// thread solves.
   void forget() const;

@@ -95,6 +95,16 @@ std::optional<double> read_shape_ratio(const Map& map) {
   return ratio;
 }
 
+/// Maxwell branches.
+std::vector<ViscousBranch> read_viscosity(const Node& node) {
+  std::vector<ViscousBranch> branches;
+  for (const auto& item : list(node)) {
+    const Map map(*item, {"modulus", "time"});
+    branches.push_back({positive(map.at("modulus")), positive(map.at("time"))});
+  }
+  return branches;
+}
+
 }  // namespace
 
 double read_density(const Node& node) {
@@ -104,7 +114,7 @@ double read_density(const Node& node) {
 }
 
 MaterialSpec read_material(const Node& node) {
-  Keys known{"region", "shape_ratio", "weight", "linear_range", "density"};
+  Keys known{"region", "shape_ratio", "weight", "linear_range", "density", "viscosity"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;
@@ -119,6 +129,7 @@ MaterialSpec read_material(const Node& node) {
                    "'poisson_ratio'");
   if (const Node* weight = map.find("weight")) material.weight = positive(*weight);
   if (const Node* density = map.find("density")) material.density = read_density(*density);
+  if (const Node* viscosity = map.find("viscosity")) material.viscosity = read_viscosity(*viscosity);
   if (const Node* range = map.find("linear_range")) material.linear_range = positive(*range);
   return material;
 }

@@ -92,8 +92,17 @@ Material checked_material(const MaterialSpec& spec, Formulation formulation) {
     throw InvalidInput(spec.origin, owner + ": linear_range must be above 0, not " + number(*spec.linear_range));
   if (!(spec.density >= 0 && std::isfinite(spec.density)))
     throw InvalidInput(spec.origin, owner + ": density must be 0 or above, not " + number(spec.density));
+  for (const ViscousBranch& branch : spec.viscosity)
+    if (!(branch.modulus_MPa > 0 && std::isfinite(branch.modulus_MPa) && branch.time_s > 0 &&
+          std::isfinite(branch.time_s)))
+      throw InvalidInput(spec.origin, owner + ": a branch of its viscosity needs a modulus above 0 MPa and a time above "
+                                              "0 s, not " + number(branch.modulus_MPa) + " and " +
+                                              number(branch.time_s));
+  if (!physical && !spec.viscosity.empty())
+    throw InvalidInput(spec.origin, owner + " has viscosity, which needs the physical formulation");
   Material material;
   material.region = spec.region;
+  material.viscosity = spec.viscosity;
   if (spec.shape_ratio) material.shape_ratio = *spec.shape_ratio;
   material.weight = spec.weight;
   if (physical) material.elastic = elastic_law(*spec.elastic, owner, spec.origin);

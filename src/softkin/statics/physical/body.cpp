@@ -80,14 +80,18 @@ double von_mises(const Mat3& stress) {
 }  // namespace
 
 template <int K, int Q, class Element>
-void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants, Index actuator,
+void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const Material& material, Index actuator,
                Index element, const Element& nodes) {
-  auto set = std::find_if(sets.begin(), sets.end(),
-                          [&](const Set<K, Q>& s) { return s.law == law && s.actuator == actuator; });
+  const Law law = material.elastic.law;
+  const auto branches = static_cast<int>(material.viscosity.size());
+  auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
+    return s.law == law && s.actuator == actuator && s.branches == branches;
+  });
   if (set == sets.end()) {
     set = sets.insert(sets.end(), Set<K, Q>{});
     set->law = law;
     set->actuator = actuator;
+    set->branches = branches;
   }
   Eigen::Matrix<double, K, 3> rest;
   for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
@@ -97,10 +101,16 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const 
     set->blocks.emplace_back();
     set->nodes.emplace_back();
     set->frames.emplace_back();
+    set->moduli.resize(set->moduli.size() + material.viscosity.size());
+    set->times.resize(set->moduli.size());
   }
   ElasticBlock<K, Q>& block = set->blocks.back();
   for (int l = lane; l < lanes; ++l) {  // later elements overwrite the lanes that this one fills in advance
-    set_law(block.law, l, constants);
+    set_law(block.law, l, material.elastic);
+    for (std::size_t i = 0, at = set->moduli.size() - material.viscosity.size(); i < material.viscosity.size(); ++i) {
+      set->moduli[at + i][l] = material.viscosity[i].modulus_MPa;
+      set->times[at + i][l] = material.viscosity[i].time_s;
+    }
     for (int q = 0; q < Q; ++q) {
       for (int i = 0; i < K; ++i) set_lane(block.slope[q][i], l, shape.slope[q].row(i).transpose());
       block.volume[q][l] = l == lane ? shape.volume[q] : 0;
@@ -114,26 +124,30 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const 
 
 Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())) {
   for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
-    const ElasticLaw& law = model.materials[model.tetrahedron_roles[e].material].elastic;
+    const Material& material = model.materials[model.tetrahedron_roles[e].material];
     const Tetrahedron& t = model.tetrahedra[e];
     if (model.edge_nodes.empty()) {
-      add(linear_, model, law.law, law, -1, e, t);
+      add(linear_, model, material, -1, e, t);
     } else {
       std::array<Index, 10> nodes;
       std::copy(t.begin(), t.end(), nodes.begin());
       std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-      add(quadratic_, model, law.law, law, -1, e, nodes);
+      add(quadratic_, model, material, -1, e, nodes);
     }
   }
   for (const Index e : spatial_order(model.rest, model.prisms)) {
     const ElementRole& role = model.prism_roles[e];
-    const ElasticLaw& law = model.materials[role.material].elastic;
-    add(prisms_, model, law.law, law, role.actuator, static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
+    add(prisms_, model, model.materials[role.material], role.actuator, static_cast<Index>(model.tetrahedra.size()) + e,
+        model.prisms[e]);
   }
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
     pulls_ += K * set.count;
     blocks_ += set.blocks.size();
+    set.first_kept = kept_;
+    set.first_strain = strains_;
+    kept_ += set.moduli.size();
+    strains_ += 6 * Q * lanes * set.moduli.size();
   });
   const auto each_pull = [&](const auto& visit) {
     each_set([&]<int K, int Q>(Set<K, Q>& set) {
@@ -185,6 +199,58 @@ void Body::stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) co
 }
 
 template <int K, int Q>
+ViscousBlock Body::branches_of(const Set<K, Q>& set, std::size_t block, const Scratch& scratch) const {
+  const std::size_t first = block * static_cast<std::size_t>(set.branches);
+  const double* strains = scratch.history ? scratch.history->strains.data() + set.first_strain : nullptr;
+  return {set.branches, set.moduli.data() + first, scratch.kept.data() + set.first_kept + first,
+          strains ? strains + 6 * Q * lanes * first : nullptr};
+}
+
+void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch) const {
+  if (!viscous()) return;
+  scratch.history = std::move(history);
+  if (scratch.elapsed_s == elapsed_s) return;
+  scratch.elapsed_s = elapsed_s;
+  if (!scratch.pulls_viscously()) return;
+  scratch.kept.resize(kept_);
+  const auto run = [&](const auto& set) {
+    for (std::size_t i = 0; i < set.times.size(); ++i)
+      for (int l = 0; l < lanes; ++l) scratch.kept[set.first_kept + i][l] = std::exp(-elapsed_s / set.times[i][l]);
+  };
+  for (const auto& set : linear_) run(set);
+  for (const auto& set : quadratic_) run(set);
+  for (const auto& set : prisms_) run(set);
+}
+
+std::shared_ptr<const ViscousHistory> Body::flow(const Eigen::VectorXd& actuation, const Points& positions,
+                                                 Scratch& scratch, double& lost_mJ, Team& team) const {
+  auto after = std::make_shared<ViscousHistory>();
+  after->strains.resize(strains_);
+  if (!scratch.pulls_viscously()) {  // relaxed: nothing is kept
+    scratch.kept.assign(kept_, Pack{});
+    scratch.elapsed_s = std::numeric_limits<double>::max();
+  }
+  stretch_layers(actuation, scratch);
+  Pack lost{};
+  std::vector<Pack> of_blocks;
+  each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
+    if (set.branches == 0) return;
+    of_blocks.resize(blocks.size());
+    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+      Shape<K> shape;
+      for (Index b = begin; b < end; ++b) {
+        load<K>(positions, set.nodes[b], shape);
+        double* strains = after->strains.data() + set.first_strain + std::size_t{6} * Q * lanes * set.branches * b;
+        of_blocks[b] = energy::flow<K, Q>(blocks[b], branches_of(set, b, scratch), shape, strains);
+      }
+    });
+    for (const Pack& part : of_blocks) lost += part;
+  });
+  lost_mJ = sum(lost);
+  return after;
+}
+
+template <int K, int Q>
 void Body::store(const Set<K, Q>& set, Index block, const Shape<K>& pull, Scratch& scratch) const {
   const Index count = std::min<Index>(lanes, set.count - lanes * block);
   double* out = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(set.first_pull + K * lanes * block);
@@ -216,12 +282,14 @@ Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positio
   std::size_t first = 0;
   Result result;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
+    const bool pulls = set.branches > 0 && scratch.pulls_viscously();
     team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
       Shape<K> shape;
       ElasticForce<K> out;
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_force<K, Q>(blocks[b], shape, out);
+        if (pulls) add_viscous_force<K, Q>(blocks[b], branches_of(set, b, scratch), shape, out);
         scratch.energies[first + b] = out.energy;
         scratch.inverted[first + b] = out.inverted;
         store(set, b, out.gradient, scratch);
@@ -230,7 +298,7 @@ Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positio
     PackMask inverted{};
     for (std::size_t b = first; b < first + blocks.size(); ++b) inverted |= scratch.inverted[b];
     result.inverted |= any(inverted);
-    result.forbidden |= forbids_inversion(set.law) && any(inverted);
+    result.forbidden |= (forbids_inversion(set.law) || pulls) && any(inverted);
     first += blocks.size();
   });
   Pack energy{};
@@ -265,6 +333,8 @@ void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scr
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_stress<K, Q>(blocks[b], shape, points);
+        if (set.branches > 0 && scratch.pulls_viscously())
+          add_viscous_stress<K, Q>(blocks[b], branches_of(set, b, scratch), shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
           Mat3 most = lane_of(points[0], l);
           for (int q = 1; q < Q; ++q)
@@ -303,6 +373,8 @@ void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, 
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_stiffness<K, Q>(blocks[b], shape, projected, out);
+        if (set.branches > 0 && scratch.pulls_viscously())
+          add_viscous_stiffness<K, Q>(blocks[b], branches_of(set, b, scratch), shape, projected, out);
         const Index count = std::min<Index>(lanes, set.count - lanes * b);
         double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices) * lanes * b);
         for (Index l = 0; l < count; ++l)

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <softkin/core/team.hpp>
 #include <softkin/energy/elastic.hpp>
+#include <softkin/energy/viscous.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/deformation.hpp>
@@ -21,8 +22,24 @@ class Body {
     std::vector<energy::PackMask> inverted;                       // the same
     std::vector<std::vector<energy::ElasticBlock<6, 6>>> layers;  // per dea set: at the ratio below
     std::vector<double> layer_ratios;                             // [-]; 0: not made yet
+    std::shared_ptr<const ViscousHistory> history;                // none: relaxed at rest
+    double elapsed_s = std::numeric_limits<double>::infinity();   // since then; infinity: no branch pulls
+    std::vector<energy::Pack> kept;                               // per viscous set, block and branch, by then [-]
+
+    [[nodiscard]] bool pulls_viscously() const { return elapsed_s < std::numeric_limits<double>::infinity(); }
   };
   [[nodiscard]] Scratch make_scratch() const;
+
+  /// Has an element Maxwell branches?
+  [[nodiscard]] bool viscous() const { return kept_ > 0; }
+  /// What Maxwell branches remember, and the time since then [s], for all that is evaluated next. history: as flow()
+  /// gives it, or null
+  void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch) const;
+  /// What they remember of a shape that the time ends with. lost_mJ: becomes the energy that they lose there
+  [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const Eigen::VectorXd& actuation, const Points& positions,
+                                                           Scratch& scratch, double& lost_mJ, Team& team) const;
+  /// Of a history, how many numbers.
+  [[nodiscard]] std::size_t remembered() const { return strains_; }
 
   struct Result {
     double energy = 0;       // [mJ]
@@ -62,6 +79,7 @@ class Body {
   struct Set {
     Law law = Law::neo_hookean;
     Index actuator = -1;  // dea
+    int branches = 0;
     Index count = 0;
     Index first_pull = 0;         // element e, node i pulls at first_pull + K e + i
     std::int64_t first_slot = 0;  // of its matrices
@@ -69,11 +87,15 @@ class Body {
     std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
     std::vector<Index> elements;                          // place of each in the model, tetrahedra first, then prisms
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
+    std::vector<energy::Pack> moduli, times;              // of branches, by block: [MPa], [s]
+    std::size_t first_kept = 0, first_strain = 0;         // of its branches in Scratch::kept, in a history
   };
 
   template <int K, int Q, class Element>
-  static void add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants,
-                  Index actuator, Index element, const Element& nodes);
+  static void add(std::vector<Set<K, Q>>& sets, const Model& model, const Material& material, Index actuator,
+                  Index element, const Element& nodes);
+  template <int K, int Q>
+  [[nodiscard]] energy::ViscousBlock branches_of(const Set<K, Q>& set, std::size_t block, const Scratch& scratch) const;
   void gather(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;
@@ -104,7 +126,7 @@ class Body {
   std::vector<Set<4, 1>> linear_;
   std::vector<Set<10, 4>> quadratic_;
   std::vector<Set<6, 6>> prisms_;
-  std::size_t blocks_ = 0;
+  std::size_t blocks_ = 0, kept_ = 0, strains_ = 0;
   Index pulls_ = 0;
   std::vector<Index> pull_starts_, pull_order_;  // pulls at each vertex
 };

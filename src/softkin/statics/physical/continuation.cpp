@@ -117,7 +117,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   if (!same_shape(work_.home, at.positions)) work_.trail.clear();
   way_.factorised = same_shape(work_.home, at.positions) && factor_holds_active();
   work_.home.resize(0, 3);
-  if (!way_.factorised && from.actuation == to.actuation && from.share == to.share) {
+  if (!way_.factorised && from.actuation == to.actuation && from.share == to.share && from.fading == to.fading) {
     const auto outcome = settle_here(to, at);
     if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
     if (outcome == Newton::Outcome::converged) return arrive(to, at);
@@ -287,7 +287,7 @@ double Continuation::longest_step(bool snap, bool unstable) const {
 }
 
 bool Continuation::change_loads(const Demand& from, const Demand& to) const {
-  if (system_.any_dead_load() && from.share != to.share) return true;
+  if (from.fading != to.fading || (system_.any_dead_load() && from.share != to.share)) return true;
   for (Index a = 0; a < system_.actuators(); ++a)
     if (from.actuation[a] != to.actuation[a] &&
         (system_.loads(a) || (system_.measures().measures(a) && !system_.constrains(a))))

@@ -29,6 +29,7 @@ Demand demand_of(const System& system, const Model& model, const State& start) {
 
 void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) const {
   Lease lease(*this, at.positions, true);
+  system_.set_time(at.history, at.elapsed_s, lease.work());
   system_.measure(system_.iterate(at), {at.actuation, at.share}, lease.work(), out, team);
   out.multipliers = at.multipliers;
 }
@@ -36,8 +37,18 @@ void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) c
 bool Equilibria::foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const {
   if (system_.contact()) return false;
   Lease lease(*this, at.positions, true);
+  system_.set_time(at.history, at.elapsed_s, lease.work());
   return physical::foresee(system_, {at.actuation, at.share}, {actuation, at.share}, lease.work(), team,
                            system_.iterate(at), positions);
+}
+
+ViscousFlow Equilibria::flow(const State& at, Team& team) const {
+  ViscousFlow flow;
+  if (!system_.viscous()) return flow;
+  Lease lease(*this, at.positions, true);
+  system_.set_time(at.history, at.elapsed_s, lease.work());
+  flow.history = system_.flow(at, lease.work(), flow.lost_mJ, team);
+  return flow;
 }
 
 void Equilibria::forget() const {
@@ -58,7 +69,9 @@ void Equilibria::begin_again(const Demand& to, const Options& options, const Pro
   Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators())};
   system_.hold({system_.model().rest_actuation(), 0}, fresh.positions);
   Continuation continuation(system_, work, team, options, progress, report);
-  const Status status = continuation.follow({system_.model().rest_actuation(), 0}, to, fresh);
+  Demand from{system_.model().rest_actuation(), 0};
+  if (system_.viscous()) from = system_.unbalanced(fresh, from, work, team);
+  const Status status = continuation.follow(from, to, fresh);
   if (status == Status::converged) {
     at = std::move(fresh);
     report.status = status;
@@ -82,11 +95,17 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   if (start.actuation.size() == 0 && start.positions != model.rest) check_contact_of_start(model, start.positions);
   Lease lease(*this, start.positions, options.reuse_factor);
 
-  const Demand from = demand_of(system_, model, start), to{actuation, 1};
+  Demand from = demand_of(system_, model, start);
+  const Demand to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors};
   system_.hold(from, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
+  system_.set_time(options.history, options.elapsed_s, lease.work());
+  const bool rests = start.positions == model.rest && start.actuation.size() == 0;
+  const bool same_time = rests ? !options.history : start.history == options.history && start.elapsed_s == options.elapsed_s;
+  if (system_.viscous() && !same_time && (rests || start.knows(system_.actuators())))
+    from = system_.unbalanced(at, from, lease.work(), team);
   // a start whose supports are elsewhere may have no way there
   const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
                      comes_to(start.positions, at.positions, lease.work(), team);
@@ -107,8 +126,13 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
     result.state.actuation = from.actuation + report.reached * (actuation - from.actuation);
     result.state.share = from.share + report.reached * (to.share - from.share);
   }
-  const bool unknown = start.actuation.size() == 0 && start.positions != model.rest;
-  if (report.status != Status::converged && report.reached == 0 && unknown) {  // the start, which is of nothing known
+  if (system_.viscous()) {
+    result.state.history = options.history;
+    result.state.elapsed_s = options.elapsed_s;
+  }
+  const bool unknown = (start.actuation.size() == 0 && start.positions != model.rest && report.reached == 0) ||
+                       (from.fading > 0 && report.reached < 1);
+  if (report.status != Status::converged && unknown) {  // of nothing known
     result.state.actuation.resize(0);
     result.state.share = -1;
     return result;

@@ -23,6 +23,8 @@ class Equilibria {
     bool reuse_factor = true;
     bool stable = false;        // leave unstable equilibria
     double force_share = 1e-6;  // of the elements' largest pull that may be out of balance
+    std::shared_ptr<const ViscousHistory> history{};
+    double elapsed_s = std::numeric_limits<double>::infinity();
   };
 
   /// Arguments are checked already. report.seconds is left to the caller.
@@ -37,6 +39,9 @@ class Equilibria {
 
   /// Adds stress and reactions of an equilibrium; see Statics::measured.
   void measure(const State& at, ElementDeformation& out, Team& team) const;
+
+  /// See Statics::flow.
+  [[nodiscard]] ViscousFlow flow(const State& at, Team& team) const;
 
   /// Drops what earlier solves left.
   void forget() const;

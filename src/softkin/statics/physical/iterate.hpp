@@ -8,7 +8,7 @@ namespace softkin::physical {
 struct Demand {
   Eigen::VectorXd actuation;  // m, as the user commands it
   double share = 1;           // of dead loads and of the displacement of what is held [-]
-  double elapsed_s = std::numeric_limits<double>::infinity();  // viscous: since the workspace's history
+  double fading = 0;          // share of what was not in balance where the way began [-]
 };
 
 /// At a share of the way from one to another.

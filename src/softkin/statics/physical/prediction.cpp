@@ -31,14 +31,14 @@ struct Tangent {
   Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
           System::Workspace& work, Team& team, const Iterate& at) {
     const System::Slopes& slopes = work.tangents;
-    if (here.share == there.share && are_of(slopes, at) && held(slopes, system.actuators()) == active) {
+    if (here.share == there.share && here.fading == there.fading && are_of(slopes, at) && held(slopes, system.actuators()) == active) {
       *this = Tangent(slopes, here, there);
       return;
     }
     System::Balance balance;
     const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
     const bool refined = !of_here || !work.factor.in_double();
-    if (refined || here.share != there.share) {
+    if (refined || here.share != there.share || here.fading != there.fading) {
       system.hold_friction(at, work, team);
       system.evaluate(at, here, active, work, balance, team);
       system.assemble(at, here, System::Stiffness::exact, work, team);
@@ -164,7 +164,7 @@ bool follow_foreseen(const System& system, const Demand& here, const Demand& the
   constexpr double most_left = 0.03;  // of the way: what is left is gone along tangents at its begin
   const System::Slopes& slopes = work.tangents;
   if (slopes.foreseen_for.size() == 0 || !are_of(slopes, at) || held(slopes, system.actuators()) != active ||
-      here.share != there.share)
+      here.share != there.share || here.fading != there.fading)
     return false;
   const Demand foreseen{slopes.foreseen_for, there.share};
   if (!((there.actuation - foreseen.actuation).norm() < most_left * (there.actuation - here.actuation).norm()))
@@ -190,6 +190,7 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
   }
   System::Balance balance;
   const Demand demand{at.actuation, at.share};
+  system.set_time(at.history, at.elapsed_s, work_);
   system.hold_friction(iterate_, work_, team);
   system.evaluate(iterate_, demand, active_, work_, balance, team);
   (void)system.factorise(iterate_, demand, active_, System::Stiffness::exact, 0, work_, team);
@@ -201,7 +202,13 @@ State Predictor::predict(const Actuation& actuation, Team& team) {
   if (!predict_clear(system_, {at_.actuation, at_.share}, {actuation, 1}, active_, work_, team, there, predicted))
     return at_;
   if (!there.positions.allFinite() || !there.multipliers.allFinite()) return at_;
-  State state{std::move(there.positions), actuation, std::move(there.multipliers), 1, std::move(there.anchors)};
+  State state{std::move(there.positions),
+              actuation,
+              std::move(there.multipliers),
+              1,
+              std::move(there.anchors),
+              at_.history,
+              at_.elapsed_s};
   for (Index a = 0; a < system_.actuators(); ++a) {
     state.multipliers[a] /= system_.unit(a);
     // no cable pushes

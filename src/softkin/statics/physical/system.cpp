@@ -23,7 +23,8 @@ constexpr double least_turning = 1e-4;
 
 Demand between(const Demand& from, const Demand& to, double share) {
   if (share == 1) return to;
-  return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share)};
+  return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share),
+          from.fading + share * (to.fading - from.fading)};
 }
 
 System::System(const Model& model)
@@ -83,6 +84,10 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
     balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();
     work.gradient -= demand.share * model_.dead_load;
   }
+  if (demand.fading != 0) {
+    balance.energy -= demand.fading * work.unbalanced.cwiseProduct(at.positions - model_.rest).sum();
+    work.gradient -= demand.fading * work.unbalanced;
+  }
   balance.energy += surroundings_.add_gradient(demand.actuation, at.positions, work.gradient);
   if (contacts_ && !balance.forbidden) {
     contacts_->find(at.positions, *work.contacts, team);
@@ -104,6 +109,20 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
   }
   balance.force.resize(freedoms_->size());
   freedoms_->reduce(work.gradient, at.positions, balance.force);
+}
+
+void System::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work) const {
+  if (!viscous()) return;
+  if (history != work.elastic.history || elapsed_s != work.elastic.elapsed_s) work.tangents.at.resize(0, 3);
+  elastic_.set_time(std::move(history), elapsed_s, work.elastic);
+}
+
+Demand System::unbalanced(const Iterate& at, const Demand& demand, Workspace& work, Team& team) const {
+  Balance balance;
+  hold_friction(at, work, team);
+  evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(actuators()), false), work, balance, team);
+  work.unbalanced = work.gradient;
+  return {demand.actuation, demand.share, 1};
 }
 
 System::Imbalance System::imbalance(const Balance& balance, const Workspace& work, Team& team) const {
@@ -310,6 +329,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     }
   }
   if (any_dead_load()) force -= (to.share - from.share) * model_.dead_load;
+  if (to.fading != from.fading) force -= (to.fading - from.fading) * work.unbalanced;
   if (layers) {  // the stretch of layers: central difference of the elastic force
     Demand low = from, high = from;
     constexpr double reach = 1e-4;

@@ -47,7 +47,7 @@ class System {
     explicit Workspace(const System& system);
 
     Body::Scratch elastic;
-    std::shared_ptr<const ViscousHistory> history;  // viscous: of which a demand's time is counted; none: relaxed
+    Points unbalanced;  // #V by 3 [N]: gradient of the Lagrangian where a way began that is no equilibrium
     /// Every column becomes nearly its solution, as linear::MixedLdlt says, with the last factorisation.
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
@@ -102,6 +102,18 @@ class System {
     double rounding = 0;  // what rounding of the positions may leave on a vertex
   };
   [[nodiscard]] Imbalance imbalance(const Balance& balance, const Workspace& work, Team& team) const;
+
+  /// What Maxwell branches remember, and the time since then [s], for all that a workspace evaluates next; see Body.
+  void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work) const;
+  [[nodiscard]] bool viscous() const { return elastic_.viscous(); }
+  /// What they remember of an equilibrium; see Body.
+  [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const State& at, Workspace& work, double& lost_mJ,
+                                                           Team& team) const {
+    return elastic_.flow(at.actuation, at.positions, work.elastic, lost_mJ, team);
+  }
+  [[nodiscard]] std::size_t remembered() const { return elastic_.remembered(); }
+  /// The demand of a way that begins where forces are not in balance: what they lack fades along it.
+  [[nodiscard]] Demand unbalanced(const Iterate& at, const Demand& demand, Workspace& work, Team& team) const;
 
   enum class Stiffness { exact, projected };
   /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added. Where nothing
