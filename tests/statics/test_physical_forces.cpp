@@ -59,6 +59,8 @@ Mat3 stress_by_hand(const ElasticLaw& law, const Mat3& f) {
       const double slope = law.c10 + 2 * law.c20 * over + 3 * law.c30 * over * over;
       return 2 / j * slope * deviator(bar) + law.bulk * (j - 1) * one;
     }
+    case Law::gent:
+      return law.mu / j / (1 - (bar.trace() - 3) / law.jm) * deviator(bar) + law.bulk * (j - 1) * one;
   }
   return Mat3::Zero();
 }
