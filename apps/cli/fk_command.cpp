@@ -225,6 +225,7 @@ int run_fk(const FkOptions& options) {
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
   const std::vector<ActuationStep> steps = asked_steps(model, options);
+  if (steps.front().time) check_times(model, options.path, options, options);
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
   line.show(-1, "assembling");

@@ -156,6 +156,7 @@ int run_follow(const FollowOptions& options) {
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
   MarkerPath path = read_marker_path(options.path, model, options.marker);
+  if (path.waypoints.front().time) check_times(model, options.path, options, options);
   const std::vector<std::string> doubts = doubts_about(model, path);
   if (options.max_step_mm > 0) path = densified(path, options.max_step_mm);
   const std::vector<Output> outputs = options.outputs(path.waypoints.size());

@@ -140,6 +140,7 @@ int run_map(const MapAsked& asked) {
   check_extension("--output", asked.output, {{".skmap", ""}});
   if (!asked.page.empty() && asked.map.shape_accuracy_mm == 0)
     throw InvalidInput("--html bends the robot's shape, which --shape-accuracy 0 leaves out");
+  if (asked.instant) throw InvalidInput("--instant: a map is one of relaxed shapes");
   std::vector<fs::path> inputs{asked.scene};
   const Model model = asked_robot(asked, inputs);
   catch_interrupt();

@@ -1,5 +1,6 @@
 #include "map_use.hpp"
 
+#include <algorithm>
 #include <softkin/core/error.hpp>
 
 #include "run_text.hpp"
@@ -22,9 +23,18 @@ void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<s
   inputs.emplace_back(use.map);
   const SolveOptions usual;
   const bool changed = options.solver_name != usual.solver_name || options.tolerance_mm != usual.tolerance_mm ||
-                       options.max_iterations != usual.max_iterations || options.stable;
+                       options.max_iterations != usual.max_iterations || options.stable || options.instant;
   if (changed && !use.polish)
     throw InvalidInput("a map answers without the solver: --map with the solver's options needs --polish");
+}
+
+void check_times(const Model& model, const std::string& path, const SolveOptions& options, const MapUse& use) {
+  if (options.instant)
+    throw InvalidInput("--instant: " + path + " has times (t_s), so that the material relaxes by them; leave one out");
+  const auto is_viscous = [](const Material& material) { return !material.viscosity.empty(); };
+  if (use.map.empty() || use.polish || std::none_of(model.materials.begin(), model.materials.end(), is_viscous)) return;
+  throw InvalidInput("a map knows relaxed shapes alone, and " + path +
+                     " has times (t_s) by which the material relaxes: --map needs --polish, or the times left out");
 }
 
 std::string head_text(const Model& model, const SolveOptions& options, const runs::Answers& answers) {

@@ -72,6 +72,7 @@ StaticsOptions SolveOptions::statics() const {
   result.anderson = anderson.value_or(result.anderson);
   result.threads = threads;
   result.stable = stable;
+  if (instant) result.elapsed_s = 0;
   return result;
 }
 
@@ -112,6 +113,9 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
       "--stable", options.stable,
       "Physical: where an equilibrium is unstable, go along its lowest mode\nto a stable one, as the robot "
       "would when it buckles");
+  command.add_flag("--instant", options.instant,
+                   "Physical: shapes before a viscous material relaxes (default:\nrelaxed; of a path with times, t_s, at "
+                   "those)");
   add_value(command, "--threads", options.threads, "N", threads, integer_from(0, most_threads));
 }
 
@@ -177,6 +181,9 @@ RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::p
     throw InvalidInput(
         "--stable is for the physical formulation, and this robot is of target shapes: leave it out, or add "
         "--formulation physical");
+  const auto is_viscous = [](const MaterialSpec& material) { return !material.viscosity.empty(); };
+  if (options.instant && std::none_of(spec.materials.begin(), spec.materials.end(), is_viscous))
+    throw InvalidInput("--instant is for viscous materials, and this robot has none: leave it out");
   return spec;
 }
 

@@ -25,6 +25,7 @@ struct SolveOptions : AskedScene {
   std::optional<int> anderson;  // local-global
   int threads = StaticsOptions().threads;
   bool stable = false;
+  bool instant = false;
 
   [[nodiscard]] Solver solver() const;
   [[nodiscard]] StaticsOptions statics() const;

@@ -96,7 +96,7 @@ std::vector<Goal> goals_of(const MarkerPath& path, const Waypoint& waypoint) {
 
 PathFollower::PathFollower(const Model& model, const Statics& statics, const MarkerPath& path,
                            const TrajectoryOptions& options)
-    : model_(model), statics_(statics), path_(path), options_(options), state_(statics.rest()) {
+    : model_(model), statics_(statics), path_(path), options_(options), clock_(statics), state_(statics.rest()) {
   check_path(path);
   for (const Waypoint& waypoint : path.waypoints) check_goals(model, goals_of(path, waypoint));
   if (options_.start.size() > 0) check_actuation(model, options_.start);
@@ -153,6 +153,7 @@ bool PathFollower::first(InverseResult& spent, const ProgressCallback& progress)
 InverseResult PathFollower::advance(const ProgressCallback& progress) {
   const Waypoint& waypoint = path_.waypoints.at(next_);
   const std::vector<Goal> goals = goals_of(path_, waypoint);
+  clock_.set(waypoint.time, options_.inverse.statics);
   InverseResult spent;
   spent.status = InverseStatus::interrupted;
   if (next_ == 0 && options_.start.size() > 0 && !first(spent, progress)) return spent;
@@ -168,12 +169,15 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
   }
   InverseOptions inverse = options_.inverse;
   if (next_ > 0) inverse.other_starts = 0;
-  inverse.start_sensitivity = sensitivity_.regular && !moved ? &sensitivity_ : nullptr;
+  const bool same_time = !clock_.counts(waypoint.time);
+  inverse.start_sensitivity = sensitivity_.regular && !moved && same_time ? &sensitivity_ : nullptr;
   InverseResult found = solve_inverse(model_, statics_, goals, from, inverse, progress);
   found.equilibria += spent.equilibria;
   found.seconds += spent.seconds;
   if (found.status == InverseStatus::interrupted) return found;
   learn(goals, found);
+  lost_mJ_.reset();
+  if (found.equilibrium.report.status == Status::converged) lost_mJ_ = clock_.pass(waypoint.time, state_);
   ++next_;
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/model/paths.hpp>
+#include <softkin/statics/viscous_clock.hpp>
 
 namespace softkin {
 
@@ -35,6 +36,12 @@ class PathFollower {
 
   /// Goes on with a waypoint as if the ones before it had just been done. at: the equilibrium of the one before.
   void resume(std::size_t waypoint, State at);
+  /// Takes note of a waypoint that was solved before, in their order: a viscous material remembers all of them. at: its
+  /// actuation and positions
+  void recall(const Waypoint& waypoint, State at) { clock_.recall(waypoint.time, std::move(at)); }
+
+  /// Energy that a viscous material lost on the way to the last waypoint [mJ]; none where it counts no time.
+  [[nodiscard]] const std::optional<double>& lost_mJ() const { return lost_mJ_; }
 
   /// Solves the next waypoint; equilibria counts those of the prediction too. Where it is interrupted the next waypoint
   /// stays the same. A waypoint that cannot be reached ends at the nearest point that the ranges allow.
@@ -55,6 +62,8 @@ class PathFollower {
   const MarkerPath& path_;
   TrajectoryOptions options_;
   std::size_t next_ = 0;
+  ViscousClock clock_;
+  std::optional<double> lost_mJ_{};
   State state_;                    // where the next waypoint is sought from
   Sensitivity sensitivity_;        // there; not regular: not known
   Eigen::MatrixXd slopes_;         // there, of the goals' terms by shares of the ranges [mm]; empty: not known

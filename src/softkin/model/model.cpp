@@ -65,7 +65,11 @@ class Hash {
   void put(const std::optional<double>& value) { add(value.has_value(), value.value_or(0)); }
   void put(const ElementRole& role) { add(role.material, role.actuator, role.region); }
   void put(const ElasticLaw& e) { add(e.law, e.mu, e.lambda, e.c10, e.c01, e.c20, e.c30, e.bulk); }
-  void put(const Material& m) { add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range); }
+  void put(const ViscousBranch& branch) { add(branch.modulus_MPa, branch.time_s); }
+  void put(const Material& m) {
+    add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range);
+    if (!m.viscosity.empty()) add(m.viscosity);  // maps of robots without it stay valid
+  }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }

@@ -37,6 +37,7 @@ PathJob::PathJob(const Model& model, const Statics& statics, const std::vector<A
       steps_(steps),
       file_(std::move(file)),
       options_(options),
+      clock_(statics),
       state_(statics.rest()),
       overlap_(model) {}
 
@@ -62,14 +63,20 @@ std::string PathJob::mismatch(std::size_t number, const StepRecord& record) cons
 }
 
 std::optional<PathJob::Made> PathJob::make(std::size_t number, const ProgressCallback& progress) {
+  clock_.set(steps_[number].time, options_);
   Equilibrium found = statics_.solve(steps_[number].actuation, state_, options_, progress);
   if (found.report.status == Status::interrupted) return std::nullopt;
   ElementDeformation deformation = statics_.measured(found.state);
   StepRecord record = step_record(model_, found, deformation);
   record.self_overlap = overlap_.in(found.state.positions);
   record.time_s = steps_[number].time;
+  if (record.status == Status::converged) record.viscous_loss_mJ = clock_.pass(record.time_s, found.state);
   state_ = std::move(found.state);
   return Made{std::move(record), state_.positions, std::move(deformation)};
+}
+
+void PathJob::recall(const StepRecord& record, const Points& positions) {
+  if (record.status == Status::converged) clock_.recall(record.time_s, {positions, record.actuation});
 }
 
 void PathJob::go_on(std::size_t, const StepRecord& before, Points positions) {
@@ -109,7 +116,12 @@ std::optional<FollowJob::Made> FollowJob::make(std::size_t number, const Progres
   ElementDeformation deformation = statics_.measured(found.equilibrium.state);
   WaypointRecord record = waypoint_record(model_, path_.waypoints[number], found, deformation);
   record.self_overlap = overlap_.in(positions);
+  record.viscous_loss_mJ = follower_.lost_mJ();
   return Made{std::move(record), positions, std::move(deformation)};
+}
+
+void FollowJob::recall(const WaypointRecord& record, const Points& positions) {
+  if (record.status == Status::converged) follower_.recall(record.asked, {positions, record.actuation});
 }
 
 void FollowJob::go_on(std::size_t number, const WaypointRecord& before, Points positions) {

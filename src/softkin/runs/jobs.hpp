@@ -36,6 +36,10 @@ class Job {
   /// Is it one to go on from? Else the run ends before it.
   [[nodiscard]] virtual bool keeps(const Record&) const { return true; }
 
+  /// Takes note of a record that was made before, in their order, before go_on(); where it needs all of them.
+  [[nodiscard]] virtual bool recalls() const { return false; }
+  virtual void recall(const Record&, const Points&) {}
+
   /// Forgets everything but the record before that number and its shape: what is made from here on is a function of
   /// these alone.
   virtual void go_on(std::size_t number, const Record& before, Points positions) = 0;
@@ -114,6 +118,10 @@ class Run {
   /// Makes the records since the last fresh start again, so that the job knows what it knew. False: interrupted.
   [[nodiscard]] bool repeat(const ProgressCallback& progress) {
     const std::size_t end = done(), begin = end - end % fresh_every;
+    if (job_.recalls())
+      log_.each([&](std::size_t number, const Record& record) {
+        if (number < begin) job_.recall(record, log_.shape_of(number, record).value());
+      });
     if (begin == end) return true;
     if (begin > 0) {
       const Record before = log_.at(begin - 1);
@@ -149,6 +157,8 @@ class PathJob : public Job<StepRecord> {
   [[nodiscard]] Codec<StepRecord> codec() const override;
   [[nodiscard]] std::string mismatch(std::size_t number, const StepRecord& record) const override;
   [[nodiscard]] std::optional<Made> make(std::size_t number, const ProgressCallback& progress) override;
+  [[nodiscard]] bool recalls() const override { return clock_.counts(steps_.front().time); }
+  void recall(const StepRecord& record, const Points& positions) override;
   void go_on(std::size_t number, const StepRecord& before, Points positions) override;
 
  private:
@@ -157,6 +167,7 @@ class PathJob : public Job<StepRecord> {
   const std::vector<ActuationStep>& steps_;
   std::string file_;
   StaticsOptions options_;
+  ViscousClock clock_;
   State state_;
   OverlapSearch overlap_;
 };
@@ -172,6 +183,8 @@ class FollowJob : public Job<WaypointRecord> {
   [[nodiscard]] Codec<WaypointRecord> codec() const override;
   [[nodiscard]] std::string mismatch(std::size_t number, const WaypointRecord& record) const override;
   [[nodiscard]] std::optional<Made> make(std::size_t number, const ProgressCallback& progress) override;
+  [[nodiscard]] bool recalls() const override { return statics_.viscous() && path_.waypoints.front().time; }
+  void recall(const WaypointRecord& record, const Points& positions) override;
   void go_on(std::size_t number, const WaypointRecord& before, Points positions) override;
 
  private:

@@ -47,6 +47,7 @@ struct StepRecord : SolveReport {
   std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};
+  std::optional<double> viscous_loss_mJ{};  // since the step before; of a viscous robot on a path with times
   std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
 };
 

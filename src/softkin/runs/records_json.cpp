@@ -287,6 +287,7 @@ Json step_json(const Model& model, const StepRecord& record) {
   step["strain"] = strain_json(record.strain);
   step["history"] = history_json(record);
   if (record.time_s) step["time_s"] = *record.time_s;
+  if (record.viscous_loss_mJ) step["viscous_loss_mJ"] = *record.viscous_loss_mJ;
   return step;
 }
 
@@ -370,6 +371,7 @@ void from_json(const Model& model, const Json& json, StepRecord& record) {
   record.strain = strain_of(json.at("strain"));
   read_history(json.at("history"), record);
   if (json.contains("time_s")) record.time_s = json.at("time_s").get<double>();
+  if (json.contains("viscous_loss_mJ")) record.viscous_loss_mJ = json.at("viscous_loss_mJ").get<double>();
   if (!json.contains("shape")) return;
   record.shape = json.at("shape").get<std::string>();
   record.shape_fingerprint = json.at("shape_fingerprint").get<std::string>();

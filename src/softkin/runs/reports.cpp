@@ -36,6 +36,8 @@ Json materials_json(const Model& model) {
       json["law"] = law_name(material.elastic.law);
       json.update(elastic_json(material.elastic));
       json["density_kg_m3"] = material.density;
+      for (const ViscousBranch& branch : material.viscosity)
+        json["viscosity"].push_back({{"modulus_MPa", branch.modulus_MPa}, {"time_s", branch.time_s}});
     } else {
       json["shape_ratio"] = material.shape_ratio;
       json["weight"] = material.weight;

@@ -176,11 +176,11 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   if (parts_->physical) {
     if (options.solver == Solver::local_global)
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
-    result = parts_->physical->solve(actuation, begun,
-                                     {tolerance, options.max_iterations, options.keep_history, options.reuse_factor,
-                                      options.stable, 1e-6 * std::max(1.0, tolerance / paper_tolerance),
-                                      options.history, options.elapsed_s},
-                                     progress, *team);
+    result = parts_->physical->solve(
+        actuation, begun,
+        {tolerance, options.max_iterations, options.keep_history, options.reuse_factor, options.stable,
+         1e-6 * std::max(1.0, tolerance / paper_tolerance), options.history, options.elapsed_s},
+        progress, *team);
   } else {
     if (options.stable)
       throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");

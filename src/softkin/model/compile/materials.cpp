@@ -95,9 +95,10 @@ Material checked_material(const MaterialSpec& spec, Formulation formulation) {
   for (const ViscousBranch& branch : spec.viscosity)
     if (!(branch.modulus_MPa > 0 && std::isfinite(branch.modulus_MPa) && branch.time_s > 0 &&
           std::isfinite(branch.time_s)))
-      throw InvalidInput(spec.origin, owner + ": a branch of its viscosity needs a modulus above 0 MPa and a time above "
-                                              "0 s, not " + number(branch.modulus_MPa) + " and " +
-                                              number(branch.time_s));
+      throw InvalidInput(spec.origin, owner +
+                                          ": a branch of its viscosity needs a modulus above 0 MPa and a time above "
+                                          "0 s, not " +
+                                          number(branch.modulus_MPa) + " and " + number(branch.time_s));
   if (!physical && !spec.viscosity.empty())
     throw InvalidInput(spec.origin, owner + " has viscosity, which needs the physical formulation");
   Material material;

@@ -103,7 +103,8 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
   system_.set_time(options.history, options.elapsed_s, lease.work());
   const bool rests = start.positions == model.rest && start.actuation.size() == 0;
-  const bool same_time = rests ? !options.history : start.history == options.history && start.elapsed_s == options.elapsed_s;
+  const bool same_time =
+      rests ? !options.history : start.history == options.history && start.elapsed_s == options.elapsed_s;
   if (system_.viscous() && !same_time && (rests || start.knows(system_.actuators())))
     from = system_.unbalanced(at, from, lease.work(), team);
   // a start whose supports are elsewhere may have no way there

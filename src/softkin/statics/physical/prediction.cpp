@@ -31,7 +31,8 @@ struct Tangent {
   Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
           System::Workspace& work, Team& team, const Iterate& at) {
     const System::Slopes& slopes = work.tangents;
-    if (here.share == there.share && here.fading == there.fading && are_of(slopes, at) && held(slopes, system.actuators()) == active) {
+    if (here.share == there.share && here.fading == there.fading && are_of(slopes, at) &&
+        held(slopes, system.actuators()) == active) {
       *this = Tangent(slopes, here, there);
       return;
     }

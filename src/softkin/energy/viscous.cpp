@@ -1,0 +1,337 @@
+#include <cstring>
+#include <softkin/energy/elastic_law_point.hpp>
+#include <softkin/energy/viscous.hpp>
+
+namespace softkin::energy {
+
+namespace {
+
+/// A symmetric matrix in every lane: xx, yy, zz, xy, yz, xz.
+struct Symmetric {
+  Pack at[6];
+};
+constexpr int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
+constexpr int place[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+Symmetric scaled(const Pack& scale, const Symmetric& a) {
+  Symmetric result;
+  for (int i = 0; i < 6; ++i) result.at[i] = scale * a.at[i];
+  return result;
+}
+
+void add(Symmetric& to, const Pack& scale, const Symmetric& a) {
+  for (int i = 0; i < 6; ++i) to.at[i] += scale * a.at[i];
+}
+
+/// a : b
+Pack inner(const Symmetric& a, const Symmetric& b) {
+  return a.at[0] * b.at[0] + a.at[1] * b.at[1] + a.at[2] * b.at[2] +
+         2 * (a.at[3] * b.at[3] + a.at[4] * b.at[4] + a.at[5] * b.at[5]);
+}
+
+Symmetric cofactor(const Symmetric& a) {
+  const Pack(&m)[6] = a.at;
+  return {{m[1] * m[2] - m[4] * m[4], m[0] * m[2] - m[5] * m[5], m[0] * m[1] - m[3] * m[3], m[5] * m[4] - m[3] * m[2],
+           m[3] * m[5] - m[0] * m[4], m[3] * m[4] - m[1] * m[5]}};
+}
+
+Pack determinant(const Symmetric& a, const Symmetric& cofactors) {
+  return a.at[0] * cofactors.at[0] + a.at[3] * cofactors.at[3] + a.at[5] * cofactors.at[5];
+}
+
+/// a b a
+Symmetric sandwich(const Symmetric& a, const Symmetric& b) {
+  Pack ab[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      ab[i][j] = a.at[place[i][0]] * b.at[place[0][j]] + a.at[place[i][1]] * b.at[place[1][j]] +
+                 a.at[place[i][2]] * b.at[place[2][j]];
+  Symmetric result;
+  for (int e = 0; e < 6; ++e) {
+    const int i = rows[e], j = columns[e];
+    result.at[e] = ab[i][0] * a.at[place[0][j]] + ab[i][1] * a.at[place[1][j]] + ab[i][2] * a.at[place[2][j]];
+  }
+  return result;
+}
+
+/// The strain at a quadrature point.
+struct Strain {
+  Pack33 gradient;  // F
+  Pack jacobian;    // J, positive
+  Pack scale;       // J^(-2/3)
+  Symmetric right;  // C
+  Symmetric barred;
+};
+
+template <int K>
+Strain strain_at(const Pack3 (&slope)[K], const Shape<K>& current) {
+  Strain s;
+  s.gradient = deformation_gradient<K>(slope, current);
+  const Pack3* f = s.gradient.row;
+  s.jacobian = positive_jacobian(dot(f[0], cross(f[1], f[2])));
+  const Pack root = 1 / cbrt(s.jacobian);
+  s.scale = root * root;
+  const Pack33 c = transpose_times(s.gradient, s.gradient);
+  s.right = {{c.row[0].x, c.row[1].y, c.row[2].z, c.row[0].y, c.row[1].z, c.row[0].z}};
+  s.barred = scaled(s.scale, s.right);
+  return s;
+}
+
+/// A branch at the end of the step.
+struct Branch {
+  Symmetric before;   // C_v0
+  Symmetric flowed;   // k C_v0 + (1 - k) bar C
+  Symmetric inverse;  // A = C_v^-1 at the end
+  Pack root;          // cube root of the determinant of `flowed`
+  Pack kept;          // k
+};
+
+Symmetric unit() {
+  const Pack zero{}, one = pack(1);
+  return {{one, one, one, zero, zero, zero}};
+}
+
+Symmetric remembered(const ViscousBlock& viscous, int q, int branch) {
+  if (!viscous.strains) return unit();
+  Symmetric before;
+  std::memcpy(before.at, viscous.strains + 6 * lanes * (static_cast<std::ptrdiff_t>(q) * viscous.branches + branch),
+              sizeof(before.at));
+  return before;
+}
+
+Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s) {
+  Branch b;
+  b.before = remembered(viscous, q, branch);
+  b.kept = viscous.kept[branch];
+  b.flowed = scaled(b.kept, b.before);
+  add(b.flowed, 1 - b.kept, s.barred);
+  const Symmetric cofactors = cofactor(b.flowed);
+  b.root = cbrt(determinant(b.flowed, cofactors));
+  b.inverse = scaled(1 / (b.root * b.root), cofactors);
+  return b;
+}
+
+/// 3 (root - k) / (1 - k) - 3, without the cancellation of a short step.
+Pack stored(const Branch& b, const Strain& s) {
+  const Pack flow = 1 - b.kept;
+  const Pack first = inner(cofactor(b.before), s.barred), second = inner(b.before, cofactor(s.barred));
+  const Pack above = b.kept * b.kept * first + b.kept * flow * second + flow * flow;
+  return 3 * (above / (b.root * b.root + b.root * b.kept + b.kept * b.kept) - 1);
+}
+
+/// Second Piola-Kirchhoff stress of the branches, and C^-1.
+struct BranchStress {
+  Symmetric stress{};
+  Symmetric inverse_right;
+};
+
+void add_stress(const Pack& modulus, const Branch& b, const Strain& s, BranchStress& out) {
+  const Pack scale = modulus * s.scale;
+  add(out.stress, scale, b.inverse);
+  add(out.stress, (-1.0 / 3) * scale * inner(b.inverse, s.right), out.inverse_right);
+}
+
+Symmetric inverse_of_right(const Strain& s) {
+  return scaled(1 / (s.jacobian * s.jacobian), cofactor(s.right));
+}
+
+Pack33 full(const Symmetric& a) {
+  return {{{a.at[0], a.at[3], a.at[5]}, {a.at[3], a.at[1], a.at[4]}, {a.at[5], a.at[4], a.at[2]}}};
+}
+
+/// Entries of a fourth-order tensor with both symmetries: a row for each pair (i, j), the upper triangle.
+struct Moduli {
+  Pack at[6][6];
+};
+
+/// c += alpha a (x) a
+void add_square(Moduli& c, const Pack& alpha, const Symmetric& a) {
+  for (int e = 0; e < 6; ++e) {
+    const Pack left = alpha * a.at[e];
+    for (int f = e; f < 6; ++f) c.at[e][f] += left * a.at[f];
+  }
+}
+
+/// c += a (x) b + b (x) a
+void add_both(Moduli& c, const Symmetric& a, const Symmetric& b) {
+  for (int e = 0; e < 6; ++e)
+    for (int f = e; f < 6; ++f) c.at[e][f] += a.at[e] * b.at[f] + b.at[e] * a.at[f];
+}
+
+/// c_ijkl += alpha (a_ik a_jl + a_il a_jk) / 2
+void add_crossed(Moduli& c, const Pack& alpha, const Symmetric& a) {
+  for (int e = 0; e < 6; ++e)
+    for (int f = e; f < 6; ++f) {
+      const int i = rows[e], j = columns[e], k = rows[f], l = columns[f];
+      c.at[e][f] += 0.5 * alpha * (a.at[place[i][k]] * a.at[place[j][l]] + a.at[place[i][l]] * a.at[place[j][k]]);
+    }
+}
+
+/// What a quadrature point adds to the stiffness, times its volume.
+struct PointStiffness {
+  Symmetric stress;  // S
+  Moduli moduli;     // 2 dS/dC
+  Pack33 gradient;
+};
+
+/// source  Holzapfel 2000, Nonlinear Solid Mechanics, Eqs. (6.167)-(6.169): moduli of what depends on bar C alone
+template <int K>
+void set_point(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlock& viscous, int q, const Shape<K>& current,
+               PointStiffness& out) {
+  const Strain s = strain_at<K>(slope, current);
+  BranchStress sum;
+  sum.inverse_right = inverse_of_right(s);
+  Moduli& c = out.moduli;
+  c = Moduli{};
+  Symmetric mixed{};  // with C^-1
+  Pack of_inverse{}, traces{};
+  for (int i = 0; i < viscous.branches; ++i) {
+    const Branch b = branch_at(viscous, q, i, s);
+    const Pack modulus = volume * viscous.modulus[i];
+    add_stress(modulus, b, s, sum);
+    const Pack alpha = 2 * modulus * (1 - b.kept) / b.root * s.scale * s.scale;
+    const Pack trace = inner(b.inverse, s.right);
+    const Symmetric turned = sandwich(b.inverse, s.right);
+    add_square(c, (1.0 / 3) * alpha, b.inverse);
+    add_crossed(c, -alpha, b.inverse);
+    add(mixed, (-1.0 / 9) * alpha * trace, b.inverse);
+    add(mixed, (1.0 / 3) * alpha, turned);
+    of_inverse += (1.0 / 9) * alpha * ((1.0 / 3) * trace * trace - inner(turned, s.right));
+    traces += modulus * s.scale * trace;
+  }
+  add(mixed, pack(-2.0 / 3), sum.stress);
+  add_both(c, mixed, sum.inverse_right);
+  add_square(c, of_inverse - (2.0 / 9) * traces, sum.inverse_right);
+  add_crossed(c, (2.0 / 3) * traces, sum.inverse_right);
+  out.stress = sum.stress;
+  out.gradient = s.gradient;
+}
+
+/// Change of C / 2 by a move of a node along each axis, entries of one row doubled where they stand for two.
+template <int K>
+void strain_slopes(const Pack33& f, const Pack3& slope, Pack3 (&out)[6]) {
+  const Pack* g = &slope.x;
+  for (int e = 0; e < 6; ++e) {
+    const int i = rows[e], j = columns[e];
+    const auto column = [&](int c) { return Pack3{(&f.row[0].x)[c], (&f.row[1].x)[c], (&f.row[2].x)[c]}; };
+    out[e] = i == j ? g[i] * column(i) : g[j] * column(i) + g[i] * column(j);
+  }
+}
+
+template <int K>
+void add_point(const PointStiffness& p, const Pack3 (&slope)[K], ElasticStiffness<K>& out) {
+  static_assert(sizeof(Pack3) == 3 * sizeof(Pack));
+  Pack3 moves[K][6];
+  for (int a = 0; a < K; ++a) strain_slopes<K>(p.gradient, slope[a], moves[a]);
+  const Pack33 stress = full(p.stress);
+  for (int b = 0; b < K; ++b) {
+    Pack3 response[6];
+    for (int e = 0; e < 6; ++e) {
+      response[e] = p.moduli.at[0][e] * moves[b][0];
+      for (int f = 1; f < 6; ++f)
+        response[e] = response[e] + (e < f ? p.moduli.at[e][f] : p.moduli.at[f][e]) * moves[b][f];
+    }
+    const Pack3 pulled = stress * slope[b];
+    for (int a = b; a < K; ++a) {
+      Pack33& block = out.block[a * (a + 1) / 2 + b];
+      for (int e = 0; e < 6; ++e) add_outer(block, moves[a][e], response[e]);
+      add_to_diagonal(block, dot(slope[a], pulled));
+    }
+  }
+}
+
+template <int K>
+void add_projected(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlock& viscous, int q,
+                   const Shape<K>& current, ElasticStiffness<K>& out) {
+  const Strain s = strain_at<K>(slope, current);
+  Symmetric sum{};
+  for (int i = 0; i < viscous.branches; ++i)
+    add(sum, volume * viscous.modulus[i] * s.scale, branch_at(viscous, q, i, s).inverse);
+  const Pack33 stress = full(sum);
+  for (int b = 0; b < K; ++b) {
+    const Pack3 pulled = stress * slope[b];
+    for (int a = b; a < K; ++a) add_to_diagonal(out.block[a * (a + 1) / 2 + b], dot(slope[a], pulled));
+  }
+}
+
+}  // namespace
+
+template <int K, int Q>
+void add_viscous_force(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current,
+                       ElasticForce<K>& out) {
+  for (int q = 0; q < Q; ++q) {
+    const Strain s = strain_at<K>(block.slope[q], current);
+    BranchStress sum;
+    sum.inverse_right = inverse_of_right(s);
+    Pack energy{};
+    for (int i = 0; i < viscous.branches; ++i) {
+      const Branch b = branch_at(viscous, q, i, s);
+      energy += 0.5 * viscous.modulus[i] * stored(b, s);
+      add_stress(viscous.modulus[i], b, s, sum);
+    }
+    out.energy += block.volume[q] * energy;
+    const Pack33 first = times(s.gradient, full(scaled(block.volume[q], sum.stress)));
+    for (int a = 0; a < K; ++a) out.gradient[a] = out.gradient[a] + first * block.slope[q][a];
+  }
+}
+
+template <int K, int Q>
+void add_viscous_stiffness(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current,
+                           bool projected, ElasticStiffness<K>& out) {
+  for (int q = 0; q < Q; ++q) {
+    if (projected) {
+      add_projected<K>(block.slope[q], block.volume[q], viscous, q, current, out);
+      continue;
+    }
+    PointStiffness point;
+    set_point<K>(block.slope[q], block.volume[q], viscous, q, current, point);
+    add_point<K>(point, block.slope[q], out);
+  }
+}
+
+template <int K, int Q>
+void add_viscous_stress(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current,
+                        Pack33 (&stress)[Q]) {
+  for (int q = 0; q < Q; ++q) {
+    const Strain s = strain_at<K>(block.slope[q], current);
+    BranchStress sum;
+    sum.inverse_right = inverse_of_right(s);
+    for (int i = 0; i < viscous.branches; ++i) add_stress(viscous.modulus[i], branch_at(viscous, q, i, s), s, sum);
+    const Pack33 cauchy = times(times(s.gradient, full(scaled(1 / s.jacobian, sum.stress))), transposed(s.gradient));
+    for (int r = 0; r < 3; ++r) stress[q].row[r] = stress[q].row[r] + cauchy.row[r];
+  }
+}
+
+template <int K, int Q>
+Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current, double* strains) {
+  Pack lost{};
+  for (int q = 0; q < Q; ++q) {
+    const Strain s = strain_at<K>(block.slope[q], current);
+    for (int i = 0; i < viscous.branches; ++i, strains += 6 * lanes) {
+      const Branch b = branch_at(viscous, q, i, s);
+      const Symmetric after = scaled(1 / b.root, b.flowed);
+      std::memcpy(strains, after.at, sizeof(after.at));
+      const Pack less = inner(cofactor(b.before), s.barred) - inner(b.inverse, s.barred);
+      lost += 0.5 * block.volume[q] * viscous.modulus[i] * max(less, Pack{});
+    }
+  }
+  return lost;
+}
+
+template void add_viscous_force(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, ElasticForce<4>&);
+template void add_viscous_stiffness(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, bool,
+                                    ElasticStiffness<4>&);
+template void add_viscous_stress(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, Pack33 (&)[1]);
+template Pack flow(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, double*);
+template void add_viscous_force(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, ElasticForce<10>&);
+template void add_viscous_stiffness(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, bool,
+                                    ElasticStiffness<10>&);
+template void add_viscous_stress(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, Pack33 (&)[4]);
+template Pack flow(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, double*);
+template void add_viscous_force(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, ElasticForce<6>&);
+template void add_viscous_stiffness(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, bool,
+                                    ElasticStiffness<6>&);
+template void add_viscous_stress(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, Pack33 (&)[6]);
+template Pack flow(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, double*);
+
+}  // namespace softkin::energy

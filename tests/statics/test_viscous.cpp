@@ -1,0 +1,322 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+constexpr double side = 10;  // of the cube [mm]
+const std::vector<ViscousBranch> vhb{{0.02606, 0.61}, {0.02653, 6.56}, {0.01083, 61.25}};
+
+/// A cube that is held to a length along x; its sides are free to move, or do not move across.
+RobotSpec stretched_cube(double stretch, bool held_sides, const ElasticSpec& law,
+                         const std::vector<ViscousBranch>& branches) {
+  RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {side, side, side}));
+  spec.materials[0].elastic = law;
+  spec.materials[0].viscosity = branches;
+  const auto hold = [&](const char* face, int axis, double move) {
+    FixedSpec fixed{{std::string(face), {}}, {false, false, false}, Vec3::Zero()};
+    fixed.axes[static_cast<std::size_t>(axis)] = true;
+    fixed.displacement[axis] = move;
+    return fixed;
+  };
+  spec.fixed = {hold("x_low", 0, 0), hold("x_high", 0, (stretch - 1) * side), hold("y_low", 1, 0),
+                hold("z_low", 2, 0)};
+  if (held_sides) {
+    spec.fixed.push_back(hold("y_high", 1, 0));
+    spec.fixed.push_back(hold("z_high", 2, 0));
+  }
+  return spec;
+}
+
+struct Pulled {
+  double stress = 0;  // nominal [MPa]
+  ViscousFlow flow;
+};
+
+/// The cube after a step of time that ends at a stretch.
+Pulled pulled(const RobotSpec& spec, const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) {
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions options;
+  options.history = history;
+  options.elapsed_s = elapsed_s;
+  const Equilibrium found = statics.solve({}, statics.rest(), options);
+  EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+  const Reaction held = reactions(model, found.state.positions, statics.measured(found.state))[1];
+  return {held.force.x() / (side * side), statics.flow(found.state)};
+}
+
+}  // namespace
+
+/// A strain that is held relaxes as the sum of G_i exp(-t / tau_i), in steps of any length.
+TEST(Viscosity, ASmallStrainRelaxesByItsBranches) {
+  const double strain = 1e-5;
+  const ElasticSpec law = elastic(Law::neo_hookean, 0.2, 0.4);
+  const double mu = 0.2 / 2.8, lambda = 0.2 * 0.4 / (1.4 * 0.2);
+  const RobotSpec spec = stretched_cube(1 + strain, true, law, vhb);
+  const double relaxed = (lambda + 2 * mu) * strain;
+  Pulled now = pulled(spec, nullptr, 0);
+  double time = 0;
+  for (const double step : {0.0, 0.01, 0.3, 0.3, 2.0, 10.0, 100.0}) {
+    if (step > 0) now = pulled(spec, now.flow.history, step);
+    time += step;
+    double expected = relaxed;
+    for (const ViscousBranch& branch : vhb)
+      expected += 4.0 / 3 * branch.modulus_MPa * std::exp(-time / branch.time_s) * strain;
+    EXPECT_NEAR(now.stress, expected, 1e-4 * expected) << time;
+    EXPECT_GE(now.flow.lost_mJ, 0);
+  }
+  EXPECT_NEAR(pulled(spec, now.flow.history, std::numeric_limits<double>::infinity()).stress, relaxed, 1e-4 * relaxed);
+}
+
+/// At once the branches are springs: the cube is as stiff as one of their shear moduli together. Nearly incompressible,
+/// as they resist no change of volume.
+TEST(Viscosity, InstantAndRelaxedAnswersAreElastic) {
+  const double nu = 0.499, mu = 0.05, bulk = 2 * mu * (1 + nu) / (3 * (1 - 2 * nu));
+  double together = mu;
+  for (const ViscousBranch& branch : vhb) together += branch.modulus_MPa;
+  ElasticSpec soft;
+  soft.law = Law::mooney_rivlin;
+  soft.c10 = mu / 2;
+  soft.c01 = 0;
+  soft.bulk_modulus = bulk;
+  ElasticSpec stiff = soft;
+  stiff.c10 = together / 2;
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double stretch : {0.7, 1.2, 2.0}) {
+    const double instant = pulled(stretched_cube(stretch, false, soft, vhb), nullptr, 0).stress;
+    EXPECT_NEAR(instant, pulled(stretched_cube(stretch, false, stiff, {}), nullptr, infinite).stress,
+                1e-8 * std::abs(instant));
+    EXPECT_EQ(pulled(stretched_cube(stretch, false, soft, vhb), nullptr, infinite).stress,
+              pulled(stretched_cube(stretch, false, soft, {}), nullptr, infinite).stress);
+  }
+}
+
+namespace {
+
+/// The cube with free sides, integrated apart from the solver: stretches and the branch equations along the axes, by
+/// Runge and Kutta's method of fourth order.
+class OneElement {
+ public:
+  explicit OneElement(std::vector<ViscousBranch> branches) : branches_(std::move(branches)), flowed_(branches_.size(), 1) {}
+  double mu = 0, lambda = 0;  // neo-Hooke's
+
+  /// Nominal stress along the axis at a stretch [MPa].
+  [[nodiscard]] double stress(double stretch) const { return stress_along(stretch, side_at(stretch, flowed_), flowed_); }
+
+  void advance(double from, double to, double time, int steps) {
+    const double h = time / steps;
+    for (int i = 0; i < steps; ++i) {
+      const auto at = [&](double share) { return from + (to - from) * (i + share) / steps; };
+      const std::vector<double> a = rate(at(0), flowed_), b = rate(at(0.5), moved(a, h / 2)),
+                                c = rate(at(0.5), moved(b, h / 2)), d = rate(at(1), moved(c, h));
+      for (std::size_t k = 0; k < flowed_.size(); ++k) flowed_[k] += h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+    }
+  }
+
+ private:
+  using Flowed = std::vector<double>;  // of each branch C_v along the axis; across it is 1 / sqrt of that
+
+  [[nodiscard]] Flowed moved(const Flowed& rates, double time) const {
+    Flowed result = flowed_;
+    for (std::size_t k = 0; k < result.size(); ++k) result[k] += time * rates[k];
+    return result;
+  }
+  [[nodiscard]] Flowed rate(double stretch, const Flowed& flowed) const {
+    const double across = side_at(stretch, flowed), j = stretch * across * across, scale = std::pow(j, -2.0 / 3);
+    Flowed rates;
+    for (std::size_t k = 0; k < flowed.size(); ++k) {
+      const double along = scale * stretch * stretch, aside = scale * across * across * std::sqrt(flowed[k]);
+      rates.push_back((along - (along / flowed[k] + 2 * aside) / 3 * flowed[k]) / branches_[k].time_s);
+    }
+    return rates;
+  }
+  [[nodiscard]] double stress_along(double stretch, double across, const Flowed& flowed) const {
+    return principal(stretch, across, flowed, true);
+  }
+  [[nodiscard]] double principal(double stretch, double across, const Flowed& flowed, bool along) const {
+    const double j = stretch * across * across, scale = std::pow(j, -2.0 / 3), own = along ? stretch : across;
+    double stress = mu * own + ((lambda + mu) * (j - 1) - mu) * j / own;
+    for (std::size_t k = 0; k < flowed.size(); ++k) {
+      const double first = scale * stretch * stretch / flowed[k], second = scale * across * across * std::sqrt(flowed[k]);
+      stress += branches_[k].modulus_MPa / own * ((along ? first : second) - (first + 2 * second) / 3);
+    }
+    return stress;
+  }
+  /// The stretch across at which nothing pulls there.
+  [[nodiscard]] double side_at(double stretch, const Flowed& flowed) const {
+    double low = 0.2 / std::sqrt(stretch), high = 3 / std::sqrt(stretch);
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (principal(stretch, middle, flowed, false) > 0 ? high : low) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+  std::vector<ViscousBranch> branches_;
+  Flowed flowed_;
+};
+
+/// A cycle of stretches from 1 to the largest and back, at one rate.
+double triangle(double share, double largest) {
+  return 1 + (largest - 1) * (share < 0.5 ? 2 * share : 2 - 2 * share);
+}
+
+/// Largest difference of the stresses over a cycle, over the largest stress.
+double error_over_cycle(double period_s, int steps, double largest) {
+  const ElasticSpec law = elastic(Law::neo_hookean, 0.1, 0.45);
+  OneElement apart(vhb);
+  apart.mu = 0.1 / 2.9;
+  apart.lambda = 0.1 * 0.45 / (1.45 * 0.1);
+  std::shared_ptr<const ViscousHistory> history;
+  double worst = 0, most = 0;
+  for (int i = 1; i <= steps; ++i) {
+    const double from = triangle((i - 1.0) / steps, largest), to = triangle(static_cast<double>(i) / steps, largest);
+    const Pulled now = pulled(stretched_cube(to, false, law, vhb), history, period_s / steps);
+    history = now.flow.history;
+    apart.advance(from, to, period_s / steps, 20);
+    worst = std::max(worst, std::abs(now.stress - apart.stress(to)));
+    most = std::max(most, std::abs(apart.stress(to)));
+  }
+  return worst / most;
+}
+
+}  // namespace
+
+TEST(Viscosity, AStepOfLargeStrainRelaxesAsTheBranchEquationsDo) {
+  const ElasticSpec law = elastic(Law::neo_hookean, 0.1, 0.45);
+  OneElement apart(vhb);
+  apart.mu = 0.1 / 2.9;
+  apart.lambda = 0.1 * 0.45 / (1.45 * 0.1);
+  const double stretch = 2.5;
+  const RobotSpec spec = stretched_cube(stretch, false, law, vhb);
+  Pulled now = pulled(spec, nullptr, 0);
+  EXPECT_NEAR(now.stress, apart.stress(stretch), 1e-6 * now.stress);
+  double step = 0.002;
+  for (int i = 0; i < 60; ++i, step *= 1.12) {
+    now = pulled(spec, now.flow.history, step);
+    apart.advance(stretch, stretch, step, 50);
+    EXPECT_NEAR(now.stress, apart.stress(stretch), 1e-3 * now.stress) << step;
+  }
+}
+
+/// Half the time step, half the error.
+TEST(Viscosity, LoopsConvergeWithTheTimeStep) {
+  for (const double period : {2.0, 20.0}) {
+    const double coarse = error_over_cycle(period, 20, 2), fine = error_over_cycle(period, 40, 2);
+    EXPECT_LT(fine, 0.55 * coarse) << period;
+    EXPECT_LT(fine, 0.05) << period;
+  }
+}
+
+/// A bar that hangs on a cable's tension shortens as a standard linear solid does: the exact answer of one branch.
+TEST(Viscosity, ABarCreepsUnderALoad) {
+  RobotSpec spec = physical_robot(block_mesh({4, 1, 1}, {40, 10, 10}));
+  spec.materials[0].elastic = elastic(Law::neo_hookean, 1, 0);
+  const double added = 0.4, time = 2;
+  spec.materials[0].viscosity = {{added, time}};
+  spec.fixed = {{{std::string("x_low"), {}}, {true, false, false}},
+                {{std::string("y_low"), {}}, {false, true, false}},
+                {{std::string("z_low"), {}}, {false, false, true}}};
+  spec.forces = {{"pull", {std::string("x_high"), {}}, {1e-3, 0, 0}}};
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const double stress = 1e-3 / 100;
+  // the branch stores G : dev(strain - flowed)^2; along the bar, with the volume's stiffness of nu = 0
+  const double mu = 0.5, bulk = 1.0 / 3;
+  const auto modulus = [&](double shear) { return 9 * bulk * shear / (3 * bulk + shear); };
+  const double instant = stress / modulus(mu + added), relaxed = stress / modulus(mu);
+  // shear compliance: J(t) = 1/mu - (1/mu - 1/(mu + G)) exp(-t / retardation)
+  const double retardation = time * (mu + added) / mu;
+  StaticsOptions options;
+  options.elapsed_s = 0;
+  State state = statics.rest();
+  double at = 0;
+  const double step = 0.02;
+  for (int i = 0; i <= 200; ++i) {
+    const Equilibrium found = statics.solve({}, state, options);
+    ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
+    const double strain = (model.markers[0].point.at(found.state.positions).x() - 40) / 40;
+    EXPECT_NEAR(strain, relaxed - (relaxed - instant) * std::exp(-at / retardation), 4e-3 * relaxed) << at;
+    state = found.state;
+    options.history = statics.flow(state).history;
+    options.elapsed_s = step;
+    at += step;
+  }
+}
+
+/// From the shape before as from rest: the same.
+TEST(Viscosity, TheStartOfASearchDoesNotMatter) {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].viscosity = vhb;
+  spec.materials[0].viscosity[0].modulus_MPa = 0.5;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions options;
+  options.elapsed_s = 0;
+  Equilibrium now = statics.solve(values({1.4}), statics.rest(), options);
+  for (const double ratio : {1.4, 1.7, 1.2}) {
+    options.history = statics.flow(now.state).history;
+    options.elapsed_s = 0.4;
+    const Equilibrium next = statics.solve(values({ratio}), now.state, options);
+    ASSERT_EQ(next.report.status, Status::converged) << next.report.remark;
+    const Equilibrium fresh = statics.solve(values({ratio}), statics.rest(), options);
+    ASSERT_EQ(fresh.report.status, Status::converged) << fresh.report.remark;
+    EXPECT_LT((next.state.positions - fresh.state.positions).cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_NEAR(next.state.multipliers[0], fresh.state.multipliers[0], 1e-6 * std::abs(fresh.state.multipliers[0]));
+    now = next;
+  }
+}
+
+/// Derivatives of a shape within a time step.
+TEST(Viscosity, SensitivitiesAreThoseOfTheTimeStep) {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].viscosity = vhb;
+  spec.materials[0].viscosity[0].modulus_MPa = 0.5;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions options;
+  options.elapsed_s = 0;
+  const Equilibrium before = statics.solve(values({1.4}), statics.rest(), options);
+  options.history = statics.flow(before.state).history;
+  options.elapsed_s = 0.3;
+  const auto solved = [&](double ratio) {
+    const Equilibrium found = statics.solve(values({ratio}), before.state, options);
+    EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+    return found.state;
+  };
+  const double step = 1e-3;
+  const State below = solved(1.3 - step), above = solved(1.3 + step), middle = solved(1.3);
+  const Sensitivity slopes = statics.sensitivity(middle);
+  ASSERT_TRUE(slopes.regular);
+  const Points change = (above.positions - below.positions) / (2 * step);
+  EXPECT_LT((slopes.positions[0] - change).cwiseAbs().maxCoeff(), 1e-4 * change.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(slopes.multipliers(0, 0), (above.multipliers[0] - below.multipliers[0]) / (2 * step),
+              1e-4 * std::abs(slopes.multipliers(0, 0)));
+}
+
+TEST(Viscosity, RefusesWhatIsNoTime) {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].viscosity = vhb;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions options;
+  for (const double time : {-1.0, std::nan("")}) {
+    options.elapsed_s = time;
+    EXPECT_THROW((void)statics.solve(values({1}), statics.rest(), options), InvalidInput);
+  }
+  options.elapsed_s = 1;
+  options.history = std::make_shared<ViscousHistory>(ViscousHistory{{1, 2, 3}});
+  EXPECT_THROW((void)statics.solve(values({1}), statics.rest(), options), InvalidInput);
+}
+
+}  // namespace softkin
