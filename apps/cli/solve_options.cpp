@@ -113,9 +113,10 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
       "--stable", options.stable,
       "Physical: where an equilibrium is unstable, go along its lowest mode\nto a stable one, as the robot "
       "would when it buckles");
-  command.add_flag("--instant", options.instant,
-                   "Physical: shapes before a viscous material relaxes (default:\nrelaxed; of a path with times, t_s, at "
-                   "those)");
+  command.add_flag(
+      "--instant", options.instant,
+      "Physical: shapes before a viscous material relaxes (default:\nrelaxed; of a path with times, t_s, at "
+      "those)");
   add_value(command, "--threads", options.threads, "N", threads, integer_from(0, most_threads));
 }
 

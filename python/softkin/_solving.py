@@ -44,11 +44,17 @@ ProgressFunction = Callable[[Progress], object]
 
 @lru_cache(maxsize=64)
 def _options(
-    solver: str, tolerance_mm: float | None, max_iterations: int, anderson: int, threads: int, stable: bool
+    solver: str,
+    tolerance_mm: float | None,
+    max_iterations: int,
+    anderson: int,
+    threads: int,
+    stable: bool,
+    elapsed_s: float | None = None,
 ) -> _core.SolveOptions:
     if tolerance_mm is not None and not tolerance_mm > 0:
         raise ValueError(f"the tolerance must be a length > 0 in mm, not {tolerance_mm}")
-    return _core.SolveOptions(solver, tolerance_mm or 0.0, max_iterations, anderson, threads, stable)
+    return _core.SolveOptions(solver, tolerance_mm or 0.0, max_iterations, anderson, threads, stable, elapsed_s)
 
 
 def _telling(progress: ProgressFunction) -> Callable[[int, float, float, float], bool]:
@@ -143,6 +149,7 @@ class Solving:
         anderson: int = 6,
         threads: int = 0,
         stable: bool = False,
+        elapsed_s: float | None = None,
         progress: ProgressFunction | None = None,
         **commands: Command,
     ) -> Shape:
@@ -159,10 +166,12 @@ class Solving:
         anderson        local-global: earlier steps that are combined, 0 to 20
         threads         0: as many as the machine has and the robot is worth; the result is the same
         stable          physical: leave an unstable equilibrium along its lowest mode for a stable one
+        elapsed_s       viscous: time since the shape `start`, which the material remembers, without one since a long
+                        rest [s]; 0: the instant answer; None: the relaxed one, whatever was before
         progress        called with a Progress at most 20 times a second; False stops the solve
         returns         not converging is its status
         """
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
         by = self._by(map, polish, options)
         return self._solve(self._actuation(actuation, commands), start, by, options, progress)
 
@@ -275,6 +284,7 @@ class Solving:
         anderson: int = 6,
         threads: int = 0,
         stable: bool = False,
+        elapsed_s: float | None = None,
         progress: ProgressFunction | None = None,
         **markers: Target,
     ) -> Answer:
@@ -296,11 +306,11 @@ class Solving:
         max_equilibria  newton: gives up after so many
         descents        gradient: iterations
         other_starts    newton: from where it is tried again before goals are called out of reach
-        solver, step_tolerance_mm, max_iterations, anderson, threads, stable  as solve's
+        solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s  as solve's
         progress        as solve's
         """
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
-        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
+        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         start = _chosen_start(goals, start, workspace)
         return self._solve_inverse(goals, start, None, prefer, fix, self._by(map, polish, statics), options, progress)

@@ -64,11 +64,12 @@ class Session(Solving):
         anderson: int = 6,
         threads: int = 0,
         stable: bool = False,
+        elapsed_s: float | None = None,
         progress: ProgressFunction | None = None,
         **commands: Command,
     ) -> Shape:
         """As Robot.solve, from the last equilibrium where no start is given."""
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
         by = self._by(map, polish, options)
         found = self._solve(
             self._actuation(actuation, commands), self._last if start is None else start, by, options, progress
@@ -103,12 +104,13 @@ class Session(Solving):
         anderson: int = 6,
         threads: int = 0,
         stable: bool = False,
+        elapsed_s: float | None = None,
         progress: ProgressFunction | None = None,
         **markers: Target,
     ) -> Answer:
         """As Robot.inverse, from the last equilibrium, with its derivatives, where no start is given."""
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
-        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
+        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         start = _chosen_start(goals, start, workspace)
         last = self._answer if start is None else None

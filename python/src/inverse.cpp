@@ -4,6 +4,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/runs/plots.hpp>
@@ -74,7 +75,9 @@ std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, c
     const SessionPtr with =
         own ? std::make_shared<Session>(robot, session ? session->map : nullptr, session != nullptr) : session;
     InverseOptions known = options;
-    if (last && last->found.sensitivity.regular) known.start_sensitivity = &last->found.sensitivity;
+    known.statics = remembering(with->statics, start ? start->found().state : State(), known.statics);
+    const bool timed = with->statics.viscous() && std::isfinite(options.statics.elapsed_s);
+    if (last && last->found.sensitivity.regular && !timed) known.start_sensitivity = &last->found.sensitivity;
     return start ? solve_inverse(robot->model(), with->statics, plain, start->found(), known, callback)
                  : solve_inverse_from(robot->model(), with->statics, plain, begin, known, callback);
   };
@@ -82,6 +85,7 @@ std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, c
   answer->found = watched_solve(*robot, progress, work);
   answer->robot = robot;
   answer->goals = goals;
+  options.statics.history = answer->found.equilibrium.state.history;
   answer->shape = std::make_shared<Shape>(robot, answer->found.equilibrium, options.statics);
   answer->options = std::move(options);
   return answer;

@@ -31,15 +31,24 @@ template <class A>
 void members(A& archive, Anchor& a) {
   archive(a.vertex, a.part, a.triangle, a.weights, a.slipped_mm);
 }
+/// What a material remembers, which may be nothing.
+template <class A>
+void remembered(A& archive, std::shared_ptr<const ViscousHistory>& history) {
+  std::vector<double> strains = history ? history->strains : std::vector<double>();
+  archive(strains);
+  if (!history && !strains.empty()) history = std::make_shared<ViscousHistory>(ViscousHistory{std::move(strains)});
+}
 template <class A>
 void members(A& archive, Equilibrium& e) {
   archive(e.state.positions, e.state.actuation, e.state.multipliers, e.state.share, e.state.anchors, e.actuation,
-          e.report);
+          e.report, e.state.elapsed_s);
+  remembered(archive, e.state.history);
 }
 template <class A>
 void members(A& archive, StaticsOptions& o) {
   archive(o.solver, o.step_tolerance_mm, o.max_iterations, o.anderson, o.threads, o.keep_history, o.stable,
-          o.reuse_factor);
+          o.reuse_factor, o.elapsed_s);
+  remembered(archive, o.history);
 }
 
 template <class A>

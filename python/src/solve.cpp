@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
 #include <softkin/kinematics/jacobian.hpp>
 
 #include "bindings.hpp"
@@ -12,6 +13,13 @@
 #include "watch.hpp"
 
 namespace softkin::python {
+
+StaticsOptions remembering(const Statics& statics, const State& start, StaticsOptions options) {
+  if (std::isinf(options.elapsed_s)) return options;
+  if (!statics.viscous()) throw InvalidInput("elapsed_s is for viscous materials, and this robot has none");
+  if (start.actuation.size() > 0) options.history = statics.flow(start).history;
+  return options;
+}
 
 namespace {
 
@@ -23,9 +31,11 @@ ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn&
   const auto work = [robot, session, start, options, from = std::move(from),
                      asked = vector_of(actuation)](const ProgressCallback& callback) {
     const State& begin = start ? start->found().state : from;
-    return statics_of(*robot, session.get()).solve(asked, begin, options, callback);
+    const Statics& statics = statics_of(*robot, session.get());
+    return statics.solve(asked, begin, remembering(statics, begin, options), callback);
   };
   Equilibrium found = watched_solve(*robot, progress, work);
+  options.history = found.state.history;
   // what the report tells of options is what the user can set
   options.reuse_factor = true;
   return std::make_shared<Shape>(robot, std::move(found), options);
@@ -53,7 +63,7 @@ void bind_solve(nb::module_& module) {
       .def(
           "__init__",
           [](StaticsOptions* self, const std::string& solver, double tolerance_mm, int max_iterations, int anderson,
-             int threads, bool stable) {
+             int threads, bool stable, std::optional<double> elapsed_s) {
             if (solver != "newton" && solver != "local-global")
               throw InvalidInput("solver must be 'newton' or 'local-global', not '" + solver + "'");
             auto* options = new (self) StaticsOptions();
@@ -63,15 +73,17 @@ void bind_solve(nb::module_& module) {
             options->anderson = anderson;
             options->threads = threads;
             options->stable = stable;
+            options->elapsed_s = elapsed_s.value_or(options->elapsed_s);
           },
           nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations"), nb::arg("anderson"),
-          nb::arg("threads"), nb::arg("stable"))
+          nb::arg("threads"), nb::arg("stable"), nb::arg("elapsed_s").none())
       .def_prop_ro(
           "for_the_solver",
           [](const StaticsOptions& options) {
             const StaticsOptions usual;
             return options.solver != usual.solver || options.step_tolerance_mm != usual.step_tolerance_mm ||
-                   options.max_iterations != usual.max_iterations || options.stable;
+                   options.max_iterations != usual.max_iterations || options.stable ||
+                   options.elapsed_s != usual.elapsed_s;
           },
           "Is something asked that only the solver can do?");
   module.def("solve", &solve, nb::arg("robot"), nb::arg("session").none(), nb::arg("actuation"),

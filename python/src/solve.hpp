@@ -29,6 +29,10 @@ auto watched_solve(const Robot& robot, const Tell& tell, Work work) {
   return session != nullptr && !session->map;
 }
 
+/// The options, of a material that remembers a shape where time passes since then. start: no equilibrium: nothing is
+/// remembered. Throws InvalidInput where time passes that the robot does not know
+[[nodiscard]] StaticsOptions remembering(const Statics& statics, const State& start, StaticsOptions options);
+
 /// The content of a PNG file, as runs::image_png draws it.
 [[nodiscard]] nb::bytes picture_of(const Shape& shape, const std::vector<double>& view, const std::string& title,
                                    const std::vector<Goal>& goals = {});

@@ -27,8 +27,7 @@ RobotSpec stretched_cube(double stretch, bool held_sides, const ElasticSpec& law
     fixed.displacement[axis] = move;
     return fixed;
   };
-  spec.fixed = {hold("x_low", 0, 0), hold("x_high", 0, (stretch - 1) * side), hold("y_low", 1, 0),
-                hold("z_low", 2, 0)};
+  spec.fixed = {hold("x_low", 0, 0), hold("x_high", 0, (stretch - 1) * side), hold("y_low", 1, 0), hold("z_low", 2, 0)};
   if (held_sides) {
     spec.fixed.push_back(hold("y_high", 1, 0));
     spec.fixed.push_back(hold("z_high", 2, 0));
@@ -106,11 +105,14 @@ namespace {
 /// Runge and Kutta's method of fourth order.
 class OneElement {
  public:
-  explicit OneElement(std::vector<ViscousBranch> branches) : branches_(std::move(branches)), flowed_(branches_.size(), 1) {}
+  explicit OneElement(std::vector<ViscousBranch> branches)
+      : branches_(std::move(branches)), flowed_(branches_.size(), 1) {}
   double mu = 0, lambda = 0;  // neo-Hooke's
 
   /// Nominal stress along the axis at a stretch [MPa].
-  [[nodiscard]] double stress(double stretch) const { return stress_along(stretch, side_at(stretch, flowed_), flowed_); }
+  [[nodiscard]] double stress(double stretch) const {
+    return stress_along(stretch, side_at(stretch, flowed_), flowed_);
+  }
 
   void advance(double from, double to, double time, int steps) {
     const double h = time / steps;
@@ -146,7 +148,8 @@ class OneElement {
     const double j = stretch * across * across, scale = std::pow(j, -2.0 / 3), own = along ? stretch : across;
     double stress = mu * own + ((lambda + mu) * (j - 1) - mu) * j / own;
     for (std::size_t k = 0; k < flowed.size(); ++k) {
-      const double first = scale * stretch * stretch / flowed[k], second = scale * across * across * std::sqrt(flowed[k]);
+      const double first = scale * stretch * stretch / flowed[k],
+                   second = scale * across * across * std::sqrt(flowed[k]);
       stress += branches_[k].modulus_MPa / own * ((along ? first : second) - (first + 2 * second) / 3);
     }
     return stress;

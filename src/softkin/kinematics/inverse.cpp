@@ -98,8 +98,8 @@ class Inverse {
   bool settle(const State& start, Equilibrium& first) {
     const auto m = static_cast<Index>(model_.actuators.size());
     const StaticsOptions& statics = options_.statics;
-    const bool same_time = !statics_.viscous() ||
-                           (start.history == statics.history && start.elapsed_s == statics.elapsed_s);
+    const bool same_time =
+        !statics_.viscous() || (start.history == statics.history && start.elapsed_s == statics.elapsed_s);
     const bool known = start.knows(m) && start.multipliers.size() == m && start.share == 1 && same_time &&
                        (!options_.statics.stable || (is_told(first) && first.report.unstable_modes == 0));
     first.actuation = start.actuation.size() > 0 ? start.actuation : model_.rest_actuation();

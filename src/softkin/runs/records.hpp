@@ -48,7 +48,7 @@ struct StepRecord : SolveReport {
 
   std::optional<double> time_s{};
   std::optional<double> viscous_loss_mJ{};  // since the step before; of a viscous robot on a path with times
-  std::string shape, shape_fingerprint;  // file of a series that holds the shape; empty: none
+  std::string shape, shape_fingerprint;     // file of a series that holds the shape; empty: none
 };
 
 /// A waypoint of a path of markers.

@@ -5,6 +5,7 @@
 #include <softkin/energy/elastic.hpp>
 #include <softkin/energy/viscous.hpp>
 #include <softkin/linear/block_matrix.hpp>
+#include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/deformation.hpp>
 
