@@ -211,12 +211,12 @@ TEST(Viscosity, AStepOfLargeStrainRelaxesAsTheBranchEquationsDo) {
   }
 }
 
-/// Half the time step, half the error.
+/// Half the time step, half the error: of large strain, over what is exact at small strain.
 TEST(Viscosity, LoopsConvergeWithTheTimeStep) {
   for (const double period : {2.0, 20.0}) {
     const double coarse = error_over_cycle(period, 20, 2), fine = error_over_cycle(period, 40, 2);
-    EXPECT_LT(fine, 0.55 * coarse) << period;
-    EXPECT_LT(fine, 0.05) << period;
+    EXPECT_LT(fine, 0.6 * coarse) << period;
+    EXPECT_LT(fine, 1e-3) << period;
   }
 }
 

@@ -79,11 +79,11 @@ Strain strain_at(const Pack3 (&slope)[K], const Shape<K>& current) {
 
 /// A branch at the end of the step.
 struct Branch {
-  Symmetric before;   // C_v0
-  Symmetric flowed;   // k C_v0 + (1 - k) bar C
+  Symmetric before;   // what M has from the step's begin
+  Symmetric flowed;   // M
   Symmetric inverse;  // A = C_v^-1 at the end
-  Pack root;          // cube root of the determinant of `flowed`
-  Pack kept;          // k
+  Pack root;          // cube root of the determinant of M
+  Pack ended;
 };
 
 Symmetric unit() {
@@ -91,32 +91,36 @@ Symmetric unit() {
   return {{one, one, one, zero, zero, zero}};
 }
 
+/// branch  -1: the strain itself
 Symmetric remembered(const ViscousBlock& viscous, int q, int branch) {
   if (!viscous.strains) return unit();
   Symmetric before;
-  std::memcpy(before.at, viscous.strains + 6 * lanes * (static_cast<std::ptrdiff_t>(q) * viscous.branches + branch),
-              sizeof(before.at));
+  const std::ptrdiff_t each = viscous.branches + 1;
+  std::memcpy(before.at, viscous.strains + 6 * lanes * (each * q + 1 + branch), sizeof(before.at));
   return before;
 }
 
 Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s) {
+  const BranchShares& shares = viscous.shares[branch];
   Branch b;
-  b.before = remembered(viscous, q, branch);
-  b.kept = viscous.kept[branch];
-  b.flowed = scaled(b.kept, b.before);
-  add(b.flowed, 1 - b.kept, s.barred);
+  b.before = scaled(shares.remembered, remembered(viscous, q, branch));
+  add(b.before, shares.begun, remembered(viscous, q, -1));
+  b.ended = shares.ended;
+  b.flowed = b.before;
+  add(b.flowed, b.ended, s.barred);
   const Symmetric cofactors = cofactor(b.flowed);
   b.root = cbrt(determinant(b.flowed, cofactors));
   b.inverse = scaled(1 / (b.root * b.root), cofactors);
   return b;
 }
 
-/// 3 (root - k) / (1 - k) - 3, without the cancellation of a short step.
+/// 3 (root - root at no strain's share) / ended - 3, without the cancellation of a short step.
 Pack stored(const Branch& b, const Strain& s) {
-  const Pack flow = 1 - b.kept;
-  const Pack first = inner(cofactor(b.before), s.barred), second = inner(b.before, cofactor(s.barred));
-  const Pack above = b.kept * b.kept * first + b.kept * flow * second + flow * flow;
-  return 3 * (above / (b.root * b.root + b.root * b.kept + b.kept * b.kept) - 1);
+  const Symmetric cofactors = cofactor(b.before);
+  const Pack first = inner(cofactors, s.barred), second = inner(b.before, cofactor(s.barred));
+  const Pack root = cbrt(determinant(b.before, cofactors));
+  const Pack above = first + b.ended * (second + b.ended);
+  return 3 * (above / (b.root * b.root + b.root * root + root * root) - 1);
 }
 
 /// Second Piola-Kirchhoff stress of the branches, and C^-1.
@@ -189,7 +193,7 @@ void set_point(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlock& 
     const Branch b = branch_at(viscous, q, i, s);
     const Pack modulus = volume * viscous.modulus[i];
     add_stress(modulus, b, s, sum);
-    const Pack alpha = 2 * modulus * (1 - b.kept) / b.root * s.scale * s.scale;
+    const Pack alpha = 2 * modulus * b.ended / b.root * s.scale * s.scale;
     const Pack trace = inner(b.inverse, s.right);
     const Symmetric turned = sandwich(b.inverse, s.right);
     add_square(c, (1.0 / 3) * alpha, b.inverse);
@@ -302,17 +306,64 @@ void add_viscous_stress(const ElasticBlock<K, Q>& block, const ViscousBlock& vis
   }
 }
 
+namespace {
+
+/// Deviator of bar C C_v^-1, a matrix without symmetry, and the trace of its square.
+struct Overstress {
+  Pack33 at;
+  Pack size;
+};
+
+Overstress overstress(const Symmetric& barred, const Symmetric& inverse) {
+  Overstress o;
+  o.at = times(full(barred), full(inverse));
+  add_to_diagonal(o.at, (-1.0 / 3) * trace(o.at));
+  o.size = max(inner(o.at, transposed(o.at)), Pack{});
+  return o;
+}
+
+/// Integral of |s|^2 over a step, over its relaxation time, for s = a + b exp(-time), from s at begin and end. rate: the
+/// step over the relaxation time
+Pack integral(const Overstress& begin, const Overstress& end, const Pack& rate) {
+  // their angle, from the Frobenius norms, which are theirs where strains have the same axes
+  const Pack sizes = inner(begin.at, begin.at) * inner(end.at, end.at);
+  const Pack both =
+      select(sizes > 0, inner(begin.at, end.at) * sqrt(begin.size * end.size / max(sizes, pack(1e-300))), Pack{});
+  Pack total{};
+  for (int l = 0; l < lanes; ++l) {
+    const double x = rate[l];
+    if (!(x > 0)) continue;
+    // |s|^2 = |a|^2 + 2 a b e^-t + |b|^2 e^-2t with a = (end - e^-x begin) / (1 - e^-x), b = (begin - end) / (1 - e^-x)
+    const double e = std::exp(-x), gone = -std::expm1(-x), per = 1 / (gone * gone);
+    const double aa = per * (end.size[l] - 2 * e * both[l] + e * e * begin.size[l]);
+    const double bb = per * (begin.size[l] - 2 * both[l] + end.size[l]);
+    const double ab = per * ((1 + e) * both[l] - end.size[l] - e * begin.size[l]);
+    const double closed = aa * x + 2 * ab * gone + 0.5 * bb * gone * (1 + e);
+    // short steps cancel: there |s|^2 changes evenly
+    const double even = x * (begin.size[l] + both[l] + end.size[l]) / 3;
+    total[l] = std::max(0.0, x < 1e-3 ? even : closed);
+  }
+  return total;
+}
+
+}  // namespace
+
 template <int K, int Q>
-Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current, double* strains) {
+Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Pack* rate, const Shape<K>& current,
+          double* strains) {
   Pack lost{};
+  const auto keep = [&strains](const Symmetric& strain) {
+    std::memcpy(strains, strain.at, sizeof(strain.at));
+    strains += 6 * lanes;
+  };
   for (int q = 0; q < Q; ++q) {
     const Strain s = strain_at<K>(block.slope[q], current);
-    for (int i = 0; i < viscous.branches; ++i, strains += 6 * lanes) {
+    keep(s.barred);
+    for (int i = 0; i < viscous.branches; ++i) {
       const Branch b = branch_at(viscous, q, i, s);
-      const Symmetric after = scaled(1 / b.root, b.flowed);
-      std::memcpy(strains, after.at, sizeof(after.at));
-      const Pack less = inner(cofactor(b.before), s.barred) - inner(b.inverse, s.barred);
-      lost += 0.5 * block.volume[q] * viscous.modulus[i] * max(less, Pack{});
+      keep(scaled(1 / b.root, b.flowed));
+      const Overstress begin = overstress(remembered(viscous, q, -1), cofactor(remembered(viscous, q, i)));
+      lost += 0.5 * block.volume[q] * viscous.modulus[i] * integral(begin, overstress(s.barred, b.inverse), rate[i]);
     }
   }
   return lost;
@@ -322,16 +373,16 @@ template void add_viscous_force(const ElasticBlock<4, 1>&, const ViscousBlock&, 
 template void add_viscous_stiffness(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, bool,
                                     ElasticStiffness<4>&);
 template void add_viscous_stress(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, Pack33 (&)[1]);
-template Pack flow(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, double*);
+template Pack flow(const ElasticBlock<4, 1>&, const ViscousBlock&, const Pack*, const Shape<4>&, double*);
 template void add_viscous_force(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, ElasticForce<10>&);
 template void add_viscous_stiffness(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, bool,
                                     ElasticStiffness<10>&);
 template void add_viscous_stress(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, Pack33 (&)[4]);
-template Pack flow(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, double*);
+template Pack flow(const ElasticBlock<10, 4>&, const ViscousBlock&, const Pack*, const Shape<10>&, double*);
 template void add_viscous_force(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, ElasticForce<6>&);
 template void add_viscous_stiffness(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, bool,
                                     ElasticStiffness<6>&);
 template void add_viscous_stress(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, Pack33 (&)[6]);
-template Pack flow(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, double*);
+template Pack flow(const ElasticBlock<6, 6>&, const ViscousBlock&, const Pack*, const Shape<6>&, double*);
 
 }  // namespace softkin::energy

@@ -4,21 +4,29 @@
 
 namespace softkin::energy {
 
+/// What a branch is at the end of a time step is made of, x being the step over its relaxation time.
+struct BranchShares {
+  Pack remembered;  // exp(-x): of C_v at its begin
+  Pack begun;       // (1 - exp(-x)) / x - exp(-x): of the strain there
+  Pack ended;       // the rest: of the strain at its end
+};
+
 /// Maxwell branches of the elements of a block over a time step: springs and dampers in series, beside the elastic law.
 ///
 /// source  a branch stores G/2 (bar C : C_v^-1 - 3) and flows by dC_v/dt = (bar C - (bar C : C_v^-1) C_v / 3) / tau,
 ///         det C_v = 1; bar C = J^(-2/3) C, of a dielectric elastomer that of the elastic part. Reese, Govindjee 1998.
-///         The implicit step is C_v = unimodular part of (k C_v0 + (1 - k) bar C): Shutov, Landgraf, Ihlemann 2013,
-///         there with k = 1 / (1 + time / tau). Here k = exp(-time / tau), with which a strain that is held relaxes at
-///         small strain as it does in continuous time, whatever the step.
-///         With it the stress is the gradient of 3/2 G (det(k C_v0 + (1 - k) bar C)^(1/3) - k) / (1 - k), least over all
-///         unimodular C_v: a step is an elastic problem.
+///         The step is C_v = the unimodular part of M, the mean of C_v and bar C at its begin and bar C at its end by the
+///         shares above. With 1 / (1 + x), 0, x / (1 + x) in their place it is implicit Euler's, whose closed form is due
+///         to Shutov, Landgraf, Ihlemann 2013; these are exact at small strain where the strain changes evenly, and at large
+///         strain of first order with an error that is far smaller.
+///         The stress that follows is the gradient of 3/2 G det(M)^(1/3) / ended, which is the least, over unimodular
+///         C_v, of G/2 M : C_v^-1 / ended: a step is an elastic problem.
 struct ViscousBlock {
   int branches = 0;
-  const Pack* modulus = nullptr;    // G of every branch [MPa]; 0 in lanes that have fewer
-  const Pack* kept = nullptr;       // k of every branch [-]; 1: instant, 0: relaxed
-  const double* strains = nullptr;  // C_v0 by quadrature point, branch, entry (xx, yy, zz, xy, yz, xz) and lane;
-                                    // null: the unit matrix
+  const Pack* modulus = nullptr;         // G of every branch [MPa]; 0 in lanes that have fewer
+  const BranchShares* shares = nullptr;  // of every branch
+  const double* strains = nullptr;       // at the begin, by quadrature point: bar C, then C_v of every branch; by entry
+                                         // (xx, yy, zz, xy, yz, xz) and lane; null: unit matrices
 };
 
 /// Adds energy and gradient of the branches. Where J <= 0 they are finite and meaningless.
@@ -39,9 +47,12 @@ void add_viscous_stress(const ElasticBlock<K, Q>& block, const ViscousBlock& vis
 
 /// What the branches remember after the step.
 ///
-/// strains  C_v, in the order of ViscousBlock::strains
-/// returns  the energy that the branches lose as they flow at the shape that the step ends with, >= 0 [mJ]
+/// rate     step over relaxation time of every branch, finite
+/// strains  in the order of ViscousBlock::strains
+/// returns  the energy that the branches lose on the way, >= 0 [mJ]: the integral of G / (2 tau) tr(dev(bar C C_v^-1)^2),
+///          that stress changing from the step's begin to its end as where the strain changes evenly
 template <int K, int Q>
-Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current, double* strains);
+Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Pack* rate, const Shape<K>& current,
+          double* strains);
 
 }  // namespace softkin::energy

@@ -72,6 +72,12 @@ Mat3 lane_of(const Pack33& matrix, int lane) {
   return one;
 }
 
+/// Numbers that a block of viscous elements remembers.
+template <int Q>
+std::size_t strains_each(int branches) {
+  return std::size_t{6} * Q * lanes * (static_cast<std::size_t>(branches) + 1);
+}
+
 double von_mises(const Mat3& stress) {
   const Mat3 deviator = stress - stress.trace() / 3 * Mat3::Identity();
   return std::sqrt(1.5) * deviator.norm();
@@ -144,10 +150,10 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
     set.first_pull = pulls_;
     pulls_ += K * set.count;
     blocks_ += set.blocks.size();
-    set.first_kept = kept_;
+    set.first_branch = branches_;
     set.first_strain = strains_;
-    kept_ += set.moduli.size();
-    strains_ += 6 * Q * lanes * set.moduli.size();
+    branches_ += set.moduli.size();
+    if (set.branches > 0) strains_ += strains_each<Q>(set.branches) * set.blocks.size();
   });
   const auto each_pull = [&](const auto& visit) {
     each_set([&]<int K, int Q>(Set<K, Q>& set) {
@@ -202,20 +208,29 @@ template <int K, int Q>
 ViscousBlock Body::branches_of(const Set<K, Q>& set, std::size_t block, const Scratch& scratch) const {
   const std::size_t first = block * static_cast<std::size_t>(set.branches);
   const double* strains = scratch.history ? scratch.history->strains.data() + set.first_strain : nullptr;
-  return {set.branches, set.moduli.data() + first, scratch.kept.data() + set.first_kept + first,
-          strains ? strains + 6 * Q * lanes * first : nullptr};
+  return {set.branches, set.moduli.data() + first, scratch.shares.data() + set.first_branch + first,
+          strains ? strains + strains_each<Q>(set.branches) * block : nullptr};
 }
 
 void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch) const {
   if (!viscous()) return;
   scratch.history = std::move(history);
-  if (scratch.elapsed_s == elapsed_s) return;
+  if (scratch.elapsed_s == elapsed_s && !scratch.shares.empty()) return;
   scratch.elapsed_s = elapsed_s;
-  if (!scratch.pulls_viscously()) return;
-  scratch.kept.resize(kept_);
+  scratch.shares.resize(branches_);
+  scratch.rates.resize(branches_);
   const auto run = [&](const auto& set) {
     for (std::size_t i = 0; i < set.times.size(); ++i)
-      for (int l = 0; l < lanes; ++l) scratch.kept[set.first_kept + i][l] = std::exp(-elapsed_s / set.times[i][l]);
+      for (int l = 0; l < lanes; ++l) {
+        constexpr double gone = 700;  // exp(-gone) is nothing
+        const double x = std::min(elapsed_s / set.times[i][l], gone), kept = std::exp(-x);
+        const double mean = x > 0 ? -std::expm1(-x) / x : 1;
+        BranchShares& shares = scratch.shares[set.first_branch + i];
+        shares.remembered[l] = kept;
+        shares.begun[l] = std::max(0.0, mean - kept);
+        shares.ended[l] = 1 - mean;
+        scratch.rates[set.first_branch + i][l] = x;
+      }
   };
   for (const auto& set : linear_) run(set);
   for (const auto& set : quadratic_) run(set);
@@ -226,10 +241,6 @@ std::shared_ptr<const ViscousHistory> Body::flow(const Eigen::VectorXd& actuatio
                                                  Scratch& scratch, double& lost_mJ, Team& team) const {
   auto after = std::make_shared<ViscousHistory>();
   after->strains.resize(strains_);
-  if (!scratch.pulls_viscously()) {  // relaxed: nothing is kept
-    scratch.kept.assign(kept_, Pack{});
-    scratch.elapsed_s = std::numeric_limits<double>::max();
-  }
   stretch_layers(actuation, scratch);
   Pack lost{};
   std::vector<Pack> of_blocks;
@@ -240,8 +251,10 @@ std::shared_ptr<const ViscousHistory> Body::flow(const Eigen::VectorXd& actuatio
       Shape<K> shape;
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
-        double* strains = after->strains.data() + set.first_strain + std::size_t{6} * Q * lanes * set.branches * b;
-        of_blocks[b] = energy::flow<K, Q>(blocks[b], branches_of(set, b, scratch), shape, strains);
+        const auto block = static_cast<std::size_t>(b);
+        double* strains = after->strains.data() + set.first_strain + strains_each<Q>(set.branches) * block;
+        const Pack* rates = scratch.rates.data() + set.first_branch + block * static_cast<std::size_t>(set.branches);
+        of_blocks[b] = energy::flow<K, Q>(blocks[b], branches_of(set, block, scratch), rates, shape, strains);
       }
     });
     for (const Pack& part : of_blocks) lost += part;

@@ -25,14 +25,15 @@ class Body {
     std::vector<double> layer_ratios;                             // [-]; 0: not made yet
     std::shared_ptr<const ViscousHistory> history;                // none: relaxed at rest
     double elapsed_s = std::numeric_limits<double>::infinity();   // since then; infinity: no branch pulls
-    std::vector<energy::Pack> kept;                               // per viscous set, block and branch, by then [-]
+    std::vector<energy::BranchShares> shares;                     // of viscous sets, by block and branch, by then
+    std::vector<energy::Pack> rates;                              // the same: that time over their relaxation times
 
     [[nodiscard]] bool pulls_viscously() const { return elapsed_s < std::numeric_limits<double>::infinity(); }
   };
   [[nodiscard]] Scratch make_scratch() const;
 
   /// Has an element Maxwell branches?
-  [[nodiscard]] bool viscous() const { return kept_ > 0; }
+  [[nodiscard]] bool viscous() const { return branches_ > 0; }
   /// What Maxwell branches remember, and the time since then [s], for all that is evaluated next. history: as flow()
   /// gives it, or null
   void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch) const;
@@ -89,7 +90,7 @@ class Body {
     std::vector<Index> elements;                          // place of each in the model, tetrahedra first, then prisms
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
     std::vector<energy::Pack> moduli, times;              // of branches, by block: [MPa], [s]
-    std::size_t first_kept = 0, first_strain = 0;         // of its branches in Scratch::kept, in a history
+    std::size_t first_branch = 0, first_strain = 0;       // of its branches in Scratch, in a history
   };
 
   template <int K, int Q, class Element>
@@ -127,7 +128,7 @@ class Body {
   std::vector<Set<4, 1>> linear_;
   std::vector<Set<10, 4>> quadratic_;
   std::vector<Set<6, 6>> prisms_;
-  std::size_t blocks_ = 0, kept_ = 0, strains_ = 0;
+  std::size_t blocks_ = 0, branches_ = 0, strains_ = 0;
   Index pulls_ = 0;
   std::vector<Index> pull_starts_, pull_order_;  // pulls at each vertex
 };
