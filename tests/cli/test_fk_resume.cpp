@@ -146,6 +146,30 @@ TEST(FkResume, EndsAsIfNeverInterrupted) {
   EXPECT_NE(read_text(folder.shape(steps - 1)).find("type=\"Float64\" Name=\"Points\""), std::string::npos);
 }
 
+/// What a viscous material remembers comes from the shapes on disk.
+TEST(FkResume, AViscousMaterialRemembersWhatWasBefore) {
+  const std::string scene =
+      "softkin: 1\n"
+      "mesh: {file: block.msh}\n"
+      "materials: [{youngs_modulus: 1, poisson_ratio: 0.3, viscosity: [{modulus: 0.8, time: 1}, {modulus: 1, time: "
+      "20}]}]\n"
+      "fixed: [{region: base}]\n"
+      "actuators: [{name: air, kind: pneumatic, region: chamber, range: [1.0, 2.0]}]\n";
+  const PathFolder folder, whole;
+  folder.write("block.yaml", scene);
+  whole.write("block.yaml", scene);
+  EXPECT_EQ(interrupted_run(folder, 40).exit_code, 1);
+  ASSERT_LT(folder.reported(), std::size_t{steps});
+  const ProgramResult result = folder.resume();
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(whole.run().exit_code, 0);
+  EXPECT_EQ(shapes_of(folder), shapes_of(whole));
+  const json steps = steps_of(folder);
+  EXPECT_EQ(steps, steps_of(whole));
+  EXPECT_EQ(steps[0]["viscous_loss_mJ"], 0.0) << "at once";
+  for (std::size_t i = 1; i < steps.size(); ++i) EXPECT_GT(steps[i]["viscous_loss_mJ"], 0.0) << i;
+}
+
 TEST(FkResume, KilledAtAnyMoment) {
   const auto expected = uninterrupted_shapes();
   const PathFolder folder;
