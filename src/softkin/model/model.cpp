@@ -64,8 +64,8 @@ class Hash {
   }
   void put(const std::optional<double>& value) { add(value.has_value(), value.value_or(0)); }
   void put(const ElementRole& role) { add(role.material, role.actuator, role.region); }
-  void put(const ElasticLaw& e) { add(e.law, e.mu, e.lambda, e.c10, e.c01, e.c20, e.c30, e.bulk); }
-  void put(const Material& m) { add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range); }
+  void put(const ElasticLaw& e) { add(e.law, e.mu, e.lambda, e.c10, e.c01, e.c20, e.c30, e.bulk, e.jm); }
+  void put(const Material& m) { add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range, m.permittivity); }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
@@ -78,7 +78,7 @@ class Hash {
     add(c.distance_mm, c.modulus_MPa, c.parts, c.pairs, c.triangles, c.part_of, c.area, c.other_vertices);
   }
   void put(const Actuator& a) {
-    add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.points,
+    add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.shares, a.points,
         a.surface, a.gaps, a.other, a.axis, a.rest_measure);
   }
 
@@ -165,6 +165,10 @@ std::array<Index, 2> Model::vertices_of_part(Index part) const {
 bool drives(const Actuator& actuator) {
   return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
          actuator.kind == ActuatorKind::pneumatic;
+}
+
+bool under_voltage(const Actuator& actuator) {
+  return actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
 }
 
 bool varies(const Actuator& actuator) {

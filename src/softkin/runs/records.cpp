@@ -30,6 +30,7 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return record;
   if (found.state.multipliers.size() == 0) return record;  // not known
   record.multiplier = found.state.multipliers[i];
+  if (under_voltage(actuator)) record.layer = electric_layer(model, i, found.state.positions, record.multiplier);
   // what holds it holds it exactly, while a map's shape is a little off
   if (found.report.answered() && actuator.control == Control::ratio &&
       (actuator.kind != ActuatorKind::cable || record.multiplier > 0))

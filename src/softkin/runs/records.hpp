@@ -7,6 +7,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/model/paths.hpp>
 #include <softkin/statics/deformation.hpp>
+#include <softkin/statics/electric_layer.hpp>
 #include <softkin/statics/self_overlap.hpp>
 #include <softkin/statics/worst_place.hpp>
 #include <string>
@@ -18,12 +19,13 @@ namespace softkin::runs {
 
 /// An actuator in a shape.
 struct ActuatorRecord {
-  double requested = 0;              // ratio to rest [-], or tension [N] or gauge pressure [kPa]
+  double requested = 0;              // ratio to rest [-], or tension [N], gauge pressure [kPa] or voltage [kV]
   double achieved = 0;               // ratio to rest [-]
   std::optional<double> by_curve{};  // the input that the actuator's curve gives for the request [kPa gauge or kV];
                                      // none outside the curve or without one
-  double multiplier = 0;             // tension [N] or gauge pressure [kPa]; physical
+  double multiplier = 0;             // tension [N], gauge pressure [kPa] or voltage [kV]; physical
   bool slack = false;                // a cable that carries nothing because its path is shorter than it
+  std::optional<ElectricLayer> layer{};  // of a dea under voltage
 };
 
 /// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read

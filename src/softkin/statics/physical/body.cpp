@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <softkin/energy/elastic.hpp>
+#include <softkin/statics/electric_layer.hpp>
 #include <softkin/statics/physical/body.hpp>
 
 namespace softkin::physical {
@@ -80,14 +80,19 @@ double von_mises(const Mat3& stress) {
 }  // namespace
 
 template <int K, int Q, class Element>
-void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants, Index actuator,
-               Index element, const Element& nodes) {
-  auto set = std::find_if(sets.begin(), sets.end(),
-                          [&](const Set<K, Q>& s) { return s.law == law && s.actuator == actuator; });
+void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
+               const Element& nodes) {
+  const ElasticLaw& constants = model.materials[role.material].elastic;
+  const bool charged = role.actuator >= 0 && under_voltage(model.actuators[role.actuator]);
+  const Index actuator = charged ? -1 : role.actuator, electrode = charged ? role.actuator : -1;
+  auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
+    return s.law == constants.law && s.actuator == actuator && s.electrode == electrode;
+  });
   if (set == sets.end()) {
     set = sets.insert(sets.end(), Set<K, Q>{});
-    set->law = law;
+    set->law = constants.law;
     set->actuator = actuator;
+    set->electrode = electrode;
   }
   Eigen::Matrix<double, K, 3> rest;
   for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
@@ -114,22 +119,21 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const 
 
 Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())) {
   for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
-    const ElasticLaw& law = model.materials[model.tetrahedron_roles[e].material].elastic;
+    const ElementRole& role = model.tetrahedron_roles[e];
     const Tetrahedron& t = model.tetrahedra[e];
     if (model.edge_nodes.empty()) {
-      add(linear_, model, law.law, law, -1, e, t);
+      add(linear_, model, role, e, t);
     } else {
       std::array<Index, 10> nodes;
       std::copy(t.begin(), t.end(), nodes.begin());
       std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-      add(quadratic_, model, law.law, law, -1, e, nodes);
+      add(quadratic_, model, role, e, nodes);
     }
   }
-  for (const Index e : spatial_order(model.rest, model.prisms)) {
-    const ElementRole& role = model.prism_roles[e];
-    const ElasticLaw& law = model.materials[role.material].elastic;
-    add(prisms_, model, law.law, law, role.actuator, static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
-  }
+  for (const Index e : spatial_order(model.rest, model.prisms))
+    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
+  for (auto& set : prisms_)
+    if (set.electrode >= 0) add_field(model, set);
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
     pulls_ += K * set.count;
@@ -149,11 +153,21 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
   each_pull([&](Index vertex, Index pull) { pull_order_[next[vertex]++] = pull; });
 }
 
+/// The permittivities of a set under voltage, whose elements are there.
+void Body::add_field(const Model& model, Set<6, 6>& set) {
+  const std::vector<double> permittivity = layer_permittivity(model, set.electrode);
+  const auto tetrahedra = static_cast<Index>(model.tetrahedra.size());
+  set.permittivity.assign(set.blocks.size(), Pack{});
+  for (Index e = 0; e < set.count; ++e)
+    set.permittivity[e / lanes][e % lanes] = permittivity[set.elements[e] - tetrahedra];
+}
+
 Body::Scratch Body::make_scratch() const {
   Scratch scratch;
   scratch.pulls.resize(3 * static_cast<std::size_t>(pulls_));
   scratch.energies.resize(blocks_);
   scratch.inverted.resize(blocks_);
+  scratch.forbidden.resize(blocks_);
   for (const auto& set : prisms_)
     if (set.actuator >= 0) {
       scratch.layers.push_back(set.blocks);
@@ -222,22 +236,46 @@ Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positio
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_force<K, Q>(blocks[b], shape, out);
+        if constexpr (K == 6)
+          if (set.electrode >= 0)
+            add_dielectric_force(blocks[b], set.permittivity[b], actuation[set.electrode], shape, out);
         scratch.energies[first + b] = out.energy;
         scratch.inverted[first + b] = out.inverted;
+        scratch.forbidden[first + b] = out.forbidden;
         store(set, b, out.gradient, scratch);
       }
     });
-    PackMask inverted{};
-    for (std::size_t b = first; b < first + blocks.size(); ++b) inverted |= scratch.inverted[b];
-    result.inverted |= any(inverted);
-    result.forbidden |= forbids_inversion(set.law) && any(inverted);
     first += blocks.size();
   });
   Pack energy{};
-  for (const Pack& part : scratch.energies) energy += part;
+  PackMask inverted{}, forbidden{};
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    energy += scratch.energies[b];
+    inverted |= scratch.inverted[b];
+    forbidden |= scratch.forbidden[b];
+  }
   result.energy = sum(energy);
+  result.inverted = any(inverted);
+  result.forbidden = any(forbidden);
   gather(scratch, gradient, team);
   return result;
+}
+
+void Body::field_force(Index actuator, double voltage_kV, const Points& positions, Scratch& scratch, Points& gradient,
+                       Team& team) const {
+  std::fill(scratch.pulls.begin(), scratch.pulls.end(), 0.0);
+  for (const auto& set : prisms_)
+    if (set.electrode == actuator)
+      team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+        Shape<6> shape;
+        for (Index b = begin; b < end; ++b) {
+          ElasticForce<6> out{};
+          load<6>(positions, set.nodes[b], shape);
+          add_dielectric_force(set.blocks[b], set.permittivity[b], voltage_kV, shape, out);
+          store(set, b, out.gradient, scratch);
+        }
+      });
+  gather(scratch, gradient, team);
 }
 
 double Body::largest_pull(const Scratch& scratch, Team& team) const {
@@ -265,6 +303,9 @@ void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scr
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_stress<K, Q>(blocks[b], shape, points);
+        if constexpr (K == 6)
+          if (set.electrode >= 0)
+            add_maxwell_stress(blocks[b], set.permittivity[b], actuation[set.electrode], shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
           Mat3 most = lane_of(points[0], l);
           for (int q = 1; q < Q; ++q)
@@ -303,6 +344,9 @@ void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, 
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_stiffness<K, Q>(blocks[b], shape, projected, out);
+        if constexpr (K == 6)  // the field's has hardly anything that is positive
+          if (set.electrode >= 0 && !projected)
+            add_dielectric_stiffness(blocks[b], set.permittivity[b], actuation[set.electrode], shape, out);
         const Index count = std::min<Index>(lanes, set.count - lanes * b);
         double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices) * lanes * b);
         for (Index l = 0; l < count; ++l)

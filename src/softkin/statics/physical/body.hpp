@@ -2,14 +2,15 @@
 
 #include <Eigen/SparseCore>
 #include <softkin/core/team.hpp>
-#include <softkin/energy/elastic.hpp>
+#include <softkin/energy/dielectric.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/deformation.hpp>
 
 namespace softkin::physical {
 
-/// The body of a robot in the physical formulation: elastic energy and its derivatives in the vertices.
+/// The body of a robot in the physical formulation: elastic energy, that of the electric field in its layers under
+/// voltage, and their derivatives in the vertices.
 class Body {
  public:
   explicit Body(const Model& model);
@@ -18,8 +19,8 @@ class Body {
   struct Scratch {
     std::vector<double> pulls;                                    // 3 per node of every element [N]
     std::vector<energy::Pack> energies;                           // per block of all sets [mJ]
-    std::vector<energy::PackMask> inverted;                       // the same
-    std::vector<std::vector<energy::ElasticBlock<6, 6>>> layers;  // per dea set: at the ratio below
+    std::vector<energy::PackMask> inverted, forbidden;            // the same
+    std::vector<std::vector<energy::ElasticBlock<6, 6>>> layers;  // per stretched set: at the ratio below
     std::vector<double> layer_ratios;                             // [-]; 0: not made yet
   };
   [[nodiscard]] Scratch make_scratch() const;
@@ -27,17 +28,22 @@ class Body {
   struct Result {
     double energy = 0;       // [mJ]
     bool inverted = false;   // is an element
-    bool forbidden = false;  // is one whose law forbids it; energy and gradient are then meaningless
+    bool forbidden = false;  // has one no energy where it is; energy and gradient are then meaningless
   };
 
-  /// Energy and gradient (#V by 3 [N]). actuation: of which the ratios of dea actuators are taken.
+  /// Energy and gradient (#V by 3 [N]). actuation: of which the ratios and voltages of dea actuators are taken.
   Result force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, Points& gradient,
                Team& team) const;
 
   /// Sum of the magnitudes of what the elements at a vertex pull there, the largest of all vertices [N]. After force().
   [[nodiscard]] double largest_pull(const Scratch& scratch, Team& team) const;
 
-  /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest.
+  /// Gradient of the energy of the electric field of a dea, #V by 3 [N], at a voltage [kV]: it goes with its square.
+  void field_force(Index actuator, double voltage_kV, const Points& positions, Scratch& scratch, Points& gradient,
+                   Team& team) const;
+
+  /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest; of a layer under
+  /// voltage with Maxwell's.
   void stress(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, ElementStress& out,
               Team& team) const;
 
@@ -61,7 +67,8 @@ class Body {
   template <int K, int Q>
   struct Set {
     Law law = Law::neo_hookean;
-    Index actuator = -1;  // dea
+    Index actuator = -1;   // dea under ratio control, whose stretch is in the slopes
+    Index electrode = -1;  // dea under voltage
     Index count = 0;
     Index first_pull = 0;         // element e, node i pulls at first_pull + K e + i
     std::int64_t first_slot = 0;  // of its matrices
@@ -69,11 +76,13 @@ class Body {
     std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
     std::vector<Index> elements;                          // place of each in the model, tetrahedra first, then prisms
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
+    std::vector<energy::Pack> permittivity;               // under voltage: as energy/dielectric.hpp takes it
   };
 
   template <int K, int Q, class Element>
-  static void add(std::vector<Set<K, Q>>& sets, const Model& model, Law law, const ElasticLaw& constants,
-                  Index actuator, Index element, const Element& nodes);
+  static void add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
+                  const Element& nodes);
+  void add_field(const Model& model, Set<6, 6>& set);
   void gather(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;

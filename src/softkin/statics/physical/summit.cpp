@@ -118,8 +118,7 @@ bool Continuation::refine(Index a, double up, const Demand& load, Measured& low,
 Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& near, Iterate& at) {
   Iterate trial = near.at;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (!system_.constrains(a) && system_.measures().measures(a))
-      trial.multipliers[a] = system_.unit(a) * to.actuation[a];
+    if (system_.given_load(a)) trial.multipliers[a] = system_.unit(a) * to.actuation[a];
   const auto outcome = settle(to, Newton::Policy::descend, trial);
   if (outcome == Newton::Outcome::interrupted) return Climb::interrupted;
   if (outcome != Newton::Outcome::converged || (newton_.inverted() && !last_.inverted)) return Climb::lost;

@@ -298,6 +298,10 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     if (change == 0) continue;
     if (active[a]) {
       balance.constraint[a] = target(a, from) - target(a, to);
+    } else if (under_voltage(model_.actuators[a])) {
+      Points per_square;
+      elastic_.field_force(a, 1, at.positions, work.elastic, per_square, team);
+      force += change * (to.actuation[a] + from.actuation[a]) * per_square;
     } else if (model_.actuators[a].kind == ActuatorKind::dea) {
       layers = true;
     } else if (loads(a)) {
@@ -478,6 +482,11 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
     work.layout->pattern.gather(work.slots, work.blocks, team);
     work.layout->pattern.multiply(work.blocks, moves, force, team);
     if (friction()) contacts_->add_friction_response(at.positions, *work.contacts, moves, force);
+    return;
+  }
+  if (under_voltage(command)) {  // the force goes with the square of the voltage
+    elastic_.field_force(actuator, 1, at.positions, work.elastic, force, team);
+    force *= 2 * demand.actuation[actuator];
     return;
   }
   if (command.kind != ActuatorKind::dea) {

@@ -18,7 +18,8 @@
 namespace softkin::physical {
 
 /// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
-/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers.
+/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers. The energy
+/// has that of the electric field of dea actuators under voltage; their multipliers are told, but not read.
 class System {
  public:
   explicit System(const Model& model);
@@ -202,6 +203,10 @@ class System {
   [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
   /// Is the actuator's measure commanded (else its load, or it is a dea).
   [[nodiscard]] bool constrains(Index actuator) const;
+  /// Is a load of the robot itself commanded: tension, pressure or voltage.
+  [[nodiscard]] bool given_load(Index actuator) const {
+    return !constrains(actuator) && (measures_.measures(actuator) || under_voltage(model_.actuators[actuator]));
+  }
   [[nodiscard]] double sign(Index actuator) const {
     return model_.actuators[actuator].kind == ActuatorKind::cable ? 1 : -1;
   }

@@ -1,0 +1,142 @@
+#include <softkin/statics/electric_layer.hpp>
+
+#include "statics/sensitivity_samples.hpp"
+
+/// Layers of dielectric elastomer under voltage.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+constexpr double thickness_mm = 0.5, permittivity = 4.7, shear_MPa = 0.08;
+constexpr double vacuum_MPa = 8.8541878128e-6;  // per (kV/mm)^2
+constexpr int column = 4, row = 3;
+
+ElasticSpec gent(double jm, double nu) {
+  ElasticSpec spec;
+  spec.law = Law::gent;
+  spec.shear_modulus = shear_MPa;
+  spec.jm = jm;
+  spec.poisson_ratio = nu;
+  return spec;
+}
+
+ElasticSpec neo_hookean(double nu) {
+  return elastic(Law::neo_hookean, 2 * (1 + nu) * shear_MPa, nu);
+}
+
+ActuatorSpec electrode(const std::string& name, const std::string& region, double high = 20) {
+  ActuatorSpec skin = actuator(name, ActuatorKind::dea, 0, high, true);
+  skin.region = region;
+  skin.control = Control::load;
+  skin.rest = 0;
+  return skin;
+}
+
+/// A sheet of prisms, held by three vertices so that it may grow freely.
+RobotSpec free_sheet(const ElasticSpec& material) {
+  const std::array<int, 3> cells{column, row, 1};
+  RobotSpec spec = physical_robot(block_mesh(cells, {8, 6, thickness_mm}, Split::prisms));
+  spec.materials[0].elastic = material;
+  spec.materials[0].permittivity = permittivity;
+  spec.fixed = {{{VertexList{{0}}, {}}, {true, true, true}},
+                {{VertexList{{grid_vertex(cells, column, 0, 0)}}, {}}, {false, true, true}},
+                {{VertexList{{grid_vertex(cells, 0, row, 0)}}, {}}, {false, false, true}}};
+  spec.actuators = {electrode("skin", "all")};
+  return spec;
+}
+
+/// Slopes of the energy of equal-biaxial stretch l and stretch t across [MPa].
+struct Slopes {
+  double along = 0, across = 0;
+};
+
+Slopes slopes_of(const ElasticLaw& law, double l, double t) {
+  const double j = l * l * t;
+  if (law.law == Law::neo_hookean) {
+    const double by_j = -law.mu + (law.lambda + law.mu) * (j - 1);
+    return {2 * law.mu * l + 2 * by_j * l * t, law.mu * t + by_j * l * l};
+  }
+  const double scale = std::pow(j, -2.0 / 3), barred = scale * (2 * l * l + t * t);
+  const double slope = law.mu / 2 / (1 - (barred - 3) / law.jm), by_j = law.bulk * (j - 1);
+  return {slope * (4 * scale * l - 4.0 / 3 * barred / l) + 2 * by_j * l * t,
+          slope * (2 * scale * t - 2.0 / 3 * barred / t) + by_j * l * l};
+}
+
+/// The state of a free sheet at a stretch: the energy W(l, l, t) - eps/2 (V/H)^2 l^2 / t has no slope.
+struct SheetState {
+  double stretch = 1, across = 1, voltage_kV = 0;
+};
+
+SheetState sheet_at(const ElasticLaw& law, double l) {
+  double low = 0.2 / (l * l), high = 3 / (l * l);
+  for (int i = 0; i < 200; ++i) {
+    const double t = (low + high) / 2;
+    const Slopes slopes = slopes_of(law, l, t);
+    (l * slopes.along + 2 * t * slopes.across > 0 ? high : low) = t;
+  }
+  const double square = slopes_of(law, l, low).along * low / (vacuum_MPa * permittivity * l);
+  return {l, low, thickness_mm * std::sqrt(std::max(0.0, square))};
+}
+
+/// The first maximum of the voltage.
+SheetState pull_in_of(const ElasticLaw& law) {
+  SheetState best = sheet_at(law, 1);
+  for (double l = 1.00001; l < 2; l += 0.00001) {
+    const SheetState next = sheet_at(law, l);
+    if (next.voltage_kV < best.voltage_kV) return best;
+    best = next;
+  }
+  return best;
+}
+
+SheetState sheet_under(const ElasticLaw& law, double voltage_kV, double end) {
+  double low = 1, high = end;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = (low + high) / 2;
+    (sheet_at(law, middle).voltage_kV < voltage_kV ? low : high) = middle;
+  }
+  return sheet_at(law, low);
+}
+
+}  // namespace
+
+TEST(PhysicalVoltage, AFreeSheetFollowsItsClosedCurve) {
+  for (const ElasticSpec& material : {neo_hookean(0.4), neo_hookean(0.499), gent(40, 0.4), gent(40, 0.499)}) {
+    const Model model = compile(free_sheet(material));
+    const Statics statics(model);
+    const ElasticLaw& law = model.materials[0].elastic;
+    const SheetState end = pull_in_of(law);
+    for (const double share : {0.2, 0.5, 0.8, 0.9, 0.99}) {
+      const double voltage = share * end.voltage_kV;
+      const SheetState expected = sheet_under(law, voltage, end.stretch);
+      const Equilibrium found = settled(statics, values({voltage}));
+      const Vec3 stretch(expected.stretch, expected.stretch, expected.across);
+      const double moved = distance(model.rest * stretch.asDiagonal(), model.rest);
+      EXPECT_LT(distance(found.state.positions, model.rest * stretch.asDiagonal()), 1e-3 * moved) << share;
+      EXPECT_EQ(found.state.multipliers[0], voltage);
+    }
+  }
+}
+
+/// The way stops at the maximum of the voltage and says where.
+TEST(PhysicalVoltage, PullInIsALimit) {
+  for (const ElasticSpec& material : {neo_hookean(0.4), neo_hookean(0.499), gent(40, 0.4), gent(8, 0.499)}) {
+    const Model model = compile(free_sheet(material));
+    const Statics statics(model);
+    const SheetState end = pull_in_of(model.materials[0].elastic);
+    const Equilibrium found = statics.solve(values({15}), statics.rest());
+    EXPECT_EQ(found.report.status, Status::limit);
+    EXPECT_NEAR(found.state.actuation[0], end.voltage_kV, 5e-3 * end.voltage_kV);
+    EXPECT_LE(found.state.actuation[0], 1.0001 * end.voltage_kV);
+    EXPECT_EQ(found.state.multipliers[0], found.state.actuation[0]);
+    EXPECT_NE(found.report.remark.find("the voltage of dea 'skin' has its maximum there"), std::string::npos)
+        << found.report.remark;
+    std::printf("%g of %g kV, %d iterations\n%s\n", found.state.actuation[0], end.voltage_kV, found.report.iterations,
+                found.report.remark.c_str());
+  }
+}
+
+}  // namespace softkin
