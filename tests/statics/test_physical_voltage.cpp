@@ -127,16 +127,115 @@ TEST(PhysicalVoltage, PullInIsALimit) {
     const Model model = compile(free_sheet(material));
     const Statics statics(model);
     const SheetState end = pull_in_of(model.materials[0].elastic);
-    const Equilibrium found = statics.solve(values({15}), statics.rest());
+    const Equilibrium found = statics.solve(values({20}), statics.rest());
     EXPECT_EQ(found.report.status, Status::limit);
     EXPECT_NEAR(found.state.actuation[0], end.voltage_kV, 5e-3 * end.voltage_kV);
     EXPECT_LE(found.state.actuation[0], 1.0001 * end.voltage_kV);
     EXPECT_EQ(found.state.multipliers[0], found.state.actuation[0]);
     EXPECT_NE(found.report.remark.find("the voltage of dea 'skin' has its maximum there"), std::string::npos)
         << found.report.remark;
-    std::printf("%g of %g kV, %d iterations\n%s\n", found.state.actuation[0], end.voltage_kV, found.report.iterations,
-                found.report.remark.c_str());
   }
+}
+
+namespace {
+
+/// A strip that is clamped at one end, its upper half two layers side by side with electrodes of their own.
+RobotSpec two_electrodes() {
+  Mesh mesh = block_mesh({10, 2, 2}, {20, 6, 1}, Split::prisms);
+  add_volume_region(mesh, "left", [](const Vec3& p) { return p.z() > 0.5 && p.y() < 3; });
+  add_volume_region(mesh, "right", [](const Vec3& p) { return p.z() > 0.5 && p.y() > 3; });
+  RobotSpec spec = physical_robot(std::move(mesh));
+  spec.materials[0].elastic = neo_hookean(0.4);
+  spec.materials[0].permittivity = permittivity;
+  spec.actuators = {electrode("left", "left", 10), electrode("right", "right", 10)};
+  spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  return spec;
+}
+
+}  // namespace
+
+/// The charge is minus the derivative of the equilibrium's energy by the voltage.
+TEST(PhysicalVoltage, ChargeIsTheDerivativeOfTheEnergy) {
+  const Model model = compile(free_sheet(neo_hookean(0.4)));
+  const Statics statics(model);
+  const double voltage = 9, step = 1e-3;
+  const Equilibrium at = settled(statics, values({voltage}));
+  const ElectricLayer layer = electric_layer(model, 0, at.state.positions, voltage);
+  const double change = settled(statics, values({voltage + step})).report.energy -
+                        settled(statics, values({voltage - step})).report.energy;
+  EXPECT_NEAR(layer.charge_nC, -1e3 * change / (2 * step), 1e-5 * layer.charge_nC);  // mJ per kV are uC
+  EXPECT_NEAR(layer.charge_nC, layer.capacitance_pF * voltage, 1e-9 * layer.charge_nC);
+  // a flat capacitor
+  const SheetState state = sheet_under(model.materials[0].elastic, voltage, 1.2);
+  const double area = 48 * state.stretch * state.stretch, thickness = thickness_mm * state.across;
+  EXPECT_NEAR(layer.capacitance_pF, 8.8541878128e-3 * permittivity * area / thickness, 1e-6 * layer.capacitance_pF);
+  EXPECT_NEAR(layer.field_kV_mm, voltage / thickness, 1e-6 * layer.field_kV_mm);
+  EXPECT_NEAR(layer.thickness_mm, thickness, 1e-6 * thickness);
+}
+
+/// A layer that nothing holds carries no stress: that of the rubber and Maxwell's cancel.
+TEST(PhysicalVoltage, AFreeLayerHasNoTotalStress) {
+  const Model model = compile(free_sheet(gent(40, 0.45)));
+  const Statics statics(model);
+  const Equilibrium at = settled(statics, values({10}));
+  const ElementDeformation deformation = statics.measured(at.state);
+  for (const double stress : deformation.stress.von_mises) EXPECT_LT(stress, 1e-9);
+  for (const auto& stress : deformation.stress.principal)
+    for (const double value : stress) EXPECT_LT(std::abs(value), 1e-9);
+}
+
+TEST(PhysicalVoltage, SensitivitiesAreThoseOfTheEquilibria) {
+  Steps steps;
+  steps.pressure = 0.01;  // kV
+  expect_differences_at(two_electrodes(), values({3, 1}), 1e-6, steps);
+}
+
+/// Several electrodes on one membrane, each with its voltage: mirrored ones mirror the shape, equal ones do not twist
+/// it, and the layer that is charged makes the strip bend away.
+TEST(PhysicalVoltage, ElectrodesOfOneMembraneHaveVoltagesOfTheirOwn) {
+  const Model model = compile(two_electrodes());
+  const Statics statics(model);
+  const auto tip = [&](double left, double right) { return marker_at(model, settled(statics, values({left, right}))); };
+  const Vec3 one = tip(3, 0), other = tip(0, 3), both = tip(3, 3);
+  EXPECT_LT(one[2], 0.45);
+  EXPECT_LT(both[2], one[2]);
+  EXPECT_GT(std::abs(one[1] - 3), 0.01);
+  EXPECT_NEAR(one[2], other[2], 0.05 * std::abs(one[2] - 0.5));  // the mesh's diagonals are not mirrored
+  EXPECT_NEAR(both[1], 3, 0.2 * std::abs(one[1] - 3));
+}
+
+/// A share of the voltage over all prisms is so much less voltage; prisms without any are passive.
+TEST(PhysicalVoltage, SharesOfTheVoltage) {
+  RobotSpec spec = free_sheet(neo_hookean(0.4));
+  const std::size_t count = spec.mesh.prisms.size();
+  PrismValues shares;
+  for (std::size_t e = count; e-- > 0;) {
+    shares.prisms.push_back(static_cast<Index>(e));
+    shares.values.push_back(0.5);
+    shares.origins.push_back({});
+  }
+  spec.actuators[0].shares = shares;
+  const Model halved = compile(spec);
+  const Model model = compile(free_sheet(neo_hookean(0.4)));
+  const Points expected = settled(Statics(model), values({6})).state.positions;
+  EXPECT_LT(distance(settled(Statics(halved), values({12})).state.positions, expected), 1e-8);
+
+  for (double& share : spec.actuators[0].shares->values) share = 0;
+  const Model passive = compile(spec);
+  EXPECT_LT(distance(settled(Statics(passive), values({20})).state.positions, passive.rest), 1e-12);
+}
+
+TEST(PhysicalVoltage, EquilibriumFromAStartThatTellsItsVoltage) {
+  const Model model = compile(two_electrodes());
+  const Statics statics(model);
+  const Equilibrium at = settled(statics, values({3, 1}));
+  State told;
+  told.positions = at.state.positions;
+  told.multipliers = at.state.multipliers;  // and no actuation
+  const Equilibrium again = statics.solve(values({3, 1}), told, tight());
+  EXPECT_EQ(again.report.status, Status::converged);
+  EXPECT_LT(distance(again.state.positions, at.state.positions), 1e-9);
+  EXPECT_LE(again.report.iterations, 3);
 }
 
 }  // namespace softkin
