@@ -69,7 +69,7 @@ void command_load(Making& m, ActuatorSpec& spec) {
   spec.rest = 0;
   spec.low = spec.kind == ActuatorKind::pneumatic ? m.draw.pick({0.0, -0.02}) : 0;
   spec.high = m.is(Oddity::actuators) ? m.draw.pick({0.1, 1.0, 1e6}) : 0.02;
-  if (spec.kind == ActuatorKind::dea && !m.is(Oddity::actuators)) spec.high = 0.3;  // pull-in: 0.69 of a free sheet
+  if (spec.kind == ActuatorKind::dea && !m.is(Oddity::actuators)) spec.high = 0.04;
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ MaterialSpec random_material(Making& m, const std::string& region, double e) {
   if (m.physical || m.draw.chance(0.3)) material.elastic = random_elastic(m, e, random_poisson(m));
   material.density = m.draw.chance(0.8) ? m.draw.between(900, 3000) : 0;
   if (m.draw.chance(0.1)) material.linear_range = 0.05;
-  if (m.draw.chance(0.98)) material.permittivity = m.draw.between(1, 10);
+  if (!m.is(Oddity::materials) || m.draw.chance(0.9)) material.permittivity = m.draw.between(1, 5);
   return material;
 }
 
@@ -139,7 +139,7 @@ void make_supports(Making& m) {
 namespace {
 
 /// Voltage at which the field's pressure in a layer of unit permittivity is the modulus of "all" [kV].
-double voltage_unit(const Making& m) {
+double voltage_unit(Making& m) {
   constexpr double vacuum = 8.8541878128e-6;  // MPa per (kV/mm)^2
   double thickness = m.size[2];
   const Mesh& mesh = m.mesh();
@@ -153,8 +153,9 @@ void scale_ranges(Making& m) {
   for (ActuatorSpec& actuator : m.made.spec.actuators) {
     if (actuator.control != Control::load) continue;
     const bool cable = actuator.kind == ActuatorKind::cable;
-    const double unit = actuator.kind == ActuatorKind::dea ? voltage_unit(m)
-                                                           : m.modulus * (cable ? m.size[1] * m.size[2] : 1e3);  // N, kPa
+    const double unit = actuator.kind == ActuatorKind::dea
+                            ? voltage_unit(m)
+                            : m.modulus * (cable ? m.size[1] * m.size[2] : 1e3);  // N, kPa
     actuator.low *= unit;
     actuator.high *= unit;
   }
