@@ -313,6 +313,7 @@ TEST(Physical, RefusalsOfVoltages) {
       {{"no permittivity", [](RobotSpec& s) { s.materials[0].permittivity.reset(); },
         "robot.yaml:3: the material of region 'all' needs 'permittivity', over that of the vacuum: actuator 'skin'"},
        {"negative", [](RobotSpec& s) { s.actuators[0].low = -1; }, "range of its voltage with 0 <= low <= high"},
+       {"prestretch", [](RobotSpec& s) { s.actuators[0].prestretch = 0; }, "needs a prestretch above 0, not 0"},
        {"rest", [](RobotSpec& s) { s.actuators[0].rest = 1; }, "cannot have a load at rest other than 0"},
        {"ratio",
         [](RobotSpec& s) {

@@ -46,7 +46,8 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
   if (role.actuator < 0) return {};
   const Real command = state.actuation[role.actuator];
   if (model.actuators[role.actuator].control == Control::ratio) return {command, 0};
-  return {1, vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
+  return {model.actuators[role.actuator].prestretch,
+          vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
 }
 
 void add_elements(const Model& model, const Equilibrium& found, Forces& forces) {

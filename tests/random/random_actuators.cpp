@@ -69,7 +69,9 @@ void command_load(Making& m, ActuatorSpec& spec) {
   spec.rest = 0;
   spec.low = spec.kind == ActuatorKind::pneumatic ? m.draw.pick({0.0, -0.02}) : 0;
   spec.high = m.is(Oddity::actuators) ? m.draw.pick({0.1, 1.0, 1e6}) : 0.02;
-  if (spec.kind == ActuatorKind::dea && !m.is(Oddity::actuators)) spec.high = 0.04;
+  if (spec.kind != ActuatorKind::dea) return;
+  spec.prestretch = m.draw.chance(0.4) ? m.draw.between(0.8, 1.1) : 1;
+  if (!m.is(Oddity::actuators)) spec.high = 0.04;
 }
 
 }  // namespace

@@ -230,12 +230,14 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
     RealMat3 p = stress(law, gradient);
     Real stiffness = stiffness_bound(law, gradient);
     const Real all = slope.rowwise().norm().sum();
-    if (drive.pressure > 0) {  // the potential rises from the first triangle to the second
-      const RealVec3 across = slope.bottomRows(3).colwise().sum().transpose();
-      p += drive.pressure * slope_of(gradient, [&](const Square<Dual>& f) { return field_energy(f, across); });
-      const RealMat3 inverse = gradient.inverse();
-      const Real field = (inverse.transpose() * across).squaredNorm();
-      stiffness += 10 * drive.pressure * std::abs(gradient.determinant()) * field * inverse.squaredNorm();
+    if (drive.pressure > 0) {  // the potential rises from the first triangle to the second, whatever the active stretch
+      const RealMat3 relaxed = drive.ratio != 1 ? inverse_stretch(rest, drive.ratio) : RealMat3::Identity();
+      const RealMat3 whole = gradient * relaxed.inverse(), inverse = whole.inverse();
+      const RealVec3 across = (slope * relaxed.inverse()).bottomRows(3).colwise().sum().transpose();
+      const RealMat3 field = slope_of(whole, [&](const Square<Dual>& f) { return field_energy(f, across); });
+      p += drive.pressure * field * relaxed.inverse();
+      const Real square = (inverse.transpose() * across).squaredNorm();
+      stiffness += 10 * drive.pressure * std::abs(whole.determinant()) * square * inverse.squaredNorm();
     }
     const Real blurred = stiffness * all * (current_size + gradient.norm() * rest_size) * ulp +
                          p.norm() * (1 + all * rest_size) * ulp + stiffness * ulp;

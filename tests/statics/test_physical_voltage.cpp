@@ -225,6 +225,22 @@ TEST(PhysicalVoltage, SharesOfTheVoltage) {
   EXPECT_LT(distance(settled(Statics(passive), values({20})).state.positions, passive.rest), 1e-12);
 }
 
+/// A prestretched layer is one whose mesh was drawn stretched: under voltage it comes to the shape of the same layer
+/// that was drawn as it is without force.
+TEST(PhysicalVoltage, APrestretchedLayerIsDrawnStretched) {
+  const double ratio = 0.7;
+  RobotSpec drawn = free_sheet(gent(40, 0.4)), stretched = drawn;
+  stretched.actuators[0].prestretch = ratio;
+  drawn.mesh.vertices *= Vec3(std::sqrt(ratio), std::sqrt(ratio), 1 / ratio).asDiagonal();
+  const Model model = compile(stretched), unstretched = compile(drawn);
+  const Statics of_stretched(model), of_drawn(unstretched);
+  for (const double voltage : {0.0, 8.0, 16.0}) {
+    const Equilibrium at = settled(of_stretched, values({voltage}));
+    EXPECT_LT(distance(at.state.positions, settled(of_drawn, values({voltage})).state.positions), 1e-8);
+    for (const double stress : of_stretched.measured(at.state).stress.von_mises) EXPECT_LT(stress, 1e-8);
+  }
+}
+
 TEST(PhysicalVoltage, EquilibriumFromAStartThatTellsItsVoltage) {
   const Model model = compile(two_electrodes());
   const Statics statics(model);

@@ -59,6 +59,7 @@ struct Actuator {
   std::vector<CavityFace> cavity;      // pneumatic with a region, physical: its boundary, normals out of the chamber
   std::vector<Index> prisms;           // dea: elements of Model
   std::vector<double> shares;          // dea under voltage: of it that each of them has [-]
+  double prestretch = 1;               // the same: area of the layer without force, over that in the mesh [-]
   std::vector<EmbeddedPoint> points;   // cable; or the vertices of a pneumatic actuator's surface
   std::vector<Triangle> surface;       // pneumatic with a surface: triangles over `points`
   std::vector<CableGap> gaps;          // cable, target-shape

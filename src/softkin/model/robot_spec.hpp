@@ -117,12 +117,14 @@ struct ActuatorSpec {
   double low = 0, high = 0;                // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
                                            // pressure [kPa]: any
   double rest = 1;                         // value where none is asked for: a dea's prestretch; load control: 0; else 1
+  double prestretch = 1;                   // dea under voltage: area that its layer has without force, over that in the
+                                           // mesh [-], > 0
   double weight = 5;                       // w of Eq. (9), > 0
   bool least_norm = true;                  // false: every element takes the actuator's ratio
   std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
   Branch branch = Branch::loading;         // of the curve, where a command names none
   std::shared_ptr<const FieldSpec> field;  // magnetic
-  std::optional<PrismValues> shares;       // dea under voltage: the share of it that each prism has [-]; none: all of it
+  std::optional<PrismValues> shares;  // dea under voltage: the share of it that each prism has [-]; none: all of it
   Origin origin;
 };
 

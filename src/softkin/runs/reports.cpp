@@ -36,6 +36,8 @@ Json materials_json(const Model& model) {
       json["law"] = law_name(material.elastic.law);
       json.update(elastic_json(material.elastic));
       json["density_kg_m3"] = material.density;
+      if (std::any_of(model.actuators.begin(), model.actuators.end(), under_voltage))
+        json["permittivity"] = material.permittivity;
     } else {
       json["shape_ratio"] = material.shape_ratio;
       json["weight"] = material.weight;

@@ -129,13 +129,6 @@ void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator
   actuator.curve = load_file(context, *file, context.files.curve);
 }
 
-void read_prestretch(const Node& node, ActuatorSpec& actuator) {
-  if (actuator.control == Control::load)
-    fail(node, node.name + " is an area ratio at rest, but the voltage is controlled here, and the stretch follows " +
-                   "from it: leave " + node.name + " out and hold the edges farther out ('displacement' of 'fixed')");
-  actuator.rest = positive(node);
-}
-
 /// A CSV file of the share of the voltage that each prism of the layer has.
 PrismValues read_shares(const Context& context, const Node& node, const ActuatorSpec& actuator) {
   if (actuator.control == Control::ratio) fail(node, node.name + " belongs to 'control: voltage'");
@@ -168,7 +161,8 @@ ActuatorSpec read_actuator(const Context& context, Formulation formulation, cons
   read_range(map.at("range"), actuator);
   if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
   if (const Node* node = map.find("distribution")) actuator.least_norm = choice(*node, {"least-norm", "uniform"}) == 0;
-  if (const Node* node = map.find("prestretch")) read_prestretch(*node, actuator);
+  if (const Node* node = map.find("prestretch"))
+    (actuator.control == Control::ratio ? actuator.rest : actuator.prestretch) = positive(*node);
   if (const Node* node = map.find("voltage_share")) actuator.shares = read_shares(context, *node, actuator);
   if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
   if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);

@@ -38,9 +38,10 @@ void check_ratio(const ActuatorSpec& spec) {
 void check_curve(const ActuatorSpec& spec) {
   if (spec.kind == ActuatorKind::cable) refuse(spec, "is a cable: it takes no curve");
   if (spec.control == Control::load)
-    refuse(spec, spec.kind == ActuatorKind::dea
-                     ? "is controlled by its voltage, which needs no curve: control its area, or leave the curve out"
-                     : "is controlled by its pressure, which needs no curve: control its volume, or leave the curve out");
+    refuse(spec,
+           spec.kind == ActuatorKind::dea
+               ? "is controlled by its voltage, which needs no curve: control its area, or leave the curve out"
+               : "is controlled by its pressure, which needs no curve: control its volume, or leave the curve out");
   const bool pressure = spec.curve->input == CurveInput::pressure;
   if (pressure != (spec.kind == ActuatorKind::pneumatic))
     refuse(spec, std::string("needs a curve of ") + (pressure ? "voltages" : "pressures") + ", but " +
@@ -57,8 +58,13 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
   else
     check_ratio(spec);
   if (spec.curve) check_curve(spec);
-  if (spec.shares && !(spec.kind == ActuatorKind::dea && spec.control == Control::load))
+  const bool charged = spec.kind == ActuatorKind::dea && spec.control == Control::load;
+  if (spec.shares && !charged)
     refuse(spec, "takes no shares of a voltage: only a dea that is controlled by its voltage does");
+  if (spec.prestretch != 1 && !charged)
+    refuse(spec, "takes no prestretch beside its ratio at rest: only a dea that is controlled by its voltage does");
+  if (!(spec.prestretch > 0 && std::isfinite(spec.prestretch)))
+    refuse(spec, "needs a prestretch above 0, not " + number(spec.prestretch));
 }
 
 void check_members(const ActuatorSpec& spec, Formulation formulation) {
@@ -229,6 +235,7 @@ void compile_actuator_elements(Compilation& c) {
     actuator.rest = spec.rest;
     actuator.weight = spec.weight;
     actuator.least_norm = spec.least_norm;
+    actuator.prestretch = spec.prestretch;
     actuator.curve = spec.curve;
     actuator.branch = spec.branch;
     if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);

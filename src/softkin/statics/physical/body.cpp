@@ -83,16 +83,16 @@ template <int K, int Q, class Element>
 void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
                const Element& nodes) {
   const ElasticLaw& constants = model.materials[role.material].elastic;
-  const bool charged = role.actuator >= 0 && under_voltage(model.actuators[role.actuator]);
-  const Index actuator = charged ? -1 : role.actuator, electrode = charged ? role.actuator : -1;
-  auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
-    return s.law == constants.law && s.actuator == actuator && s.electrode == electrode;
-  });
+  auto set = std::find_if(sets.begin(), sets.end(),
+                          [&](const Set<K, Q>& s) { return s.law == constants.law && s.actuator == role.actuator; });
   if (set == sets.end()) {
     set = sets.insert(sets.end(), Set<K, Q>{});
     set->law = constants.law;
-    set->actuator = actuator;
-    set->electrode = electrode;
+    set->actuator = role.actuator;
+    if (role.actuator >= 0) {
+      set->charged = under_voltage(model.actuators[role.actuator]);
+      set->prestretch = model.actuators[role.actuator].prestretch;
+    }
   }
   Eigen::Matrix<double, K, 3> rest;
   for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
@@ -133,7 +133,7 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
   for (const Index e : spatial_order(model.rest, model.prisms))
     add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
   for (auto& set : prisms_)
-    if (set.electrode >= 0) add_field(model, set);
+    if (set.charged) add_field(model, set);
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
     pulls_ += K * set.count;
@@ -155,7 +155,7 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
 
 /// The permittivities of a set under voltage, whose elements are there.
 void Body::add_field(const Model& model, Set<6, 6>& set) {
-  const std::vector<double> permittivity = layer_permittivity(model, set.electrode);
+  const std::vector<double> permittivity = layer_permittivity(model, set.actuator);
   const auto tetrahedra = static_cast<Index>(model.tetrahedra.size());
   set.permittivity.assign(set.blocks.size(), Pack{});
   for (Index e = 0; e < set.count; ++e)
@@ -182,7 +182,7 @@ void Body::stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) co
   for (const auto& set : prisms_) {
     if (set.actuator < 0) continue;
     const std::size_t index = layer++;
-    const double ratio = actuation[set.actuator];
+    const double ratio = set.charged ? set.prestretch : actuation[set.actuator];
     if (scratch.layer_ratios[index] == ratio) continue;
     scratch.layer_ratios[index] = ratio;
     const Vec3 inverse(1 / std::sqrt(ratio), 1 / std::sqrt(ratio), ratio);
@@ -236,9 +236,9 @@ Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positio
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_force<K, Q>(blocks[b], shape, out);
-        if constexpr (K == 6)
-          if (set.electrode >= 0)
-            add_dielectric_force(blocks[b], set.permittivity[b], actuation[set.electrode], shape, out);
+        if constexpr (K == 6)  // the field is that in the layer itself, whatever its active stretch
+          if (set.charged)
+            add_dielectric_force(set.blocks[b], set.permittivity[b], actuation[set.actuator], shape, out);
         scratch.energies[first + b] = out.energy;
         scratch.inverted[first + b] = out.inverted;
         scratch.forbidden[first + b] = out.forbidden;
@@ -265,7 +265,7 @@ void Body::field_force(Index actuator, double voltage_kV, const Points& position
                        Team& team) const {
   std::fill(scratch.pulls.begin(), scratch.pulls.end(), 0.0);
   for (const auto& set : prisms_)
-    if (set.electrode == actuator)
+    if (set.charged && set.actuator == actuator)
       team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
         Shape<6> shape;
         for (Index b = begin; b < end; ++b) {
@@ -304,8 +304,8 @@ void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scr
         load<K>(positions, set.nodes[b], shape);
         elastic_stress<K, Q>(blocks[b], shape, points);
         if constexpr (K == 6)
-          if (set.electrode >= 0)
-            add_maxwell_stress(blocks[b], set.permittivity[b], actuation[set.electrode], shape, points);
+          if (set.charged)
+            add_maxwell_stress(set.blocks[b], set.permittivity[b], actuation[set.actuator], shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
           Mat3 most = lane_of(points[0], l);
           for (int q = 1; q < Q; ++q)
@@ -345,8 +345,8 @@ void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, 
         load<K>(positions, set.nodes[b], shape);
         elastic_stiffness<K, Q>(blocks[b], shape, projected, out);
         if constexpr (K == 6)  // the field's has hardly anything that is positive
-          if (set.electrode >= 0 && !projected)
-            add_dielectric_stiffness(blocks[b], set.permittivity[b], actuation[set.electrode], shape, out);
+          if (set.charged && !projected)
+            add_dielectric_stiffness(set.blocks[b], set.permittivity[b], actuation[set.actuator], shape, out);
         const Index count = std::min<Index>(lanes, set.count - lanes * b);
         double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices) * lanes * b);
         for (Index l = 0; l < count; ++l)

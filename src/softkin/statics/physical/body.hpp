@@ -67,8 +67,9 @@ class Body {
   template <int K, int Q>
   struct Set {
     Law law = Law::neo_hookean;
-    Index actuator = -1;   // dea under ratio control, whose stretch is in the slopes
-    Index electrode = -1;  // dea under voltage
+    Index actuator = -1;    // dea, whose active stretch is in the slopes of its layers
+    bool charged = false;   // is it under voltage
+    double prestretch = 1;  // then its stretch, which no command changes
     Index count = 0;
     Index first_pull = 0;         // element e, node i pulls at first_pull + K e + i
     std::int64_t first_slot = 0;  // of its matrices
