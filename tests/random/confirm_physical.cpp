@@ -46,7 +46,7 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
   if (role.actuator < 0) return {};
   const Real command = state.actuation[role.actuator];
   if (model.actuators[role.actuator].control == Control::ratio) return {command, 0};
-  return {model.actuators[role.actuator].prestretch,
+  return {1 + static_cast<Real>(state.share) * (static_cast<Real>(model.actuators[role.actuator].prestretch) - 1),
           vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
 }
 

@@ -176,13 +176,18 @@ Body::Scratch Body::make_scratch() const {
   return scratch;
 }
 
+bool Body::prestretched() const {
+  return std::any_of(prisms_.begin(), prisms_.end(),
+                     [](const auto& set) { return set.charged && set.prestretch != 1; });
+}
+
 /// F_a = diag(sqrt(ratio), sqrt(ratio), 1 / ratio) in the layer's frame: slopes become F_a^-T times those at rest.
-void Body::stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) const {
+void Body::stretch_layers(const Demand& demand, Scratch& scratch) const {
   std::size_t layer = 0;
   for (const auto& set : prisms_) {
     if (set.actuator < 0) continue;
     const std::size_t index = layer++;
-    const double ratio = set.charged ? set.prestretch : actuation[set.actuator];
+    const double ratio = set.charged ? 1 + demand.share * (set.prestretch - 1) : demand.actuation[set.actuator];
     if (scratch.layer_ratios[index] == ratio) continue;
     scratch.layer_ratios[index] = ratio;
     const Vec3 inverse(1 / std::sqrt(ratio), 1 / std::sqrt(ratio), ratio);
@@ -224,9 +229,9 @@ void Body::gather(const Scratch& scratch, Points& sums, Team& team) const {
   });
 }
 
-Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, Points& gradient,
+Body::Result Body::force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient,
                          Team& team) const {
-  stretch_layers(actuation, scratch);
+  stretch_layers(demand, scratch);
   std::size_t first = 0;
   Result result;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
@@ -238,7 +243,7 @@ Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positio
         elastic_force<K, Q>(blocks[b], shape, out);
         if constexpr (K == 6)  // the field is that in the layer itself, whatever its active stretch
           if (set.charged)
-            add_dielectric_force(set.blocks[b], set.permittivity[b], actuation[set.actuator], shape, out);
+            add_dielectric_force(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, out);
         scratch.energies[first + b] = out.energy;
         scratch.inverted[first + b] = out.inverted;
         scratch.forbidden[first + b] = out.forbidden;
@@ -289,9 +294,9 @@ double Body::largest_pull(const Scratch& scratch, Team& team) const {
   return *std::max_element(sums.begin(), sums.end());
 }
 
-void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, ElementStress& out,
+void Body::stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out,
                   Team& team) const {
-  stretch_layers(actuation, scratch);
+  stretch_layers(demand, scratch);
   std::size_t count = 0;
   each(scratch, [&](const auto& set, const auto&) { count += set.elements.size(); });
   out.von_mises.resize(count);
@@ -305,7 +310,7 @@ void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scr
         elastic_stress<K, Q>(blocks[b], shape, points);
         if constexpr (K == 6)
           if (set.charged)
-            add_maxwell_stress(set.blocks[b], set.permittivity[b], actuation[set.actuator], shape, points);
+            add_maxwell_stress(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
           Mat3 most = lane_of(points[0], l);
           for (int q = 1; q < Q; ++q)
@@ -333,9 +338,9 @@ void Body::add_cliques(linear::Cliques& cliques) {
   });
 }
 
-void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected, Scratch& scratch,
+void Body::stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                      LargeVector<double>& slots, Team& team) const {
-  stretch_layers(actuation, scratch);
+  stretch_layers(demand, scratch);
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     constexpr int matrices = K * (K + 1) / 2;
     team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
@@ -346,7 +351,7 @@ void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, 
         elastic_stiffness<K, Q>(blocks[b], shape, projected, out);
         if constexpr (K == 6)  // the field's has hardly anything that is positive
           if (set.charged && !projected)
-            add_dielectric_stiffness(set.blocks[b], set.permittivity[b], actuation[set.actuator], shape, out);
+            add_dielectric_stiffness(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, out);
         const Index count = std::min<Index>(lanes, set.count - lanes * b);
         double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices) * lanes * b);
         for (Index l = 0; l < count; ++l)

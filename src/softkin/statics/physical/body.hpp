@@ -6,6 +6,7 @@
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/deformation.hpp>
+#include <softkin/statics/physical/iterate.hpp>
 
 namespace softkin::physical {
 
@@ -31,9 +32,9 @@ class Body {
     bool forbidden = false;  // has one no energy where it is; energy and gradient are then meaningless
   };
 
-  /// Energy and gradient (#V by 3 [N]). actuation: of which the ratios and voltages of dea actuators are taken.
-  Result force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, Points& gradient,
-               Team& team) const;
+  /// Energy and gradient (#V by 3 [N]). demand: of which the ratios and voltages of dea actuators are taken, and the
+  /// share of the prestretch of those under voltage.
+  Result force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient, Team& team) const;
 
   /// Sum of the magnitudes of what the elements at a vertex pull there, the largest of all vertices [N]. After force().
   [[nodiscard]] double largest_pull(const Scratch& scratch, Team& team) const;
@@ -44,15 +45,17 @@ class Body {
 
   /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest; of a layer under
   /// voltage with Maxwell's.
-  void stress(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, ElementStress& out,
-              Team& team) const;
+  void stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out, Team& team) const;
 
   /// Adds every element as a clique.
   void add_cliques(linear::Cliques& cliques);
 
   /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
-  void stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected, Scratch& scratch,
+  void stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const;
+
+  /// Does the share of what is done to it at once change it: is a layer under voltage prestretched.
+  [[nodiscard]] bool prestretched() const;
 
   /// What the linear step lacks to turn the elements instead of shearing them (energy/turning.hpp), a pull for each
   /// vertex: residual of a system with the matrix below.
@@ -87,7 +90,7 @@ class Body {
   void gather(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;
-  void stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) const;
+  void stretch_layers(const Demand& demand, Scratch& scratch) const;
 
   /// visit(set, its blocks at the current active stretch)
   template <class Visit>

@@ -290,9 +290,7 @@ double Continuation::longest_step(bool snap, bool unstable) const {
 bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   if (system_.any_dead_load() && from.share != to.share) return true;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (from.actuation[a] != to.actuation[a] &&
-        (system_.loads(a) || system_.given_load(a)))
-      return true;
+    if (from.actuation[a] != to.actuation[a] && (system_.loads(a) || system_.given_load(a))) return true;
   return false;
 }
 

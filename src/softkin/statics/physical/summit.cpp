@@ -30,7 +30,8 @@ double vertex_of(double x0, double y0, double x1, double y1, double x2, double y
 /// The one load that changes where nothing else does; -1: none.
 Index Continuation::only_load(const Demand& from, const Demand& to) const {
   const Model& model = system_.model();
-  if (from.share != to.share && (system_.any_dead_load() || model.held != model.rest)) return -1;
+  if (from.share != to.share && (system_.any_dead_load() || system_.prestretched() || model.held != model.rest))
+    return -1;
   Index found = -1;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (from.actuation[a] == to.actuation[a]) continue;

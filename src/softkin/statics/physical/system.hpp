@@ -237,6 +237,7 @@ class System {
   [[nodiscard]] bool holds(Index actuator) const { return model_.actuators[actuator].kind == ActuatorKind::hold; }
   [[nodiscard]] bool any_body() const { return surroundings_.any_body(); }
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
+  [[nodiscard]] bool prestretched() const { return elastic_.prestretched(); }
 
  private:
   bool loses_energy(Workspace& work, Team& team) const;
