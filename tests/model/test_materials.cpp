@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <softkin/model/compile/parts.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"
