@@ -73,9 +73,9 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   physical::Body::Scratch scratch = elastic.make_scratch();
   LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()));
   Points gradient;
-  (void)elastic.force(demand_.actuation, at_.positions, scratch, gradient, team_);
+  (void)elastic.force(demand_, at_.positions, scratch, gradient, team_);
   times.stiffness =
-      seconds_of(repeat, [&] { elastic.stiffness(demand_.actuation, at_.positions, false, scratch, slots, team_); });
+      seconds_of(repeat, [&] { elastic.stiffness(demand_, at_.positions, false, scratch, slots, team_); });
   times.assembly =
       std::max(0.0, whole - times.stiffness - times.factor - static_cast<double>(work_.active.size()) * times.solve);
   return times;

@@ -18,7 +18,7 @@ std::string load_text(const Model& model, const Actuator& actuator, const runs::
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return "-";
   if (record.slack) return "slack";
   if (!std::isfinite(record.multiplier)) return "unknown";
-  return decimal(record.multiplier, value_decimals) + (actuator.kind == ActuatorKind::cable ? " N" : " kPa");
+  return decimal(record.multiplier, value_decimals) + " " + multiplier_unit(actuator);
 }
 
 /// "50.0000 kPa": what the actuator's curve gives for the command.

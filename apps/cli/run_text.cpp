@@ -59,7 +59,7 @@ std::string overlap_cause(const Model& model) {
          ", so what lies beyond the first touch is not what the robot does: ask for less";
 }
 
-constexpr const char* units_text = " (mm, MPa, kPa, N, kg/m^3, m/s^2)";
+constexpr const char* units_text = " (mm, MPa, kPa, kV, N, kg/m^3, m/s^2)";
 
 std::string depth_text(double deepest_mm, const Vec3& where) {
   const auto axis = [&](Index i) { return decimal(where[i], 2); };
@@ -87,6 +87,10 @@ std::string finding_text(const Model& model, const runs::Finding& finding) {
     case Kind::slack:
       return "cable '" + finding.name + "' is slack: its path is " + number(v[0], 5) +
              " of its length at rest, the cable " + number(v[1], 5);
+    case Kind::charged:
+      return "dea '" + finding.name + "' holds " + number(v[0], 4) + " nC, " + number(v[1], 4) +
+             " pF; the field in its layer is at most " + number(v[2], 4) + " kV/mm, where it is " + number(v[3], 4) +
+             " mm thick, at " + point_text(&v[4]) + " mm";
     case Kind::self_overlap:
       return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
              " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +

@@ -38,7 +38,7 @@ class Answer(Saving):
 
     @property
     def actuation(self) -> dict[str, float]:
-        """By the actuator's name, inside every range: ratio [-], tension [N] or pressure [kPa]."""
+        """By the actuator's name, inside every range: ratio [-], tension [N], pressure [kPa] or voltage [kV]."""
         return dict(zip(self._robot.actuators, self.shape.actuation.tolist()))
 
     @property

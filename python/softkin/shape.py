@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 __all__ = ["ActuatorState", "Contact", "Deformation", "Reaction", "SelfOverlap", "Shape", "Views"]
 
 
+_LOAD_UNITS = {"pneumatic": "kPa", "cable": "N", "dea": "kV"}
+
+
 @dataclass(frozen=True)
 class ActuatorState:
     """An actuator in a shape."""
@@ -38,23 +41,30 @@ class ActuatorState:
     requested: float
     """what was commanded, in `unit`"""
     unit: str
-    """'kPa' or 'N'; '' for a ratio to rest [-]"""
+    """'kPa', 'N' or 'kV'; '' for a ratio to rest [-]"""
     ratio: float
     """volume, length or area over that at rest [-]"""
     measure: float
     """volume [mm^3], length [mm] or area [mm^2]"""
     load: float | None
-    """gauge pressure [kPa] or tension [N]; None where the formulation or the kind has none"""
+    """gauge pressure [kPa], tension [N] or voltage [kV]; None where the formulation or the kind has none"""
     by_curve: float | None
     """what the actuator's curve asks for: gauge pressure [kPa] or voltage [kV]"""
     slack: bool
     """a cable that carries nothing because its path is shorter than it"""
+    charge_nC: float | None = None
+    """on the electrodes of a dea under voltage [nC]; else None"""
+    capacitance_pF: float | None = None
+    """between them [pF]"""
+    field_kV_mm: float | None = None
+    """the largest true field in its layer [kV/mm]"""
 
     def _load_of(self, kind: str, what: str) -> float:
         if self.kind != kind:
             raise AttributeError(f"actuator {self.name!r} is a {self.kind}: it has no {what}")
         if self.load is None:
-            raise AttributeError(f"actuator {self.name!r} has no {what}: only the physical formulation knows it")
+            why = "its area is controlled" if what == "voltage" else "only the physical formulation knows it"
+            raise AttributeError(f"actuator {self.name!r} has no {what}: {why}")
         return self.load
 
     @property
@@ -66,6 +76,11 @@ class ActuatorState:
     def tension_N(self) -> float:
         """Tension of the cable [N]; physical formulation."""
         return self._load_of("cable", "tension")
+
+    @property
+    def voltage_kV(self) -> float:
+        """Voltage of the dea [kV]; physical formulation, `control: voltage`."""
+        return self._load_of("dea", "voltage")
 
     @property
     def volume_mm3(self) -> float:
@@ -220,15 +235,18 @@ class Shape(Saving):
 
     @cached_property
     def actuation(self) -> Floats:
-        """(m,) what was asked for, in the order of `robot.actuators`: ratio [-], tension [N] or pressure [kPa]."""
+        """(m,) what was asked for, in the order of `robot.actuators`: ratio [-], tension [N], pressure [kPa] or
+        voltage [kV]."""
         return self._core.actuation
 
     @cached_property
     def actuators(self) -> dict[str, ActuatorState]:
-        """By name: ratio, pressure or tension."""
+        """By name: ratio, pressure, tension or voltage."""
         return {
-            info.name: ActuatorState(info.name, info.kind, requested, info.unit, ratio, measure, load, curve, slack)
-            for info, (requested, ratio, measure, load, curve, slack) in zip(
+            info.name: ActuatorState(
+                info.name, info.kind, requested, info.unit, ratio, measure, load, curve, slack, *(layer or ())
+            )
+            for info, (requested, ratio, measure, load, curve, slack, layer) in zip(
                 self._robot.actuator_infos, self._core.actuators()
             )
         }
@@ -340,7 +358,7 @@ class Shape(Saving):
     def _repr_html_(self) -> str:
         rows = [("status", self.status)]
         for state in self.actuators.values():
-            load = "" if state.load is None else f", {state.load:.6g} {'kPa' if state.kind == 'pneumatic' else 'N'}"
+            load = "" if state.load is None else f", {state.load:.6g} {_LOAD_UNITS[state.kind]}"
             rows.append((state.name, f"ratio {state.ratio:.6g} [-]{load}"))
         rows += [(name, f"{_point(place)} mm") for name, place in self.markers.items()]
         cells = "".join(f"<tr><th>{escape(key)}</th><td>{escape(text)}</td></tr>" for key, text in rows)

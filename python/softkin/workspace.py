@@ -71,7 +71,7 @@ class Workspace:
 
     @cached_property
     def actuation(self) -> Floats:
-        """(s, m) commands: ratio [-], tension [N] or pressure [kPa]."""
+        """(s, m) commands: ratio [-], tension [N], pressure [kPa] or voltage [kV]."""
         return self._core.actuation
 
     @cached_property

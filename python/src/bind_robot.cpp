@@ -52,9 +52,10 @@ void bind_actuator(nb::module_& module) {
           "'pneumatic', 'cable' or 'dea'; of surroundings 'motion', 'force' or 'hold'.")
       .def_prop_ro(
           "control", [](const Actuator& a) { return control_name(a); },
-          "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure' or 'tension'.")
+          "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure', 'tension' or 'voltage'.")
       .def_prop_ro(
-          "unit", [](const Actuator& a) { return command_unit(a); }, "Of a command: 'kPa' or 'N'; '' for a ratio [-].")
+          "unit", [](const Actuator& a) { return command_unit(a); },
+          "Of a command: 'kPa', 'N' or 'kV'; '' for a ratio [-].")
       .def_prop_ro(
           "range", [](const Actuator& a) { return std::pair(a.low, a.high); }, "Of commands.")
       .def_ro("rest", &Actuator::rest, "The command where none is given.")
@@ -62,7 +63,8 @@ void bind_actuator(nb::module_& module) {
       .def_prop_ro(
           "column", [](const Actuator& a) { return command_column(a); }, "Of tables: 'air', 'air_kPa'.")
       .def_prop_ro(
-          "load_key", [](const Actuator& a) { return multiplier_key(a); }, "'pressure_kPa', 'tension_N' or ''.")
+          "load_key", [](const Actuator& a) { return multiplier_key(a); },
+          "'pressure_kPa', 'tension_N', 'voltage_kV' or ''.")
       .def(
           "command_text", [](const Actuator& a, double value) { return command_text(a, value); }, nb::arg("value"));
 }

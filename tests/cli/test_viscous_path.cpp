@@ -86,12 +86,12 @@ TEST(ViscousPath, RefusesWhatHasNoMeaning) {
   expect_refused(folder, {"--path", timed, "--instant"}, "--instant: ");
   const BlockFolder elastic(physical_scene());
   expect_refused(elastic, {"--instant"}, "--instant is for viscous materials");
-  for (const auto& [viscosity, word] : std::vector<std::pair<std::string, std::string>>{
-           {"[{modulus: 0, time: 1}]", "modulus"},
-           {"[{modulus: 1, time: -1}]", "time"},
-           {"[{modulus: 1}]", "time"},
-           {"[{modulus: 1, time: 1, tau: 1}]", "tau"},
-           {"3", "viscosity"}})
+  for (const auto& [viscosity, word] :
+       std::vector<std::pair<std::string, std::string>>{{"[{modulus: 0, time: 1}]", "modulus"},
+                                                        {"[{modulus: 1, time: -1}]", "time"},
+                                                        {"[{modulus: 1}]", "time"},
+                                                        {"[{modulus: 1, time: 1, tau: 1}]", "tau"},
+                                                        {"3", "viscosity"}})
     expect_refused(BlockFolder(viscous_scene(viscosity)), {}, word);
   expect_refused(folder, {"--formulation", "target-shape"}, "shape_ratio");
 }

@@ -12,8 +12,8 @@ namespace softkin::energy {
 template <int K>
 using Nodes = Eigen::Matrix<double, K, 3>;
 
-inline constexpr Law all_laws[] = {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin,
-                                   Law::yeoh};
+inline constexpr Law all_laws[] = {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean,
+                                   Law::mooney_rivlin,       Law::yeoh,         Law::gent};
 
 /// An element kind: K nodes, Q quadrature points.
 template <int K_, int Q_>
@@ -26,7 +26,11 @@ inline constexpr double sample_mu = 0.7, sample_lambda = 1.9;
 inline ElasticLaw sample_law(Law law) {
   ElasticLaw e;
   e.law = law;
-  if (forbids_inversion(law)) {
+  if (law == Law::gent) {
+    e.mu = sample_mu;
+    e.bulk = sample_lambda + 2 * sample_mu / 3;
+    e.jm = 9;
+  } else if (forbids_inversion(law)) {
     e.bulk = sample_lambda + 2 * sample_mu / 3;
     e.c01 = law == Law::mooney_rivlin ? 0.11 : 0;
     e.c10 = sample_mu / 2 - e.c01;
@@ -93,8 +97,8 @@ void set_lane(ElasticBlock<K, Q>& block, int lane, const ElasticRest<K, Q>& rest
 }
 
 inline void set_law(LawBlock& block, const ElasticLaw& law) {
-  block = {law.law,       pack(law.mu),  pack(law.lambda), pack(law.c10),
-           pack(law.c01), pack(law.c20), pack(law.c30),    pack(law.bulk)};
+  block = {law.law,       pack(law.mu),  pack(law.lambda), pack(law.c10), pack(law.c01),
+           pack(law.c20), pack(law.c30), pack(law.bulk),   pack(law.jm)};
 }
 
 /// Eight elements at rest and the shapes that they now have.

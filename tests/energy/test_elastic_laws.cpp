@@ -166,6 +166,7 @@ TYPED_TEST(ElasticLaws, HopelessElementsAreMarkedAndFinite) {
       const ElasticForce<K> force = force_of(sample.block, sample.current);
       if (s.prod() < 0 || s.norm() == 0) {
         EXPECT_TRUE(force.inverted[2]);
+        EXPECT_EQ(force.forbidden[2] != 0, forbids_inversion(law));
       }
       EXPECT_FALSE(force.inverted[3]);
       EXPECT_TRUE(std::isfinite(force.energy[2]));
@@ -173,6 +174,28 @@ TYPED_TEST(ElasticLaws, HopelessElementsAreMarkedAndFinite) {
       EXPECT_TRUE(stiffness_of(sample.block, sample.current)[2].allFinite());
       EXPECT_TRUE(stiffness_of(sample.block, sample.current, true)[2].allFinite());
     }
+}
+
+/// Chains that are stretched out: bar I1 - 3 of the limit just below and at it, in an element that is not inverted.
+TYPED_TEST(ElasticLaws, StretchBeyondItsLimitIsForbiddenAndFinite) {
+  constexpr int K = TypeParam::K;
+  Random random(8);
+  auto sample = random_sample<K, TypeParam::Q>(Law::gent, random);
+  const double limit = sample_law(Law::gent).jm;
+  // uniaxial at constant volume: l^2 + 2 / l - 3 is the limit
+  double stretch = std::sqrt(limit + 3);
+  for (int i = 0; i < 60; ++i) stretch = std::sqrt(limit + 3 - 2 / stretch);
+  for (const double share : {0.999, 1.001, 2.0, 50.0}) {
+    const double l = share * stretch;
+    sample.current[2] = sample.rest[2] * Vec3(l, 1 / std::sqrt(l), 1 / std::sqrt(l)).asDiagonal();
+    const ElasticForce<K> force = force_of(sample.block, sample.current);
+    EXPECT_EQ(force.forbidden[2] != 0, share > 1) << share;
+    EXPECT_FALSE(force.inverted[2]);
+    EXPECT_FALSE(force.forbidden[3]);
+    EXPECT_TRUE(std::isfinite(force.energy[2]));
+    EXPECT_TRUE(gradient_of(force, 2).allFinite());
+    EXPECT_TRUE(stiffness_of(sample.block, sample.current, true)[2].allFinite());
+  }
 }
 
 /// Treloar's tests at constant volume: the difference of the principal stresses does not depend on the pressure.
@@ -191,12 +214,15 @@ TEST(ElasticStress, UniaxialAndBiaxialOfIncompressibleRubber) {
       };
       const ElasticLaw neo = sample_law(Law::neo_hookean), mooney = sample_law(Law::mooney_rivlin),
                        yeoh = sample_law(Law::yeoh);
+      ElasticLaw gent = sample_law(Law::gent);
+      gent.jm = 40;  // at a stretch of 4 in two directions I1 - 3 is 29
       const auto expect = [&](const ElasticLaw& law, double expected) {
         EXPECT_NEAR(difference(law), expected, 1e-12 * (1 + std::abs(expected))) << stretch << " " << biaxial;
       };
       expect(neo, neo.mu * squares);
       expect(mooney, 2 * squares * (mooney.c10 + second_factor * mooney.c01));
       expect(yeoh, 2 * squares * (yeoh.c10 + 2 * i * yeoh.c20 + 3 * i * i * yeoh.c30));
+      expect(gent, gent.mu * squares * gent.jm / (gent.jm - i));  // Gent 1996
     }
 }
 
@@ -215,6 +241,7 @@ TEST(ElasticStress, Hydrostatic) {
     EXPECT_NEAR(pressure(Law::neo_hookean), sample_mu / s - sample_mu + (sample_lambda + sample_mu) * (j - 1), 1e-13);
     EXPECT_NEAR(pressure(Law::mooney_rivlin), bulk * (j - 1), 1e-13);
     EXPECT_NEAR(pressure(Law::yeoh), bulk * (j - 1), 1e-13);
+    EXPECT_NEAR(pressure(Law::gent), bulk * (j - 1), 1e-13);
   }
 }
 
@@ -241,10 +268,12 @@ TEST(ElasticStress, EnergyFromThePrincipalStretches) {
     if (mirrored) continue;
     const double second = (first * first - s.array().pow(4).sum()) / 2;
     const double i1 = std::pow(j, -2.0 / 3) * first - 3, i2 = std::pow(j, -4.0 / 3) * second - 3;
-    const ElasticLaw mooney = sample_law(Law::mooney_rivlin), yeoh = sample_law(Law::yeoh);
+    const ElasticLaw mooney = sample_law(Law::mooney_rivlin), yeoh = sample_law(Law::yeoh),
+                     gent = sample_law(Law::gent);
     const double swelling = mooney.bulk / 2 * (j - 1) * (j - 1);
     expect(mooney, mooney.c10 * i1 + mooney.c01 * i2 + swelling);
     expect(yeoh, yeoh.c10 * i1 + yeoh.c20 * i1 * i1 + yeoh.c30 * i1 * i1 * i1 + swelling);
+    expect(gent, -mu / 2 * gent.jm * std::log(1 - i1 / gent.jm) + swelling);
   }
 }
 

@@ -224,7 +224,8 @@ TEST(Scene, EveryLawByItsName) {
       {"law: neo-hookean, youngs_modulus: 1, poisson_ratio: 0.3", Law::neo_hookean},
       {"youngs_modulus: 1, poisson_ratio: 0", Law::neo_hookean},
       {"law: mooney-rivlin, c10: 1, bulk_modulus: 9", Law::mooney_rivlin},
-      {"law: yeoh, c10: 1, c30: 2, bulk_modulus: 9", Law::yeoh}};
+      {"law: yeoh, c10: 1, c30: 2, bulk_modulus: 9", Law::yeoh},
+      {"law: gent, shear_modulus: 1, jm: 30, poisson_ratio: 0.4", Law::gent}};
   for (const auto& [keys, law] : laws) {
     const RobotSpec spec = parse_body("materials: [{" + std::string(keys) + "}]\n");
     EXPECT_EQ(spec.materials.at(0).elastic.value().law, law) << keys;

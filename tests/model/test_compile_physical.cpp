@@ -260,12 +260,79 @@ TEST(Physical, ActuatorRefusals) {
                   }),
            "needs a closed surface: the surface is not closed"},
       });
+}
+
+namespace {
+
+RobotSpec charged_shell() {
   RobotSpec shell = physical_robot(block_mesh({2, 2, 1}, {2, 2, 1}, Split::prisms));
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
+  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 4);
   skin.region = "body";
   skin.control = Control::load;
+  skin.rest = 0;
   shell.actuators.push_back(skin);
-  EXPECT_NE(refusal(shell).find("actuator 'skin' is a dea: it is controlled by its ratio"), std::string::npos);
+  shell.materials[0].permittivity = 3;
+  shell.materials[0].origin = line(3);
+  return shell;
+}
+
+PrismValues shares_of(const std::vector<Index>& prisms) {
+  PrismValues shares;
+  for (const Index prism : prisms) {
+    shares.prisms.push_back(prism);
+    shares.values.push_back(0.1 * prism);
+    shares.origins.push_back({.file = "share.csv", .line = static_cast<std::size_t>(prism) + 2});
+  }
+  return shares;
+}
+
+}  // namespace
+
+TEST(Physical, ALayerUnderVoltage) {
+  RobotSpec spec = charged_shell();
+  const Model model = compile(spec);
+  EXPECT_EQ(model.actuators[0].control, Control::load);
+  EXPECT_EQ(model.materials[0].permittivity, 3);
+  EXPECT_EQ(model.actuators[0].shares, std::vector<double>(8, 1));
+  EXPECT_EQ(model.rest_actuation()[0], 0);
+  spec.actuators[0].shares = shares_of({3, 1, 0, 2, 7, 6, 5, 4});
+  const Model shared = compile(spec);
+  for (std::size_t i = 0; i < 8; ++i)
+    EXPECT_EQ(shared.actuators[0].shares[i], 0.1 * shared.actuators[0].prisms[i]);  // all of the mesh, in its order
+  EXPECT_NE(fingerprint_of(model), fingerprint_of(shared));
+  spec.materials[0].permittivity = 4;
+  EXPECT_NE(fingerprint_of(shared), fingerprint_of(compile(spec)));
+}
+
+TEST(Physical, RefusalsOfVoltages) {
+  const auto shares = [](std::vector<Index> prisms) {
+    return [=](RobotSpec& s) { s.actuators[0].shares = shares_of(prisms); };
+  };
+  expect_refused(
+      charged_shell(),
+      {{"no permittivity", [](RobotSpec& s) { s.materials[0].permittivity.reset(); },
+        "robot.yaml:3: the material of region 'all' needs 'permittivity', over that of the vacuum: actuator 'skin'"},
+       {"negative", [](RobotSpec& s) { s.actuators[0].low = -1; }, "range of its voltage with 0 <= low <= high"},
+       {"prestretch", [](RobotSpec& s) { s.actuators[0].prestretch = 0; }, "needs a prestretch above 0, not 0"},
+       {"rest", [](RobotSpec& s) { s.actuators[0].rest = 1; }, "cannot have a load at rest other than 0"},
+       {"ratio",
+        [](RobotSpec& s) {
+          s.actuators[0].control = Control::ratio;
+          s.actuators[0].low = s.actuators[0].rest = 1;
+          s.actuators[0].shares = shares_of({0});
+        },
+        "takes no shares of a voltage"},
+       {"target", [](RobotSpec& s) { s.formulation = Formulation::target_shape; },
+        "is controlled by its load: that needs the physical formulation"},
+       {"some", shares({0, 1, 2, 3, 4, 5, 6}), "has no share of the voltage for prism 7 (from 0)"},
+       {"twice", shares({0, 1, 1}), "share.csv:3: prism 1 (from 0) is there twice"},
+       {"beyond", shares({8}), "share.csv:10: prism 8 (from 0) is none of the mesh's"},
+       {"sign",
+        [](RobotSpec& s) {
+          s.actuators[0].shares = shares_of({2});
+          s.actuators[0].shares->values[0] = -0.5;
+        },
+        "share.csv:4: prism 2 (from 0) has a share of the voltage of -0.5: 0 or more"}});
 }
 
 TEST(Physical, TargetShapesKnowNoForces) {

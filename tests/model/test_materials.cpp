@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <softkin/model/compile/parts.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"
@@ -62,6 +63,22 @@ TEST(ElasticConstants, BulkModulusGivenOrByPoissonRatio) {
   EXPECT_EQ(same.c30, 0);
 }
 
+TEST(ElasticConstants, OfALimitedStretch) {
+  ElasticSpec gent;
+  gent.law = Law::gent;
+  gent.shear_modulus = 0.6;
+  gent.jm = 40;
+  gent.poisson_ratio = 0.45;
+  const ElasticLaw law = compiled(gent);
+  EXPECT_EQ(law.mu, 0.6);
+  EXPECT_EQ(law.jm, 40);
+  EXPECT_EQ(law.c10, 0);
+  EXPECT_NEAR((3 * law.bulk - 1.2) / (2 * (3 * law.bulk + 0.6)), 0.45, 1e-14);
+  const StiffnessAtRest rest = stiffness_at_rest(law);
+  EXPECT_NEAR(rest.youngs_modulus_MPa, 2 * 0.6 * 1.45, 1e-12);
+  EXPECT_NEAR(rest.poisson_ratio, 0.45, 1e-12);
+}
+
 TEST(ElasticConstants, Refusals) {
   RobotSpec lame = physical_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
   lame.materials[0].origin = line(3);
@@ -84,6 +101,11 @@ TEST(ElasticConstants, Refusals) {
           {"nu nan", change([=](ElasticSpec& e) { e.poisson_ratio = nan; }), "poisson_ratio must be finite"},
           {"c10", change([](ElasticSpec& e) { e.c10 = 1; }), "has c10, which its law does not take"},
           {"bulk", change([](ElasticSpec& e) { e.bulk_modulus = 1; }), "has bulk_modulus, which its law"},
+          {"shear", change([](ElasticSpec& e) { e.shear_modulus = 1; }), "has shear_modulus, which its law does not"},
+          {"jm", change([](ElasticSpec& e) { e.jm = 1; }), "has jm, which its law does not take"},
+          {"permittivity", [](RobotSpec& s) { s.materials[0].permittivity = 0.9; },
+           "permittivity must be 1 or above, not 0.9"},
+          {"permittivity nan", [=](RobotSpec& s) { s.materials[0].permittivity = nan; }, "must be 1 or above"},
           {"density", [](RobotSpec& s) { s.materials[0].density = -1; }, "density must be 0 or above, not -1"},
           {"density nan", [=](RobotSpec& s) { s.materials[0].density = nan; }, "density must be 0 or above"},
       });
@@ -105,6 +127,24 @@ TEST(ElasticConstants, Refusals) {
                              {"bulk", change([](ElasticSpec& e) { e.bulk_modulus = 0; }), "bulk_modulus must be above"},
                              {"yeoh", change([](ElasticSpec& e) { e.law = Law::yeoh; }), "has c01, which its law"},
                          });
+  RobotSpec gent = lame;
+  ElasticSpec& limited = *gent.materials[0].elastic;
+  limited = {};
+  limited.law = Law::gent;
+  limited.shear_modulus = 0.1;
+  limited.jm = 30;
+  limited.bulk_modulus = 10;
+  expect_refused(
+      gent,
+      {
+          {"no jm", change([](ElasticSpec& e) { e.jm.reset(); }), "needs jm: its law takes it"},
+          {"jm", change([](ElasticSpec& e) { e.jm = 0; }), "jm must be above 0, not 0"},
+          {"no shear", change([](ElasticSpec& e) { e.shear_modulus.reset(); }), "needs shear_modulus"},
+          {"shear", change([](ElasticSpec& e) { e.shear_modulus = -1; }), "shear_modulus must be above 0"},
+          {"c10", change([](ElasticSpec& e) { e.c10 = 1; }), "has c10, which its law"},
+          {"E", change([](ElasticSpec& e) { e.youngs_modulus = 1; }), "has youngs_modulus, which its law"},
+          {"neither", change([](ElasticSpec& e) { e.bulk_modulus.reset(); }), "needs bulk_modulus or poisson_ratio"},
+      });
 }
 
 TEST(ElasticConstants, TargetShapesDoWithout) {

@@ -41,11 +41,20 @@ struct Forces {
   }
 };
 
+LayerDrive drive_of(const Model& model, const State& state, const ElementRole& role) {
+  constexpr Real vacuum = 8.8541878128e-6L;  // MPa per (kV/mm)^2
+  if (role.actuator < 0) return {};
+  const Real command = state.actuation[role.actuator];
+  if (model.actuators[role.actuator].control == Control::ratio) return {command, 0};
+  return {1 + static_cast<Real>(state.share) * (static_cast<Real>(model.actuators[role.actuator].prestretch) - 1),
+          vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
+}
+
 void add_elements(const Model& model, const Equilibrium& found, Forces& forces) {
   const Points& positions = found.state.positions;
-  const auto add = [&](const Index* nodes, int count, Index material, Real layer_ratio) {
+  const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive) {
     const ElementPulls pulls = pulls_of(model.materials[material].elastic, nodes_at(model.rest, nodes, count),
-                                        nodes_at(positions, nodes, count), layer_ratio);
+                                        nodes_at(positions, nodes, count), drive);
     for (int i = 0; i < count; ++i) {
       forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
       forces.stiffness[nodes[i]] += pulls.stiffness[i];
@@ -55,11 +64,11 @@ void add_elements(const Model& model, const Equilibrium& found, Forces& forces) 
     std::array<Index, 10> nodes;
     std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
     if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, 1);
+    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, {});
   }
   for (std::size_t e = 0; e < model.prisms.size(); ++e) {
     const ElementRole& role = model.prism_roles[e];
-    add(model.prisms[e].data(), 6, role.material, role.actuator < 0 ? 1 : found.state.actuation[role.actuator]);
+    add(model.prisms[e].data(), 6, role.material, drive_of(model, found.state, role));
   }
 }
 
@@ -219,7 +228,10 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
     if (actuator.kind == ActuatorKind::dea) {
-      if (multiplier != 0) out.faults.push_back("a dea has the multiplier " + digits(multiplier));
+      const double expected = actuator.control == Control::load ? state.actuation[index] : 0;
+      if (!(std::abs(multiplier - expected) <= 4 * rounding_unit * std::abs(expected)))
+        out.faults.push_back("dea '" + actuator.name + "' has the multiplier " + digits(multiplier) + " instead of " +
+                             digits(expected));
       continue;
     }
     if (const int open = open_edges(actuator); open > 0)

@@ -32,4 +32,8 @@ inline Real power(Real a, Real exponent) {
   return std::pow(a, exponent);
 }
 
+inline Dual logarithm(Dual a) {
+  return {std::log(a.value), a.slope / a.value};
+}
+
 }  // namespace softkin::random_robots

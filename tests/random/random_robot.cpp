@@ -9,8 +9,8 @@ namespace {
 /// Constants of a law that has Young's modulus e and Poisson's ratio nu at small strains.
 ElasticSpec random_elastic(Making& m, double e, double nu) {
   ElasticSpec spec;
-  spec.law = m.draw.pick(
-      {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh});
+  spec.law = m.draw.pick({Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::neo_hookean,
+                          Law::mooney_rivlin, Law::yeoh, Law::gent});
   if (!forbids_inversion(spec.law)) {
     spec.youngs_modulus = e;
     spec.poisson_ratio = nu;
@@ -18,7 +18,12 @@ ElasticSpec random_elastic(Making& m, double e, double nu) {
   }
   const double half_shear = e / (4 * (1 + nu));
   const double share = spec.law == Law::mooney_rivlin ? m.draw.between(0, 0.5) : 0;
-  spec.c10 = (1 - share) * half_shear;
+  if (spec.law == Law::gent) {
+    spec.shear_modulus = 2 * half_shear;
+    spec.jm = m.draw.log_between(m.is(Oddity::materials) ? 0.1 : 5, 200);
+  } else {
+    spec.c10 = (1 - share) * half_shear;
+  }
   if (spec.law == Law::mooney_rivlin) spec.c01 = share * half_shear;
   if (spec.law == Law::yeoh && m.draw.chance(0.7)) {
     spec.c20 = m.draw.between(m.is(Oddity::materials) ? -1 : -0.02, 0.1) * half_shear;
@@ -47,6 +52,7 @@ MaterialSpec random_material(Making& m, const std::string& region, double e) {
   if (m.physical || m.draw.chance(0.3)) material.elastic = random_elastic(m, e, random_poisson(m));
   material.density = m.draw.chance(0.8) ? m.draw.between(900, 3000) : 0;
   if (m.draw.chance(0.1)) material.linear_range = 0.05;
+  if (!m.is(Oddity::materials) || m.draw.chance(0.9)) material.permittivity = m.draw.between(1, 5);
   return material;
 }
 
@@ -132,11 +138,24 @@ void make_supports(Making& m) {
 
 namespace {
 
-/// Ranges of tensions and pressures, so far in units of the modulus.
+/// Voltage at which the field's pressure in a layer of unit permittivity is the modulus of "all" [kV].
+double voltage_unit(Making& m) {
+  constexpr double vacuum = 8.8541878128e-6;  // MPa per (kV/mm)^2
+  double thickness = m.size[2];
+  const Mesh& mesh = m.mesh();
+  for (const Prism& prism : mesh.prisms)
+    thickness = std::min(thickness, (mesh.vertices.row(prism[3]) - mesh.vertices.row(prism[0])).norm());
+  return thickness * std::sqrt(m.modulus / vacuum);
+}
+
+/// Ranges of tensions, pressures and voltages, so far in units of the modulus.
 void scale_ranges(Making& m) {
   for (ActuatorSpec& actuator : m.made.spec.actuators) {
     if (actuator.control != Control::load) continue;
-    const double unit = m.modulus * (actuator.kind == ActuatorKind::cable ? m.size[1] * m.size[2] : 1e3);  // N, kPa
+    const bool cable = actuator.kind == ActuatorKind::cable;
+    const double unit = actuator.kind == ActuatorKind::dea
+                            ? voltage_unit(m)
+                            : m.modulus * (cable ? m.size[1] * m.size[2] : 1e3);  // N, kPa
     actuator.low *= unit;
     actuator.high *= unit;
   }

@@ -56,10 +56,41 @@ T strain_energy(const ElasticLaw& law, const Square<T>& f) {
            T(0.5L) * (constant(law.lambda) + constant(law.mu)) * swelling * swelling;
   const T volumetric = T(0.5L) * constant(law.bulk) * swelling * swelling;
   const T barred = power(j, -2.0L / 3) * first - T(3);
+  if (law.law == Law::gent)
+    return T(-0.5L) * constant(law.mu) * constant(law.jm) * logarithm(T(1) - barred / constant(law.jm)) + volumetric;
   if (law.law == Law::yeoh)
     return barred * (constant(law.c10) + barred * (constant(law.c20) + barred * constant(law.c30))) + volumetric;
   const T second = T(0.5L) * (first * first - square_sum(c));
   return constant(law.c10) * barred + constant(law.c01) * (power(j, -4.0L / 3) * second - T(3)) + volumetric;
+}
+
+/// -J |F^-T e|^2 / 2 of a field e at rest, from the cofactors of F.
+template <class T>
+T field_energy(const Square<T>& f, const RealVec3& e) {
+  T sum(0);
+  for (int i = 0; i < 3; ++i) {
+    T entry(0);
+    for (int j = 0; j < 3; ++j) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      entry += (f[i1][j1] * f[i2][j2] - f[i1][j2] * f[i2][j1]) * T(e[j]);
+    }
+    sum += entry * entry;
+  }
+  return T(-0.5L) * sum / determinant(f);
+}
+
+/// Derivative of an energy by F.
+template <class Energy>
+RealMat3 slope_of(const RealMat3& gradient, const Energy& energy) {
+  RealMat3 p;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      Square<Dual> f;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) f[r][c] = Dual(gradient(r, c), r == i && c == j ? 1 : 0);
+      p(i, j) = energy(f).slope;
+    }
+  return p;
 }
 
 /// 2 mu (F - R) + lambda tr(R^T F - I) R, R the rotation nearest to F.
@@ -77,15 +108,7 @@ RealMat3 stress(const ElasticLaw& law, const RealMat3& gradient) {
   if (law.law == Law::corotational) return corotational_stress(law, gradient);
   if (forbids_inversion(law.law) && !(gradient.determinant() > 0))
     return RealMat3::Constant(std::numeric_limits<Real>::quiet_NaN());
-  RealMat3 p;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      Square<Dual> f;
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) f[r][c] = Dual(gradient(r, c), r == i && c == j ? 1 : 0);
-      p(i, j) = strain_energy(law, f).slope;
-    }
-  return p;
+  return slope_of(gradient, [&](const Square<Dual>& f) { return strain_energy(law, f); });
 }
 
 Real stiffness_bound(const ElasticLaw& law, const RealMat3& f) {
@@ -100,6 +123,12 @@ Real stiffness_bound(const ElasticLaw& law, const RealMat3& f) {
       return 4 * mu + lambda * (3 + 2 * size);
     case Law::neo_hookean:
       return mu * (1 + 2 * size) + (lambda + mu) * by_volume;
+    case Law::gent: {
+      const Real j = std::max<Real>(1e-12L, f.determinant());
+      const Real sheared = square * std::pow(j, -2.0L / 3) * std::pow(1 + square / j, 2);
+      const Real room = std::max<Real>(1e-9L, 1 - (std::pow(j, -2.0L / 3) * f.squaredNorm() - 3) / law.jm);
+      return 2 * mu / room * sheared * (1 + sheared / (law.jm * room)) + law.bulk * by_volume;
+    }
     default: {
       const Real j = std::max<Real>(1e-12L, f.determinant());
       const Real sheared = square * std::pow(j, -2.0L / 3) * std::pow(1 + square / j, 2);  // bar I1 and its slopes
@@ -184,7 +213,8 @@ RealMat3 inverse_stretch(const RealPoints& rest, Real ratio) {
 
 }  // namespace
 
-ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current, Real layer_ratio) {
+ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
+                      const LayerDrive& drive) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -195,10 +225,20 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
     const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
     const Real volume = point.weight * jacobian.determinant();
     RealPoints slope = point.slope * jacobian.inverse();
-    if (layer_ratio != 1) slope = slope * inverse_stretch(rest, layer_ratio);
+    if (drive.ratio != 1) slope = slope * inverse_stretch(rest, drive.ratio);
     const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
-    const RealMat3 p = stress(law, gradient);
-    const Real stiffness = stiffness_bound(law, gradient), all = slope.rowwise().norm().sum();
+    RealMat3 p = stress(law, gradient);
+    Real stiffness = stiffness_bound(law, gradient);
+    const Real all = slope.rowwise().norm().sum();
+    if (drive.pressure > 0) {  // the potential rises from the first triangle to the second, whatever the active stretch
+      const RealMat3 relaxed = drive.ratio != 1 ? inverse_stretch(rest, drive.ratio) : RealMat3::Identity();
+      const RealMat3 whole = gradient * relaxed.inverse(), inverse = whole.inverse();
+      const RealVec3 across = (slope * relaxed.inverse()).bottomRows(3).colwise().sum().transpose();
+      const RealMat3 field = slope_of(whole, [&](const Square<Dual>& f) { return field_energy(f, across); });
+      p += drive.pressure * field * relaxed.inverse();
+      const Real square = (inverse.transpose() * across).squaredNorm();
+      stiffness += 10 * drive.pressure * std::abs(whole.determinant()) * square * inverse.squaredNorm();
+    }
     const Real blurred = stiffness * all * (current_size + gradient.norm() * rest_size) * ulp +
                          p.norm() * (1 + all * rest_size) * ulp + stiffness * ulp;
     for (Eigen::Index a = 0; a < count; ++a) {

@@ -27,9 +27,15 @@ struct ElementPulls {
   std::vector<Real> rounding;   // force that one unit in the last place of all coordinates may stand for [N]
 };
 
+/// What is done to the layer of a dielectric elastomer.
+struct LayerDrive {
+  Real ratio = 1;     // active stretch, area over that at rest
+  Real pressure = 0;  // permittivity times the square of the voltage that the layer has [MPa mm^2]
+};
+
 /// rest, current: nodes of a tetrahedron of order 1 (4) or 2 (10: corners, then edges 01, 12, 02, 03, 13, 23) or of a
-/// prism (6). layer_ratio: active stretch of a dielectric elastomer, area over that at rest; 1: none.
+/// prism (6).
 [[nodiscard]] ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
-                                    Real layer_ratio);
+                                    const LayerDrive& drive);
 
 }  // namespace softkin::random_robots

@@ -10,7 +10,10 @@ namespace softkin::testing {
 inline ElasticSpec elastic(Law law, double e, double nu) {
   ElasticSpec spec;
   spec.law = law;
-  if (forbids_inversion(law)) {
+  if (law == Law::gent) {
+    spec.shear_modulus = e / (2 * (1 + nu));
+    spec.jm = 30;
+  } else if (forbids_inversion(law)) {
     spec.c10 = e / (4 * (1 + nu));
     if (law == Law::mooney_rivlin) spec.c01 = 0;
   } else {

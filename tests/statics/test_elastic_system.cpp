@@ -63,11 +63,11 @@ void expect_consistent(const Model& model, const Eigen::VectorXd& actuation) {
   physical::Body::Scratch scratch = system.make_scratch();
   const auto gradient_at = [&](const Points& p) {
     Points gradient;
-    EXPECT_FALSE(system.force(actuation, p, scratch, gradient, alone).forbidden);
+    EXPECT_FALSE(system.force({actuation}, p, scratch, gradient, alone).forbidden);
     return gradient;
   };
   Points unused;
-  const auto energy_at = [&](const Points& p) { return system.force(actuation, p, scratch, unused, alone).energy; };
+  const auto energy_at = [&](const Points& p) { return system.force({actuation}, p, scratch, unused, alone).energy; };
 
   const Points positions = 1.05 * model.rest + noise(n, 0.4, 3);
   const Points gradient = gradient_at(positions);
@@ -75,7 +75,7 @@ void expect_consistent(const Model& model, const Eigen::VectorXd& actuation) {
   EXPECT_LT((gradient - difference(energy_at, positions, 1e-4)).norm(), 1e-7 * gradient.norm());
 
   LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 5.0), blocks;
-  system.stiffness(actuation, positions, false, scratch, slots, alone);
+  system.stiffness({actuation}, positions, false, scratch, slots, alone);
   pattern.gather(slots, blocks, alone);
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const Points direction = noise(n, 1, seed);
@@ -101,12 +101,12 @@ TEST(Body, LayersFollowTheActuation) {
   const physical::Body system(model);
   physical::Body::Scratch used = system.make_scratch(), fresh = system.make_scratch();
   Points a, b;
-  (void)system.force((Actuation(3) << 1.4, 1, 1).finished(), model.rest, used, a, alone);
+  (void)system.force({(Actuation(3) << 1.4, 1, 1).finished()}, model.rest, used, a, alone);
   EXPECT_GT(a.norm(), 1e-3);
   for (const double ratio : {0.8, 1.0}) {
     const Actuation actuation = (Actuation(3) << ratio, 1, 1).finished();
-    const double energy = system.force(actuation, model.rest, used, a, alone).energy;
-    EXPECT_EQ(energy, system.force(actuation, model.rest, fresh, b, alone).energy);
+    const double energy = system.force({actuation}, model.rest, used, a, alone).energy;
+    EXPECT_EQ(energy, system.force({actuation}, model.rest, fresh, b, alone).energy);
     EXPECT_EQ(a, b);
   }
   EXPECT_LT(a.norm(), 1e-12);  // at rest, ratio 1
@@ -120,16 +120,16 @@ TEST(Body, InvariantUnderRigidMotion) {
     physical::Body::Scratch scratch = system.make_scratch();
     const Actuation actuation = Actuation::Ones(static_cast<Index>(model.actuators.size()));
     Points gradient, turned;
-    EXPECT_NEAR(system.force(actuation, model.rest, scratch, gradient, alone).energy, 0, 1e-12);
+    EXPECT_NEAR(system.force({actuation}, model.rest, scratch, gradient, alone).energy, 0, 1e-12);
     EXPECT_LT(gradient.norm(), 1e-11);
     const Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 4);
     const Mat3 turn = Eigen::AngleAxisd(2, Vec3(1, -2, 3).normalized()).toRotationMatrix();
-    const double energy = system.force(actuation, positions, scratch, gradient, alone).energy;
+    const double energy = system.force({actuation}, positions, scratch, gradient, alone).energy;
     const Points moved = (positions * turn.transpose()).rowwise() + Eigen::RowVector3d(10, 20, -30);
-    EXPECT_NEAR(system.force(actuation, moved, scratch, turned, alone).energy, energy, 1e-11 * energy);
+    EXPECT_NEAR(system.force({actuation}, moved, scratch, turned, alone).energy, energy, 1e-11 * energy);
     EXPECT_LT((turned - gradient * turn.transpose()).norm(), 1e-11 * gradient.norm());
     Points shared;
-    EXPECT_EQ(system.force(actuation, positions, scratch, shared, pair).energy, energy);
+    EXPECT_EQ(system.force({actuation}, positions, scratch, shared, pair).energy, energy);
     EXPECT_EQ(shared, gradient);
   }
 }
@@ -147,7 +147,7 @@ TEST(Body, ProjectedStiffnessIsPositive) {
   const Points positions = model.rest * Eigen::Vector3d(0.5, 0.9, 0.9).asDiagonal() + noise(n, 0.3, 5);
   LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 0.0), blocks;
   const auto lowest = [&](bool projected) {
-    system.stiffness(Actuation::Ones(3), positions, projected, scratch, slots, alone);
+    system.stiffness({Actuation::Ones(3)}, positions, projected, scratch, slots, alone);
     pattern.gather(slots, blocks, alone);
     double least = 0;
     for (unsigned seed = 1; seed <= 300; ++seed) {

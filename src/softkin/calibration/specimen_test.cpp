@@ -231,7 +231,7 @@ double SpecimenTest::force_at_end(const Model& model, const Points& positions) c
   physical::Body::Scratch scratch = body.make_scratch();
   Points gradient(positions.rows(), 3);
   Team alone(1);
-  (void)body.force(Actuation(0), positions, scratch, gradient, alone);
+  (void)body.force({Actuation(0)}, positions, scratch, gradient, alone);
   double sum = 0;
   for (const Index v : vertices_at(length_mm_)) sum += gradient(v, 0);
   return sum;

@@ -24,9 +24,10 @@ struct ElasticBlock {
 
 template <int K>
 struct ElasticForce {
-  Shape<K> gradient;  // of the energy in the nodes' positions [N]
-  Pack energy;        // [mJ]
-  PackMask inverted;  // lanes with J <= 0 at a quadrature point that has volume
+  Shape<K> gradient;   // of the energy in the nodes' positions [N]
+  Pack energy;         // [mJ]
+  PackMask inverted;   // lanes with J <= 0 at a quadrature point that has volume
+  PackMask forbidden;  // lanes with a deformation that has no energy, at a quadrature point that has volume
 };
 
 /// Blocks (a, b), b <= a, of a symmetric matrix of K x K blocks of 3 x 3, at a (a + 1) / 2 + b [N/mm].
@@ -35,8 +36,8 @@ struct ElasticStiffness {
   Pack33 block[K * (K + 1) / 2];
 };
 
-/// Energy and its gradient, in every lane. Where a law forbids inversion and J <= 0 the result is finite and
-/// meaningless, and the lane is marked in `inverted`.
+/// Energy and its gradient, in every lane. Where a law has no energy, as J <= 0 and it forbids inversion or bar I1
+/// is at its limit or beyond, the result is finite and meaningless, and the lane is marked in `forbidden`.
 ///
 /// block    law [MPa], slopes [1/mm], volumes [mm^3]
 /// current  positions [mm]

@@ -55,19 +55,22 @@ Stress stress_of(const LawBlock& constants, const Pack33& f) {
 template <Law law, int K, int Q>
 void force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out) {
   Pack energy{};
-  PackMask inverted{};
+  PackMask inverted{}, forbidden{};
   Shape<K> gradient{};
   for (int q = 0; q < Q; ++q) {
     const Pack& volume = block.volume[q];
-    Stress stress = stress_of<law>(block.law, deformation_gradient<K>(block.slope[q], current));
+    const Pack33 f = deformation_gradient<K>(block.slope[q], current);
+    Stress stress = stress_of<law>(block.law, f);
     energy += volume * stress.energy;
     inverted |= (stress.jacobian <= 0) & (volume > 0);
+    forbidden |= has_no_energy<law>(block.law, f, stress.jacobian) & (volume > 0);
     for (Pack3& row : stress.first.row) row = volume * row;
     for (int a = 0; a < K; ++a) gradient[a] = gradient[a] + stress.first * block.slope[q][a];
   }
   for (int a = 0; a < K; ++a) out.gradient[a] = gradient[a];
   out.energy = energy;
   out.inverted = inverted;
+  out.forbidden = forbidden;
 }
 
 }  // namespace

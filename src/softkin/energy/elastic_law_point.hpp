@@ -142,17 +142,24 @@ inline InvariantEnergy mooney_rivlin(const LawBlock& law, const Deformation& d) 
   return w;
 }
 
-inline InvariantEnergy yeoh(const LawBlock& law, const Deformation& d) {
+/// f(bar I1 - 3) and its first two derivatives [MPa].
+struct BarredEnergy {
+  Pack energy, slope, curvature;
+};
+
+/// W = f(bar I1 - 3) + bulk/2 (J - 1)^2, by the chain rule.
+template <class Function>
+InvariantEnergy barred_first(const LawBlock& law, const Deformation& d, const Function& f) {
   const Pack j = positive_jacobian(d.jacobian);
   const Pack per_j = 1 / j;
   const Pack root = 1 / cbrt(j);
   const Pack scale = root * root;
-  const Pack barred = scale * d.first, stretch = barred - 3, swelling = j - 1;
-  const Pack slope = law.c10 + stretch * (2 * law.c20 + 3 * stretch * law.c30);
-  const Pack curvature = 2 * law.c20 + 6 * stretch * law.c30;
+  const Pack barred = scale * d.first, swelling = j - 1;
+  const BarredEnergy barred_energy = f(barred - 3);
+  const Pack &slope = barred_energy.slope, &curvature = barred_energy.curvature;
   const Pack barred_by_j = (-2.0 / 3) * barred * per_j;
   InvariantEnergy w;
-  w.energy = stretch * (law.c10 + stretch * (law.c20 + stretch * law.c30)) + 0.5 * law.bulk * swelling * swelling;
+  w.energy = barred_energy.energy + 0.5 * law.bulk * swelling * swelling;
   w.by_first = slope * scale;
   w.by_jacobian = slope * barred_by_j + law.bulk * swelling;
   w.by_first_first = curvature * scale * scale;
@@ -160,6 +167,13 @@ inline InvariantEnergy yeoh(const LawBlock& law, const Deformation& d) {
   w.by_jacobian_jacobian =
       curvature * barred_by_j * barred_by_j + (10.0 / 9) * slope * barred * per_j * per_j + law.bulk;
   return w;
+}
+
+inline InvariantEnergy yeoh(const LawBlock& law, const Deformation& d) {
+  return barred_first(law, d, [&](const Pack& stretch) {
+    return BarredEnergy{stretch * (law.c10 + stretch * (law.c20 + stretch * law.c30)),
+                        law.c10 + stretch * (2 * law.c20 + 3 * stretch * law.c30), 2 * law.c20 + 6 * stretch * law.c30};
+  });
 }
 
 /// Share of the limit that is left, as the law sees it: flat where hardly anything is, so that all stays finite.
@@ -168,23 +182,23 @@ inline Pack room_below_limit(const LawBlock& law, const Pack& stretch) {
 }
 
 inline InvariantEnergy gent(const LawBlock& law, const Deformation& d) {
-  const Pack j = positive_jacobian(d.jacobian);
-  const Pack per_j = 1 / j;
-  const Pack root = 1 / cbrt(j);
-  const Pack scale = root * root;
-  const Pack barred = scale * d.first, swelling = j - 1;
-  const Pack per_room = 1 / room_below_limit(law, barred - 3);
-  const Pack slope = 0.5 * law.mu * per_room, curvature = slope * per_room / law.jm;
-  const Pack barred_by_j = (-2.0 / 3) * barred * per_j;
-  InvariantEnergy w;
-  w.energy = 0.5 * law.mu * law.jm * log(per_room) + 0.5 * law.bulk * swelling * swelling;
-  w.by_first = slope * scale;
-  w.by_jacobian = slope * barred_by_j + law.bulk * swelling;
-  w.by_first_first = curvature * scale * scale;
-  w.by_first_jacobian = scale * (curvature * barred_by_j - (2.0 / 3) * slope * per_j);
-  w.by_jacobian_jacobian =
-      curvature * barred_by_j * barred_by_j + (10.0 / 9) * slope * barred * per_j * per_j + law.bulk;
-  return w;
+  return barred_first(law, d, [&](const Pack& stretch) {
+    const Pack per_room = 1 / room_below_limit(law, stretch);
+    const Pack slope = 0.5 * law.mu * per_room;
+    return BarredEnergy{0.5 * law.mu * law.jm * log(per_room), slope, slope * per_room / law.jm};
+  });
+}
+
+/// Lanes whose deformation the law has no energy for.
+template <Law law>
+PackMask has_no_energy(const LawBlock& constants, const Pack33& f, const Pack& jacobian) {
+  if constexpr (!forbids_inversion(law)) return PackMask{};
+  PackMask none = jacobian <= 0;
+  if constexpr (law == Law::gent) {
+    const Pack root = 1 / cbrt(positive_jacobian(jacobian));
+    none |= root * root * inner(f, f) - 3 >= constants.jm;
+  }
+  return none;
 }
 
 /// W and its derivatives for a law that is a function of the invariants.

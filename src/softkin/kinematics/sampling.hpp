@@ -17,7 +17,7 @@ struct SamplingOptions {
   std::uint64_t seed = 0;  // random
 };
 
-/// A row per sample, a column per actuator: its command, a ratio [-], tension [N] or pressure [kPa].
+/// A row per sample, a column per actuator: its command, a ratio [-], tension [N], pressure [kPa] or voltage [kV].
 using Actuations = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Actuators that grid, sequence or generator run over: those whose range is more than one value.

@@ -35,8 +35,8 @@ struct ViscousFlow {
 struct State {
   Points positions;               // #V by 3 [mm]
   Actuation actuation{};          // of which positions is an equilibrium; empty: not known
-  Eigen::VectorXd multipliers{};  // m: tension [N] or gauge pressure [kPa], 0 for a dea; empty: not known
-  double share = 1;  // of dead loads and displacements of supports; -1: of no equilibrium that is known [-]
+  Eigen::VectorXd multipliers{};  // m: tension [N], gauge pressure [kPa], voltage [kV], else 0; empty: not known
+  double share = 1;  // of dead loads, prestretch and displacements of supports; -1: of no equilibrium that is known [-]
   std::vector<Anchor> anchors{};                    // of friction, sorted by vertex, then part; empty: nothing rubs yet
   std::shared_ptr<const ViscousHistory> history{};  // viscous: at the beginning of the time step; none: relaxed at rest
   double elapsed_s = std::numeric_limits<double>::infinity();  // since then; 0: instant, infinity: relaxed

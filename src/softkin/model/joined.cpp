@@ -170,6 +170,8 @@ class Joiner {
       for (auto* region : {&actuator.region, &actuator.wall})
         if (*region) *region = full(**region);
       if (actuator.surface) place(actuator.surface->vertices);
+      if (actuator.shares)
+        for (Index& prism : actuator.shares->prisms) prism += static_cast<Index>(all_.mesh.prisms.size());
       for (auto* points : {&actuator.points, &actuator.apexes})
         for (PointRef& point : *points) point = full(point);
       all_.actuators.push_back(std::move(actuator));

@@ -58,6 +58,8 @@ struct Actuator {
   std::vector<Index> tetrahedra;       // pneumatic, target-shape: elements of Model
   std::vector<CavityFace> cavity;      // pneumatic with a region, physical: its boundary, normals out of the chamber
   std::vector<Index> prisms;           // dea: elements of Model
+  std::vector<double> shares;          // dea under voltage: of it that each of them has [-]
+  double prestretch = 1;               // the same: area of the layer without force, over that in the mesh [-]
   std::vector<EmbeddedPoint> points;   // cable; or the vertices of a pneumatic actuator's surface
   std::vector<Triangle> surface;       // pneumatic with a surface: triangles over `points`
   std::vector<CableGap> gaps;          // cable, target-shape
@@ -152,6 +154,8 @@ struct Model {
 
 /// Is it of the robot: does inverse kinematics choose it, and a workspace vary it.
 [[nodiscard]] bool drives(const Actuator& actuator);
+/// A dea that is commanded by its voltage: the field in its layer is its load.
+[[nodiscard]] bool under_voltage(const Actuator& actuator);
 /// Does it, and has its range more than one value.
 [[nodiscard]] bool varies(const Actuator& actuator);
 

@@ -12,9 +12,9 @@ const char* kind_name(const Actuator& actuator) {
 const char* control_name(const Actuator& actuator) {
   if (!drives(actuator)) return kind_name(actuator);
   constexpr const char* ratios[] = {"length", "area", "volume"};  // in the order of ActuatorKind
-  const bool by_ratio = actuator.control == Control::ratio || actuator.kind == ActuatorKind::dea;
-  if (by_ratio) return ratios[static_cast<std::size_t>(actuator.kind)];
-  return actuator.kind == ActuatorKind::cable ? "tension" : "pressure";
+  if (actuator.control == Control::ratio) return ratios[static_cast<std::size_t>(actuator.kind)];
+  constexpr const char* loads[] = {"tension", "voltage", "pressure"};  // the same
+  return loads[static_cast<std::size_t>(actuator.kind)];
 }
 
 const char* command_name(const Actuator& actuator) {
@@ -24,6 +24,7 @@ const char* command_name(const Actuator& actuator) {
 std::string command_unit(const Actuator& actuator) {
   if (actuator.control == Control::ratio) return "";
   if (actuator.kind == ActuatorKind::motion) return "mm";
+  if (actuator.kind == ActuatorKind::dea) return "kV";
   return actuator.kind == ActuatorKind::pneumatic ? "kPa" : "N";
 }
 
@@ -38,8 +39,20 @@ std::string command_column(const Actuator& actuator) {
 }
 
 std::string multiplier_key(const Actuator& actuator) {
-  if (actuator.kind == ActuatorKind::dea || !drives(actuator)) return "";
+  if (!drives(actuator)) return "";
+  if (actuator.kind == ActuatorKind::dea) return under_voltage(actuator) ? "voltage_kV" : "";
   return actuator.kind == ActuatorKind::cable ? "tension_N" : "pressure_kPa";
+}
+
+std::string multiplier_title(const Actuator& actuator) {
+  const std::string key = multiplier_key(actuator);
+  if (key.empty()) return "";
+  return key.substr(0, key.rfind('_')) + " [" + multiplier_unit(actuator) + "]";
+}
+
+std::string multiplier_unit(const Actuator& actuator) {
+  const std::string key = multiplier_key(actuator);
+  return key.empty() ? "" : key.substr(key.rfind('_') + 1);
 }
 
 std::string command_text(const Actuator& actuator, double value, int digits) {

@@ -8,20 +8,24 @@ namespace softkin {
 
 /// "pneumatic", "cable" or "dea"; of what is done to the surroundings "motion", "force" or "hold".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
-/// What the user commands: "volume", "length", "area" (over that at rest), "pressure" or "tension"; else
+/// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; else
 /// its kind.
 [[nodiscard]] const char* control_name(const Actuator& actuator);
-/// "ratio", "pressure" or "tension".
+/// "ratio", "pressure", "tension" or "voltage".
 [[nodiscard]] const char* command_name(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N" or "mm"; as a table has it: "[-]", "[kPa]", "[N]" or
-/// "[mm]".
+/// The unit of what the user commands, bare: "", "kPa", "N", "kV" or "mm"; as a table has it: "[-]", "[kPa]", "[N]",
+/// "[kV]" or "[mm]".
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
 /// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa".
 [[nodiscard]] std::string command_column(const Actuator& actuator);
 
-/// What a physical robot answers with: "pressure_kPa" (pneumatic), "tension_N" (cable), or "" (dea).
+/// What a physical robot answers with: "pressure_kPa" (pneumatic), "tension_N" (cable), "voltage_kV" (dea under
+/// voltage) or "" (dea).
 [[nodiscard]] std::string multiplier_key(const Actuator& actuator);
+/// "pressure [kPa]", "tension [N]", "voltage [kV]" or "": the same as a title, and its unit bare.
+[[nodiscard]] std::string multiplier_title(const Actuator& actuator);
+[[nodiscard]] std::string multiplier_unit(const Actuator& actuator);
 /// "curve_pressure_kPa" or "curve_voltage_kV".
 [[nodiscard]] const char* curve_key(const ActuatorCurve& curve);
 

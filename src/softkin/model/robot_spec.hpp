@@ -51,7 +51,7 @@ struct RegionSpec {
 enum class Formulation { target_shape, physical };
 
 /// Elastic constants as the user gives them: E and nu for the first three laws; the law's own c10, ... for the others,
-/// with the bulk modulus, or nu in its place (bulk from the small-strain shear modulus 2 (c10 + c01)).
+/// with the bulk modulus, or nu in its place (bulk from the small-strain shear modulus, such as 2 (c10 + c01)).
 struct ElasticSpec {
   Law law = Law::neo_hookean;
   std::optional<double> youngs_modulus;      // [MPa], > 0
@@ -97,6 +97,13 @@ enum class ActuatorKind { cable, dea, pneumatic, magnetic, motion, force, hold }
 /// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by.
 enum class Control { ratio, load };
 
+/// A number for some prisms of the mesh.
+struct PrismValues {
+  std::vector<Index> prisms;  // from 0
+  std::vector<double> values;
+  std::vector<Origin> origins;  // of each
+};
+
 struct ActuatorSpec {
   std::string name;
   ActuatorKind kind = ActuatorKind::pneumatic;
@@ -106,14 +113,18 @@ struct ActuatorSpec {
   std::string robot;                       // of several: whose elements, gaps and empty spaces count; empty: all
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
-  Control control = Control::ratio;        // load: physical formulation, cable and pneumatic
-  double low = 0, high = 0;                // range [-]: 0 < low <= high; tension [N]: 0 <= low; pressure [kPa]: any
+  Control control = Control::ratio;        // load: physical formulation
+  double low = 0, high = 0;                // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
+                                           // pressure [kPa]: any
   double rest = 1;                         // value where none is asked for: a dea's prestretch; load control: 0; else 1
+  double prestretch = 1;                   // dea under voltage: area that its layer has without force, over that in the
+                                           // mesh [-], > 0
   double weight = 5;                       // w of Eq. (9), > 0
   bool least_norm = true;                  // false: every element takes the actuator's ratio
   std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
   Branch branch = Branch::loading;         // of the curve, where a command names none
   std::shared_ptr<const FieldSpec> field;  // magnetic
+  std::optional<PrismValues> shares;  // dea under voltage: the share of it that each prism has [-]; none: all of it
   Origin origin;
 };
 

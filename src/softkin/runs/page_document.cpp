@@ -62,8 +62,7 @@ Json rounded_array(const std::vector<float>& numbers, std::size_t components) {
 
 /// The unit of what a robot answers with; "" where it answers nothing.
 std::string load_unit(const Model& model, const Actuator& actuator) {
-  const std::string key = model.formulation == Formulation::physical ? multiplier_key(actuator) : "";
-  return key.substr(key.find('_') + 1);
+  return model.formulation == Formulation::physical ? multiplier_unit(actuator) : "";
 }
 
 Json page_actuators(const Model& model) {

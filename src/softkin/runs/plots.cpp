@@ -53,7 +53,7 @@ class Steps {
 
   [[nodiscard]] std::vector<StepCurve> commands() const { return command_curves(model_, steps_); }
 
-  /// Pressures or tensions, by the report's key.
+  /// Pressures, tensions or voltages, by the report's key.
   [[nodiscard]] std::vector<StepCurve> loads(const std::string& key, const std::string& unit) const {
     std::vector<StepCurve> curves;
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
@@ -243,6 +243,8 @@ Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, con
   add(std::move(row));
   std::vector<PlotPanel> loads = curve_panels(path.along(), path.loads("pressure_kPa", "kPa"), "gauge pressure");
   for (PlotPanel& panel : curve_panels(path.along(), path.loads("tension_N", "N"), "tension"))
+    loads.push_back(std::move(panel));
+  for (PlotPanel& panel : curve_panels(path.along(), path.loads("voltage_kV", "kV"), "voltage"))
     loads.push_back(std::move(panel));
   add(std::move(loads));
   if (!ways.empty()) add(projections(ways));

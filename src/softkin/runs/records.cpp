@@ -30,6 +30,7 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return record;
   if (found.state.multipliers.size() == 0) return record;  // not known
   record.multiplier = found.state.multipliers[i];
+  if (under_voltage(actuator)) record.layer = electric_layer(model, i, found.state.positions, record.multiplier);
   // what holds it holds it exactly, while a map's shape is a little off
   if (found.report.answered() && actuator.control == Control::ratio &&
       (actuator.kind != ActuatorKind::cable || record.multiplier > 0))
@@ -209,6 +210,12 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const ActuatorRecord& actuator = record.actuators[a]; actuator.slack)
       found.push_back({Finding::Kind::slack, model.actuators[a].name, {actuator.achieved, actuator.requested}});
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (const auto& layer = record.actuators[a].layer; layer && layer->charge_nC > 0)
+      found.push_back({Finding::Kind::charged,
+                       model.actuators[a].name,
+                       {layer->charge_nC, layer->capacitance_pF, layer->field_kV_mm, layer->thickness_mm, layer->at.x(),
+                        layer->at.y(), layer->at.z()}});
   add_forces(model, record, found);
   add_implausible(model, record, found);
   if (model.formulation == Formulation::physical && record.status != Status::converged)

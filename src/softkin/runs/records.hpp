@@ -7,6 +7,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/model/paths.hpp>
 #include <softkin/statics/deformation.hpp>
+#include <softkin/statics/electric_layer.hpp>
 #include <softkin/statics/self_overlap.hpp>
 #include <softkin/statics/worst_place.hpp>
 #include <string>
@@ -18,12 +19,13 @@ namespace softkin::runs {
 
 /// An actuator in a shape.
 struct ActuatorRecord {
-  double requested = 0;              // ratio to rest [-], or tension [N] or gauge pressure [kPa]
-  double achieved = 0;               // ratio to rest [-]
-  std::optional<double> by_curve{};  // the input that the actuator's curve gives for the request [kPa gauge or kV];
-                                     // none outside the curve or without one
-  double multiplier = 0;             // tension [N] or gauge pressure [kPa]; physical
-  bool slack = false;                // a cable that carries nothing because its path is shorter than it
+  double requested = 0;                  // ratio to rest [-], or tension [N], gauge pressure [kPa] or voltage [kV]
+  double achieved = 0;                   // ratio to rest [-]
+  std::optional<double> by_curve{};      // the input that the actuator's curve gives for the request [kPa gauge or kV];
+                                         // none outside the curve or without one
+  double multiplier = 0;                 // tension [N], gauge pressure [kPa] or voltage [kV]; physical
+  bool slack = false;                    // a cable that carries nothing because its path is shorter than it
+  std::optional<ElectricLayer> layer{};  // of a dea under voltage
 };
 
 /// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read
@@ -89,6 +91,8 @@ struct Finding {
     beyond_linear_range,  // name: region; values: share of its volume [-], its linear range [-]
     inverted,             // values: how many elements
     slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
+    charged,              // name: dea; values: charge [nC], capacitance [pF], the largest field in its layer [kV/mm],
+                          // thickness [mm] and place [mm] (3) there
     self_overlap,         // values: points inside, depth of the deepest and its place [mm]
     motionless,           // something is asked for and nothing moves; values: largest displacement [mm]
     far_strained,         // values: greatest strain [-]

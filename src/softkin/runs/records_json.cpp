@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/contacts_json.hpp>
+#include <softkin/runs/layer_json.hpp>
 #include <softkin/runs/record_log.hpp>
 #include <softkin/runs/records_json.hpp>
 #include <stdexcept>
@@ -211,6 +212,7 @@ Json actuator_json(const Model& model, const Actuator& actuator, const ActuatorR
   if (model.formulation != Formulation::physical || key.empty()) return json;
   json[key] = known(record.multiplier);
   if (actuator.kind == ActuatorKind::cable) json["slack"] = record.slack;
+  if (under_voltage(actuator)) json.update(layer_json(record.layer));
   return json;
 }
 
@@ -223,6 +225,7 @@ ActuatorRecord actuator_of(const Model& model, const Actuator& actuator, const J
   if (model.formulation != Formulation::physical || key.empty()) return record;
   record.multiplier = number_or_nan(json.at(key));
   if (actuator.kind == ActuatorKind::cable) record.slack = json.at("slack").get<bool>();
+  if (under_voltage(actuator)) record.layer = layer_of(json);
   return record;
 }
 

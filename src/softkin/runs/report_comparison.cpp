@@ -19,7 +19,8 @@ namespace {
 std::vector<std::pair<std::string, double>> loads_of(const Json& actuators) {
   std::vector<std::pair<std::string, double>> loads;
   for (const auto& [name, actuator] : actuators.items())
-    for (const auto& [key, unit] : {std::pair{"pressure_kPa", "kPa"}, std::pair{"tension_N", "N"}})
+    for (const auto& [key, unit] : {std::pair{"pressure_kPa", "kPa"}, std::pair{"tension_N", "N"},
+                                    std::pair{"voltage_kV", "kV"}, std::pair{"charge_nC", "nC"}})
       if (actuator.contains(key)) loads.emplace_back(name + " [" + unit + "]", actuator.at(key).template get<double>());
   return loads;
 }

@@ -38,6 +38,8 @@ Json materials_json(const Model& model) {
       json["density_kg_m3"] = material.density;
       for (const ViscousBranch& branch : material.viscosity)
         json["viscosity"].push_back({{"modulus_MPa", branch.modulus_MPa}, {"time_s", branch.time_s}});
+      if (std::any_of(model.actuators.begin(), model.actuators.end(), under_voltage))
+        json["permittivity"] = material.permittivity;
     } else {
       json["shape_ratio"] = material.shape_ratio;
       json["weight"] = material.weight;

@@ -60,10 +60,9 @@ std::size_t width_of(const Actuator& actuator) {
   return std::max(decimal(actuator.high, value_decimals).size(), decimal(actuator.low, value_decimals).size());
 }
 
-/// "pressure [kPa]" or "tension [N]" where the robot answers with one, else "".
+/// "pressure [kPa]", "tension [N]" or "voltage [kV]" where the robot answers with one, else "".
 std::string load_title(const Model& model, const Actuator& actuator) {
-  if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return "";
-  return actuator.kind == ActuatorKind::cable ? "tension [N]" : "pressure [kPa]";
+  return model.formulation == Formulation::physical ? multiplier_title(actuator) : "";
 }
 
 /// Six significant digits of the robot's size [mm].

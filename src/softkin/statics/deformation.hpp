@@ -28,7 +28,7 @@ struct ElementDeformation {
                                               // the four points
   // Physical, and of Statics::measured() alone; else empty.
   ElementStress stress;
-  Eigen::VectorXd multipliers;  // m: tension [N] or gauge pressure [kPa], 0 for a dea
+  Eigen::VectorXd multipliers;  // m: tension [N], gauge pressure [kPa], voltage of a dea [kV]
   Points reactions;  // #V by 3: what supports push and pull at the vertices that they hold [N]; 0 along free axes
   std::optional<ContactForces> contacts;  // where the robot may touch anything
 };

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <cmath>
+#include <softkin/core/text.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/parts.hpp>
+#include <softkin/io/table/csv.hpp>
 
 namespace softkin::scene {
 
@@ -14,13 +17,13 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch", "curve"};
+const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch", "curve", "voltage_share"};
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface", "curve"}},
       {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes"}},
-      {ActuatorKind::dea, "dea", {"area"}, {"region", "prestretch", "curve"}}};
+      {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}}};
   return all;
 }
 
@@ -51,12 +54,14 @@ Control read_control(const Map& map, const Kind& kind, Formulation formulation) 
   return Control::load;
 }
 
-/// Ratios are positive; a tension pulls; a pressure may be below that around the robot.
+/// Ratios are positive; a tension pulls; a voltage acts with its square; a pressure may be below that around the robot.
 double read_low(const Node& node, const ActuatorSpec& actuator) {
   if (actuator.control == Control::ratio) return positive(node);
   const double low = number(node);
   if (actuator.kind == ActuatorKind::cable && low < 0)
     fail(node, node.name + " must not be negative, since a cable only pulls: " + node.text);
+  if (actuator.kind == ActuatorKind::dea && low < 0)
+    fail(node, node.name + " must not be negative, since either sign of a voltage does the same: " + node.text);
   return low;
 }
 
@@ -115,10 +120,34 @@ void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator
     if (const Node* branch = map.find("branch"))
       actuator.branch = choice(*branch, {"loading", "unloading"}) == 0 ? Branch::loading : Branch::unloading;
   }
-  if (actuator.control == Control::load)
-    fail(node, node.name + " turns a pressure into a volume, but the pressure itself is controlled here: leave " +
-                   node.name + " out, or use 'control: volume'");
+  if (actuator.control == Control::load) {
+    const bool dea = actuator.kind == ActuatorKind::dea;
+    const std::string load = dea ? "voltage" : "pressure", ratio = dea ? "area" : "volume";
+    fail(node, node.name + " turns a " + load + " into " + (dea ? "an " : "a ") + ratio + ", but the " + load +
+                   " itself is controlled here: leave " + node.name + " out, or use 'control: " + ratio + "'");
+  }
   actuator.curve = load_file(context, *file, context.files.curve);
+}
+
+/// A CSV file of the share of the voltage that each prism of the layer has.
+PrismValues read_shares(const Context& context, const Node& node, const ActuatorSpec& actuator) {
+  if (actuator.control == Control::ratio) fail(node, node.name + " belongs to 'control: voltage'");
+  return load_file(context, node, [&](const std::filesystem::path& path) {
+    const std::string content = context.files.scene(path);
+    const CsvTable table = parse_csv(path.string(), content);
+    if (table.columns != std::vector<std::string>{"prism", "share"})
+      table.fail_header("the columns must be prism,share: the number of a prism in the mesh, from 0, and its share");
+    PrismValues shares;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+      const double prism = table.rows[row][0];
+      if (!(prism >= 0 && prism < 2e9 && prism == std::floor(prism)))
+        table.fail(row, "column 'prism' must hold a whole number from 0, not " + softkin::number(prism));
+      shares.prisms.push_back(static_cast<Index>(prism));
+      shares.values.push_back(table.rows[row][1]);
+      shares.origins.push_back({.file = table.file, .line = table.lines[row]});
+    }
+    return shares;
+  });
 }
 
 ActuatorSpec read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
@@ -132,7 +161,9 @@ ActuatorSpec read_actuator(const Context& context, Formulation formulation, cons
   read_range(map.at("range"), actuator);
   if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
   if (const Node* node = map.find("distribution")) actuator.least_norm = choice(*node, {"least-norm", "uniform"}) == 0;
-  if (const Node* node = map.find("prestretch")) actuator.rest = positive(*node);
+  if (const Node* node = map.find("prestretch"))
+    (actuator.control == Control::ratio ? actuator.rest : actuator.prestretch) = positive(*node);
+  if (const Node* node = map.find("voltage_share")) actuator.shares = read_shares(context, *node, actuator);
   if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
   if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);
   if (kind.kind == ActuatorKind::cable) read_cable(context, map, actuator);

@@ -13,7 +13,8 @@ struct LawKeys {
   bool needs_bulk;  // exactly one of bulk_modulus and poisson_ratio
 };
 
-const Keys elastic_keys{"law", "youngs_modulus", "poisson_ratio", "c10", "c01", "c20", "c30", "bulk_modulus"};
+const Keys elastic_keys{"law", "youngs_modulus", "poisson_ratio", "c10", "c01", "c20", "c30", "bulk_modulus",
+                        "jm",  "shear_modulus"};
 
 const std::vector<LawKeys>& laws() {
   const Keys moduli{"youngs_modulus", "poisson_ratio"}, bulk{"bulk_modulus", "poisson_ratio"};
@@ -21,7 +22,8 @@ const std::vector<LawKeys>& laws() {
                                         {Law::corotational, "corotational", moduli, {}, false},
                                         {Law::neo_hookean, "neo-hookean", moduli, {}, false},
                                         {Law::mooney_rivlin, "mooney-rivlin", {"c10"}, {"c01", bulk[0], bulk[1]}, true},
-                                        {Law::yeoh, "yeoh", {"c10"}, {"c20", "c30", bulk[0], bulk[1]}, true}};
+                                        {Law::yeoh, "yeoh", {"c10"}, {"c20", "c30", bulk[0], bulk[1]}, true},
+                                        {Law::gent, "gent", {"shear_modulus", "jm"}, bulk, true}};
   return all;
 }
 
@@ -77,6 +79,8 @@ std::optional<ElasticSpec> read_elastic(const Map& map) {
   if (const Node* node = map.find("youngs_modulus")) elastic.youngs_modulus = positive(*node);
   if (const Node* node = map.find("poisson_ratio")) elastic.poisson_ratio = read_poisson_ratio(*node);
   if (const Node* node = map.find("bulk_modulus")) elastic.bulk_modulus = positive(*node);
+  if (const Node* node = map.find("shear_modulus")) elastic.shear_modulus = positive(*node);
+  if (const Node* node = map.find("jm")) elastic.jm = positive(*node);
   elastic.c10 = read_coefficient(map, law, "c10");
   elastic.c01 = read_coefficient(map, law, "c01");
   elastic.c20 = read_coefficient(map, law, "c20");
@@ -105,6 +109,13 @@ std::vector<ViscousBranch> read_viscosity(const Node& node) {
   return branches;
 }
 
+double read_permittivity(const Node& node) {
+  const double permittivity = number(node);
+  if (!(permittivity >= 1))
+    fail(node, node.name + " is over that of the vacuum and must be 1 or more, not " + node.text);
+  return permittivity;
+}
+
 }  // namespace
 
 double read_density(const Node& node) {
@@ -114,7 +125,7 @@ double read_density(const Node& node) {
 }
 
 MaterialSpec read_material(const Node& node) {
-  Keys known{"region", "shape_ratio", "weight", "linear_range", "density", "viscosity"};
+  Keys known{"region", "shape_ratio", "weight", "linear_range", "density", "viscosity", "permittivity"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;
@@ -130,6 +141,7 @@ MaterialSpec read_material(const Node& node) {
   if (const Node* weight = map.find("weight")) material.weight = positive(*weight);
   if (const Node* density = map.find("density")) material.density = read_density(*density);
   if (const Node* viscosity = map.find("viscosity")) material.viscosity = read_viscosity(*viscosity);
+  if (const Node* value = map.find("permittivity")) material.permittivity = read_permittivity(*value);
   if (const Node* range = map.find("linear_range")) material.linear_range = positive(*range);
   return material;
 }

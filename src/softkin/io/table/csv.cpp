@@ -89,14 +89,11 @@ std::string lower(std::string text) {
   return text;
 }
 
-}  // namespace
-
-CsvTable read_csv(const std::filesystem::path& path) {
-  Scanner scanner(path);
+CsvTable table_of(Scanner& scanner, const std::string& file) {
   std::string_view line;
-  if (!next_line(scanner, line)) throw InvalidInput({path.string()}, "has no header");
+  if (!next_line(scanner, line)) throw InvalidInput({file}, "has no header");
   CsvTable table;
-  table.file = path.string();
+  table.file = file;
   table.columns = read_header(scanner, line);
   table.header_line = scanner.here().line;
   while (next_line(scanner, line)) {
@@ -105,6 +102,18 @@ CsvTable read_csv(const std::filesystem::path& path) {
   }
   if (table.rows.empty()) scanner.fail("no row follows the header");
   return table;
+}
+
+}  // namespace
+
+CsvTable read_csv(const std::filesystem::path& path) {
+  Scanner scanner(path);
+  return table_of(scanner, path.string());
+}
+
+CsvTable parse_csv(const std::string& file, std::string_view text) {
+  Scanner scanner(file, text);
+  return table_of(scanner, file);
 }
 
 std::optional<std::size_t> CsvTable::find(const std::string& column) const {

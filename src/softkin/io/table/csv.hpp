@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct CsvTable {
 /// throws  InvalidInput naming file and line: no header, no row, a duplicate or empty column name, a row of another
 ///         length, a cell that is not a finite number
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path);
+
+/// The same of the text of a file.
+[[nodiscard]] CsvTable parse_csv(const std::string& file, std::string_view text);
 
 /// A table of measurements: columns named with their unit, in lower case here; optional column run (whole numbers) and
 /// t_s [s], which ascends within a run.

@@ -107,7 +107,7 @@ std::string missing_curve(const Actuator& actuator, const std::string& text) {
   if (actuator.kind == ActuatorKind::pneumatic && (text.ends_with("kPa") || text.ends_with("kPa_abs")))
     return "; a pressure needs a curve in the scene (softkin calibrate pressure)";
   if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
-    return "; a voltage needs a curve in the scene (softkin calibrate dea)";
+    return "; a voltage needs 'control: voltage', or a curve in the scene (softkin calibrate dea)";
   return "";
 }
 

@@ -15,12 +15,11 @@ std::string range_text(double low, double high) {
 void check_load(const ActuatorSpec& spec, Formulation formulation) {
   if (formulation != Formulation::physical)
     refuse(spec, "is controlled by its load: that needs the physical formulation");
-  if (spec.kind == ActuatorKind::dea) refuse(spec, "is a dea: it is controlled by its ratio, not by a load");
-  const bool cable = spec.kind == ActuatorKind::cable;
-  if (!(std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high)) || (cable && spec.low < 0))
-    refuse(spec, std::string("needs a range of its ") +
-                     (cable ? "tension with 0 <= low <= high" : "pressure with low <= high") + ", not " +
-                     range_text(spec.low, spec.high));
+  const bool any_sign = spec.kind == ActuatorKind::pneumatic;
+  const char* load = any_sign ? "pressure" : spec.kind == ActuatorKind::cable ? "tension" : "voltage";
+  if (!(std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high)) || (!any_sign && spec.low < 0))
+    refuse(spec, std::string("needs a range of its ") + load + " with " + (any_sign ? "" : "0 <= ") +
+                     "low <= high, not " + range_text(spec.low, spec.high));
   if (spec.rest != 0) refuse(spec, "cannot have a load at rest other than 0, not " + number(spec.rest));
 }
 
@@ -39,7 +38,10 @@ void check_ratio(const ActuatorSpec& spec) {
 void check_curve(const ActuatorSpec& spec) {
   if (spec.kind == ActuatorKind::cable) refuse(spec, "is a cable: it takes no curve");
   if (spec.control == Control::load)
-    refuse(spec, "is controlled by its pressure, which needs no curve: control its volume, or leave the curve out");
+    refuse(spec,
+           spec.kind == ActuatorKind::dea
+               ? "is controlled by its voltage, which needs no curve: control its area, or leave the curve out"
+               : "is controlled by its pressure, which needs no curve: control its volume, or leave the curve out");
   const bool pressure = spec.curve->input == CurveInput::pressure;
   if (pressure != (spec.kind == ActuatorKind::pneumatic))
     refuse(spec, std::string("needs a curve of ") + (pressure ? "voltages" : "pressures") + ", but " +
@@ -56,6 +58,13 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
   else
     check_ratio(spec);
   if (spec.curve) check_curve(spec);
+  const bool charged = spec.kind == ActuatorKind::dea && spec.control == Control::load;
+  if (spec.shares && !charged)
+    refuse(spec, "takes no shares of a voltage: only a dea that is controlled by its voltage does");
+  if (spec.prestretch != 1 && !charged)
+    refuse(spec, "takes no prestretch beside its ratio at rest: only a dea that is controlled by its voltage does");
+  if (!(spec.prestretch > 0 && std::isfinite(spec.prestretch)))
+    refuse(spec, "needs a prestretch above 0, not " + number(spec.prestretch));
 }
 
 void check_members(const ActuatorSpec& spec, Formulation formulation) {
@@ -170,6 +179,36 @@ void fill_membrane(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
   }
 }
 
+/// Shares of the voltage, by the place of each prism among the actuator's.
+void fill_shares(const Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  if (!spec.shares) {
+    actuator.shares.assign(actuator.prisms.size(), 1);
+    return;
+  }
+  constexpr double none = -1;
+  std::vector<double> shares(c.prism_at.size(), none);
+  for (std::size_t i = 0; i < spec.shares->prisms.size(); ++i) {
+    const Index prism = spec.shares->prisms[i];
+    const double share = spec.shares->values[i];
+    const auto fail = [&](const std::string& what) {
+      throw InvalidInput(spec.shares->origins[i], "prism " + std::to_string(prism) + " (from 0) " + what);
+    };
+    if (prism < 0 || prism >= static_cast<Index>(shares.size())) fail("is none of the mesh's");
+    if (!(share >= 0 && std::isfinite(share))) fail("has a share of the voltage of " + number(share) + ": 0 or more");
+    if (shares[prism] != none) fail("is there twice");
+    const Index at = c.prism_at[prism];
+    if (at < 0 || c.model.prism_roles[at].actuator != static_cast<Index>(c.model.actuators.size()))
+      fail("does not belong to actuator '" + spec.name + "'");
+    shares[prism] = share;
+  }
+  for (const Index e : actuator.prisms) {
+    const Index prism = c.prism_of[e];
+    if (shares[prism] == none)
+      refuse(spec, "has no share of the voltage for prism " + std::to_string(prism) + " (from 0)");
+    actuator.shares.push_back(shares[prism]);
+  }
+}
+
 void note_rest(Compilation& c, const Actuator& actuator) {
   if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
   c.model.notes.push_back("The range " + range_text(actuator.low, actuator.high) + " of actuator '" + actuator.name +
@@ -196,10 +235,12 @@ void compile_actuator_elements(Compilation& c) {
     actuator.rest = spec.rest;
     actuator.weight = spec.weight;
     actuator.least_norm = spec.least_norm;
+    actuator.prestretch = spec.prestretch;
     actuator.curve = spec.curve;
     actuator.branch = spec.branch;
     if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);
     if (spec.kind == ActuatorKind::dea) fill_membrane(c, spec, actuator);
+    if (under_voltage(actuator)) fill_shares(c, spec, actuator);
     note_rest(c, actuator);
     c.model.actuators.push_back(std::move(actuator));
   }

@@ -45,7 +45,7 @@ std::vector<Wall> walls_of(const Model& model) {
 
 StiffnessAtRest stiffness_at_rest(const ElasticLaw& law) {
   const bool rubber = forbids_inversion(law.law);
-  const double shear = rubber ? 2 * (law.c10 + law.c01) : law.mu;
+  const double shear = rubber && law.law != Law::gent ? 2 * (law.c10 + law.c01) : law.mu;
   const double bulk = rubber ? law.bulk : law.lambda + 2 * law.mu / 3;
   return {9 * bulk * shear / (3 * bulk + shear), (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear))};
 }

@@ -48,7 +48,13 @@ double bulk_modulus(const Constants& c, double shear) {
   return c.finite(2 * shear * (1 + nu) / (3 * (1 - 2 * nu)), "bulk modulus");
 }
 
+void refuse_limit(const Constants& c) {
+  c.absent(c.spec.shear_modulus, "shear_modulus");
+  c.absent(c.spec.jm, "jm");
+}
+
 void set_lame(const Constants& c, ElasticLaw& law) {
+  refuse_limit(c);
   c.absent(c.spec.c10, "c10");
   c.absent(c.spec.c01, "c01");
   c.absent(c.spec.c20, "c20");
@@ -61,6 +67,7 @@ void set_lame(const Constants& c, ElasticLaw& law) {
 }
 
 void set_coefficients(const Constants& c, ElasticLaw& law) {
+  refuse_limit(c);
   c.absent(c.spec.youngs_modulus, "youngs_modulus");
   law.c10 = c.required(c.spec.c10, "c10");
   if (law.law == Law::mooney_rivlin) {
@@ -75,6 +82,17 @@ void set_coefficients(const Constants& c, ElasticLaw& law) {
   const std::string sum = law.law == Law::yeoh ? "c10" : "c10 + c01";
   const double half_shear = c.positive(c.finite(law.c10 + law.c01, sum), sum);
   law.bulk = bulk_modulus(c, 2 * half_shear);
+}
+
+void set_limited(const Constants& c, ElasticLaw& law) {
+  c.absent(c.spec.youngs_modulus, "youngs_modulus");
+  c.absent(c.spec.c10, "c10");
+  c.absent(c.spec.c01, "c01");
+  c.absent(c.spec.c20, "c20");
+  c.absent(c.spec.c30, "c30");
+  law.mu = c.positive(c.required(c.spec.shear_modulus, "shear_modulus"), "shear_modulus");
+  law.jm = c.positive(c.required(c.spec.jm, "jm"), "jm");
+  law.bulk = bulk_modulus(c, law.mu);
 }
 
 Material checked_material(const MaterialSpec& spec, Formulation formulation) {
@@ -101,6 +119,8 @@ Material checked_material(const MaterialSpec& spec, Formulation formulation) {
                                           number(branch.modulus_MPa) + " and " + number(branch.time_s));
   if (!physical && !spec.viscosity.empty())
     throw InvalidInput(spec.origin, owner + " has viscosity, which needs the physical formulation");
+  if (spec.permittivity && !(*spec.permittivity >= 1 && std::isfinite(*spec.permittivity)))
+    throw InvalidInput(spec.origin, owner + ": permittivity must be 1 or above, not " + number(*spec.permittivity));
   Material material;
   material.region = spec.region;
   material.viscosity = spec.viscosity;
@@ -108,6 +128,7 @@ Material checked_material(const MaterialSpec& spec, Formulation formulation) {
   material.weight = spec.weight;
   if (physical) material.elastic = elastic_law(*spec.elastic, owner, spec.origin);
   material.density = spec.density;
+  material.permittivity = spec.permittivity.value_or(1);
   material.linear_range = spec.linear_range;
   return material;
 }
@@ -153,6 +174,20 @@ bool only_actuated(const Compilation& c, const Region& region) {
          actuated(region.prisms, c.prism_at, c.model.prism_roles);
 }
 
+/// The field in a layer under voltage goes with its permittivity.
+void require_permittivity(const Compilation& c) {
+  for (const Actuator& actuator : c.model.actuators) {
+    if (!under_voltage(actuator)) continue;
+    for (const Index e : actuator.prisms) {
+      const MaterialSpec& material = c.spec.materials[static_cast<std::size_t>(c.model.prism_roles[e].material)];
+      if (!material.permittivity)
+        throw InvalidInput(material.origin, "the material of region '" + material.region +
+                                                "' needs 'permittivity', over that of the vacuum: actuator '" +
+                                                actuator.name + "' puts it under voltage");
+    }
+  }
+}
+
 }  // namespace
 
 ElasticLaw elastic_law(const ElasticSpec& spec, const std::string& owner, const Origin& origin) {
@@ -161,6 +196,8 @@ ElasticLaw elastic_law(const ElasticSpec& spec, const std::string& owner, const 
   law.law = spec.law;
   if (spec.law == Law::mooney_rivlin || spec.law == Law::yeoh)
     set_coefficients(constants, law);
+  else if (spec.law == Law::gent)
+    set_limited(constants, law);
   else
     set_lame(constants, law);
   return law;
@@ -182,6 +219,7 @@ void compile_materials(Compilation& c) {
                                           "to actuators, or it is not a volume");
   }
   refuse_bare_elements(c);
+  require_permittivity(c);
 }
 
 }  // namespace softkin

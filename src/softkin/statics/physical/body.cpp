@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <softkin/energy/elastic.hpp>
+#include <softkin/statics/electric_layer.hpp>
 #include <softkin/statics/physical/body.hpp>
 
 namespace softkin::physical {
@@ -86,18 +86,23 @@ double von_mises(const Mat3& stress) {
 }  // namespace
 
 template <int K, int Q, class Element>
-void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const Material& material, Index actuator,
-               Index element, const Element& nodes) {
+void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
+               const Element& nodes) {
+  const Material& material = model.materials[role.material];
   const Law law = material.elastic.law;
   const auto branches = static_cast<int>(material.viscosity.size());
   auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
-    return s.law == law && s.actuator == actuator && s.branches == branches;
+    return s.law == law && s.actuator == role.actuator && s.branches == branches;
   });
   if (set == sets.end()) {
     set = sets.insert(sets.end(), Set<K, Q>{});
     set->law = law;
-    set->actuator = actuator;
     set->branches = branches;
+    set->actuator = role.actuator;
+    if (role.actuator >= 0) {
+      set->charged = under_voltage(model.actuators[role.actuator]);
+      set->prestretch = model.actuators[role.actuator].prestretch;
+    }
   }
   Eigen::Matrix<double, K, 3> rest;
   for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
@@ -130,22 +135,21 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const Material&
 
 Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())) {
   for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
-    const Material& material = model.materials[model.tetrahedron_roles[e].material];
+    const ElementRole& role = model.tetrahedron_roles[e];
     const Tetrahedron& t = model.tetrahedra[e];
     if (model.edge_nodes.empty()) {
-      add(linear_, model, material, -1, e, t);
+      add(linear_, model, role, e, t);
     } else {
       std::array<Index, 10> nodes;
       std::copy(t.begin(), t.end(), nodes.begin());
       std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-      add(quadratic_, model, material, -1, e, nodes);
+      add(quadratic_, model, role, e, nodes);
     }
   }
-  for (const Index e : spatial_order(model.rest, model.prisms)) {
-    const ElementRole& role = model.prism_roles[e];
-    add(prisms_, model, model.materials[role.material], role.actuator, static_cast<Index>(model.tetrahedra.size()) + e,
-        model.prisms[e]);
-  }
+  for (const Index e : spatial_order(model.rest, model.prisms))
+    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
+  for (auto& set : prisms_)
+    if (set.charged) add_field(model, set);
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
     pulls_ += K * set.count;
@@ -169,11 +173,21 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
   each_pull([&](Index vertex, Index pull) { pull_order_[next[vertex]++] = pull; });
 }
 
+/// The permittivities of a set under voltage, whose elements are there.
+void Body::add_field(const Model& model, Set<6, 6>& set) {
+  const std::vector<double> permittivity = layer_permittivity(model, set.actuator);
+  const auto tetrahedra = static_cast<Index>(model.tetrahedra.size());
+  set.permittivity.assign(set.blocks.size(), Pack{});
+  for (Index e = 0; e < set.count; ++e)
+    set.permittivity[e / lanes][e % lanes] = permittivity[set.elements[e] - tetrahedra];
+}
+
 Body::Scratch Body::make_scratch() const {
   Scratch scratch;
   scratch.pulls.resize(3 * static_cast<std::size_t>(pulls_));
   scratch.energies.resize(blocks_);
   scratch.inverted.resize(blocks_);
+  scratch.forbidden.resize(blocks_);
   for (const auto& set : prisms_)
     if (set.actuator >= 0) {
       scratch.layers.push_back(set.blocks);
@@ -182,13 +196,18 @@ Body::Scratch Body::make_scratch() const {
   return scratch;
 }
 
+bool Body::prestretched() const {
+  return std::any_of(prisms_.begin(), prisms_.end(),
+                     [](const auto& set) { return set.charged && set.prestretch != 1; });
+}
+
 /// F_a = diag(sqrt(ratio), sqrt(ratio), 1 / ratio) in the layer's frame: slopes become F_a^-T times those at rest.
-void Body::stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) const {
+void Body::stretch_layers(const Demand& demand, Scratch& scratch) const {
   std::size_t layer = 0;
   for (const auto& set : prisms_) {
     if (set.actuator < 0) continue;
     const std::size_t index = layer++;
-    const double ratio = actuation[set.actuator];
+    const double ratio = set.charged ? 1 + demand.share * (set.prestretch - 1) : demand.actuation[set.actuator];
     if (scratch.layer_ratios[index] == ratio) continue;
     scratch.layer_ratios[index] = ratio;
     const Vec3 inverse(1 / std::sqrt(ratio), 1 / std::sqrt(ratio), ratio);
@@ -237,11 +256,11 @@ void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapse
   for (const auto& set : prisms_) run(set);
 }
 
-std::shared_ptr<const ViscousHistory> Body::flow(const Eigen::VectorXd& actuation, const Points& positions,
-                                                 Scratch& scratch, double& lost_mJ, Team& team) const {
+std::shared_ptr<const ViscousHistory> Body::flow(const Demand& demand, const Points& positions, Scratch& scratch,
+                                                 double& lost_mJ, Team& team) const {
   auto after = std::make_shared<ViscousHistory>();
   after->strains.resize(strains_);
-  stretch_layers(actuation, scratch);
+  stretch_layers(demand, scratch);
   Pack lost{};
   std::vector<Pack> of_blocks;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
@@ -289,9 +308,9 @@ void Body::gather(const Scratch& scratch, Points& sums, Team& team) const {
   });
 }
 
-Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, Points& gradient,
+Body::Result Body::force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient,
                          Team& team) const {
-  stretch_layers(actuation, scratch);
+  stretch_layers(demand, scratch);
   std::size_t first = 0;
   Result result;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
@@ -302,23 +321,50 @@ Body::Result Body::force(const Eigen::VectorXd& actuation, const Points& positio
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_force<K, Q>(blocks[b], shape, out);
-        if (pulls) add_viscous_force<K, Q>(blocks[b], branches_of(set, b, scratch), shape, out);
+        if (pulls) {
+          add_viscous_force<K, Q>(blocks[b], branches_of(set, b, scratch), shape, out);
+          out.forbidden |= out.inverted;
+        }
+        if constexpr (K == 6)  // the field is that in the layer itself, whatever its active stretch
+          if (set.charged)
+            add_dielectric_force(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, out);
         scratch.energies[first + b] = out.energy;
         scratch.inverted[first + b] = out.inverted;
+        scratch.forbidden[first + b] = out.forbidden;
         store(set, b, out.gradient, scratch);
       }
     });
-    PackMask inverted{};
-    for (std::size_t b = first; b < first + blocks.size(); ++b) inverted |= scratch.inverted[b];
-    result.inverted |= any(inverted);
-    result.forbidden |= (forbids_inversion(set.law) || pulls) && any(inverted);
     first += blocks.size();
   });
   Pack energy{};
-  for (const Pack& part : scratch.energies) energy += part;
+  PackMask inverted{}, forbidden{};
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    energy += scratch.energies[b];
+    inverted |= scratch.inverted[b];
+    forbidden |= scratch.forbidden[b];
+  }
   result.energy = sum(energy);
+  result.inverted = any(inverted);
+  result.forbidden = any(forbidden);
   gather(scratch, gradient, team);
   return result;
+}
+
+void Body::field_force(Index actuator, double voltage_kV, const Points& positions, Scratch& scratch, Points& gradient,
+                       Team& team) const {
+  std::fill(scratch.pulls.begin(), scratch.pulls.end(), 0.0);
+  for (const auto& set : prisms_)
+    if (set.charged && set.actuator == actuator)
+      team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+        Shape<6> shape;
+        for (Index b = begin; b < end; ++b) {
+          ElasticForce<6> out{};
+          load<6>(positions, set.nodes[b], shape);
+          add_dielectric_force(set.blocks[b], set.permittivity[b], voltage_kV, shape, out);
+          store(set, b, out.gradient, scratch);
+        }
+      });
+  gather(scratch, gradient, team);
 }
 
 double Body::largest_pull(const Scratch& scratch, Team& team) const {
@@ -332,9 +378,9 @@ double Body::largest_pull(const Scratch& scratch, Team& team) const {
   return *std::max_element(sums.begin(), sums.end());
 }
 
-void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, ElementStress& out,
+void Body::stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out,
                   Team& team) const {
-  stretch_layers(actuation, scratch);
+  stretch_layers(demand, scratch);
   std::size_t count = 0;
   each(scratch, [&](const auto& set, const auto&) { count += set.elements.size(); });
   out.von_mises.resize(count);
@@ -348,6 +394,9 @@ void Body::stress(const Eigen::VectorXd& actuation, const Points& positions, Scr
         elastic_stress<K, Q>(blocks[b], shape, points);
         if (set.branches > 0 && scratch.pulls_viscously())
           add_viscous_stress<K, Q>(blocks[b], branches_of(set, b, scratch), shape, points);
+        if constexpr (K == 6)
+          if (set.charged)
+            add_maxwell_stress(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
           Mat3 most = lane_of(points[0], l);
           for (int q = 1; q < Q; ++q)
@@ -375,9 +424,9 @@ void Body::add_cliques(linear::Cliques& cliques) {
   });
 }
 
-void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected, Scratch& scratch,
+void Body::stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                      LargeVector<double>& slots, Team& team) const {
-  stretch_layers(actuation, scratch);
+  stretch_layers(demand, scratch);
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     constexpr int matrices = K * (K + 1) / 2;
     team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
@@ -388,6 +437,9 @@ void Body::stiffness(const Eigen::VectorXd& actuation, const Points& positions, 
         elastic_stiffness<K, Q>(blocks[b], shape, projected, out);
         if (set.branches > 0 && scratch.pulls_viscously())
           add_viscous_stiffness<K, Q>(blocks[b], branches_of(set, b, scratch), shape, projected, out);
+        if constexpr (K == 6)  // the field's has hardly anything that is positive
+          if (set.charged && !projected)
+            add_dielectric_stiffness(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, out);
         const Index count = std::min<Index>(lanes, set.count - lanes * b);
         double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices) * lanes * b);
         for (Index l = 0; l < count; ++l)

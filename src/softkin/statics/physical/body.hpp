@@ -2,16 +2,18 @@
 
 #include <Eigen/SparseCore>
 #include <softkin/core/team.hpp>
-#include <softkin/energy/elastic.hpp>
+#include <softkin/energy/dielectric.hpp>
 #include <softkin/energy/viscous.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/deformation.hpp>
+#include <softkin/statics/physical/iterate.hpp>
 
 namespace softkin::physical {
 
-/// The body of a robot in the physical formulation: elastic energy and its derivatives in the vertices.
+/// The body of a robot in the physical formulation: elastic energy, that of the electric field in its layers under
+/// voltage, and their derivatives in the vertices.
 class Body {
  public:
   explicit Body(const Model& model);
@@ -20,8 +22,8 @@ class Body {
   struct Scratch {
     std::vector<double> pulls;                                    // 3 per node of every element [N]
     std::vector<energy::Pack> energies;                           // per block of all sets [mJ]
-    std::vector<energy::PackMask> inverted;                       // the same
-    std::vector<std::vector<energy::ElasticBlock<6, 6>>> layers;  // per dea set: at the ratio below
+    std::vector<energy::PackMask> inverted, forbidden;            // the same
+    std::vector<std::vector<energy::ElasticBlock<6, 6>>> layers;  // per stretched set: at the ratio below
     std::vector<double> layer_ratios;                             // [-]; 0: not made yet
     std::shared_ptr<const ViscousHistory> history;                // none: relaxed at rest
     double elapsed_s = std::numeric_limits<double>::infinity();   // since then; infinity: no branch pulls
@@ -38,7 +40,7 @@ class Body {
   /// gives it, or null
   void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch) const;
   /// What they remember of a shape that the time ends with. lost_mJ: becomes the energy that they lose there
-  [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const Eigen::VectorXd& actuation, const Points& positions,
+  [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const Demand& demand, const Points& positions,
                                                            Scratch& scratch, double& lost_mJ, Team& team) const;
   /// Of a history, how many numbers.
   [[nodiscard]] std::size_t remembered() const { return strains_; }
@@ -46,26 +48,33 @@ class Body {
   struct Result {
     double energy = 0;       // [mJ]
     bool inverted = false;   // is an element
-    bool forbidden = false;  // is one whose law forbids it; energy and gradient are then meaningless
+    bool forbidden = false;  // has one no energy where it is; energy and gradient are then meaningless
   };
 
-  /// Energy and gradient (#V by 3 [N]). actuation: of which the ratios of dea actuators are taken.
-  Result force(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, Points& gradient,
-               Team& team) const;
+  /// Energy and gradient (#V by 3 [N]). demand: of which the ratios and voltages of dea actuators are taken, and the
+  /// share of the prestretch of those under voltage.
+  Result force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient, Team& team) const;
 
   /// Sum of the magnitudes of what the elements at a vertex pull there, the largest of all vertices [N]. After force().
   [[nodiscard]] double largest_pull(const Scratch& scratch, Team& team) const;
 
-  /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest.
-  void stress(const Eigen::VectorXd& actuation, const Points& positions, Scratch& scratch, ElementStress& out,
-              Team& team) const;
+  /// Gradient of the energy of the electric field of a dea, #V by 3 [N], at a voltage [kV]: it goes with its square.
+  void field_force(Index actuator, double voltage_kV, const Points& positions, Scratch& scratch, Points& gradient,
+                   Team& team) const;
+
+  /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest; of a layer under
+  /// voltage with Maxwell's.
+  void stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out, Team& team) const;
 
   /// Adds every element as a clique.
   void add_cliques(linear::Cliques& cliques);
 
   /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
-  void stiffness(const Eigen::VectorXd& actuation, const Points& positions, bool projected, Scratch& scratch,
+  void stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const;
+
+  /// Does the share of what is done to it at once change it: is a layer under voltage prestretched.
+  [[nodiscard]] bool prestretched() const;
 
   /// What the linear step lacks to turn the elements instead of shearing them (energy/turning.hpp), a pull for each
   /// vertex: residual of a system with the matrix below.
@@ -80,7 +89,9 @@ class Body {
   template <int K, int Q>
   struct Set {
     Law law = Law::neo_hookean;
-    Index actuator = -1;  // dea
+    Index actuator = -1;    // dea, whose active stretch is in the slopes of its layers
+    bool charged = false;   // is it under voltage
+    double prestretch = 1;  // then its stretch, which no command changes
     int branches = 0;
     Index count = 0;
     Index first_pull = 0;         // element e, node i pulls at first_pull + K e + i
@@ -89,19 +100,21 @@ class Body {
     std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
     std::vector<Index> elements;                          // place of each in the model, tetrahedra first, then prisms
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
+    std::vector<energy::Pack> permittivity;               // under voltage: as energy/dielectric.hpp takes it
     std::vector<energy::Pack> moduli, times;              // of branches, by block: [MPa], [s]
     std::size_t first_branch = 0, first_strain = 0;       // of its branches in Scratch, in a history
   };
 
   template <int K, int Q, class Element>
-  static void add(std::vector<Set<K, Q>>& sets, const Model& model, const Material& material, Index actuator,
-                  Index element, const Element& nodes);
+  static void add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
+                  const Element& nodes);
+  void add_field(const Model& model, Set<6, 6>& set);
   template <int K, int Q>
   [[nodiscard]] energy::ViscousBlock branches_of(const Set<K, Q>& set, std::size_t block, const Scratch& scratch) const;
   void gather(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;
-  void stretch_layers(const Eigen::VectorXd& actuation, Scratch& scratch) const;
+  void stretch_layers(const Demand& demand, Scratch& scratch) const;
 
   /// visit(set, its blocks at the current active stretch)
   template <class Visit>

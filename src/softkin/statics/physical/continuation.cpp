@@ -2,6 +2,7 @@
 #include <cmath>
 #include <softkin/core/text.hpp>
 #include <softkin/statics/physical/continuation.hpp>
+#include <softkin/statics/physical/pull_in.hpp>
 #include <softkin/statics/physical/stability.hpp>
 #include <utility>
 
@@ -289,9 +290,7 @@ double Continuation::longest_step(bool snap, bool unstable) const {
 bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   if (from.fading != to.fading || (system_.any_dead_load() && from.share != to.share)) return true;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (from.actuation[a] != to.actuation[a] &&
-        (system_.loads(a) || (system_.measures().measures(a) && !system_.constrains(a))))
-      return true;
+    if (from.actuation[a] != to.actuation[a] && (system_.loads(a) || system_.given_load(a))) return true;
   return false;
 }
 
@@ -302,7 +301,8 @@ std::string Continuation::instead_of_loads() const {
     const Actuator& actuator = system_.model().actuators[a];
     if (actuator.control != Control::load || !drives(actuator) || way_.from.actuation[a] == way_.to.actuation[a])
       continue;
-    (actuator.kind == ActuatorKind::cable ? tensions : pressures) = true;
+    tensions = tensions || actuator.kind == ActuatorKind::cable;
+    pressures = pressures || actuator.kind == ActuatorKind::pneumatic;
   }
   if (!pressures && !tensions) return "";
   return std::string("; where a ") + (pressures ? "pressure" : "tension") + " has its maximum, command " +
@@ -319,7 +319,7 @@ void Continuation::tell_balance() {
 Status Continuation::limit(double done, const std::string& why, const Iterate& at) {
   tell_balance();
   report_.reached = done;
-  report_.remark = why;
+  report_.remark = why + pull_in_text(system_.model(), way_.from, between(way_.from, way_.to, done), at.positions);
   const double slipping = system_.slipping_share(at, work_, team_);
   if (slipping >= worth_telling)
     report_.remark += "; there " + number(100 * slipping, 3) + " % of what rubs slips, or nearly";

@@ -86,7 +86,7 @@ Sensitivity Derivative::result(const Iterate& at) const {
     if (const Points& moves = moves_[static_cast<std::size_t>(a)]; moves.rows() > 0) result.positions[a] += moves;
     for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
       result.multipliers(held_[i], a) = found_.multipliers(i, a) / system_.unit(held_[i]);
-    if (!system_.constrains(a) && system_.measures().measures(a)) result.multipliers(a, a) = 1;
+    if (system_.given_load(a)) result.multipliers(a, a) = 1;
   }
   return result;
 }

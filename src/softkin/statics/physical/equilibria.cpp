@@ -17,7 +17,7 @@ Demand demand_of(const System& system, const Model& model, const State& start) {
       demand.actuation[a] = system.moved(a, start.positions);
     else if (!drives(model.actuators[a]))
       continue;
-    else if (model.actuators[a].kind == ActuatorKind::dea)
+    else if (model.actuators[a].kind == ActuatorKind::dea && !under_voltage(model.actuators[a]))
       demand.actuation[a] = 1;
     else
       demand.actuation[a] = start.multipliers.size() > 0 ? start.multipliers[a] : 0;

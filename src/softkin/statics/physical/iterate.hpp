@@ -17,7 +17,7 @@ struct Demand {
 /// Shape and multipliers; a point of the path that Newton follows.
 struct Iterate {
   Points positions;               // #V by 3 [mm]
-  Eigen::VectorXd multipliers;    // m: tension [N], gauge pressure [MPa]; 0: dea
+  Eigen::VectorXd multipliers;    // m: tension [N], gauge pressure [MPa], voltage of a dea [kV]
   std::vector<Anchor> anchors{};  // of friction
 };
 

@@ -69,8 +69,7 @@ void follow(const Tangent& tangent, double share, const System& system, const De
             const std::vector<bool>& active, Eigen::VectorXd& multipliers) {
   multipliers += share * tangent.change;
   for (Index a = 0; a < system.actuators(); ++a)
-    if (!active[a] && !system.constrains(a) && system.measures().measures(a))
-      multipliers[a] = system.unit(a) * there.actuation[a];
+    if (!active[a] && system.given_load(a)) multipliers[a] = system.unit(a) * there.actuation[a];
 }
 
 }  // namespace

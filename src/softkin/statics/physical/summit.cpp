@@ -31,7 +31,8 @@ double vertex_of(double x0, double y0, double x1, double y1, double x2, double y
 Index Continuation::only_load(const Demand& from, const Demand& to) const {
   const Model& model = system_.model();
   if (from.fading != to.fading) return -1;
-  if (from.share != to.share && (system_.any_dead_load() || model.held != model.rest)) return -1;
+  if (from.share != to.share && (system_.any_dead_load() || system_.prestretched() || model.held != model.rest))
+    return -1;
   Index found = -1;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (from.actuation[a] == to.actuation[a]) continue;
@@ -119,8 +120,7 @@ bool Continuation::refine(Index a, double up, const Demand& load, Measured& low,
 Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& near, Iterate& at) {
   Iterate trial = near.at;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (!system_.constrains(a) && system_.measures().measures(a))
-      trial.multipliers[a] = system_.unit(a) * to.actuation[a];
+    if (system_.given_load(a)) trial.multipliers[a] = system_.unit(a) * to.actuation[a];
   const auto outcome = settle(to, Newton::Policy::descend, trial);
   if (outcome == Newton::Outcome::interrupted) return Climb::interrupted;
   if (outcome != Newton::Outcome::converged || (newton_.inverted() && !last_.inverted)) return Climb::lost;

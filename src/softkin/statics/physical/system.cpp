@@ -76,7 +76,7 @@ bool System::constrains(Index actuator) const {
 
 void System::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
                       Balance& balance, Team& team) const {
-  const Body::Result elastic = elastic_.force(demand.actuation, at.positions, work.elastic, work.gradient, team);
+  const Body::Result elastic = elastic_.force(demand, at.positions, work.elastic, work.gradient, team);
   balance.energy = elastic.energy;
   balance.inverted = elastic.inverted;
   balance.forbidden = elastic.forbidden;
@@ -148,7 +148,7 @@ void System::hold_contacts(const Iterate& at, Workspace& work, Team& team) const
 
 void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const {
   hold_contacts(at, work, team);
-  elastic_.stiffness(demand.actuation, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
+  elastic_.stiffness(demand, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
   Eigen::VectorXd scale(actuators());
   for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
   measures_.second_derivatives(at.positions, scale, work.slots, team);
@@ -311,12 +311,16 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     work.layout->pattern.gather(work.slots, work.blocks, team);
     work.layout->pattern.multiply(work.blocks, moves, force, team);
   }
-  bool layers = false;
+  bool layers = from.share != to.share && elastic_.prestretched();
   for (Index a = 0; a < actuators(); ++a) {
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0) continue;
     if (active[a]) {
       balance.constraint[a] = target(a, from) - target(a, to);
+    } else if (under_voltage(model_.actuators[a])) {
+      Points per_square;
+      elastic_.field_force(a, 1, at.positions, work.elastic, per_square, team);
+      force += change * (to.actuation[a] + from.actuation[a]) * per_square;
     } else if (model_.actuators[a].kind == ActuatorKind::dea) {
       layers = true;
     } else if (loads(a)) {
@@ -333,11 +337,16 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   if (layers) {  // the stretch of layers: central difference of the elastic force
     Demand low = from, high = from;
     constexpr double reach = 1e-4;
-    low.actuation -= reach * (to.actuation - from.actuation);
-    high.actuation += reach * (to.actuation - from.actuation);
+    for (Index a = 0; a < actuators(); ++a) {
+      if (under_voltage(model_.actuators[a])) continue;  // the field was counted
+      low.actuation[a] -= reach * (to.actuation[a] - from.actuation[a]);
+      high.actuation[a] += reach * (to.actuation[a] - from.actuation[a]);
+    }
+    low.share -= reach * (to.share - from.share);
+    high.share += reach * (to.share - from.share);
     Points below, above;
-    elastic_.force(low.actuation, at.positions, work.elastic, below, team);
-    elastic_.force(high.actuation, at.positions, work.elastic, above, team);
+    elastic_.force(low, at.positions, work.elastic, below, team);
+    elastic_.force(high, at.positions, work.elastic, above, team);
     force += (above - below) / (2 * reach);
   }
   balance.force.resize(freedoms_->size());
@@ -353,7 +362,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
   for (Index v = 0; v < out.reactions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
-  elastic_.stress(demand.actuation, at.positions, work.elastic, out.stress, team);
+  elastic_.stress(demand, at.positions, work.elastic, out.stress, team);
   if (contacts_ && !balance.forbidden) {
     Points room;
     out.contacts =
@@ -500,6 +509,11 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
     if (friction()) contacts_->add_friction_response(at.positions, *work.contacts, moves, force);
     return;
   }
+  if (under_voltage(command)) {  // the force goes with the square of the voltage
+    elastic_.field_force(actuator, 1, at.positions, work.elastic, force, team);
+    force *= 2 * demand.actuation[actuator];
+    return;
+  }
   if (command.kind != ActuatorKind::dea) {
     (void)measures_.value(actuator, at.positions, &force);
     force *= sign(actuator) * unit(actuator);
@@ -510,7 +524,7 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
   const auto at_ratio = [&](double change) {
     Demand changed = demand;
     changed.actuation[actuator] += change;
-    elastic_.force(changed.actuation, at.positions, work.elastic, work.moves, team);
+    elastic_.force(changed, at.positions, work.elastic, work.moves, team);
     return work.moves;
   };
   force = (8 * (at_ratio(reach) - at_ratio(-reach)) - (at_ratio(2 * reach) - at_ratio(-2 * reach))) / (12 * reach);

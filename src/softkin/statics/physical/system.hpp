@@ -18,7 +18,8 @@
 namespace softkin::physical {
 
 /// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
-/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers.
+/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers. The energy
+/// has that of the electric field of dea actuators under voltage; their multipliers are told, but not read.
 class System {
  public:
   explicit System(const Model& model);
@@ -109,7 +110,7 @@ class System {
   /// What they remember of an equilibrium; see Body.
   [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const State& at, Workspace& work, double& lost_mJ,
                                                            Team& team) const {
-    return elastic_.flow(at.actuation, at.positions, work.elastic, lost_mJ, team);
+    return elastic_.flow({at.actuation, at.share}, at.positions, work.elastic, lost_mJ, team);
   }
   [[nodiscard]] std::size_t remembered() const { return elastic_.remembered(); }
   /// The demand of a way that begins where forces are not in balance: what they lack fades along it.
@@ -214,6 +215,10 @@ class System {
   [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
   /// Is the actuator's measure commanded (else its load, or it is a dea).
   [[nodiscard]] bool constrains(Index actuator) const;
+  /// Is a load of the robot itself commanded: tension, pressure or voltage.
+  [[nodiscard]] bool given_load(Index actuator) const {
+    return !constrains(actuator) && (measures_.measures(actuator) || under_voltage(model_.actuators[actuator]));
+  }
   [[nodiscard]] double sign(Index actuator) const {
     return model_.actuators[actuator].kind == ActuatorKind::cable ? 1 : -1;
   }
@@ -244,6 +249,7 @@ class System {
   [[nodiscard]] bool holds(Index actuator) const { return model_.actuators[actuator].kind == ActuatorKind::hold; }
   [[nodiscard]] bool any_body() const { return surroundings_.any_body(); }
   [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
+  [[nodiscard]] bool prestretched() const { return elastic_.prestretched(); }
 
  private:
   bool loses_energy(Workspace& work, Team& team) const;
