@@ -103,8 +103,8 @@ double read_density(const Node& node) {
   return density;
 }
 
-MaterialSpec read_material(const Node& node) {
-  Keys known{"region", "shape_ratio", "weight", "linear_range", "density"};
+MaterialSpec read_material(const Context& context, const Node& node) {
+  Keys known{"region", "shape_ratio", "weight", "linear_range", "density", "remanence"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;
@@ -119,6 +119,7 @@ MaterialSpec read_material(const Node& node) {
                    "'poisson_ratio'");
   if (const Node* weight = map.find("weight")) material.weight = positive(*weight);
   if (const Node* density = map.find("density")) material.density = read_density(*density);
+  if (const Node* remanence = map.find("remanence")) material.remanence = read_remanence(context, *remanence);
   if (const Node* range = map.find("linear_range")) material.linear_range = positive(*range);
   return material;
 }
