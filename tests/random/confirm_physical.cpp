@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <softkin/model/magnetic_field.hpp>
 
 #include "random/confirm.hpp"
 #include "random/reference_elements.hpp"
@@ -218,8 +219,8 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const Actuator& actuator = model.actuators[a];
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
-    if (actuator.kind == ActuatorKind::dea) {
-      if (multiplier != 0) out.faults.push_back("a dea has the multiplier " + digits(multiplier));
+    if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic) {
+      if (multiplier != 0) out.faults.push_back("a dea or a field has the multiplier " + digits(multiplier));
       continue;
     }
     if (const int open = open_edges(actuator); open > 0)
@@ -236,6 +237,79 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
         forces.add(now.nodes[i].vertices[k], load * weight * now.slopes[i], std::abs(load * weight) * now.blurs[i]);
       }
   }
+}
+
+/// A uniform field and dipoles, as commanded.
+struct CommandedFields {
+  RealVec3 uniform = RealVec3::Zero();
+  std::vector<DipoleField> dipoles;
+
+  CommandedFields(const Model& model, const State& state) {
+    std::vector<DipoleField> of_source;
+    for (const FieldSource& source : model.magnetism->sources) {
+      const auto* dipole = std::get_if<DipoleField>(&source.field);
+      of_source.push_back(dipole ? *dipole : DipoleField{});
+    }
+    for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+      const Actuator& actuator = model.actuators[a];
+      if (actuator.kind != ActuatorKind::magnetic) continue;
+      const auto source = static_cast<std::size_t>(actuator.other);
+      const double value = state.actuation[static_cast<Index>(a)];
+      const auto* along = std::get_if<UniformField>(&model.magnetism->sources[source].field);
+      switch (static_cast<FieldCommand>(actuator.axis)) {
+        case FieldCommand::flux_density:
+          uniform += static_cast<Real>(value) * along->direction.cast<Real>();
+          break;
+        case FieldCommand::flux_density_z:
+          uniform[2] += value;
+          break;
+        case FieldCommand::position_x:
+          of_source[source].position[0] = value;
+          break;
+        default:
+          of_source[source].moment[1] = value;
+      }
+    }
+    for (DipoleField& dipole : of_source) {
+      dipole.moment *= state.share;
+      if (!dipole.moment.isZero(0)) dipoles.push_back(dipole);
+    }
+  }
+
+  /// 1e-7 T m / A, of lengths in mm
+  [[nodiscard]] RealFlux at(const RealVec3& place) const {
+    RealFlux flux{uniform, RealMat3::Zero()};
+    for (const DipoleField& dipole : dipoles) {
+      const RealVec3 r = place - dipole.position.cast<Real>(), m = dipole.moment.cast<Real>();
+      const Real length = r.norm(), c = 1e5L / std::pow(length, 3);
+      const RealVec3 n = r / length;
+      flux.value += c * (3 * m.dot(n) * n - m);
+      flux.slope +=
+          3 * c / length *
+          (n * m.transpose() + m * n.transpose() + m.dot(n) * RealMat3::Identity() - 5 * m.dot(n) * n * n.transpose());
+    }
+    return flux;
+  }
+};
+
+void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
+  if (!model.magnetism) return;
+  const CommandedFields fields(model, found.state);
+  const auto flux = [&](const RealVec3& place) { return fields.at(place); };
+  const auto add = [&](std::size_t element, const Index* nodes, int count) {
+    const Vec3& remanence = model.magnetism->remanence[element];
+    if (remanence.isZero(0)) return;
+    const auto pulls = magnetic_pulls_of(nodes_at(model.rest, nodes, count),
+                                         nodes_at(found.state.positions, nodes, count), remanence.cast<Real>(), flux);
+    for (int i = 0; i < count; ++i) forces.add(nodes[i], pulls[static_cast<std::size_t>(i)], 0);
+  };
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    std::array<Index, 10> nodes;
+    std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
+    if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+    add(e, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
+  }
+  for (std::size_t e = 0; e < model.prisms.size(); ++e) add(model.tetrahedra.size() + e, model.prisms[e].data(), 6);
 }
 
 void check_places(const Model& model, const State& state, Confirmation& out) {
@@ -327,6 +401,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, Confirmation
   Forces forces(static_cast<Index>(model.rest.rows()));
   add_elements(model, found, forces);
   add_actuators(model, found, forces, out);
+  add_magnets(model, found, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)
     forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);
   if (!forces.sum.allFinite()) {

@@ -260,7 +260,7 @@ TEST(MagneticRobots, SensitivitiesAreTheSlopesOfSolves) {
   const Sensitivity exact = statics.sensitivity(found.state);
   ASSERT_TRUE(exact.regular);
   for (Index a = 0; a < actuation.size(); ++a) {
-    const double reach = 1e-3 * std::max(1.0, std::abs(actuation[a]));
+    const double reach = 2e-4 * std::max(1.0, std::abs(actuation[a]));
     Points sides[2];
     for (int side = 0; side < 2; ++side) {
       Actuation changed = actuation;

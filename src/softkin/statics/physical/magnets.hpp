@@ -14,7 +14,7 @@ namespace softkin::physical {
 /// A uniform field pulls at every vertex with a number of its own times the flux density, whatever the shape: dead
 /// forces, and no stiffness. A field that changes in space has stiffness too, in the elements' own slots.
 ///
-/// source  Zhao, Kim, Cheng, Liu, Zhao, JMPS 124 (2019) 244-263, Eq. (8); docs/magnetism.md
+/// source  Zhao, Kim, Cheng, Liu, Zhao, J. Mech. Phys. Solids 124, 2019; docs/magnetism.md
 class Magnets {
  public:
   /// model  must outlive the object, and have magnetism
