@@ -173,10 +173,40 @@ std::vector<ActuatorSpec> read_field(const Context& context, const Map& map, con
   return commands.of(std::move(source));
 }
 
+namespace {
+
+Points read_triples(const Node& node, double unit) {
+  const auto& items = list(node);
+  Points triples(static_cast<Index>(items.size()), 3);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    triples.row(static_cast<Index>(i)) = unit * read_vector(*items[i]).transpose();
+  return triples;
+}
+
+/// Samples that stand in the scene itself.
+void read_samples(const Context& context, const Map& map, RemanenceSpec& remanence) {
+  const Node &places = map.at("places"), &samples = map.at("samples");
+  remanence.file = places.origin.file;
+  remanence.places = read_triples(places, context.to_mm);
+  remanence.samples = read_triples(samples, 1);
+  if (remanence.places.rows() == 0) fail(places, places.name + " is empty");
+  if (remanence.places.rows() != remanence.samples.rows())
+    fail(samples, samples.name + " must hold as many as 'places', " + std::to_string(remanence.places.rows()) +
+                      ", not " + std::to_string(remanence.samples.rows()));
+}
+
+}  // namespace
+
 std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Node& node) {
   RemanenceSpec remanence;
   if (node.kind == Node::Kind::map) {
-    const Map map(node, {"file"});
+    const Map map(node, {"file", "places", "samples"});
+    if (map.find("file") == nullptr) {
+      read_samples(context, map, remanence);
+      return std::make_shared<const RemanenceSpec>(std::move(remanence));
+    }
+    for (const char* key : {"places", "samples"})
+      if (const Node* beside = map.find(key)) fail(*beside, beside->name + " and 'file' exclude each other");
     FieldSamples samples = load_file(context, map.at("file"), context.files.samples);
     remanence.file = std::move(samples.file);
     remanence.places = samples.in_mm ? std::move(samples.places) : Points(context.to_mm * samples.places);
