@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the strip of which the magnetic examples are made, as Gmsh 2.2: cells of six tetrahedra each, x along it.
 
-magnetic_strip.py --size 17.2 5 0.84 --cells 16 2 1 -o magnetic_cantilever/magnetic_cantilever.msh
-magnetic_strip.py --size 30 6 0.8 --cells 20 2 1 --arch 4 -o magnetic_crawler/magnetic_crawler.msh
+magnetic_strip.py --size 17.2 5 0.84 --cells 24 4 1 -o magnetic_cantilever/magnetic_cantilever.msh
+magnetic_strip.py --size 30 6 0.8 --cells 20 2 1 --arch 6 -o magnetic_crawler/magnetic_crawler.msh
 
 Volumes `rear` and `front` are its halves, surfaces `base` and `tip` its ends. --arch raises the middle by so much [mm].
 """
