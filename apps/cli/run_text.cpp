@@ -123,6 +123,9 @@ std::string finding_text(const Model& model, const runs::Finding& finding) {
              " about " + point_text(&v[6]) + " mm" + (finding.other.empty() ? "" : " on " + finding.other) +
              ", at most " + number(v[10], 4) + " kPa over " + number(v[11], 4) + " mm^2; least gap " +
              number(v[12], 3) + " mm" + (v.size() > 13 ? slipping_text(v[13]) : "");
+    case Kind::magnetic:
+      return "magnetic fields exert " + point_text(&v[0]) + " N and " + point_text(&v[3]) + " N mm about " +
+             point_text(&v[6]) + " mm";
     case Kind::untouched:
       return "nothing touches";
     case Kind::unstable:
@@ -216,8 +219,9 @@ std::string summary(const Model& model, const std::string& solver) {
     if (a.kind == ActuatorKind::motion) text += "\nobstacle moved by " + a.name + " [mm]";
   for (const Actuator& a : model.actuators)
     if (drives(a))
-      text += "\nactuator " + a.name + ": " + kind_name(a) + ", " + number(a.rest_measure) + " " + unit_of_measure(a) +
-              " at rest, " + command_range(a) + curve_text(a);
+      text += "\nactuator " + a.name + ": " + kind_name(a) + ", " +
+              (has_measure(a) ? number(a.rest_measure) + " " + unit_of_measure(a) + " at rest, " : "") +
+              command_range(a) + curve_text(a);
   for (const std::string& warning : model.warnings) text += "\nwarning: " + warning;
   for (const std::string& note : model.notes) text += "\nnote: " + note;
   return text;

@@ -15,7 +15,7 @@ from .page import PageView
 from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
 from .session import Session
-from .shape import ActuatorState, Contact, Deformation, Reaction, SelfOverlap, Shape
+from .shape import ActuatorState, Contact, Deformation, MagneticLoad, Reaction, SelfOverlap, Shape
 from .table import Table
 from .walk import WalkRun, WalkStep
 from .workspace import Hull, Workspace
@@ -31,6 +31,7 @@ __all__ = [
     "Hull",
     "InvalidInput",
     "KinematicMap",
+    "MagneticLoad",
     "MapAnswer",
     "MapCheck",
     "MapInput",

@@ -49,7 +49,7 @@ class MapInput:
     name: str
     """of the actuator"""
     unit: str
-    """'kPa' or 'N'; '' for a ratio to rest [-]"""
+    """'kPa', 'N', 'mT', 'A', 'mm' or 'A m^2'; '' for a ratio to rest [-]"""
     range: tuple[float, float]
     rest: float
     """where none is given"""

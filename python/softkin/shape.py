@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from .robot import Robot
 
-__all__ = ["ActuatorState", "Contact", "Deformation", "Reaction", "SelfOverlap", "Shape", "Views"]
+__all__ = ["ActuatorState", "Contact", "Deformation", "MagneticLoad", "Reaction", "SelfOverlap", "Shape", "Views"]
 
 
 _LOAD_UNITS = {"pneumatic": "kPa", "cable": "N", "dea": "kV"}
@@ -37,15 +37,15 @@ class ActuatorState:
 
     name: str
     kind: str
-    """'pneumatic', 'cable' or 'dea'; 'motion', 'force' or 'hold' of what surrounds the robot"""
+    """'pneumatic', 'cable', 'dea' or 'magnetic'; 'motion', 'force' or 'hold' of what surrounds the robot"""
     requested: float
     """what was commanded, in `unit`"""
     unit: str
-    """'kPa', 'N' or 'kV'; '' for a ratio to rest [-]"""
+    """'kPa', 'N', 'kV', 'mT', 'A', 'mm' or 'A m^2'; '' for a ratio to rest [-]"""
     ratio: float
-    """volume, length or area over that at rest [-]"""
+    """volume, length or area over that at rest [-]; of others the command that the shape is of"""
     measure: float
-    """volume [mm^3], length [mm] or area [mm^2]"""
+    """volume [mm^3], length [mm] or area [mm^2]; 0 of others"""
     load: float | None
     """gauge pressure [kPa], tension [N] or voltage [kV]; None where the formulation or the kind has none"""
     by_curve: float | None
@@ -116,6 +116,18 @@ class Reaction:
     """(3,) about the centre [N mm]"""
     center_mm: Floats
     """(3,) mean of the vertices that it holds [mm]"""
+
+
+@dataclass(frozen=True)
+class MagneticLoad:
+    """What magnetic fields do to the robot."""
+
+    force_N: Floats
+    """(3,) [N]"""
+    moment_Nmm: Floats
+    """(3,) about `center_mm` [N mm]"""
+    center_mm: Floats
+    """(3,) of the volume of what is magnetic, where it is [mm]"""
 
 
 @dataclass(frozen=True)
@@ -310,6 +322,12 @@ class Shape(Saving):
             for name, (force, moment, center) in zip(self._robot.supports, self._core.reactions)
         }
 
+    @cached_property
+    def magnetic_load(self) -> MagneticLoad | None:
+        """What magnetic fields do to the robot; None where there is none."""
+        load = self._core.magnetic_load
+        return None if load is None else MagneticLoad(*(np.array(vector) for vector in load))
+
     @property
     def vertex_reactions(self) -> Floats:
         """(n, 3) what supports push and pull at the vertices that they hold [N]; physical formulation."""
@@ -359,7 +377,10 @@ class Shape(Saving):
         rows = [("status", self.status)]
         for state in self.actuators.values():
             load = "" if state.load is None else f", {state.load:.6g} {_LOAD_UNITS[state.kind]}"
-            rows.append((state.name, f"ratio {state.ratio:.6g} [-]{load}"))
+            if state.measure == 0:
+                rows.append((state.name, f"{state.ratio:.6g} {state.unit or '[-]'}"))
+            else:
+                rows.append((state.name, f"ratio {state.ratio:.6g} [-]{load}"))
         rows += [(name, f"{_point(place)} mm") for name, place in self.markers.items()]
         cells = "".join(f"<tr><th>{escape(key)}</th><td>{escape(text)}</td></tr>" for key, text in rows)
         return f"<table>{cells}</table>"

@@ -49,13 +49,14 @@ void bind_actuator(nb::module_& module) {
       .def_ro("name", &Actuator::name)
       .def_prop_ro(
           "kind", [](const Actuator& a) { return kind_name(a); },
-          "'pneumatic', 'cable' or 'dea'; of surroundings 'motion', 'force' or 'hold'.")
+          "'pneumatic', 'cable', 'dea' or 'magnetic'; of surroundings 'motion', 'force' or 'hold'.")
       .def_prop_ro(
           "control", [](const Actuator& a) { return control_name(a); },
-          "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure', 'tension' or 'voltage'.")
+          "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure', 'tension', 'voltage', "
+          "'flux density', 'current', 'position' or 'moment'.")
       .def_prop_ro(
           "unit", [](const Actuator& a) { return command_unit(a); },
-          "Of a command: 'kPa', 'N' or 'kV'; '' for a ratio [-].")
+          "Of a command: 'kPa', 'N', 'kV', 'mT', 'A', 'mm' or 'A m^2'; '' for a ratio [-].")
       .def_prop_ro(
           "range", [](const Actuator& a) { return std::pair(a.low, a.high); }, "Of commands.")
       .def_ro("rest", &Actuator::rest, "The command where none is given.")

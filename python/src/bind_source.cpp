@@ -108,7 +108,7 @@ void bind_source(nb::module_& module) {
       .def_static(
           "of_scene",
           [](const std::string& path, const std::string& formulation, const std::vector<std::string>& forces) {
-            return Source{path, scene::parse_yaml(read_file(path), path), formulation, forces, {}, {}, {}, {}, {}};
+            return Source{path, scene::parse_yaml(read_file(path), path), formulation, forces, {}, {}, {}, {}, {}, {}};
           },
           nb::arg("path"), nb::arg("formulation"), nb::arg("forces"))
       .def_static(
@@ -119,7 +119,7 @@ void bind_source(nb::module_& module) {
             mesh_entry["file"] = mesh_in_memory;
             auto tree = node_of(description, "", "the description");
             tree->origin.file = name;
-            return Source{name, tree, formulation, forces, {{mesh_in_memory, mesh}}, {}, {}, {}, {}};
+            return Source{name, tree, formulation, forces, {{mesh_in_memory, mesh}}, {}, {}, {}, {}, {}};
           },
           nb::arg("name"), nb::arg("mesh"), nb::arg("description"), nb::arg("formulation"), nb::arg("forces"))
       .def_static(

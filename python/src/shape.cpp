@@ -96,6 +96,16 @@ void bind_fields(nb::class_<Shape>& type) {
           },
           "Force [N], moment [N mm] and centre [mm] of every support.")
       .def_prop_ro(
+          "magnetic_load",
+          [](const Shape& s) {
+            using Three = std::array<double, 3>;
+            std::optional<std::tuple<Three, Three, Three>> load;
+            if (const auto& of = s.record().magnetic)
+              load.emplace(array_of(of->force), array_of(of->moment), array_of(of->center));
+            return load;
+          },
+          "Force [N], moment [N mm] and centre [mm] of magnetic fields; None where there is none.")
+      .def_prop_ro(
           "contacts",
           [](const Shape& s) {
             using Three = std::array<double, 3>;

@@ -33,6 +33,10 @@ void members(A& archive, CurveData& c) {
   archive(c.file, c.end, c.input, c.atmosphere_kPa, c.loading, c.unloading);
 }
 template <class A>
+void members(A& archive, FieldSamples& s) {
+  archive(s.file, s.places, s.values, s.in_mm, s.lines);
+}
+template <class A>
 void members(A& archive, Origin& o) {
   std::uint64_t line = o.line, byte = o.byte;
   archive(o.file, line, byte, o.binary);
@@ -49,7 +53,7 @@ void members(A& archive, scene::Node& n) {
 }
 template <class A>
 void members(A& archive, Source& s) {
-  archive(s.name, s.tree, s.formulation, s.forces, s.meshes, s.surfaces, s.sidecars, s.curves, s.scenes);
+  archive(s.name, s.tree, s.formulation, s.forces, s.meshes, s.surfaces, s.sidecars, s.curves, s.scenes, s.samples);
 }
 
 namespace {
@@ -94,7 +98,8 @@ RobotSpec Source::spec(bool read) {
     return curve_of(kept(curves, path, read, [](const Path& file) { return data_of(read_actuator_curve(file)); }));
   };
   const auto scene = [&](const Path& path) { return kept(scenes, path, read, read_file); };
-  RobotSpec result = parse_scene(*tree, name, {mesh, surface, sidecar, curve, scene});
+  const auto sampled = [&](const Path& path) { return kept(samples, path, read, read_field_samples); };
+  RobotSpec result = parse_scene(*tree, name, {mesh, surface, sidecar, curve, scene, sampled});
   change(result, {name, formulation, forces}, "forces");
   return result;
 }

@@ -34,6 +34,7 @@ struct Source {
   std::map<std::string, Sidecar> sidecars;
   std::map<std::string, CurveData> curves;
   std::map<std::string, std::string> scenes;  // texts of those that the scene's `robots` name
+  std::map<std::string, FieldSamples> samples;
 
   /// The description with its files: those known here, and where `read` is set, others from disk, which are kept here.
   ///

@@ -60,7 +60,7 @@ constexpr const char* small_finger =
     "markers: [{name: tip, region: x_high}]}\n";
 
 /// Files that a scene may name: meshes and a surface that are there, and the second part as a mesh, the third as a
-/// curve, the fourth as a sidecar, the fifth as a robot's scene.
+/// curve, the fourth as a sidecar, the fifth as a robot's scene, the sixth as flux densities.
 SceneFiles files_of(const Input& input) {
   static const Mesh block = small_mesh();
   static const Mesh sheet = testing::block_mesh({2, 1, 1}, {20, 10, 1}, testing::Split::prisms);
@@ -79,6 +79,7 @@ SceneFiles files_of(const Input& input) {
   };
   files.curve = [&input](const std::filesystem::path&) { return read_actuator_curve(input.file("curve.yaml", 2)); };
   files.sidecar = [&input](const std::filesystem::path&) { return read_sidecar(input.file("sidecar.txt", 3)); };
+  files.samples = [&input](const std::filesystem::path&) { return read_field_samples(input.file("field.csv", 5)); };
   files.scene = [&input, absent](const std::filesystem::path& path) {
     if (path == "finger.yaml") return std::string(small_finger);
     if (path == "robot.yaml") return input.part(4);

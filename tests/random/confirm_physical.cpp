@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 
+#include "random/commanded_fields.hpp"
 #include "random/confirm.hpp"
 #include "random/reference_elements.hpp"
 
@@ -227,10 +228,11 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const Actuator& actuator = model.actuators[a];
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
-    if (actuator.kind == ActuatorKind::dea) {
-      const double expected = actuator.control == Control::load ? state.actuation[index] : 0;
+    if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic) {
+      const bool charged = actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
+      const double expected = charged ? state.actuation[index] : 0;
       if (!(std::abs(multiplier - expected) <= 4 * rounding_unit * std::abs(expected)))
-        out.faults.push_back("dea '" + actuator.name + "' has the multiplier " + digits(multiplier) + " instead of " +
+        out.faults.push_back("'" + actuator.name + "' has the multiplier " + digits(multiplier) + " instead of " +
                              digits(expected));
       continue;
     }
@@ -248,6 +250,26 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
         forces.add(now.nodes[i].vertices[k], load * weight * now.slopes[i], std::abs(load * weight) * now.blurs[i]);
       }
   }
+}
+
+void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
+  if (!model.magnetism) return;
+  const CommandedFields fields(model, found.state);
+  const auto flux = [&](const RealVec3& place) { return fields.at(place); };
+  const auto add = [&](std::size_t element, const Index* nodes, int count) {
+    const Vec3& remanence = model.magnetism->remanence[element];
+    if (remanence.isZero(0)) return;
+    const auto pulls = magnetic_pulls_of(nodes_at(model.rest, nodes, count),
+                                         nodes_at(found.state.positions, nodes, count), remanence.cast<Real>(), flux);
+    for (int i = 0; i < count; ++i) forces.add(nodes[i], pulls[static_cast<std::size_t>(i)], 0);
+  };
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    std::array<Index, 10> nodes;
+    std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
+    if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+    add(e, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
+  }
+  for (std::size_t e = 0; e < model.prisms.size(); ++e) add(model.tetrahedra.size() + e, model.prisms[e].data(), 6);
 }
 
 void check_places(const Model& model, const State& state, Confirmation& out) {
@@ -339,6 +361,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, Confirmation
   Forces forces(static_cast<Index>(model.rest.rows()));
   add_elements(model, found, forces);
   add_actuators(model, found, forces, out);
+  add_magnets(model, found, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)
     forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);
   if (!forces.sum.allFinite()) {

@@ -71,6 +71,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_loads(m);
   make_commands(m);
   make_options(m);
+  make_magnetism(m);
   spoil_number(m);
   return std::move(m.made);
 }

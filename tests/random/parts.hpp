@@ -58,5 +58,7 @@ void scale_robot(Making& m);
 void make_loads(Making& m);  // of a robot that has its size
 void make_commands(Making& m);
 void make_options(Making& m);
+/// Of some physical robots, after their commands.
+void make_magnetism(Making& m);
 
 }  // namespace softkin::random_robots

@@ -141,10 +141,11 @@ Real stiffness_bound(const ElasticLaw& law, const RealMat3& f) {
 
 namespace {
 
-/// Derivatives of the shape functions in the parent's coordinates at a quadrature point, and its weight.
+/// Derivatives of the shape functions in the parent's coordinates at a quadrature point, its weight, and the functions.
 struct ParentPoint {
   RealPoints slope;
   Real weight;
+  std::vector<Real> shape{};
 };
 
 RealMat3 barycentric_slopes() {
@@ -158,6 +159,7 @@ RealVec3 barycentric_slope(int corner) {
 std::vector<ParentPoint> linear_points() {
   ParentPoint point{RealPoints(4, 3), 1.0L / 6};
   for (int i = 0; i < 4; ++i) point.slope.row(i) = barycentric_slope(i).transpose();
+  point.shape.assign(4, 0.25L);
   return {point};
 }
 
@@ -172,6 +174,8 @@ std::vector<ParentPoint> quadratic_points() {
       const auto& [i, j] = tetrahedron_edges[e];
       point.slope.row(4 + e) = 4 * (at(i) * barycentric_slope(j) + at(j) * barycentric_slope(i)).transpose();
     }
+    for (int i = 0; i < 4; ++i) point.shape.push_back(at(i) * (2 * at(i) - 1));
+    for (const auto& [i, j] : tetrahedron_edges) point.shape.push_back(4 * at(i) * at(j));
     points.push_back(point);
   }
   return points;
@@ -182,11 +186,13 @@ std::vector<ParentPoint> prism_points() {
   for (const int side : {-1, 1})
     for (int q = 0; q < 3; ++q) {
       const Real z = side / std::sqrt(3.0L);
-      ParentPoint point{RealPoints(6, 3), 1.0L / 6};
+      ParentPoint point{RealPoints(6, 3), 1.0L / 6, std::vector<Real>(6)};
       for (int i = 0; i < 3; ++i) {
         const Real l = i == q ? 2.0L / 3 : 1.0L / 6, x = i == 0 ? -1 : i == 1 ? 1 : 0, y = i == 0 ? -1 : i == 2 ? 1 : 0;
         point.slope.row(i) << x * (1 - z) / 2, y * (1 - z) / 2, -l / 2;
         point.slope.row(i + 3) << x * (1 + z) / 2, y * (1 + z) / 2, l / 2;
+        point.shape[static_cast<std::size_t>(i)] = l * (1 - z) / 2;
+        point.shape[static_cast<std::size_t>(i) + 3] = l * (1 + z) / 2;
       }
       points.push_back(point);
     }
@@ -250,6 +256,29 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
     }
   }
   return out;
+}
+
+std::vector<RealVec3> magnetic_pulls_of(const RealPoints& rest, const RealPoints& current, const RealVec3& remanence,
+                                        const std::function<RealFlux(const RealVec3&)>& flux) {
+  constexpr Real permeability = 4e-7L * 3.14159265358979323846L;  // [T m / A]; 1 mT^2 is 1e-6 T^2, 1 MPa 1e6 Pa
+  const Eigen::Index count = rest.rows();
+  std::vector<RealVec3> pulls(static_cast<std::size_t>(count), RealVec3::Zero());
+  for (const ParentPoint& point : points_of(count)) {
+    const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
+    const Real scale = point.weight * jacobian.determinant() * 1e-12L / permeability;
+    const RealPoints slope = point.slope * jacobian.inverse();
+    const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
+    RealVec3 at = RealVec3::Zero();
+    for (Eigen::Index a = 0; a < count; ++a)
+      at += point.shape[static_cast<std::size_t>(a)] * current.row(a).transpose();
+    const RealFlux field = flux(at);
+    const RealVec3 pull = field.slope.transpose() * (gradient * remanence);
+    for (Eigen::Index a = 0; a < count; ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      pulls[i] -= scale * (slope.row(a).dot(remanence) * field.value + point.shape[i] * pull);
+    }
+  }
+  return pulls;
 }
 
 }  // namespace softkin::random_robots

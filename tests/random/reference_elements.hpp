@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <softkin/model/model.hpp>
 #include <vector>
 
@@ -37,5 +38,16 @@ struct LayerDrive {
 /// prism (6).
 [[nodiscard]] ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
                                     const LayerDrive& drive);
+
+/// Flux density at a place [mT] and its slopes there, (i, j) of b_i along x_j [mT/mm].
+struct RealFlux {
+  RealVec3 value = RealVec3::Zero();
+  RealMat3 slope = RealMat3::Zero();
+};
+
+/// Derivative of -(1 / mu_0) (F b_r) . b by each node's position [N]; remanence: b_r [mT].
+[[nodiscard]] std::vector<RealVec3> magnetic_pulls_of(const RealPoints& rest, const RealPoints& current,
+                                                      const RealVec3& remanence,
+                                                      const std::function<RealFlux(const RealVec3&)>& flux);
 
 }  // namespace softkin::random_robots

@@ -2,6 +2,7 @@
 #include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/map_robot.hpp>
+#include <softkin/model/names.hpp>
 #include <utility>
 
 namespace softkin {
@@ -18,6 +19,11 @@ std::vector<Index> loads_of(const Model& model, const MapData& data) {
         if (data.outputs[q].name == actuator.name + load) loads.back() = static_cast<Index>(q);
   }
   return loads;
+}
+
+/// Is what is commanded a tension or a pressure?
+bool is_load(const Actuator& actuator) {
+  return actuator.control == Control::load && !multiplier_key(actuator).empty();
 }
 
 /// Equilibria by a map; what their positions are is for others to say.
@@ -68,7 +74,7 @@ class OfMap : public GivenEquilibria {
       const Index a = data.inputs[static_cast<std::size_t>(i)].actuator;
       for (std::size_t k = 0; k < loads_.size(); ++k)
         if (loads_[k] >= 0) found.multipliers(static_cast<Index>(k), a) = slopes(i, loads_[k]);
-      if (model_.actuators[static_cast<std::size_t>(a)].control == Control::load) found.multipliers(a, a) = 1;
+      if (is_load(model_.actuators[static_cast<std::size_t>(a)])) found.multipliers(a, a) = 1;
     }
     return found;
   }
@@ -98,7 +104,7 @@ class OfMap : public GivenEquilibria {
       const auto at = static_cast<Index>(a);
       if (loads_[a] >= 0)
         loads[at] = values[loads_[a]];
-      else if (model_.actuators[a].control == Control::load)
+      else if (is_load(model_.actuators[a]))
         loads[at] = actuation[at];
     }
     // a slack cable's polynomials are 0 up to rounding

@@ -4,6 +4,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/joined.hpp>
+#include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/mesh_joining.hpp>
 #include <softkin/model/names.hpp>
 
@@ -128,9 +129,17 @@ class Joiner {
     all_.regions.push_back({placed_.name, chosen("elements", regions_.find("all", placed_.origin)), placed_.origin});
     for (MaterialSpec& material : robot_.materials) {
       material.region = full(material.region);
+      if (material.remanence) material.remanence = turned(*material.remanence);
       all_.materials.push_back(std::move(material));
     }
     for (const RegionRef& where : robot_.voids) all_.voids.push_back(full(where));
+  }
+
+  [[nodiscard]] std::shared_ptr<const RemanenceSpec> turned(RemanenceSpec remanence) const {
+    remanence.uniform = placed_.place.rotation * remanence.uniform;
+    remanence.samples = (remanence.samples * placed_.place.rotation.transpose()).eval();
+    place(remanence.places);
+    return std::make_shared<const RemanenceSpec>(std::move(remanence));
   }
 
   void add_supports() {
@@ -165,6 +174,9 @@ class Joiner {
 
   void add_actuators() {
     for (ActuatorSpec& actuator : robot_.actuators) {
+      if (actuator.kind == ActuatorKind::magnetic)
+        throw InvalidInput(actuator.origin, "a robot among several has no magnetic field of its own: give it in " +
+                                                all_.name + ", which joins the robots");
       actuator.name = placed_.name + "." + actuator.name;
       actuator.robot = placed_.name;
       for (auto* region : {&actuator.region, &actuator.wall})

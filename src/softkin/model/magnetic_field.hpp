@@ -1,27 +1,88 @@
 #pragma once
 
-#include <softkin/core/error.hpp>
-#include <softkin/core/types.hpp>
-#include <string>
-#include <vector>
+#include <softkin/model/robot_spec.hpp>
+#include <variant>
 
 namespace softkin {
 
-/// What a material's remanent flux density is, in the frame of the robot at rest [mT]: one for all of it, or one for
-/// every element of the mesh, tetrahedra before prisms.
+/// 1 / mu_0, of two flux densities an energy per volume [MPa / mT^2].
+constexpr double inverse_permeability = 7.957747155e-7;
+
+/// What a material's remanent flux density is, in the frame of the robot at rest [mT]: one for all of it, or samples in
+/// space, of which every element takes the one nearest to its centroid.
 struct RemanenceSpec {
   Vec3 uniform{0, 0, 0};
-  std::vector<Vec3> of_elements;  // empty: uniform
+  Points places{}, samples{};  // #samples by 3 [mm], [mT]; no rows: uniform
+  std::string file{};          // of the samples, for messages
 };
 
-/// An applied magnetic field as the user describes it.
+/// What one command of a source sets: flux density along a direction or an axis [mT], current [A], and of a dipole
+/// coordinates [mm] and components of the moment [A m^2].
+enum class FieldCommand {
+  flux_density,
+  flux_density_x,
+  flux_density_y,
+  flux_density_z,
+  current,
+  position_x,
+  position_y,
+  position_z,
+  moment_x,
+  moment_y,
+  moment_z
+};
+/// 0 to 2 of a command along an axis; -1 of the others.
+[[nodiscard]] int axis_of(FieldCommand command);
+[[nodiscard]] bool places_dipole(FieldCommand command);
+
+/// The same everywhere.
+struct UniformField {
+  Vec3 direction{0, 0, 1};  // that flux_density is along; of unit length once compiled
+};
+
+/// A circular loop of wire; a current turns about the axis by the right hand.
+struct CoilLoop {
+  Vec3 center{0, 0, 0};  // [mm]
+  Vec3 axis{0, 0, 1};    // of unit length once compiled
+  double radius_mm = 1;  // > 0
+  double turns = 1;      // not 0; below it turns the other way
+};
+struct CoilField {
+  std::vector<CoilLoop> loops;
+};
+
+/// Flux density per ampere at the points of a regular grid, x fastest, then y.
+struct GridField {
+  std::string file;                  // for messages
+  Vec3 low{0, 0, 0}, step{1, 1, 1};  // first point and spacing [mm]
+  std::array<Index, 3> counts{};     // of points along each axis, >= 4
+  std::vector<Vec3> per_ampere;      // [mT / A]
+  [[nodiscard]] Vec3 high() const;   // last point [mm]
+};
+
+/// A point dipole, where it is and what its moment is while nothing else is commanded.
+struct DipoleField {
+  Vec3 position{0, 0, 0};  // [mm]
+  Vec3 moment{0, 0, 0};    // [A m^2]
+};
+
+/// An applied magnetic field. The robot does not act back on it.
+struct FieldSource {
+  std::string name;
+  std::variant<UniformField, CoilField, GridField, DipoleField> field;
+};
+
+/// What an actuator of kind magnetic commands. Actuators that share a source command the same one.
 struct FieldSpec {
-  Vec3 direction{0, 0, 0};  // of a uniform field whose flux density is commanded
+  std::shared_ptr<const FieldSource> source;
+  FieldCommand command = FieldCommand::flux_density;
 };
 
-/// What is magnetic in a compiled robot, and the fields that act on it.
+/// What is magnetic in a compiled robot, and the fields that act on it. The `other` of an Actuator of kind magnetic is
+/// a place among the sources, its `axis` a FieldCommand.
 struct Magnetism {
   std::vector<Vec3> remanence;  // of every tetrahedron, then prism, of the model [mT]
+  std::vector<FieldSource> sources;
 };
 
 }  // namespace softkin

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 #include <softkin/model/model.hpp>
@@ -61,6 +62,16 @@ class Hash {
   template <class Item, std::size_t N>
   void put(const std::array<Item, N>& items) {
     for (const Item& item : items) put(item);
+  }
+  void put(const Vec3& vector) { add(vector[0], vector[1], vector[2]); }
+  void put(const UniformField& field) { put(field.direction); }
+  void put(const CoilLoop& loop) { add(loop.center, loop.axis, loop.radius_mm, loop.turns); }
+  void put(const CoilField& field) { put(field.loops); }
+  void put(const GridField& field) { add(field.low, field.step, field.counts, field.per_ampere); }
+  void put(const DipoleField& field) { add(field.position, field.moment); }
+  void put(const FieldSource& source) {
+    add(source.name, source.field.index());
+    std::visit([this](const auto& field) { put(field); }, source.field);
   }
   void put(const std::optional<double>& value) { add(value.has_value(), value.value_or(0)); }
   void put(const ElementRole& role) { add(role.material, role.actuator, role.region); }
@@ -172,7 +183,7 @@ std::array<Index, 2> Model::vertices_of_part(Index part) const {
 
 bool drives(const Actuator& actuator) {
   return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
-         actuator.kind == ActuatorKind::pneumatic;
+         actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::magnetic;
 }
 
 bool under_voltage(const Actuator& actuator) {
@@ -189,6 +200,7 @@ std::string fingerprint_of(const Model& model) {
            model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
            model.fixed, model.held, model.dead_load);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
+  if (model.magnetism) hash.add(model.magnetism->remanence, model.magnetism->sources);
   return hash.text();
 }
 

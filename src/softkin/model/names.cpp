@@ -1,7 +1,25 @@
 #include <softkin/core/text.hpp>
+#include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/names.hpp>
 
 namespace softkin {
+
+namespace {
+
+struct Quantity {
+  const char *name, *unit, *column;
+};
+
+/// What a command of a magnetic field is.
+Quantity field_quantity(const Actuator& actuator) {
+  const auto command = static_cast<FieldCommand>(actuator.axis);
+  if (command == FieldCommand::current) return {"current", "A", "A"};
+  if (places_dipole(command)) return {"position", "mm", "mm"};
+  if (command >= FieldCommand::moment_x) return {"moment", "A m^2", "Am2"};
+  return {"flux density", "mT", "mT"};
+}
+
+}  // namespace
 
 const char* kind_name(const Actuator& actuator) {
   constexpr const char* names[] = {"cable",  "dea",   "pneumatic", "magnetic",
@@ -9,8 +27,14 @@ const char* kind_name(const Actuator& actuator) {
   return names[static_cast<std::size_t>(actuator.kind)];
 }
 
+bool has_measure(const Actuator& actuator) {
+  return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
+         actuator.kind == ActuatorKind::pneumatic;
+}
+
 const char* control_name(const Actuator& actuator) {
   if (!drives(actuator)) return kind_name(actuator);
+  if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).name;
   constexpr const char* ratios[] = {"length", "area", "volume"};  // in the order of ActuatorKind
   if (actuator.control == Control::ratio) return ratios[static_cast<std::size_t>(actuator.kind)];
   constexpr const char* loads[] = {"tension", "voltage", "pressure"};  // the same
@@ -25,6 +49,7 @@ std::string command_unit(const Actuator& actuator) {
   if (actuator.control == Control::ratio) return "";
   if (actuator.kind == ActuatorKind::motion) return "mm";
   if (actuator.kind == ActuatorKind::dea) return "kV";
+  if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).unit;
   return actuator.kind == ActuatorKind::pneumatic ? "kPa" : "N";
 }
 
@@ -34,12 +59,13 @@ std::string bracketed_unit(const Actuator& actuator) {
 }
 
 std::string command_column(const Actuator& actuator) {
-  const std::string unit = command_unit(actuator);
+  const std::string unit =
+      actuator.kind == ActuatorKind::magnetic ? field_quantity(actuator).column : command_unit(actuator);
   return unit.empty() ? actuator.name : actuator.name + "_" + unit;
 }
 
 std::string multiplier_key(const Actuator& actuator) {
-  if (!drives(actuator)) return "";
+  if (!has_measure(actuator)) return "";
   if (actuator.kind == ActuatorKind::dea) return under_voltage(actuator) ? "voltage_kV" : "";
   return actuator.kind == ActuatorKind::cable ? "tension_N" : "pressure_kPa";
 }

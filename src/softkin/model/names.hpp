@@ -6,18 +6,20 @@
 
 namespace softkin {
 
-/// "pneumatic", "cable" or "dea"; of what is done to the surroundings "motion", "force" or "hold".
+/// "pneumatic", "cable", "dea" or "magnetic"; of what is done to the surroundings "motion", "force" or "hold".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
-/// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; else
-/// its kind.
+/// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; of a
+/// magnetic field "flux density", "current", "position" or "moment"; else its kind.
 [[nodiscard]] const char* control_name(const Actuator& actuator);
-/// "ratio", "pressure", "tension" or "voltage".
+/// "ratio", or control_name().
 [[nodiscard]] const char* command_name(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N", "kV" or "mm"; as a table has it: "[-]", "[kPa]", "[N]",
-/// "[kV]" or "[mm]".
+/// Has it a length, an area or a volume.
+[[nodiscard]] bool has_measure(const Actuator& actuator);
+/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mm", "mT", "A" or "A m^2"; as a table has it: "[-]",
+/// "[kPa]", ....
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
-/// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa".
+/// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa", "magnet_mx_Am2".
 [[nodiscard]] std::string command_column(const Actuator& actuator);
 
 /// What a physical robot answers with: "pressure_kPa" (pneumatic), "tension_N" (cable), "voltage_kV" (dea under

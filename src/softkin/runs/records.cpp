@@ -21,7 +21,7 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   const Actuator& actuator = model.actuators[a];
   const auto i = static_cast<Index>(a);
   ActuatorRecord record{found.actuation[i], 0};
-  if (drives(actuator))
+  if (has_measure(actuator))
     record.achieved = achieved_ratio(model, actuator, found.state.positions);
   else
     record.achieved =
@@ -76,6 +76,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   record.stress = stress_extremes(model, found.state.positions, deformation);
   record.reactions = reactions(model, found.state.positions, deformation);
   if (deformation.contacts) record.contacts = deformation.contacts->pairs;
+  record.magnetic = deformation.magnetic;
   return record;
 }
 
@@ -172,6 +173,15 @@ void add_contacts(const Model& model, const StepRecord& record, std::vector<Find
   if (!any) found.push_back({Kind::untouched});
 }
 
+void add_magnetic(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  if (!record.magnetic) return;
+  const double rounding = 1e-9 * record.pull_N;
+  Finding& magnetic = found.emplace_back(Finding{Kind::magnetic});
+  add_vector(record.magnetic->force, rounding, magnetic);
+  add_vector(record.magnetic->moment, rounding * model.diagonal_mm, magnetic);
+  add_vector(record.magnetic->center, 0, magnetic);
+}
+
 void add_forces(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   if (record.stress) {
     const auto& [most, greatest, least] = *record.stress;
@@ -186,6 +196,7 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
     add_vector(moment, rounding * model.diagonal_mm, reaction);
     add_vector(center, 0, reaction);
   }
+  add_magnetic(model, record, found);
   add_contacts(model, record, found);
   if (record.buckled > 0)
     found.push_back({Kind::buckled, "", {static_cast<double>(record.buckled), record.buckled_mm}});

@@ -44,6 +44,7 @@ struct StepRecord : SolveReport {
   StrainHistogram strain;
   std::optional<StressExtremes> stress{};             // physical; of a walk none
   std::vector<Reaction> reactions{};                  // the same, per support
+  std::optional<MagneticLoad> magnetic{};             // where there is a magnetic field; of a walk none
   std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything; of a walk none
   std::optional<WorstPlace> worst{};                  // physical, where status is limit
   std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
@@ -106,6 +107,7 @@ struct Finding {
     contact,      // name: what presses on the other, which is empty where it is itself; values: force [N] (3), moment
                   // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm],
                   // with friction the share of the normal force that slips [-]
+    magnetic,     // values: force [N] (3), moment [N mm] (3), centre [mm] (3)
     untouched,    // nothing touches what it might
     unstable,     // values: in how many ways
     buckled,      // values: how often, the largest move [mm]

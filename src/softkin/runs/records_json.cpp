@@ -116,6 +116,10 @@ Json reaction_json(const Support& support, const Reaction& reaction) {
           {"center_mm", json_of(reaction.center)}};
 }
 
+Json magnetic_json(const MagneticLoad& load) {
+  return {{"force_N", json_of(load.force)}, {"moment_N_mm", json_of(load.moment)}, {"center_mm", json_of(load.center)}};
+}
+
 Json worst_json(const WorstPlace& worst) {
   return {{"kind", worst.prism ? "prism" : "tetrahedron"},
           {"element", worst.element},
@@ -159,6 +163,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
   json["reactions"] = Json::array();
   for (std::size_t s = 0; s < record.reactions.size(); ++s)
     json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
+  if (model.magnetism) json["magnetic"] = record.magnetic ? magnetic_json(*record.magnetic) : Json();
   if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
   if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
   return json;
@@ -172,6 +177,10 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
   for (const Json& each : json.at("reactions"))
     record.reactions.push_back(
         {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});
+  if (model.magnetism)
+    if (const Json& load = json.at("magnetic"); !load.is_null())
+      record.magnetic = {point_of(load.at("force_N")), point_of(load.at("moment_N_mm")),
+                         point_of(load.at("center_mm"))};
   if (!model.contact.any()) return;
   if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);
   if (json.contains("anchors")) record.anchors = anchors_of(model, json.at("anchors"));

@@ -185,7 +185,7 @@ Table table_of_steps(const Model& model, std::size_t steps) {
   for (const Actuator& actuator : model.actuators) {
     const std::size_t width = drives(actuator) ? width_of(actuator) : command_width;
     add(fixed(short_name(actuator.name) + " " + bracketed_unit(actuator), value_decimals, width));
-    if (!drives(actuator)) continue;
+    if (!has_measure(actuator)) continue;
     add(fixed("achieved [-]", value_decimals, width));
     if (const std::string load = load_title(model, actuator); !load.empty())
       add(fixed(load, value_decimals, load_width));
@@ -207,7 +207,7 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record) {
     const Actuator& actuator = model.actuators[a];
     const ActuatorRecord& of = record.actuators[a];
     row.emplace_back(of.requested);
-    if (!drives(actuator)) continue;
+    if (!has_measure(actuator)) continue;
     row.emplace_back(of.achieved);
     if (!load_title(model, actuator).empty()) row.push_back(of.slack ? Cell("slack") : Cell(of.multiplier));
     if (actuator.curve) row.push_back(of.by_curve ? Cell(*of.by_curve) : Cell("outside"));

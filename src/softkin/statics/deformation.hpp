@@ -17,6 +17,13 @@ struct ElementStress {
   std::vector<std::array<double, 3>> principal;  // descending; tension is positive
 };
 
+/// What magnetic fields do to the robot.
+struct MagneticLoad {
+  Vec3 force = Vec3::Zero();   // [N]
+  Vec3 moment = Vec3::Zero();  // about the centre [N mm]
+  Vec3 center = Vec3::Zero();  // of the volume of what is magnetic, where it is [mm]
+};
+
 /// Deformation of every element, tetrahedra first, then prisms (their strain at the centre). Of order 2: the least
 /// volume ratio, det F, at the corners and at the four points with which the energy is integrated, and the strain at
 /// that of the four where its magnitude is largest.
@@ -31,6 +38,7 @@ struct ElementDeformation {
   Eigen::VectorXd multipliers;  // m: tension [N], gauge pressure [kPa], voltage of a dea [kV]
   Points reactions;  // #V by 3: what supports push and pull at the vertices that they hold [N]; 0 along free axes
   std::optional<ContactForces> contacts;  // where the robot may touch anything
+  std::optional<MagneticLoad> magnetic;   // where there is a magnetic field
 };
 [[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
 

@@ -26,6 +26,13 @@ namespace softkin {
 /// The points of a .vtu alone, in the file's order. Throws as read_vtu.
 [[nodiscard]] Points read_vtu_points(const std::filesystem::path& path);
 
+/// Vectors in the cells of a .vtu.
+struct CellVectors {
+  Points centers, values;  // #cells by 3: means of a cell's vertices, in the file's unit; values of the array
+};
+/// A cell array of three components by its name. Throws as read_vtu, and where there is no such array
+[[nodiscard]] CellVectors read_vtu_cell_vectors(const std::filesystem::path& path, const std::string& array);
+
 /// A named array over points or cells: count * components values.
 struct Field {
   std::string name;

@@ -399,15 +399,43 @@ Points read_vtu_points(const std::filesystem::path& path) {
   return points_of(document, only_piece(document));
 }
 
-Mesh read_vtu(const std::filesystem::path& path) {
-  const VtuDocument document(path);
-  const pugi::xml_node piece = only_piece(document);
+namespace {
+
+/// Points and cells, without labels.
+CellGrid read_cells(const VtuDocument& document, pugi::xml_node piece) {
   CellGrid grid;
   grid.points = points_of(document, piece);
   const std::int64_t count = document.integer(piece, "NumberOfCells", 1, kMost);
   const pugi::xml_node cells = document.child(piece, "Cells");
   read_types(document, cells, static_cast<std::size_t>(count), grid);
   read_connectivity(document, cells, grid);
+  return grid;
+}
+
+}  // namespace
+
+CellVectors read_vtu_cell_vectors(const std::filesystem::path& path, const std::string& name) {
+  const VtuDocument document(path);
+  const pugi::xml_node piece = only_piece(document);
+  const CellGrid grid = read_cells(document, piece);
+  const pugi::xml_node array = document.array(document.child(piece, "CellData"), name);
+  if (document.components(array) != 3) document.fail(array, "array '" + name + "' must have three components");
+  const auto count = static_cast<Index>(grid.types.size());
+  const std::vector<double> values = document.reals(array, 3 * static_cast<std::uint64_t>(count));
+  CellVectors vectors{Points::Zero(count, 3), Eigen::Map<const Points>(values.data(), count, 3)};
+  for (Index cell = 0; cell < count; ++cell) {
+    const std::size_t begin = grid.starts[static_cast<std::size_t>(cell)];
+    const std::size_t end = grid.starts[static_cast<std::size_t>(cell) + 1];
+    for (std::size_t i = begin; i < end; ++i)
+      vectors.centers.row(cell) += grid.points.row(grid.connectivity[i]) / static_cast<double>(end - begin);
+  }
+  return vectors;
+}
+
+Mesh read_vtu(const std::filesystem::path& path) {
+  const VtuDocument document(path);
+  const pugi::xml_node piece = only_piece(document);
+  CellGrid grid = read_cells(document, piece);
   read_labels(document, piece, grid);
   return mesh_of(grid, {path.string()});
 }

@@ -19,11 +19,18 @@ struct Kind {
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
 const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch", "curve", "voltage_share"};
 
+Keys all_kind_keys() {
+  Keys all = kind_keys;
+  all.insert(all.end(), field_keys().begin(), field_keys().end());
+  return all;
+}
+
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface", "curve"}},
       {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes"}},
-      {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}}};
+      {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}},
+      {ActuatorKind::magnetic, "magnetic", {}, field_keys()}};
   return all;
 }
 
@@ -31,7 +38,7 @@ const Kind& read_kind(const Map& map) {
   Keys names;
   for (const Kind& kind : kinds()) names.push_back(kind.name);
   const Kind& kind = kinds()[choice(map.at("kind"), names)];
-  for (const std::string& key : kind_keys) {
+  for (const std::string& key : all_kind_keys()) {
     const Node::Entry* entry = map.entry(key);
     if (entry && std::find(kind.keys.begin(), kind.keys.end(), key) == kind.keys.end())
       throw InvalidInput(entry->origin, "key '" + key + "' does not belong to kind '" + kind.name + "'");
@@ -150,11 +157,12 @@ PrismValues read_shares(const Context& context, const Node& node, const Actuator
   });
 }
 
-ActuatorSpec read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
+std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
   ActuatorSpec actuator;
   actuator.origin = map.node().origin;
   actuator.name = names.add_label(map.at("name"));
   const Kind& kind = read_kind(map);
+  if (kind.kind == ActuatorKind::magnetic) return read_field(context, map, actuator.name);
   actuator.kind = kind.kind;
   actuator.control = read_control(map, kind, formulation);
   if (actuator.control == Control::load) actuator.rest = 0;
@@ -168,7 +176,7 @@ ActuatorSpec read_actuator(const Context& context, Formulation formulation, cons
   if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);
   if (kind.kind == ActuatorKind::cable) read_cable(context, map, actuator);
   if (kind.kind == ActuatorKind::dea) actuator.region = text(map.at("region"));
-  return actuator;
+  return {std::move(actuator)};
 }
 
 }  // namespace
@@ -183,11 +191,13 @@ TriangleSurface read_surface_file(const Context& context, const Node& file, cons
 
 std::vector<ActuatorSpec> read_actuators(const Context& context, Formulation formulation, const Node& node) {
   Keys known = common_keys;
-  known.insert(known.end(), kind_keys.begin(), kind_keys.end());
+  const Keys of_kinds = all_kind_keys();
+  known.insert(known.end(), of_kinds.begin(), of_kinds.end());
   std::vector<ActuatorSpec> actuators;
   Names names;
   for (const auto& item : list(node))
-    actuators.push_back(read_actuator(context, formulation, Map(*item, known), names));
+    for (ActuatorSpec& actuator : read_actuator(context, formulation, Map(*item, known), names))
+      actuators.push_back(std::move(actuator));
   return actuators;
 }
 

@@ -69,7 +69,14 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] std::optional<ContactSpec> read_contact(const Context& context, const Map& scene);
 [[nodiscard]] double read_density(const Node& node);
 /// Target-shape keys, elastic constants, or both.
-[[nodiscard]] MaterialSpec read_material(const Node& node);
+[[nodiscard]] MaterialSpec read_material(const Context& context, const Node& node);
+/// Three components [mT], or the map with the file of samples.
+[[nodiscard]] std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Node& node);
+/// Keys that an actuator of kind magnetic alone has.
+[[nodiscard]] const Keys& field_keys();
+/// The commands of such an actuator, each an actuator of its own: NAME where there is one of flux density or current,
+/// else NAME_x, ... (flux density, position) and NAME_mx, ... (moment).
+[[nodiscard]] std::vector<ActuatorSpec> read_field(const Context& context, const Map& map, const std::string& name);
 /// Loads are commanded in the physical formulation alone.
 [[nodiscard]] std::vector<ActuatorSpec> read_actuators(const Context& context, Formulation formulation,
                                                        const Node& node);

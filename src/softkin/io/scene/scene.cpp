@@ -95,7 +95,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   };
   Names forces, markers;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
-  each("materials", [&](const Node& item) { spec.materials.push_back(read_material(item)); });
+  each("materials", [&](const Node& item) { spec.materials.push_back(read_material(context, item)); });
   spec.formulation = formulation_of(context, map, spec.materials);
   if (const Node::Entry* gravity = map.entry("gravity")) {
     spec.gravity = read_vector(*gravity->value);
@@ -168,9 +168,9 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const std::string& scene
       return read(path);
     };
   };
-  return parse_scene(
-      read_file(scene), scene,
-      {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve), noting(read_file)});
+  return parse_scene(read_file(scene), scene,
+                     {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve),
+                      noting(read_file), noting(read_field_samples)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {

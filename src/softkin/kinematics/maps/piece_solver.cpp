@@ -39,7 +39,7 @@ bool answers_with_load(const Model& model, const Actuator& actuator) {
 }
 
 bool answers_with_ratio(const Model& model, const Actuator& actuator) {
-  return drives(actuator) && (!answers_with_load(model, actuator) || is_cable(model, actuator));
+  return has_measure(actuator) && (!answers_with_load(model, actuator) || is_cable(model, actuator));
 }
 
 bool rubs(const Model& model) {

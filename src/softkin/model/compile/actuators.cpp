@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
@@ -10,6 +11,17 @@ namespace {
 
 std::string range_text(double low, double high) {
   return "[" + number(low) + ", " + number(high) + "]";
+}
+
+void check_field(const ActuatorSpec& spec, Formulation formulation) {
+  if (formulation != Formulation::physical) refuse(spec, "is a magnetic field: that needs the physical formulation");
+  if (!spec.field || !spec.field->source || spec.control != Control::load)
+    refuse(spec, "is a magnetic field: it needs a source and is controlled by its load");
+  if (!(std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high)))
+    refuse(spec, "needs a range with low <= high, not " + range_text(spec.low, spec.high));
+  if (!places_dipole(spec.field->command) && spec.rest != 0)
+    refuse(spec, "cannot have a field at rest other than 0, not " + number(spec.rest));
+  if (!(std::isfinite(spec.rest))) refuse(spec, "needs a place at rest that is finite");
 }
 
 void check_load(const ActuatorSpec& spec, Formulation formulation) {
@@ -37,6 +49,7 @@ void check_ratio(const ActuatorSpec& spec) {
 
 void check_curve(const ActuatorSpec& spec) {
   if (spec.kind == ActuatorKind::cable) refuse(spec, "is a cable: it takes no curve");
+  if (spec.kind == ActuatorKind::magnetic) refuse(spec, "is a magnetic field: it takes no curve");
   if (spec.control == Control::load)
     refuse(spec,
            spec.kind == ActuatorKind::dea
@@ -53,7 +66,9 @@ void check_curve(const ActuatorSpec& spec) {
 void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
   if (!(spec.weight > 0 && std::isfinite(spec.weight)))
     refuse(spec, "needs a weight above 0, not " + number(spec.weight));
-  if (spec.control == Control::load)
+  if (spec.kind == ActuatorKind::magnetic)
+    check_field(spec, formulation);
+  else if (spec.control == Control::load)
     check_load(spec, formulation);
   else
     check_ratio(spec);
@@ -72,6 +87,8 @@ void check_members(const ActuatorSpec& spec, Formulation formulation) {
   if (!cable && !(spec.points.empty() && spec.apexes.empty())) refuse(spec, "takes no points: only a cable does");
   if (cable && (spec.region || spec.surface || spec.wall))
     refuse(spec, "is a cable: it takes points, no region and no surface");
+  if (spec.kind == ActuatorKind::magnetic && (spec.region || spec.surface || spec.wall))
+    refuse(spec, "is a magnetic field: it takes no region and no surface");
   if (spec.kind == ActuatorKind::dea && (!spec.region || spec.surface || spec.wall))
     refuse(spec, "needs a region of prisms");
   if (spec.kind != ActuatorKind::pneumatic) return;
@@ -211,10 +228,10 @@ void fill_shares(const Compilation& c, const ActuatorSpec& spec, Actuator& actua
 
 void note_rest(Compilation& c, const Actuator& actuator) {
   if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
-  c.model.notes.push_back("The range " + range_text(actuator.low, actuator.high) + " of actuator '" + actuator.name +
-                          "' excludes its " + (actuator.control == Control::load ? "load at rest 0" : "rest ratio 1") +
-                          ": where none is asked for, " +
-                          number(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
+  c.model.notes.push_back(
+      "The range " + range_text(actuator.low, actuator.high) + " of actuator '" + actuator.name + "' excludes its " +
+      (actuator.control == Control::load ? "load at rest " + number(actuator.rest) : "rest ratio 1") +
+      ": where none is asked for, " + number(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
 }
 
 }  // namespace

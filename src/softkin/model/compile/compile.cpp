@@ -113,6 +113,7 @@ Model compile(const RobotSpec& spec) {
   refuse_mesh_errors(c);
   compile_actuator_elements(c);
   compile_materials(c);
+  compile_magnetism(c);
   compile_actuator_points(c);
   compile_supports(c);
   check_openings(c);

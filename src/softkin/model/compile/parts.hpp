@@ -88,6 +88,9 @@ void take_empty_space(Compilation& c, const ActuatorSpec& spec, std::size_t spac
 /// Refuses a chamber that the body's elements fill; notes it where they fill a little of it.
 void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& surface);
 
+/// After the materials. Physical: what is magnetic, and the sources of the fields that act on it.
+void compile_magnetism(Compilation& c);
+
 /// Physical, after the supports: refuses chambers that are open.
 void check_openings(const Compilation& c);
 

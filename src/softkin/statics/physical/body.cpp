@@ -424,6 +424,19 @@ void Body::add_cliques(linear::Cliques& cliques) {
   });
 }
 
+std::vector<std::int64_t> Body::element_slots() const {
+  std::vector<std::int64_t> slots;
+  each_set([&]<int K, int Q>(const Set<K, Q>& set) {
+    constexpr int matrices = K * (K + 1) / 2;
+    for (Index e = 0; e < set.count; ++e) {
+      const auto element = static_cast<std::size_t>(set.elements[e]);
+      if (slots.size() <= element) slots.resize(element + 1);
+      slots[element] = set.first_slot + static_cast<std::int64_t>(matrices) * e;
+    }
+  });
+  return slots;
+}
+
 void Body::stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                      LargeVector<double>& slots, Team& team) const {
   stretch_layers(demand, scratch);

@@ -69,6 +69,9 @@ class Body {
   /// Adds every element as a clique.
   void add_cliques(linear::Cliques& cliques);
 
+  /// First slot of every tetrahedron's matrices, then of every prism's. After add_cliques().
+  [[nodiscard]] std::vector<std::int64_t> element_slots() const;
+
   /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
   void stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const;
@@ -135,6 +138,12 @@ class Body {
     for (auto& set : linear_) visit(set);
     for (auto& set : quadratic_) visit(set);
     for (auto& set : prisms_) visit(set);
+  }
+  template <class Visit>
+  void each_set(const Visit& visit) const {
+    for (const auto& set : linear_) visit(set);
+    for (const auto& set : quadratic_) visit(set);
+    for (const auto& set : prisms_) visit(set);
   }
 
   Index vertices_;

@@ -139,6 +139,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   way_.factorised = true;
   const int before = report_.iterations;
   const std::vector<bool> active = active_;
+  work_.left_field = false;
   auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   if (way_.loads_change && snapped(move_mm_, largest_move(begun_, trial.positions))) outcome = Newton::Outcome::stuck;
@@ -221,7 +222,11 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
   const bool leads_nowhere = !way_.releases && move_mm_ < least;
   if (way_.advance < least_advance || leads_nowhere)
-    return limit(way_.done, "beyond this point no equilibrium follows" + instead_of_loads(), at);
+    return limit(way_.done,
+                 work_.left_field ? "beyond this point what is magnetic comes to where the field is not known: outside "
+                                    "its grid, on a wire or on the dipole"
+                                  : "beyond this point no equilibrium follows" + instead_of_loads(),
+                 at);
   return std::nullopt;
 }
 
@@ -299,7 +304,8 @@ std::string Continuation::instead_of_loads() const {
   bool pressures = false, tensions = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     const Actuator& actuator = system_.model().actuators[a];
-    if (actuator.control != Control::load || !drives(actuator) || way_.from.actuation[a] == way_.to.actuation[a])
+    if (actuator.control != Control::load || !system_.measures().measures(a) ||
+        way_.from.actuation[a] == way_.to.actuation[a])
       continue;
     tensions = tensions || actuator.kind == ActuatorKind::cable;
     pressures = pressures || actuator.kind == ActuatorKind::pneumatic;

@@ -17,6 +17,8 @@ Demand demand_of(const System& system, const Model& model, const State& start) {
       demand.actuation[a] = system.moved(a, start.positions);
     else if (!drives(model.actuators[a]))
       continue;
+    else if (model.actuators[a].kind == ActuatorKind::magnetic)
+      demand.actuation[a] = model.actuators[a].rest;
     else if (model.actuators[a].kind == ActuatorKind::dea && !under_voltage(model.actuators[a]))
       demand.actuation[a] = 1;
     else

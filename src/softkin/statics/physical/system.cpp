@@ -36,6 +36,7 @@ System::System(const Model& model)
   elastic_.add_cliques(cliques_);
   measures_.add_cliques(cliques_);
   surroundings_.add_cliques(cliques_);
+  if (model.magnetism) magnets_ = std::make_unique<const Magnets>(model, elastic_.element_slots());
   linear::BlockPattern pattern(static_cast<Index>(model.rest.rows()), cliques_);
   freedoms_ = std::make_unique<supports::Freedoms>(model, pattern);
   supports::ReducedMatrix reduced(*freedoms_, pattern);
@@ -80,7 +81,7 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
   balance.energy = elastic.energy;
   balance.inverted = elastic.inverted;
   balance.forbidden = elastic.forbidden;
-  if (any_dead_load()) {
+  if (any_dead_load_) {
     balance.energy -= demand.share * model_.dead_load.cwiseProduct(at.positions - model_.rest).sum();
     work.gradient -= demand.share * model_.dead_load;
   }
@@ -89,6 +90,12 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
     work.gradient -= demand.fading * work.unbalanced;
   }
   balance.energy += surroundings_.add_gradient(demand.actuation, at.positions, work.gradient);
+  if (magnets_) {
+    const std::optional<double> magnetic = magnets_->add_gradient(demand, at.positions, work.gradient, team);
+    balance.energy += magnetic.value_or(0);
+    balance.forbidden = balance.forbidden || !magnetic;
+    work.left_field = work.left_field || !magnetic;
+  }
   if (contacts_ && !balance.forbidden) {
     contacts_->find(at.positions, *work.contacts, team);
     if (work.friction_follows) contacts_->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
@@ -149,6 +156,7 @@ void System::hold_contacts(const Iterate& at, Workspace& work, Team& team) const
 void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const {
   hold_contacts(at, work, team);
   elastic_.stiffness(demand, at.positions, kind == Stiffness::projected, work.elastic, work.slots, team);
+  if (magnets_) magnets_->add_stiffness(demand, at.positions, kind == Stiffness::projected, work.slots, team);
   Eigen::VectorXd scale(actuators());
   for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
   measures_.second_derivatives(at.positions, scale, work.slots, team);
@@ -312,6 +320,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     work.layout->pattern.multiply(work.blocks, moves, force, team);
   }
   bool layers = from.share != to.share && elastic_.prestretched();
+  bool fields = magnets_ && magnets_->any_dipole() && from.share != to.share;
   for (Index a = 0; a < actuators(); ++a) {
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0) continue;
@@ -323,6 +332,8 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
       force += change * (to.actuation[a] + from.actuation[a]) * per_square;
     } else if (model_.actuators[a].kind == ActuatorKind::dea) {
       layers = true;
+    } else if (model_.actuators[a].kind == ActuatorKind::magnetic) {
+      fields = true;
     } else if (loads(a)) {
       Points slope;
       surroundings_.command_force(a, from.actuation, at.positions, slope);
@@ -332,8 +343,14 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
       force += sign(a) * unit(a) * change * work.slopes[a];
     }
   }
-  if (any_dead_load()) force -= (to.share - from.share) * model_.dead_load;
+  if (any_dead_load_) force -= (to.share - from.share) * model_.dead_load;
   if (to.fading != from.fading) force -= (to.fading - from.fading) * work.unbalanced;
+  if (fields) {  // the whole change: in what a dipole does its commands are not linear
+    Points before = Points::Zero(force.rows(), 3), after = before;
+    (void)magnets_->add_gradient(from, at.positions, before, team);
+    (void)magnets_->add_gradient(to, at.positions, after, team);
+    force += after - before;
+  }
   if (layers) {  // the stretch of layers: central difference of the elastic force
     Demand low = from, high = from;
     constexpr double reach = 1e-4;
@@ -363,6 +380,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
     for (int axis = 0; axis < 3; ++axis)
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   elastic_.stress(demand, at.positions, work.elastic, out.stress, team);
+  if (magnets_) out.magnetic = magnets_->load(demand, at.positions, team);
   if (contacts_ && !balance.forbidden) {
     Points room;
     out.contacts =
@@ -514,6 +532,8 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
     force *= 2 * demand.actuation[actuator];
     return;
   }
+  if (command.kind == ActuatorKind::magnetic)
+    return magnets_->command_force(actuator, demand, at.positions, force, team);
   if (command.kind != ActuatorKind::dea) {
     (void)measures_.value(actuator, at.positions, &force);
     force *= sign(actuator) * unit(actuator);

@@ -7,6 +7,7 @@
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
+#include <softkin/statics/physical/magnets.hpp>
 #include <softkin/statics/physical/surroundings.hpp>
 #include <softkin/statics/physical/trail.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
@@ -53,6 +54,7 @@ class System {
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
     std::unique_ptr<Contacts::Scratch> contacts;      // where there is contact
+    bool left_field = false;                          // was a shape where a field is not known, as outside a grid
     bool friction_follows = false;                    // are its normal forces those of the shape, not those held
     std::shared_ptr<const Layout> layout;             // of the slots
     std::shared_ptr<const Layout> factorised_layout;  // of the factor
@@ -241,14 +243,15 @@ class System {
   [[nodiscard]] double target(Index actuator, const Demand& demand) const {
     return demand.actuation[actuator] * measures_.rest(actuator);
   }
-  /// Does the command of what is no drive load the robot: a force on a body, or what holds it.
+  /// Does a command load the robot without a measure: a magnetic field, a force on a body, or what holds it.
   [[nodiscard]] bool loads(Index actuator) const {
     const ActuatorKind kind = model_.actuators[actuator].kind;
-    return kind == ActuatorKind::force || kind == ActuatorKind::hold;
+    return kind == ActuatorKind::magnetic || kind == ActuatorKind::force || kind == ActuatorKind::hold;
   }
   [[nodiscard]] bool holds(Index actuator) const { return model_.actuators[actuator].kind == ActuatorKind::hold; }
   [[nodiscard]] bool any_body() const { return surroundings_.any_body(); }
-  [[nodiscard]] bool any_dead_load() const { return any_dead_load_; }
+  /// Are there loads that grow with the share: weight, forces, dipoles.
+  [[nodiscard]] bool any_dead_load() const { return any_dead_load_ || (magnets_ && magnets_->any_dipole()); }
   [[nodiscard]] bool prestretched() const { return elastic_.prestretched(); }
 
  private:
@@ -269,6 +272,7 @@ class System {
   std::unique_ptr<supports::Freedoms> freedoms_;
   linear::Cliques cliques_;               // of the body
   std::shared_ptr<const Layout> layout_;  // of the body alone
+  std::unique_ptr<const Magnets> magnets_;
   std::unique_ptr<Contacts> contacts_;
   std::unique_ptr<supports::GlobalStep> turning_;
 };

@@ -1,0 +1,231 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/magnetic_field.hpp>
+#include <softkin/model/mesh/box_tree.hpp>
+
+namespace softkin {
+
+namespace {
+
+// [mT]; the strongest magnets that there are have 1,500, and what has less than the other was given in tesla
+constexpr double most_remanence = 2000, least_remanence = 1;
+constexpr double ungiven = 1e-9;  // of a grid's step, rounding
+
+Vec3 unit(const ActuatorSpec& spec, const Vec3& vector, const std::string& what) {
+  if (!vector.allFinite() || !(vector.norm() > 0))
+    refuse(spec, "needs " + what + " that is finite and not 0, not " + point_text(vector));
+  return vector.stableNormalized();
+}
+
+/// Refuses a command that is none of the source's.
+void check_command(const ActuatorSpec& spec, FieldCommand command, const char* kind, FieldCommand first,
+                   FieldCommand last) {
+  if (command < first || command > last) refuse(spec, std::string("commands what ") + kind + " does not have");
+}
+
+struct CheckedField {
+  const ActuatorSpec& spec;
+  FieldCommand command;
+
+  void operator()(UniformField& field) const {
+    check_command(spec, command, "a uniform field", FieldCommand::flux_density, FieldCommand::flux_density_z);
+    field.direction = unit(spec, field.direction, "a direction");
+  }
+  void operator()(CoilField& field) const {
+    check_command(spec, command, "a coil", FieldCommand::current, FieldCommand::current);
+    if (field.loops.empty()) refuse(spec, "needs at least one loop of wire");
+    for (CoilLoop& loop : field.loops) {
+      if (!loop.center.allFinite()) refuse(spec, "has a loop whose center is not finite");
+      loop.axis = unit(spec, loop.axis, "an axis");
+      if (!(loop.radius_mm > 0) || !std::isfinite(loop.radius_mm))
+        refuse(spec, "needs a radius above 0 mm, not " + number(loop.radius_mm));
+      if (loop.turns == 0 || !std::isfinite(loop.turns))
+        refuse(spec, "needs turns that are finite and not 0, not " + number(loop.turns));
+    }
+  }
+  void operator()(GridField& field) const {
+    check_command(spec, command, "the field of a grid", FieldCommand::current, FieldCommand::current);
+    std::size_t points = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (field.counts[axis] < 4 || !(field.step[axis] > 0) || !std::isfinite(field.step[axis]))
+        refuse(spec, "needs a grid of at least 4 points along every axis, that ascend");
+      points *= static_cast<std::size_t>(field.counts[axis]);
+    }
+    if (points != field.per_ampere.size()) refuse(spec, "needs a flux density at every point of its grid");
+    for (const Vec3& value : field.per_ampere)
+      if (!value.allFinite()) refuse(spec, "has a flux density in its grid that is not finite");
+  }
+  void operator()(DipoleField& field) const {
+    check_command(spec, command, "a dipole", FieldCommand::position_x, FieldCommand::moment_z);
+    if (!field.position.allFinite() || !field.moment.allFinite())
+      refuse(spec, "needs a dipole whose position and moment are finite");
+  }
+};
+
+/// Its place among the model's sources.
+Index place_of(Magnetism& magnetism, std::vector<const FieldSource*>& known, const ActuatorSpec& spec) {
+  const FieldSource* source = spec.field->source.get();
+  const auto found = std::find(known.begin(), known.end(), source);
+  const auto place = static_cast<Index>(found - known.begin());
+  FieldSource checked = *source;
+  std::visit(CheckedField{spec, spec.field->command}, checked.field);
+  if (found == known.end()) {
+    known.push_back(source);
+    magnetism.sources.push_back(std::move(checked));
+  }
+  return place;
+}
+
+Vec3 centroid(const Model& model, std::size_t element) {
+  const auto mean = [&](const auto& nodes) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : nodes) sum += vertex_at(model.rest, v);
+    return Vec3(sum / static_cast<double>(nodes.size()));
+  };
+  const std::size_t tetrahedra = model.tetrahedra.size();
+  return element < tetrahedra ? mean(model.tetrahedra[element]) : mean(model.prisms[element - tetrahedra]);
+}
+
+double longest_edge(const Model& model, std::size_t element) {
+  double longest = 0;
+  const auto measure = [&](const auto& nodes) {
+    for (const Index a : nodes)
+      for (const Index b : nodes)
+        longest = std::max(longest, (vertex_at(model.rest, a) - vertex_at(model.rest, b)).norm());
+  };
+  const std::size_t tetrahedra = model.tetrahedra.size();
+  if (element < tetrahedra)
+    measure(model.tetrahedra[element]);
+  else
+    measure(model.prisms[element - tetrahedra]);
+  return longest;
+}
+
+/// Finds the samples of a material's remanence.
+class Remanence {
+ public:
+  explicit Remanence(const MaterialSpec& material) : material_(material), spec_(*material.remanence), tree_({}) {
+    if (!spec_.uniform.allFinite()) refuse_it("remanence is not finite");
+    if (spec_.places.rows() != spec_.samples.rows()) refuse_it("remanence needs a place for each of its samples");
+    if (!spec_.places.allFinite() || !spec_.samples.allFinite()) refuse_it("remanence has a sample that is not finite");
+    std::vector<Bounds> boxes;
+    for (Index i = 0; i < spec_.places.rows(); ++i) boxes.emplace_back(Vec3(spec_.places.row(i).transpose()));
+    tree_ = BoxTree(boxes);
+  }
+
+  [[nodiscard]] Vec3 of(const Model& model, std::size_t element) const {
+    if (spec_.places.rows() == 0) return spec_.uniform;
+    const Vec3 at = centroid(model, element);
+    Index nearest = -1;
+    double least = std::numeric_limits<double>::infinity();
+    tree_.visit_near(at, [&](Index i) {
+      const double square = (spec_.places.row(i).transpose() - at).squaredNorm();
+      if (square < least) {
+        least = square;
+        nearest = i;
+      }
+      return least;
+    });
+    const double most = longest_edge(model, element), distance = std::sqrt(least);
+    if (distance > most)
+      refuse_it("remanence of " + spec_.file + " has no sample near " + point_text(at) + " mm: the nearest is " +
+                number(distance, 3) + " mm away, and the element there is of " + number(most, 3) + " mm");
+    return spec_.samples.row(nearest).transpose();
+  }
+
+ private:
+  [[noreturn]] void refuse_it(const std::string& what) const {
+    throw InvalidInput(material_.origin, "the material of region '" + material_.region + "': its " + what);
+  }
+
+  const MaterialSpec& material_;
+  const RemanenceSpec& spec_;
+  BoxTree tree_;
+};
+
+/// Returns whether any element has a remanence.
+bool magnetise(const Compilation& c, Magnetism& magnetism) {
+  const Model& model = c.model;
+  std::vector<std::optional<Remanence>> of_material(c.spec.materials.size());
+  for (std::size_t m = 0; m < of_material.size(); ++m)
+    if (c.spec.materials[m].remanence) of_material[m].emplace(c.spec.materials[m]);
+  bool any = false;
+  const auto add = [&](const std::vector<ElementRole>& roles) {
+    for (const ElementRole& role : roles) {
+      const auto& remanence = of_material[static_cast<std::size_t>(role.material)];
+      magnetism.remanence.push_back(remanence ? remanence->of(model, magnetism.remanence.size()) : Vec3(0, 0, 0));
+      any = any || !magnetism.remanence.back().isZero(0);
+    }
+  };
+  add(model.tetrahedron_roles);
+  add(model.prism_roles);
+  return any;
+}
+
+/// Refuses a grid that does not hold what is magnetic.
+void check_grid(const Compilation& c, const Magnetism& magnetism, const FieldSource& source, const Origin& origin) {
+  const auto* grid = std::get_if<GridField>(&source.field);
+  if (grid == nullptr) return;
+  const Vec3 margin = ungiven * grid->step, low = grid->low - margin, high = grid->high() + margin;
+  const auto check = [&](const auto& nodes) {
+    for (const Index v : nodes) {
+      const Vec3 at = vertex_at(c.model.rest, v);
+      if ((at - low).minCoeff() < 0 || (high - at).minCoeff() < 0)
+        throw InvalidInput(origin, "actuator '" + source.name + "': the grid of " + grid->file + ", " +
+                                       point_text(grid->low) + " to " + point_text(grid->high()) +
+                                       " mm, does not reach the magnetic material at " + point_text(at) + " mm");
+    }
+  };
+  for (std::size_t e = 0; e < magnetism.remanence.size(); ++e) {
+    if (magnetism.remanence[e].isZero(0)) continue;
+    const std::size_t tetrahedra = c.model.tetrahedra.size();
+    if (e < tetrahedra)
+      check(c.model.tetrahedra[e]);
+    else
+      check(c.model.prisms[e - tetrahedra]);
+  }
+}
+
+void doubt_remanence(Model& model, const Magnetism& magnetism) {
+  double most = 0;
+  for (const Vec3& remanence : magnetism.remanence) most = std::max(most, remanence.norm());
+  if (most > most_remanence || (most > 0 && most < least_remanence))
+    model.warnings.push_back("The remanence is up to " + number(most, 4) +
+                             " mT; magnets have up to 1,500 mT: is it in mT?");
+}
+
+}  // namespace
+
+void compile_magnetism(Compilation& c) {
+  const bool remanent = std::any_of(c.spec.materials.begin(), c.spec.materials.end(),
+                                    [](const MaterialSpec& material) { return material.remanence != nullptr; });
+  if (c.spec.formulation != Formulation::physical) {
+    if (remanent) c.model.notes.emplace_back("Remanence is left out: the target-shape formulation knows no forces.");
+    return;
+  }
+  auto magnetism = std::make_shared<Magnetism>();
+  const bool any = remanent && magnetise(c, *magnetism);
+  std::vector<const FieldSource*> known;
+  for (std::size_t a = 0; a < c.spec.actuators.size(); ++a) {
+    const ActuatorSpec& spec = c.spec.actuators[a];
+    if (spec.kind != ActuatorKind::magnetic) continue;
+    if (!any) refuse(spec, "is a magnetic field that acts on nothing: give a material a remanence");
+    Actuator& actuator = c.model.actuators[a];
+    actuator.other = place_of(*magnetism, known, spec);
+    actuator.axis = static_cast<int>(spec.field->command);
+    for (std::size_t b = 0; b < a; ++b)
+      if (c.model.actuators[b].other == actuator.other && c.model.actuators[b].axis == actuator.axis &&
+          c.model.actuators[b].kind == actuator.kind)
+        refuse(spec, "commands the same as actuator '" + c.model.actuators[b].name + "'");
+    check_grid(c, *magnetism, magnetism->sources[static_cast<std::size_t>(actuator.other)], spec.origin);
+  }
+  if (!any) return;
+  doubt_remanence(c.model, *magnetism);
+  if (known.empty())
+    c.model.notes.emplace_back("There is remanence but no magnetic field, so that nothing comes of it.");
+  else
+    c.model.magnetism = std::move(magnetism);
+}
+
+}  // namespace softkin

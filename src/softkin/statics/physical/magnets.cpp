@@ -1,0 +1,231 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <softkin/energy/elastic.hpp>
+#include <softkin/statics/physical/magnets.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// Shape functions at the quadrature points of energy::elastic_rest.
+std::array<std::array<double, 4>, 1> linear_shapes() {
+  return {{{0.25, 0.25, 0.25, 0.25}}};
+}
+
+std::array<std::array<double, 10>, 4> quadratic_shapes() {
+  constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+  const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
+  std::array<std::array<double, 10>, 4> shapes{};
+  for (int q = 0; q < 4; ++q) {
+    std::array<double, 4> l{far, far, far, far};
+    l[q] = near;
+    for (int i = 0; i < 4; ++i) shapes[q][i] = l[i] * (2 * l[i] - 1);
+    for (int e = 0; e < 6; ++e) shapes[q][4 + e] = 4 * l[edges[e][0]] * l[edges[e][1]];
+  }
+  return shapes;
+}
+
+std::array<std::array<double, 6>, 6> prism_shapes() {
+  constexpr std::array<std::array<double, 2>, 3> in_plane{{{1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
+  std::array<std::array<double, 6>, 6> shapes{};
+  for (int q = 0; q < 6; ++q) {
+    const auto& [x, y] = in_plane[q % 3];
+    const double z = (q < 3 ? -1 : 1) / std::sqrt(3.0);
+    const std::array<double, 3> l{1 - x - y, x, y};
+    for (int i = 0; i < 6; ++i) shapes[q][i] = l[i % 3] * (i < 3 ? 1 - z : 1 + z) / 2;
+  }
+  return shapes;
+}
+
+/// Where a quadrature point is, and its moment: (volume / mu_0) F b_r [N mm / mT].
+struct Point {
+  Vec3 place = Vec3::Zero(), moment = Vec3::Zero();
+};
+
+template <int K>
+Point point_of(const std::array<Index, K>& nodes, const std::array<double, K>& shapes,
+               const std::array<double, K>& poles, const Points& positions) {
+  Point point;
+  for (int i = 0; i < K; ++i) {
+    point.place += shapes[i] * positions.row(nodes[i]).transpose();
+    point.moment += poles[i] * positions.row(nodes[i]).transpose();
+  }
+  return point;
+}
+
+/// Second derivative of -moment . b(place) by (moment, place).
+Matrix6 second_derivative(const Point& point, const Flux& flux) {
+  Matrix6 second;
+  second.topLeftCorner<3, 3>().setZero();
+  second.topRightCorner<3, 3>() = -flux.slope;
+  second.bottomLeftCorner<3, 3>() = -flux.slope.transpose();
+  Mat3 of_place = Mat3::Zero();
+  for (int i = 0; i < 3; ++i) of_place -= point.moment[i] * flux.second[i];
+  second.bottomRightCorner<3, 3>() = of_place;
+  return second;
+}
+
+/// The nearest positive semidefinite matrix after the two halves are measured alike.
+Matrix6 made_positive(Matrix6 second, double length_mm) {
+  Eigen::Matrix<double, 6, 1> scale;
+  scale << length_mm, length_mm, length_mm, 1, 1, 1;
+  second = (scale.asDiagonal() * second * scale.asDiagonal()).eval();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(second);
+  second = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).asDiagonal() * solver.eigenvectors().transpose();
+  return scale.cwiseInverse().asDiagonal() * second * scale.cwiseInverse().asDiagonal();
+}
+
+}  // namespace
+
+template <int K, int Q, class Nodes>
+void Magnets::add(Set<K, Q>& set, const Model& model, const Nodes& nodes, const Vec3& remanence, std::int64_t slot) {
+  Eigen::Matrix<double, K, 3> rest;
+  for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
+  const energy::ElasticRest<K, Q> shape = energy::elastic_rest(rest);
+  auto& poles = set.poles.emplace_back();
+  auto& volumes = set.volumes.emplace_back();
+  for (int q = 0; q < Q; ++q) {
+    volumes[q] = shape.volume[q];
+    for (int i = 0; i < K; ++i)
+      poles[q][i] = inverse_permeability * shape.volume[q] * shape.slope[q].row(i).dot(remanence.transpose());
+  }
+  auto& own = set.nodes.emplace_back();
+  std::copy(nodes.begin(), nodes.end(), own.begin());
+  set.slots.push_back(slot);
+}
+
+Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
+    : fields_(model), vertices_(static_cast<Index>(model.rest.rows())) {
+  linear_.shapes = linear_shapes();
+  quadratic_.shapes = quadratic_shapes();
+  prisms_.shapes = prism_shapes();
+  const std::vector<Vec3>& remanence = model.magnetism->remanence;
+  const std::size_t tetrahedra = model.tetrahedra.size();
+  for (std::size_t e = 0; e < remanence.size(); ++e) {
+    if (remanence[e].isZero(0)) continue;
+    if (e >= tetrahedra) {
+      add(prisms_, model, model.prisms[e - tetrahedra], remanence[e], slots[e]);
+    } else if (model.edge_nodes.empty()) {
+      add(linear_, model, model.tetrahedra[e], remanence[e], slots[e]);
+    } else {
+      std::array<Index, 10> nodes;
+      std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
+      std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      add(quadratic_, model, nodes, remanence[e], slots[e]);
+    }
+  }
+  std::vector<double> sums(static_cast<std::size_t>(vertices_));
+  each([&]<int K, int Q>(const Set<K, Q>& set) {
+    for (std::size_t e = 0; e < set.nodes.size(); ++e)
+      for (const auto& poles : set.poles[e])
+        for (int i = 0; i < K; ++i) sums[static_cast<std::size_t>(set.nodes[e][i])] += poles[i];
+  });
+  for (Index v = 0; v < vertices_; ++v)
+    if (sums[static_cast<std::size_t>(v)] != 0) poles_.emplace_back(v, sums[static_cast<std::size_t>(v)]);
+}
+
+std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, const Points& positions, Points& gradient,
+                                            Team& team) const {
+  double energy = 0;
+  if (!setting.uniform.isZero(0)) {
+    const Eigen::RowVector3d flux = setting.uniform.transpose();
+    for (const auto& [vertex, pole] : poles_) {
+      gradient.row(vertex) -= pole * flux;
+      energy -= pole * flux.dot(positions.row(vertex));
+    }
+  }
+  if (!setting.in_space()) return energy;
+  std::atomic<bool> known = true;
+  each([&]<int K, int Q>(const Set<K, Q>& set) {
+    const auto count = static_cast<Index>(set.nodes.size());
+    std::vector<std::array<Flux, Q>> fluxes(set.nodes.size());
+    team.pieces(count, [&](Index begin, Index end) {
+      for (Index e = begin; e < end; ++e)
+        for (int q = 0; q < Q; ++q) {
+          const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
+          if (!fields_.flux(setting, point.place, fluxes[e][q])) known = false;
+        }
+    });
+    for (Index e = 0; e < count; ++e)  // by one thread: elements share vertices
+      for (int q = 0; q < Q; ++q) {
+        const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
+        const Flux& flux = fluxes[e][q];
+        energy -= point.moment.dot(flux.value);
+        const Vec3 pull = flux.slope.transpose() * point.moment;
+        for (int i = 0; i < K; ++i)
+          gradient.row(set.nodes[e][i]) -= (set.poles[e][q][i] * flux.value + set.shapes[q][i] * pull).transpose();
+      }
+  });
+  if (!known) return std::nullopt;
+  return energy;
+}
+
+std::optional<double> Magnets::add_gradient(const Demand& demand, const Points& positions, Points& gradient,
+                                            Team& team) const {
+  return add_gradient(fields_.setting(demand), positions, gradient, team);
+}
+
+void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,
+                            Team& team) const {
+  const Fields::Setting setting = fields_.setting(demand);
+  if (!setting.in_space()) return;
+  each([&]<int K, int Q>(const Set<K, Q>& set) {
+    const auto of_element = [&](Index e, int q, double* slot) {
+      const auto& shapes = set.shapes[q];
+      const auto& poles = set.poles[e][q];
+      const Point point = point_of<K>(set.nodes[e], shapes, poles, positions);
+      Flux flux;
+      if (!fields_.flux(setting, point.place, flux)) return;  // of a shape that is forbidden
+      Matrix6 second = second_derivative(point, flux);
+      if (projected) second = made_positive(second, std::cbrt(set.volumes[e][q]));
+      const Mat3 mixed = second.topRightCorner<3, 3>(), of_place = second.bottomRightCorner<3, 3>(),
+                 of_moment = second.topLeftCorner<3, 3>();
+      for (int a = 0; a < K; ++a)
+        for (int b = 0; b <= a; ++b, slot += 9) {
+          const Mat3 block = poles[a] * poles[b] * of_moment + poles[a] * shapes[b] * mixed +
+                             shapes[a] * poles[b] * mixed.transpose() + shapes[a] * shapes[b] * of_place;
+          for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(r, c);
+        }
+    };
+    team.pieces(static_cast<Index>(set.nodes.size()), [&](Index begin, Index end) {
+      for (Index e = begin; e < end; ++e)
+        for (int q = 0; q < Q; ++q) of_element(e, q, slots.data() + 9 * set.slots[static_cast<std::size_t>(e)]);
+    });
+  });
+}
+
+void Magnets::command_force(Index actuator, const Demand& demand, const Points& positions, Points& force,
+                            Team& team) const {
+  force.setZero(positions.rows(), 3);
+  (void)add_gradient(fields_.derivative(actuator, demand), positions, force, team);
+}
+
+MagneticLoad Magnets::load(const Demand& demand, const Points& positions, Team& team) const {
+  MagneticLoad load;
+  double volume = 0;
+  each([&]<int K, int Q>(const Set<K, Q>& set) {
+    for (std::size_t e = 0; e < set.nodes.size(); ++e)
+      for (int q = 0; q < Q; ++q) {
+        const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
+        load.center += set.volumes[e][q] * point.place;
+        volume += set.volumes[e][q];
+      }
+  });
+  load.center /= volume;
+  Points gradient = Points::Zero(positions.rows(), 3);
+  (void)add_gradient(demand, positions, gradient, team);
+  for (Index v = 0; v < vertices_; ++v) {
+    const Vec3 force = -gradient.row(v).transpose();
+    load.force += force;
+    load.moment += (positions.row(v).transpose() - load.center).cross(force);
+  }
+  return load;
+}
+
+}  // namespace softkin::physical

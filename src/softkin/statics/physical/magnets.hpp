@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <softkin/core/large_vector.hpp>
+#include <softkin/core/team.hpp>
+#include <softkin/statics/deformation.hpp>
+#include <softkin/statics/physical/fields.hpp>
+
+namespace softkin::physical {
+
+/// A hard-magnetic body in applied fields. Per rest volume its energy is -(1 / mu_0) (F b_r) . b(x), with the remanent
+/// flux density b_r of the body at rest and the applied one, b, at the place x where the material is now: linear in F.
+///
+/// A uniform field pulls at every vertex with a number of its own times the flux density, whatever the shape: dead
+/// forces, and no stiffness. A field that changes in space has stiffness too, in the elements' own slots.
+///
+/// source  Zhao, Kim, Cheng, Liu, Zhao, J. Mech. Phys. Solids 124, 2019; docs/magnetism.md
+class Magnets {
+ public:
+  /// model  must outlive the object, and have magnetism
+  /// slots  first one of every tetrahedron's matrices, then of every prism's
+  Magnets(const Model& model, const std::vector<std::int64_t>& slots);
+
+  /// Energy [mJ]; adds the gradient [N]. None where the field is not known: outside a grid, on a wire.
+  [[nodiscard]] std::optional<double> add_gradient(const Demand& demand, const Points& positions, Points& gradient,
+                                                   Team& team) const;
+
+  /// Adds second derivatives to what is in the elements' slots [N/mm]. projected: with those by (F b_r, x) of every
+  /// quadrature point replaced by the nearest positive semidefinite matrix
+  void add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,
+                     Team& team) const;
+
+  /// Derivative of the gradient by the command of an actuator of kind magnetic, at fixed positions, #V by 3.
+  void command_force(Index actuator, const Demand& demand, const Points& positions, Points& force, Team& team) const;
+
+  [[nodiscard]] MagneticLoad load(const Demand& demand, const Points& positions, Team& team) const;
+
+  [[nodiscard]] bool any_dipole() const { return fields_.any_dipole(); }
+
+ private:
+  /// Magnetic elements of K nodes and Q quadrature points.
+  template <int K, int Q>
+  struct Set {
+    std::vector<std::array<Index, K>> nodes;
+    std::vector<std::int64_t> slots;
+    std::vector<std::array<std::array<double, K>, Q>> poles;  // volume / mu_0 b_r . slope_a [N / mT]
+    std::vector<std::array<double, Q>> volumes;               // at rest [mm^3]
+    std::array<std::array<double, K>, Q> shapes;              // functions at the points
+  };
+  template <int K, int Q, class Nodes>
+  void add(Set<K, Q>& set, const Model& model, const Nodes& nodes, const Vec3& remanence, std::int64_t slot);
+  template <class Visit>
+  void each(const Visit& visit) const {
+    visit(linear_);
+    visit(quadratic_);
+    visit(prisms_);
+  }
+  /// Of the fields of a setting.
+  std::optional<double> add_gradient(const Fields::Setting& setting, const Points& positions, Points& gradient,
+                                     Team& team) const;
+
+  Fields fields_;
+  Index vertices_;
+  std::vector<std::pair<Index, double>> poles_;  // of a uniform field: vertex, force over flux density [N / mT]
+  Set<4, 1> linear_;
+  Set<10, 4> quadratic_;
+  Set<6, 6> prisms_;
+};
+
+}  // namespace softkin::physical
