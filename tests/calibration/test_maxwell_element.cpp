@@ -92,11 +92,11 @@ TEST(MaxwellElement, CreepAgreesWithTheBranchEquations) {
   const auto found = calibration::stretch_under({vhb_law, vhb_branches}, history);
   ASSERT_TRUE(found);
   testing::BranchEquations equations = vhb_equations();
-  EXPECT_NEAR((*found)[0], equations.bearing(0.05, 5.8), 1e-9);
+  EXPECT_NEAR(found->stretch[0], equations.bearing(0.05, 5.8), 1e-9);
   for (Index i = 1; i < 6; ++i) {
     const double dt = history.time_s[i] - history.time_s[i - 1];
     const double l = equations.creep(dt, history.value[i - 1], history.value[i], static_cast<int>(400 * dt), 5.8);
-    EXPECT_NEAR((*found)[i], l, 3e-5) << i;
+    EXPECT_NEAR(found->stretch[i], l, 3e-5) << i;
   }
 }
 
@@ -120,7 +120,33 @@ TEST(MaxwellElement, CreepUndoesRelaxation) {
   const MaxwellElement element{{Law::yeoh, 0.02, 0, -0.0005, 0.0001}, vhb_branches};
   const auto back = calibration::stretch_under(element, {fine.time_s, calibration::stress_under(element, fine)});
   ASSERT_TRUE(back);
-  EXPECT_LT((*back - fine.value).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((back->stretch - fine.value).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(MaxwellElement, SlopesOfCreepAreThoseOfDifferences) {
+  History history{Eigen::VectorXd(6), Eigen::VectorXd(6)};
+  history.time_s << 0, 0.5, 5, 40, 45, 60;
+  history.value << 0.03, 0.05, 0.05, 0.05, 0.01, 0.01;
+  const auto at = [&](const Eigen::VectorXd& x) {
+    return MaxwellElement{{Law::mooney_rivlin, x[0], x[1], 0, 0},
+                          {{x[2], std::exp(x[3])}, {x[4], std::exp(x[5])}}};
+  };
+  const calibration::LawSlopes of_law = [](double l) -> Eigen::VectorXd {
+    return 2 * (l - 1 / (l * l)) * Eigen::Vector2d(1, 1 / l);
+  };
+  Eigen::VectorXd x(6);
+  x << 0.01, 0.005, 0.03, std::log(0.7), 0.02, std::log(20.0);
+  const auto found = calibration::stretch_under(at(x), history, of_law);
+  ASSERT_TRUE(found);
+  for (Index u = 0; u < 6; ++u) {
+    Eigen::VectorXd up = x, down = x;
+    const double step = u == 3 || u == 5 ? 1e-4 : 1e-6;
+    up[u] += step;
+    down[u] -= step;
+    const Eigen::VectorXd slope = (calibration::stretch_under(at(up), history, {}, 1e-12)->stretch -
+                                   calibration::stretch_under(at(down), history, {}, 1e-12)->stretch) / (2 * step);
+    EXPECT_LT((found->slopes.col(u) - slope).cwiseAbs().maxCoeff(), 2e-5 * (1 + slope.cwiseAbs().maxCoeff())) << u;
+  }
 }
 
 TEST(MaxwellElement, AStressThatNoStretchBearsIsSaid) {

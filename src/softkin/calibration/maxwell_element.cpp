@@ -29,7 +29,7 @@ struct Relaxing {
 /// ln(a) after a step, and its derivatives.
 struct Stepped {
   double log_a = 0;
-  double by_log_a = 0, by_end = 0, by_log_time = 0;  // end: the stretch there
+  double by_log_a = 1, by_begin = 0, by_end = 0, by_log_time = 0;  // begin, end: the stretches there
 };
 
 Stepped stepped(const Relaxing& r, double log_a, double begin, double end) {
@@ -41,6 +41,7 @@ Stepped stepped(const Relaxing& r, double log_a, double begin, double end) {
   Stepped result;
   result.log_a = std::log(along / across) / 3;
   result.by_log_a = w * (2 * a2 / along + a_inverse / across) / 3;
+  result.by_begin = by_l * r.place;
   result.by_end = by_l * (1 - r.place);
   result.by_log_time = by_w * r.x * w - by_l * (begin - end) * r.place_by_x * r.x;
   return result;
@@ -101,35 +102,51 @@ struct Imposed {
   }
 };
 
-/// All branches under a stress that is imposed.
+/// Logarithms of the stretch, then of the branches' viscous stretches, and their derivatives by what is asked for.
+struct LoadedState {
+  Eigen::VectorXd logs;
+  Eigen::MatrixXd slopes;
+};
+
+/// All branches under a stress that is imposed. Derivatives are by the numbers of the law, and by modulus and ln(time)
+/// of each branch; where the law has none of them asked for, there are none at all.
 class Loaded {
  public:
-  Loaded(const MaxwellElement& element, double tolerance)
-      : element_(element),
-        tolerance_(tolerance),
-        state_(Eigen::VectorXd::Zero(static_cast<Index>(element.branches.size()) + 1)) {}
+  Loaded(const MaxwellElement& element, const LawSlopes& law_slopes, double tolerance)
+      : element_(element), law_slopes_(law_slopes), tolerance_(tolerance) {
+    const Eigen::Index branches = static_cast<Eigen::Index>(element.branches.size());
+    law_columns_ = law_slopes ? law_slopes(1).size() : 0;
+    now_.logs = Eigen::VectorXd::Zero(branches + 1);
+    now_.slopes = Eigen::MatrixXd::Zero(branches + 1, law_slopes ? law_columns_ + 2 * branches : 0);
+  }
 
-  [[nodiscard]] double stretch() const { return std::exp(state_[0]); }
+  [[nodiscard]] double stretch() const { return std::exp(now_.logs[0]); }
+  [[nodiscard]] Eigen::RowVectorXd slopes() const { return stretch() * now_.slopes.row(0); }
 
   /// At once, with no time for the branches to move.
-  [[nodiscard]] bool load(double stress) { return balance(state_, state_, 0, stress); }
+  [[nodiscard]] bool load(double stress) {
+    const LoadedState before = now_;
+    return balance(before, now_, 0, stress);
+  }
 
   [[nodiscard]] bool advance(double h, double begin, double end, int halvings = 0) {
-    std::array<Eigen::VectorXd, most_parts> ends;
+    std::array<Eigen::VectorXd, most_parts> logs;
+    std::array<Eigen::MatrixXd, most_parts> slopes;
     bool found = true;
     for (int parts = 1; parts <= most_parts && found; ++parts) {
-      Eigen::VectorXd& state = ends[static_cast<std::size_t>(parts) - 1];
-      state = state_;
+      LoadedState state = now_;
       for (int i = 1; i <= parts && found; ++i) {
-        const Eigen::VectorXd before = state;
+        const LoadedState before = state;
         found = balance(before, state, h / parts, begin + (end - begin) * i / parts);
       }
+      logs[static_cast<std::size_t>(parts) - 1] = std::move(state.logs);
+      slopes[static_cast<std::size_t>(parts) - 1] = std::move(state.slopes);
     }
     if (found) {
-      Eigen::VectorXd better = fourth_order(ends);
-      if ((better - third_order(ends)).cwiseAbs().maxCoeff() <= tolerance_) {
-        state_ = std::move(better);
-        return balance(state_, state_, 0, end);
+      const Eigen::VectorXd better = fourth_order(logs);
+      if ((better - third_order(logs)).cwiseAbs().maxCoeff() <= tolerance_) {
+        now_ = {better, fourth_order(slopes)};
+        return load(end);
       }
     }
     if (halvings >= most_halvings) return false;
@@ -138,45 +155,65 @@ class Loaded {
   }
 
  private:
+  /// At a stretch: the stress, its slope by the stretch, and how each branch got there.
+  struct Pull {
+    double stress = 0, slope = 0;
+    std::vector<Stepped> steps;
+  };
+
   /// Newton's method for the stretch at the end of a step of h that bears the stress; h 0: the branches stay.
-  [[nodiscard]] bool balance(const Eigen::VectorXd& before, Eigen::VectorXd& after, double h, double stress) const {
+  [[nodiscard]] bool balance(const LoadedState& before, LoadedState& after, double h, double stress) const {
     constexpr int most_iterations = 100;
     constexpr double longest = 0.3, enough = 1e-12;
-    const double begin = std::exp(before[0]);
-    Eigen::VectorXd moved = after;
     for (int i = 0; i < most_iterations; ++i) {
-      const Pull pull = pull_at(before, moved, h, begin);
-      const double l = std::exp(moved[0]), step = (stress - pull.stress) / (pull.slope * l);
+      const Pull pull = pull_at(before, after.logs[0], h);
+      const double l = std::exp(after.logs[0]), step = (stress - pull.stress) / (pull.slope * l);
       if (!std::isfinite(step) || !(pull.slope > 0)) return false;
-      moved[0] += within_limit(l, std::clamp(step, -longest, longest));
+      after.logs[0] += within_limit(l, std::clamp(step, -longest, longest));
       if (std::abs(step) > enough) continue;
-      after = moved;
+      for (std::size_t b = 0; b < pull.steps.size(); ++b)
+        after.logs[static_cast<Eigen::Index>(b) + 1] = pull.steps[b].log_a;
+      if (after.slopes.cols() > 0) derive(before, after, pull);
       return true;
     }
     return false;
   }
 
-  struct Pull {
-    double stress = 0, slope = 0;  // slope: by the stretch
-  };
-
-  /// At a stretch at the end of a step; the branches come to where they are then.
-  [[nodiscard]] Pull pull_at(const Eigen::VectorXd& before, Eigen::VectorXd& end, double h, double begin) const {
+  [[nodiscard]] Pull pull_at(const LoadedState& before, double log_stretch, double h) const {
     constexpr double nudge = 1e-6;
-    const double l = std::exp(end[0]);
+    const double begin = std::exp(before.logs[0]), l = std::exp(log_stretch);
     const auto of_law = [&](double stretch) { return uniaxial_stress(element_.law, stretch - 1); };
-    Pull pull{of_law(l), (of_law(l + nudge) - of_law(l - nudge)) / (2 * nudge)};
+    Pull pull{of_law(l), (of_law(l + nudge) - of_law(l - nudge)) / (2 * nudge), {}};
     for (std::size_t b = 0; b < element_.branches.size(); ++b) {
-      const auto at = static_cast<Index>(b) + 1;
       const ViscousBranch& branch = element_.branches[b];
-      Stepped step{before[at]};
-      if (h > 0) step = stepped(Relaxing(h / branch.time_s), before[at], begin, l);
-      end[at] = step.log_a;
+      Stepped step{before.logs[static_cast<Eigen::Index>(b) + 1]};
+      if (h > 0) step = stepped(Relaxing(h / branch.time_s), step.log_a, begin, l);
       const BranchStress stress(step.log_a, l);
       pull.stress += branch.modulus_MPa * stress.value;
       pull.slope += branch.modulus_MPa * (stress.by_stretch + stress.by_log_a * step.by_end);
+      pull.steps.push_back(step);
     }
     return pull;
+  }
+
+  /// What the balance of stresses makes of derivatives.
+  void derive(const LoadedState& before, LoadedState& after, const Pull& pull) const {
+    const double begin = std::exp(before.logs[0]), l = std::exp(after.logs[0]);
+    Eigen::RowVectorXd by_all = Eigen::RowVectorXd::Zero(after.slopes.cols());  // of the stress, the stretch held
+    by_all.head(law_columns_) = law_slopes_(l).transpose();
+    for (std::size_t b = 0; b < pull.steps.size(); ++b) {
+      const Eigen::Index row = static_cast<Eigen::Index>(b) + 1, column = law_columns_ + 2 * (row - 1);
+      const Stepped& step = pull.steps[b];
+      const BranchStress stress(step.log_a, l);
+      after.slopes.row(row) =
+          step.by_log_a * before.slopes.row(row) + step.by_begin * begin * before.slopes.row(0);
+      after.slopes(row, column + 1) += step.by_log_time;
+      by_all += element_.branches[b].modulus_MPa * stress.by_log_a * after.slopes.row(row);
+      by_all[column] += stress.value;
+    }
+    after.slopes.row(0) = -by_all / (pull.slope * l);
+    for (std::size_t b = 0; b < pull.steps.size(); ++b)
+      after.slopes.row(static_cast<Eigen::Index>(b) + 1) += pull.steps[b].by_end * l * after.slopes.row(0);
   }
 
   /// A step of ln(l) that stays where the law has a stress.
@@ -188,8 +225,10 @@ class Loaded {
   }
 
   const MaxwellElement& element_;
+  const LawSlopes& law_slopes_;
   double tolerance_;
-  Eigen::VectorXd state_;  // ln of the stretch, then of the viscous stretches
+  Eigen::Index law_columns_ = 0;
+  LoadedState now_;
 };
 
 }  // namespace
@@ -216,18 +255,20 @@ Eigen::VectorXd stress_under(const MaxwellElement& element, const History& stret
   return stress;
 }
 
-std::optional<Eigen::VectorXd> stretch_under(const MaxwellElement& element, const History& stresses,
-                                             double tolerance) {
-  Loaded loaded(element, tolerance);
-  Eigen::VectorXd stretch(stresses.value.size());
-  for (Index i = 0; i < stretch.size(); ++i) {
+std::optional<LoadedStretch> stretch_under(const MaxwellElement& element, const History& stresses,
+                                           const LawSlopes& law_slopes, double tolerance) {
+  Loaded loaded(element, law_slopes, tolerance);
+  const Eigen::Index size = stresses.value.size();
+  LoadedStretch result{Eigen::VectorXd(size), Eigen::MatrixXd(size, loaded.slopes().size())};
+  for (Eigen::Index i = 0; i < size; ++i) {
     const bool found =
         i == 0 ? loaded.load(stresses.value[0])
                : loaded.advance(stresses.time_s[i] - stresses.time_s[i - 1], stresses.value[i - 1], stresses.value[i]);
     if (!found) return std::nullopt;
-    stretch[i] = loaded.stretch();
+    result.stretch[i] = loaded.stretch();
+    result.slopes.row(i) = loaded.slopes();
   }
-  return stretch;
+  return result;
 }
 
 }  // namespace softkin::calibration

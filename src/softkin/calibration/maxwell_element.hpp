@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <softkin/calibration/tensile_fit.hpp>
 #include <softkin/model/robot_spec.hpp>
@@ -43,9 +44,19 @@ struct UnitBranch {
 /// Nominal stress [MPa] under a history of stretches.
 [[nodiscard]] Eigen::VectorXd stress_under(const MaxwellElement& element, const History& stretches);
 
-/// Stretch [-] under a history of nominal stresses [MPa]: the same steps, in which the stretch at the end is what bears
-/// the stress. None where no stretch is found that does.
-[[nodiscard]] std::optional<Eigen::VectorXd> stretch_under(const MaxwellElement& element, const History& stresses,
-                                                           double tolerance = 1e-8);
+/// Derivatives of the law's nominal stress at a stretch by whatever numbers it is made of.
+using LawSlopes = std::function<Eigen::VectorXd(double stretch)>;
+
+struct LoadedStretch {
+  Eigen::VectorXd stretch;  // at each time [-]
+  Eigen::MatrixXd slopes;   // its derivatives: by the numbers of the law, then by modulus and ln(time) of each branch
+};
+
+/// Under a history of nominal stresses [MPa]: the same steps, in which the stretch at the end is what bears the stress.
+/// None where no stretch is found that does.
+///
+/// law_slopes  none: no derivatives are made
+[[nodiscard]] std::optional<LoadedStretch> stretch_under(const MaxwellElement& element, const History& stresses,
+                                                         const LawSlopes& law_slopes = {}, double tolerance = 1e-7);
 
 }  // namespace softkin::calibration

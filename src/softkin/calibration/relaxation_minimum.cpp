@@ -68,8 +68,8 @@ struct NormalEquations {
 }  // namespace
 
 std::optional<Minimum> minimise(const RelaxationProblem& problem, const VectorXd& start) {
-  constexpr int most_steps = 200;
-  constexpr double enough = 1e-10, least_damping = 1e-12, most_damping = 1e8;
+  constexpr int most_steps = 60;
+  constexpr double enough = 1e-7, least_damping = 1e-12, most_damping = 1e8;
   VectorXd unknowns = within_bounds(problem, start);
   std::optional<VectorXd> residuals = problem.residuals(unknowns);
   if (!residuals) return std::nullopt;

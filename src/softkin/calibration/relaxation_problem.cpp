@@ -74,9 +74,12 @@ VectorXd answer_in(const RelaxationRun& run) {
   return vector_of(run.load_imposed ? run.stretch : run.stress_MPa);
 }
 
-std::optional<VectorXd> answer_of(const MaxwellElement& element, const RelaxationRun& run, double tolerance) {
+std::optional<VectorXd> answer_of(const MaxwellElement& element, const RelaxationRun& run) {
   const History imposed = imposed_in(run);
-  if (run.load_imposed) return stretch_under(element, imposed, tolerance);
+  if (run.load_imposed) {
+    std::optional<LoadedStretch> found = stretch_under(element, imposed);
+    return found ? std::optional(std::move(found->stretch)) : std::nullopt;
+  }
   if (element.law.jm > 0)
     for (const double stretch : run.stretch)
       if (excess_of(stretch) >= element.law.jm) return std::nullopt;
@@ -178,14 +181,24 @@ VectorXd RelaxationProblem::law_stress(const RelaxationRun& run, const std::vect
   return stress;
 }
 
-void RelaxationProblem::fill_stress_slopes(const RelaxationRun& run, const VectorXd& unknowns, Part part) const {
+/// By the constants that are not held.
+VectorXd RelaxationProblem::law_slopes(const VectorXd& unknowns, double stretch) const {
+  VectorXd slopes(free_constants_);
   for (Eigen::Index c = 0; c < free_constants_; ++c) {
     const double step = is_modulus(c) ? 1 : 1e-5;  // of what is linear any step will do
     VectorXd up = unknowns, down = unknowns;
     up[c] += step;
     down[c] -= step;
-    part.col(c) = (law_stress(run, constants(up)) - law_stress(run, constants(down))) / (2 * step);
+    slopes[c] = (uniaxial_stress(law_of_constants(law_, constants(up)), stretch - 1) -
+                 uniaxial_stress(law_of_constants(law_, constants(down)), stretch - 1)) /
+                (2 * step);
   }
+  return slopes;
+}
+
+void RelaxationProblem::fill_stress_slopes(const RelaxationRun& run, const VectorXd& unknowns, Part part) const {
+  for (Eigen::Index i = 0; i < part.rows(); ++i)
+    part.row(i).head(free_constants_) = law_slopes(unknowns, run.stretch[static_cast<std::size_t>(i)]).transpose();
   const std::vector<ViscousBranch> branches = element(unknowns).branches;
   for (std::size_t b = 0; b < branches.size(); ++b) {
     const UnitBranch unit = unit_branch(imposed_in(run), branches[b].time_s);
@@ -196,19 +209,8 @@ void RelaxationProblem::fill_stress_slopes(const RelaxationRun& run, const Vecto
 }
 
 void RelaxationProblem::fill_stretch_slopes(const RelaxationRun& run, const VectorXd& unknowns, Part part) const {
-  constexpr double share = 1e-4, accurate = 1e-11;
-  const MaxwellElement now = element(unknowns);
-  double whole = now.law.youngs_modulus() / 3;
-  for (const ViscousBranch& branch : now.branches) whole += branch.modulus_MPa;
-  for (Eigen::Index u = 0; u < unknowns.size(); ++u) {
-    const double step = is_modulus(u) ? share * (std::abs(unknowns[u]) + 1e-2 * whole) : share;
-    VectorXd up = unknowns, down = unknowns;
-    up[u] += step;
-    down[u] -= step;
-    const auto high = answer_of(element(up), run, accurate), low = answer_of(element(down), run, accurate);
-    part.col(u).setZero();  // no answer beside the unknown: then it stays as it is
-    if (high && low) part.col(u) = (*high - *low) / (2 * step);
-  }
+  const auto of_law = [&](double stretch) { return law_slopes(unknowns, stretch); };
+  part = stretch_under(element(unknowns), imposed_in(run), of_law).value().slopes;  // it had residuals
 }
 
 Eigen::MatrixXd RelaxationProblem::slopes(const VectorXd& unknowns) const {

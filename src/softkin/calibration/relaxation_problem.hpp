@@ -21,8 +21,7 @@ namespace softkin::calibration {
 [[nodiscard]] History imposed_in(const RelaxationRun& run);
 [[nodiscard]] Eigen::VectorXd answer_in(const RelaxationRun& run);
 /// What a run would have answered. None where a stress finds no stretch, or a stretch is beyond the law's limit.
-[[nodiscard]] std::optional<Eigen::VectorXd> answer_of(const MaxwellElement& element, const RelaxationRun& run,
-                                                       double tolerance = 1e-8);
+[[nodiscard]] std::optional<Eigen::VectorXd> answer_of(const MaxwellElement& element, const RelaxationRun& run);
 
 /// Constants of a law and branches by least squares in what answered. The unknowns are the constants that are not held,
 /// jm as ln(jm - what I1 - 3 comes to in the runs), and of every branch its modulus and ln(relaxation time).
@@ -59,7 +58,7 @@ class RelaxationProblem {
 
   /// Answers less what was measured, over the scales, run after run. None as of answer_of.
   [[nodiscard]] std::optional<Eigen::VectorXd> residuals(const Eigen::VectorXd& unknowns) const;
-  /// Derivatives of the residuals, rows x unknowns: of stresses exact, of stretches by central differences.
+  /// Derivatives of the residuals, rows x unknowns: exact but for the integration's tolerance.
   [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::VectorXd& unknowns) const;
 
   /// All runs as if their stretches were imposed, which makes the stress linear in all constants but jm and in the
@@ -79,6 +78,7 @@ class RelaxationProblem {
   using Part = Eigen::Ref<Eigen::MatrixXd>;
   void fill_stress_slopes(const RelaxationRun& run, const Eigen::VectorXd& unknowns, Part part) const;
   void fill_stretch_slopes(const RelaxationRun& run, const Eigen::VectorXd& unknowns, Part part) const;
+  [[nodiscard]] Eigen::VectorXd law_slopes(const Eigen::VectorXd& unknowns, double stretch) const;
   [[nodiscard]] Eigen::VectorXd law_stress(const RelaxationRun& run, const std::vector<double>& constants) const;
 
   std::vector<RelaxationRun> runs_;
