@@ -128,8 +128,7 @@ TEST(MaxwellElement, SlopesOfCreepAreThoseOfDifferences) {
   history.time_s << 0, 0.5, 5, 40, 45, 60;
   history.value << 0.03, 0.05, 0.05, 0.05, 0.01, 0.01;
   const auto at = [&](const Eigen::VectorXd& x) {
-    return MaxwellElement{{Law::mooney_rivlin, x[0], x[1], 0, 0},
-                          {{x[2], std::exp(x[3])}, {x[4], std::exp(x[5])}}};
+    return MaxwellElement{{Law::mooney_rivlin, x[0], x[1], 0, 0}, {{x[2], std::exp(x[3])}, {x[4], std::exp(x[5])}}};
   };
   const calibration::LawSlopes of_law = [](double l) -> Eigen::VectorXd {
     return 2 * (l - 1 / (l * l)) * Eigen::Vector2d(1, 1 / l);
@@ -144,7 +143,8 @@ TEST(MaxwellElement, SlopesOfCreepAreThoseOfDifferences) {
     up[u] += step;
     down[u] -= step;
     const Eigen::VectorXd slope = (calibration::stretch_under(at(up), history, {}, 1e-12)->stretch -
-                                   calibration::stretch_under(at(down), history, {}, 1e-12)->stretch) / (2 * step);
+                                   calibration::stretch_under(at(down), history, {}, 1e-12)->stretch) /
+                                  (2 * step);
     EXPECT_LT((found->slopes.col(u) - slope).cwiseAbs().maxCoeff(), 2e-5 * (1 + slope.cwiseAbs().maxCoeff())) << u;
   }
 }

@@ -12,8 +12,8 @@ namespace {
 
 using namespace softkin::testing;
 using calibration::BranchCount;
-using calibration::RelaxationFit;
 using calibration::fit_relaxation;
+using calibration::RelaxationFit;
 
 /// Every number is within so many of its deviations of the one that the data were made with, and is known at all.
 void expect_found(const std::string& name, const calibration::Estimate& found, double made, double most_share) {
@@ -32,7 +32,8 @@ void expect_branches(const RelaxationFit& fit, const std::vector<ViscousBranch>&
 
 TEST(RelaxationFit, CyclesOfVhbAtThreeRatesGiveItsBranchesAndItsLimit) {
   std::vector<RelaxationRun> runs;
-  for (const double rate : {0.01, 0.05, 0.5}) runs.push_back(made_run(cycled(5, rate, 2, 80), gent_stress, vhb_branches, 0.005, 7));
+  for (const double rate : {0.01, 0.05, 0.5})
+    runs.push_back(made_run(cycled(5, rate, 2, 80), gent_stress, vhb_branches, 0.005, 7));
   const RelaxationFit fit = fit_relaxation(runs, {Law::gent});
   EXPECT_EQ(fit.by, BranchCount::information);
   expect_branches(fit, vhb_branches, 0.2);
@@ -56,23 +57,24 @@ TEST(RelaxationFit, RelaxationOfTwoBranches) {
 TEST(RelaxationFit, OneBranchGivesOneAndNoneGivesNone) {
   for (const double noise : {0.0, 0.003, 0.03})
     for (const unsigned seed : {1u, 2u, 3u}) {
-      const auto one = fit_relaxation(
-          {made_run(held_at(1.3, 0.1, 500, 60), rubber_stress, {{0.05, 5}}, noise, seed)}, {Law::neo_hookean});
+      const auto one = fit_relaxation({made_run(held_at(1.3, 0.1, 500, 60), rubber_stress, {{0.05, 5}}, noise, seed)},
+                                      {Law::neo_hookean});
       EXPECT_EQ(one.chosen, 1u) << noise << " " << seed;
-      const auto none = fit_relaxation(
-          {made_run(cycled(2, 0.1, 2, 100), rubber_stress, {}, noise, seed)}, {Law::neo_hookean});
+      const auto none =
+          fit_relaxation({made_run(cycled(2, 0.1, 2, 100), rubber_stress, {}, noise, seed)}, {Law::neo_hookean});
       EXPECT_EQ(none.chosen, 0u) << noise << " " << seed;
       EXPECT_NEAR(none.best().constants[0].value, 0.05, 0.05 * noise + 1e-9);
     }
 }
 
 TEST(RelaxationFit, ExactDataGiveExactBranches) {
-  const RelaxationFit fit =
-      fit_relaxation({made_run(cycled(3, 0.1, 2, 100), gent_stress, vhb_branches, 0, 1),
-                      made_run(cycled(3, 2, 2, 100), gent_stress, vhb_branches, 0, 1)}, {Law::gent});
+  const RelaxationFit fit = fit_relaxation({made_run(cycled(3, 0.1, 2, 100), gent_stress, vhb_branches, 0, 1),
+                                            made_run(cycled(3, 2, 2, 100), gent_stress, vhb_branches, 0, 1)},
+                                           {Law::gent});
   ASSERT_EQ(fit.chosen, 3u);
   for (std::size_t b = 0; b < 3; ++b) {
-    EXPECT_NEAR(fit.best().branches[b].modulus_MPa.value, vhb_branches[b].modulus_MPa, 1e-3 * vhb_branches[b].modulus_MPa);
+    EXPECT_NEAR(fit.best().branches[b].modulus_MPa.value, vhb_branches[b].modulus_MPa,
+                1e-3 * vhb_branches[b].modulus_MPa);
     EXPECT_NEAR(fit.best().branches[b].time_s.value, vhb_branches[b].time_s, 1e-3 * vhb_branches[b].time_s);
   }
 }
@@ -89,9 +91,9 @@ TEST(RelaxationFit, CreepOfTwoBranches) {
 
 TEST(RelaxationFit, CreepAndRelaxationTogether) {
   const std::vector<ViscousBranch> made{{0.05, 0.8}, {0.03, 40}};
-  const RelaxationFit fit =
-      fit_relaxation({made_run(held_at(0.1, 0.05, 1000, 40, true), rubber_stress, made, 0.003, 2),
-                      made_run(held_at(1.5, 0.05, 1000, 40), rubber_stress, made, 0.01, 3)}, {Law::neo_hookean});
+  const RelaxationFit fit = fit_relaxation({made_run(held_at(0.1, 0.05, 1000, 40, true), rubber_stress, made, 0.003, 2),
+                                            made_run(held_at(1.5, 0.05, 1000, 40), rubber_stress, made, 0.01, 3)},
+                                           {Law::neo_hookean});
   expect_branches(fit, made, 0.3);
 }
 
@@ -156,7 +158,8 @@ TEST(RelaxationFit, RefusesTestsThatTellNothing) {
   EXPECT_THROW((void)fit_relaxation({}, {}), InvalidInput);
   // a fluid: nothing is left in the end
   const auto nothing = [](double) { return 0.0; };
-  EXPECT_THROW((void)fit_relaxation({made_run(held_at(1.5, 0.1, 1000, 60), nothing, {{0.1, 5}}, 0, 1)}, {}), InvalidInput);
+  EXPECT_THROW((void)fit_relaxation({made_run(held_at(1.5, 0.1, 1000, 60), nothing, {{0.1, 5}}, 0, 1)}, {}),
+               InvalidInput);
 }
 
 TEST(NonnegativeLeastSquares, IsTheBestOfAllSetsOfColumns) {
@@ -177,7 +180,8 @@ TEST(NonnegativeLeastSquares, IsTheBestOfAllSetsOfColumns) {
       const Eigen::MatrixXd some = a(Eigen::all, chosen);
       const Eigen::VectorXd x = (some.transpose() * some).inverse() * some.transpose() * b;
       bool allowed = true;
-      for (std::size_t i = 0; i < chosen.size(); ++i) allowed = allowed && (chosen[i] < free || x[static_cast<Eigen::Index>(i)] >= 0);
+      for (std::size_t i = 0; i < chosen.size(); ++i)
+        allowed = allowed && (chosen[i] < free || x[static_cast<Eigen::Index>(i)] >= 0);
       if (allowed) best = std::min(best, (some * x - b).squaredNorm());
     }
     const Eigen::VectorXd found = calibration::nonnegative_least_squares(a, b, free);

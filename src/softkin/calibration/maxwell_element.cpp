@@ -205,8 +205,7 @@ class Loaded {
       const Eigen::Index row = static_cast<Eigen::Index>(b) + 1, column = law_columns_ + 2 * (row - 1);
       const Stepped& step = pull.steps[b];
       const BranchStress stress(step.log_a, l);
-      after.slopes.row(row) =
-          step.by_log_a * before.slopes.row(row) + step.by_begin * begin * before.slopes.row(0);
+      after.slopes.row(row) = step.by_log_a * before.slopes.row(row) + step.by_begin * begin * before.slopes.row(0);
       after.slopes(row, column + 1) += step.by_log_time;
       by_all += element_.branches[b].modulus_MPa * stress.by_log_a * after.slopes.row(row);
       by_all[column] += stress.value;

@@ -16,9 +16,9 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double grid_per_decade = 4;
-constexpr double noise_share = 1e-4;   // of the answers' rms: nothing finer is measured
-constexpr double strong_evidence = 6;  // between values of the criterion
-constexpr double least_share = 1e-3;   // of a branch that a fit begins with, of all
+constexpr double finest_share = 1e-4;    // of the answers' rms: nothing finer is measured
+constexpr double strong_difference = 6;  // between values of the criterion
+constexpr double least_share = 1e-3;     // of a branch that a fit begins with, of all
 
 /// Relaxation times that the rows tell: the shortest interval, but for a few that may be strays, and the longest run.
 std::array<double, 2> resolved_times(const std::vector<RelaxationRun>& runs) {
@@ -62,8 +62,7 @@ class Starts {
  public:
   Starts(const RelaxationProblem& problem, const std::vector<double>& grid) : problem_(problem), grid_(grid) {
     columns_.resize(problem.rows(), static_cast<Eigen::Index>(grid.size()));
-    for (std::size_t i = 0; i < grid.size(); ++i)
-      columns_.col(static_cast<Eigen::Index>(i)) = problem.column(grid[i]);
+    for (std::size_t i = 0; i < grid.size(); ++i) columns_.col(static_cast<Eigen::Index>(i)) = problem.column(grid[i]);
     choose_limit();
   }
 
@@ -118,8 +117,7 @@ class Starts {
   /// jm is not linear: the best of a row of them, over the whole grid of times.
   void choose_limit() {
     constants_.assign(problem_.names().size(), 0);
-    for (std::size_t c = 0; c < constants_.size(); ++c)
-      constants_[c] = problem_.held(c).value_or(0);
+    for (std::size_t c = 0; c < constants_.size(); ++c) constants_[c] = problem_.held(c).value_or(0);
     if (problem_.names().back() != "jm" || problem_.held(constants_.size() - 1)) return;
     double least = std::numeric_limits<double>::infinity();
     std::vector<double> tried = constants_;
@@ -154,7 +152,7 @@ class Growth {
   Growth(const RelaxationProblem& problem, const std::vector<double>& grid, std::optional<std::size_t> asked)
       : problem_(problem) {
     for (const RelaxationRun& run : problem.runs())
-      floor_ += std::pow(noise_share * rms_of(problem.runs(), run.load_imposed) / problem.scale(run.load_imposed), 2) *
+      floor_ += std::pow(finest_share * rms_of(problem.runs(), run.load_imposed) / problem.scale(run.load_imposed), 2) *
                 static_cast<double>(run.time_s.size());
     const Starts starts(problem, grid);
     const std::size_t most = asked.value_or(std::max<std::size_t>(2, grid.size() * 3 / 8));
@@ -173,7 +171,7 @@ class Growth {
   [[nodiscard]] std::size_t fewest() const {
     std::size_t best = 0;
     for (std::size_t n = 1; n < minima_.size(); ++n)
-      if (criterion(n) < criterion(best) - strong_evidence) best = n;
+      if (criterion(n) < criterion(best) - strong_difference) best = n;
     return best;
   }
   /// Variance of the residuals.
@@ -292,7 +290,7 @@ void weigh(RelaxationProblem& problem, const Growth& growth) {
   const VectorXd& unknowns = growth.minima()[growth.fewest()].unknowns;
   const auto left = [&](bool load_imposed) {
     return std::max(rms_left(problem, unknowns, load_imposed).value(),
-                    noise_share * rms_of(problem.runs(), load_imposed));
+                    finest_share * rms_of(problem.runs(), load_imposed));
   };
   problem.set_scales(left(false), left(true));
 }
@@ -308,7 +306,8 @@ RelaxationFit fit_relaxation(const std::vector<RelaxationRun>& runs, const Relax
     throw InvalidInput("the tests have fewer rows than the law has constants");
   problem.set_scales(rms_of(runs, false), rms_of(runs, true));
   std::optional<Growth> growth(std::in_place, problem, grid, options.branches);
-  const auto loaded = std::count_if(runs.begin(), runs.end(), [](const RelaxationRun& run) { return run.load_imposed; });
+  const auto loaded =
+      std::count_if(runs.begin(), runs.end(), [](const RelaxationRun& run) { return run.load_imposed; });
   if (growth->minima().empty()) throw InvalidInput("no constants of the law bear the stresses of the tests");
   if (loaded > 0 && loaded < static_cast<std::ptrdiff_t>(runs.size())) {
     weigh(problem, *growth);

@@ -40,16 +40,16 @@ struct RelaxationFit {
   std::vector<ElementFit> tried;  // without branches, with one, ...
   std::size_t chosen = 0;         // its number of branches
   BranchCount by = BranchCount::information;
-  double shortest_s = 0, longest_s = 0;             // between which the tests tell relaxation times
+  double shortest_s = 0, longest_s = 0;              // between which the tests tell relaxation times
   std::optional<double> repeat_MPa, repeat_stretch;  // deviation between repeated runs; none: there are none
   [[nodiscard]] const ElementFit& best() const { return tried[chosen]; }
 };
 
 /// What is fitted to relaxation, creep and cyclic tests.
 struct RelaxationOptions {
-  Law law = Law::neo_hookean;              // or mooney_rivlin, yeoh, gent
-  std::map<std::string, double> held{};    // constants that are not fitted, by name [MPa; jm: -]
-  std::optional<std::size_t> branches{};   // exactly so many; none: as few as the tests carry
+  Law law = Law::neo_hookean;             // or mooney_rivlin, yeoh, gent
+  std::map<std::string, double> held{};   // constants that are not fitted, by name [MPa; jm: -]
+  std::optional<std::size_t> branches{};  // exactly so many; none: as few as the tests carry
 };
 
 /// Branches, and the constants of the law that are not held, by least squares in what answered: every row counts alike.
