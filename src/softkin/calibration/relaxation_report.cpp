@@ -82,16 +82,18 @@ Cell deviation_cell(const Estimate& estimate) {
   return estimate.deviation ? Cell(*estimate.deviation) : Cell("-");
 }
 
-Cell left_cell(const std::optional<double>& rms) {
-  return rms ? Cell(*rms) : Cell("-");
-}
-
 Table tried_table(const RelaxationFit& fit) {
-  Table table{{significant("branches", ""), significant("off (rms)", "MPa", 3), significant("stretch", "-", 3),
-               decimals("BIC", "", 1)}};
-  for (const ElementFit& each : fit.tried)
-    table.rows.push_back({count_cell(each.branches.size()), left_cell(each.rms_stress_MPa), left_cell(each.rms_stretch),
-                          each.criterion});
+  Table table{{significant("branches", "")}};
+  const bool stresses = fit.best().rms_stress_MPa.has_value(), stretches = fit.best().rms_stretch.has_value();
+  if (stresses) table.columns.push_back(significant("stress off (rms)", "MPa", 3));
+  if (stretches) table.columns.push_back(significant("stretch off (rms)", "-", 3));
+  table.columns.push_back(decimals("BIC", "", 1));
+  for (const ElementFit& each : fit.tried) {
+    Row& row = table.rows.emplace_back(Row{count_cell(each.branches.size())});
+    if (stresses) row.emplace_back(*each.rms_stress_MPa);
+    if (stretches) row.emplace_back(*each.rms_stretch);
+    row.emplace_back(each.criterion);
+  }
   return table;
 }
 
@@ -132,9 +134,9 @@ std::string relaxation_notes(const RelaxationTask& task, const RelaxationFit& fi
 }
 
 std::string scene_text(const RelaxationTask& task, const Stiffness& e) {
-  return "E " + number(e.relaxed, 5) + " MPa relaxed, " + number(e.at_once, 5) + " MPa at once; in a scene at nu " +
-         number(task.poisson_ratio) + " all moduli are times " + number(scene_scale(task), 5) +
-         ", which leaves E relaxed as it is; at once it is " + number(e.at_once_in_scene, 5) + " MPa there\n";
+  return "E " + number(e.relaxed, 5) + " MPa relaxed, " + number(e.at_once, 5) + " MPa at once\nin a scene at nu " +
+         number(task.poisson_ratio) + ": all moduli times " + number(scene_scale(task), 5) +
+         ", so that E is the same relaxed; at once it is " + number(e.at_once_in_scene, 5) + " MPa\n";
 }
 
 Json estimate_with_deviation(const Estimate& estimate) {
