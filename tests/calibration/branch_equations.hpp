@@ -51,7 +51,7 @@ class BranchEquations {
     return 0.5 * (low + high);
   }
 
-  /// On by dt under a stress that changes evenly; returns the stretch at the end. Heun's method, so that steps be small.
+  /// On by dt under a stress that changes evenly; returns the stretch at the end. Of second order: steps must be small.
   double creep(double dt, double begin, double end, int steps, double high) {
     double l = bearing(begin, high);
     for (int i = 0; i < steps; ++i) {

@@ -68,7 +68,8 @@ std::vector<RelaxationRun> read_relaxation_runs(const std::filesystem::path& pat
                         {"length", "a length is in mm: length_mm"},
                         {"stress", "stresses are in MPa or kPa: stress_mpa or stress_kpa"},
                         {"force", "a force is in N: force_n"},
-                        {"t", "a time is in s: t_s"}});
+                        {"t_", "a time is in s: t_s"},
+                        {"time", "a time is in s: t_s"}});
   const StripColumns columns(table, size);
   std::vector<RelaxationRun> runs;
   for (const RunTable::Run& each : table.runs) {
