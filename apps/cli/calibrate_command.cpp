@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <memory>
 #include <softkin/calibration/actuator_report.hpp>
+#include <softkin/calibration/relaxation_report.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
@@ -210,6 +211,59 @@ void check(const DeaOptions& options) {
     throw CLI::ValidationError("--stretch-limit", "belongs to --law gent");
 }
 
+struct RelaxationOptions : calibration::RelaxationTask {
+  std::string held, output, plot, residuals;
+  bool json = false;
+};
+
+int calibrate_relaxation(const RelaxationOptions& options) {
+  if (options.tests.empty() && options.creep.empty()) throw CLI::RequiredError("TESTS or --creep");
+  check_extension("--output", options.output, {{".yaml", ""}});
+  check_extension("--plot", options.plot, {{".svg", ""}});
+  check_extension("--residuals", options.residuals, {{".csv", ""}});
+  std::vector<fs::path> inputs(options.tests.begin(), options.tests.end());
+  inputs.insert(inputs.end(), options.creep.begin(), options.creep.end());
+  const std::vector<Output> outputs =
+      asked_outputs({{"--output", options.output}, {"--plot", options.plot}, {"--residuals", options.residuals}});
+  check_outputs(outputs, inputs);
+  calibration::RelaxationTask task = options;
+  task.constants = calibration::read_constants("--constants", options.held);
+  const calibration::RelaxationResults results = calibration::evaluate(task);
+  const OutputFolders folders(outputs);
+  if (!options.output.empty()) write_file(options.output, relaxation_fragment(task, results));
+  if (!options.plot.empty()) write_svg(options.plot, relaxation_plot(task, results));
+  if (!options.residuals.empty()) write_file(options.residuals, relaxation_table(results).csv());
+  print(options.json ? relaxation_json(task, results)
+                     : relaxation_text(task, results) + written_text({{"materials", options.output},
+                                                                      {"plot", options.plot},
+                                                                      {"residuals", options.residuals}}));
+  return done;
+}
+
+void add_options(CLI::App& command, RelaxationOptions& options) {
+  add_value(command, "TESTS", options.tests, "F.csv",
+            "Relaxation and cycles, the stretch imposed: columns t_s; strain,\nstrain_percent, stretch or length_mm; "
+            "stress_mpa, stress_kpa or\nforce_n, nominal; and if you like run");
+  add_repeated(command, "--creep", options.creep, "F.csv", "Creep, the stress imposed: the same columns; repeatable");
+  add_value(command, "--law", options.law, "NAME",
+            "Of what does not relax: neo-hookean (default), mooney-rivlin,\nyeoh or gent");
+  add_value(command, "--constants", options.held, "LIST",
+            "Of the law, not to be fitted: c10=0.4,c01=1.9 [MPa];\ngent: shear_modulus=0.02,jm=90 [MPa, -]");
+  add_value(command, "--branches", options.branches, "N", "So many (default: as few as the tests carry)",
+            integer_from(0, 12));
+  add_value(command, "--length", options.size.length_mm, "MM", "Of the specimen at rest [mm], for length_mm",
+            positive_number());
+  add_value(command, "--area", options.size.area_mm2, "MM2", "Of its cross-section at rest [mm^2], for force_n",
+            positive_number());
+  add_value(command, "--poisson-ratio", options.poisson_ratio, "NU", "Of the scene, 0 < NU < 0.5 (default: 0.49)",
+            CLI::Range(1e-6, 0.499999).description(""));
+  add_value(command, "--region", options.region, "NAME", "Of the material in the scene (default: body)");
+  add_value(command, "-o,--output", options.output, "F.yaml", "The material, to paste into a scene; printed too");
+  add_value(command, "--plot", options.plot, "F.svg", "Measured and fitted");
+  add_value(command, "--residuals", options.residuals, "F.csv", "Measured, fitted and their difference, a row each");
+  command.add_flag("--json", options.json, "Print JSON; its keys name the units");
+}
+
 void add_calibrate_pressure(CLI::App& calibrate, Run& run) {
   const auto options = std::make_shared<PressureOptions>();
   CLI::App& command = *calibrate.add_subcommand(
@@ -251,10 +305,16 @@ void add_calibrate(CLI::App& app, Run& run) {
   calibrate.require_subcommand(0, 1);  // "1" would hide the name of one that does not exist
   calibrate.callback([&calibrate] {
     if (calibrate.get_subcommands().empty())
-      throw CLI::RequiredError("a subcommand of calibrate (material, pressure, dea)");
+      throw CLI::RequiredError("a subcommand of calibrate (material, relaxation, pressure, dea)");
   });
   calibrate.footer("Example:\n  softkin calibrate material specimens.csv");
   add_calibrate_material(calibrate, run);
+  add_command<RelaxationOptions>(
+      calibrate, run, "relaxation",
+      "Viscosity from relaxation, creep and cycles of a strip: a law and Maxwell branches",
+      "Before its first row a run is at rest, and has been for long. Exit code: 0 done, 2 bad usage or bad input.\n"
+      "Example:\n  softkin calibrate relaxation cycles.csv --law gent -o material.yaml --plot fit.svg",
+      add_options, calibrate_relaxation);
   add_calibrate_pressure(calibrate, run);
   add_calibrate_dea(calibrate, run);
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ __all__ = [
     "dea",
     "material",
     "pressure",
+    "relaxation",
     "tensile",
 ]
 
@@ -46,7 +47,7 @@ class Calibration:
 
     @property
     def report(self) -> dict[str, Any]:
-        """What `softkin calibrate material --json` prints."""
+        """What `softkin calibrate material --json` or `relaxation --json` prints."""
         report: dict[str, Any] = json.loads(self._core.json)
         return report
 
@@ -273,6 +274,50 @@ def _files(tests: PathLike | Sequence[PathLike]) -> list[str]:
     if isinstance(tests, (str, os.PathLike)):
         tests = [tests]
     return [os.fspath(test) for test in tests]
+
+
+def relaxation(
+    tests: PathLike | Sequence[PathLike] = (),
+    *,
+    creep: PathLike | Sequence[PathLike] = (),
+    law: str = "neo-hookean",
+    constants: Mapping[str, float] | None = None,
+    branches: int | None = None,
+    length_mm: float | None = None,
+    area_mm2: float | None = None,
+    poisson_ratio: float = 0.49,
+    region: str = "body",
+) -> Calibration:
+    """Viscosity from relaxation, creep and cycles of a strip: a law and Maxwell branches.
+
+    tests          CSV, the stretch imposed: t_s; strain, strain_percent, stretch or length_mm; stress_mpa, stress_kpa or
+                   force_n; run
+    creep          CSV, the stress imposed: the same columns
+    law            of what does not relax: 'neo-hookean', 'mooney-rivlin', 'yeoh' or 'gent'
+    constants      of the law, by name, not to be fitted [MPa; jm: -]
+    branches       so many; None: as few as the tests carry
+    length_mm      of the specimen at rest, for length_mm
+    area_mm2       of its cross-section at rest, for force_n
+    poisson_ratio  of the scene
+    region         of the scene
+    """
+    task = _core.RelaxationTask()
+    task.tests, task.creep = _files(tests), _files(creep)
+    if not task.tests and not task.creep:
+        raise ValueError("give tests, creep or both")
+    if law not in ("neo-hookean", "mooney-rivlin", "yeoh", "gent"):
+        raise ValueError(f"law must be neo-hookean, mooney-rivlin, yeoh or gent, not {law!r}")
+    if not 0 < poisson_ratio < 0.5:
+        raise ValueError(f"poisson_ratio must be greater than 0 and less than 0.5, not {poisson_ratio}")
+    for name, size in (("length_mm", length_mm), ("area_mm2", area_mm2)):
+        if size is not None and not size > 0:
+            raise ValueError(f"{name} must be greater than 0, not {size}")
+    if branches is not None and not 0 <= branches <= 12:
+        raise ValueError(f"branches must be from 0 to 12, not {branches}")
+    task.law, task.constants, task.branches = law, dict(constants or {}), branches
+    task.length_mm, task.area_mm2 = length_mm, area_mm2
+    task.poisson_ratio, task.region = poisson_ratio, region
+    return Calibration(_core.calibrate_relaxation(task))
 
 
 def _volume(name: str, volume: float | str) -> float:

@@ -8,6 +8,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <softkin/calibration/actuator_report.hpp>
+#include <softkin/calibration/relaxation_report.hpp>
 #include <softkin/calibration/specimen_report.hpp>
 #include <softkin/calibration/tensile_report.hpp>
 #include <softkin/calibration/test_log.hpp>
@@ -127,6 +128,12 @@ Calibration tensile(const std::string& file, double poisson_ratio, double tolera
   const calibration::TensileResults results = calibration::evaluate(task, read_tensile_curve(file));
   return {tensile_text(task, results), tensile_json(task, results), tensile_fragment(task, results), "",
           residual_table(results),     tensile_plot(task, results)};
+}
+
+Calibration relaxation(const calibration::RelaxationTask& task) {
+  const calibration::RelaxationResults results = calibration::evaluate(task);
+  return {relaxation_text(task, results), relaxation_json(task, results), relaxation_fragment(task, results), "",
+          relaxation_table(results),      relaxation_plot(task, results)};
 }
 
 /// Specimens of two materials as the Python layer has them.
@@ -270,6 +277,23 @@ void bind_calibrate(nb::module_& module) {
   module.def("calibrate_specimens", &specimens, nb::arg("specimens"), nb::arg("progress").none());
   module.def("calibrate_tensile", &tensile, nb::arg("file"), nb::arg("poisson_ratio"), nb::arg("tolerance_percent"),
              nb::arg("most_strain"), nb::arg("law"), nb::arg("region"), nb::call_guard<nb::gil_scoped_release>());
+  using calibration::RelaxationTask;
+  nb::class_<RelaxationTask>(module, "RelaxationTask", "Relaxation, creep and cyclic tests and what is asked of them.")
+      .def(nb::init<>())
+      .def_rw("tests", &RelaxationTask::tests)
+      .def_rw("creep", &RelaxationTask::creep)
+      .def_rw("law", &RelaxationTask::law)
+      .def_rw("constants", &RelaxationTask::constants)
+      .def_rw("branches", &RelaxationTask::branches)
+      .def_prop_rw(
+          "length_mm", [](const RelaxationTask& task) { return task.size.length_mm; },
+          [](RelaxationTask& task, std::optional<double> value) { task.size.length_mm = value; })
+      .def_prop_rw(
+          "area_mm2", [](const RelaxationTask& task) { return task.size.area_mm2; },
+          [](RelaxationTask& task, std::optional<double> value) { task.size.area_mm2 = value; })
+      .def_rw("poisson_ratio", &RelaxationTask::poisson_ratio)
+      .def_rw("region", &RelaxationTask::region);
+  module.def("calibrate_relaxation", &relaxation, nb::arg("task"), nb::call_guard<nb::gil_scoped_release>());
   nb::class_<SyringeTests>(module, "SyringeTests", "Syringe tests of a chamber.")
       .def(nb::init<>())
       .def_rw("files", &SyringeTests::files)

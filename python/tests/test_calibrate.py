@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -140,3 +141,38 @@ def test_dea(examples: Path, command: str) -> None:
         calibrate.dea(law="rubber")
     with pytest.raises(softkin.InvalidInput, match="^the law gent needs the elastomer's permittivity, relative to vacuum$"):
         calibrate.dea(law="gent", shear_modulus_MPa=0.07)
+
+
+def test_relaxation(examples: Path, command: str, tmp_path: Path) -> None:
+    cycles, creep = examples / "acrylic_strip/cycles.csv", examples / "acrylic_strip/creep.csv"
+    found = calibrate.relaxation(cycles, law="gent")
+    assert found.report == told(command, "relaxation", cycles, "--law", "gent")
+    times = [branch["time_s"] for branch in found.report["branches"]]
+    assert len(times) == 3
+    for time, made in zip(times, (0.61, 6.56, 61.25)):
+        assert abs(time["value"] - made) < 3.5 * time["deviation"]
+    assert "viscosity: [{modulus: " in found.materials and len(found.residuals) == 3 * 121
+    found.save(tmp_path / "m.yaml")
+    found.save_plot(tmp_path / "p.svg")
+    assert (tmp_path / "m.yaml").read_text() == found.materials and "gent with 3 branches" in repr(found)
+    held = calibrate.relaxation(creep=[creep], law="gent", constants={"jm": 99.67}, branches=2)
+    options = ("--law", "gent", "--constants", "jm=99.67", "--branches", 2)
+    assert held.report == told(command, "relaxation", "--creep", creep, *options)
+    for keywords, message in (
+        ({}, "give tests, creep or both"),
+        ({"tests": cycles, "law": "hookean"}, "law must be"),
+        ({"tests": cycles, "poisson_ratio": 0.5}, "poisson_ratio must be"),
+        ({"tests": cycles, "area_mm2": 0}, "area_mm2 must be greater than 0"),
+        ({"tests": cycles, "branches": -1}, "branches must be from 0 to 12"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            calibrate.relaxation(**keywords)  # type: ignore[arg-type]
+    with pytest.raises(softkin.InvalidInput, match="no constant 'c10' of gent"):
+        calibrate.relaxation(cycles, law="gent", constants={"c10": 1})
+
+
+def test_shipped_relaxation_tests_are_those_that_their_script_makes(examples: Path, tmp_path: Path) -> None:
+    folder = examples / "acrylic_strip"
+    subprocess.run([sys.executable, folder / "make_tests.py", tmp_path], check=True)
+    for name in ("cycles.csv", "creep.csv"):
+        assert (tmp_path / name).read_text() == (folder / name).read_text()

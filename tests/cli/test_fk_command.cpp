@@ -450,6 +450,7 @@ TEST(Help, OfEveryCommandFitsAPage) {
                                                                                        {"calibrate", "material"},
                                                                                        {"calibrate", "pressure"},
                                                                                        {"calibrate", "dea"},
+                                                                                       {"calibrate", "relaxation"},
                                                                                        {"drive"},
                                                                                        {"mesh"},
                                                                                        {"mesh", "info"},

@@ -14,7 +14,8 @@ namespace {
 template <class AnyLaw>
 double isochoric_slope(const AnyLaw& law, double s) {
   const double excess = s * s + 2 / s - 3;
-  const double slope_1 = law.c10 + 2 * law.c20 * excess + 3 * law.c30 * excess * excess;
+  const double limited = law.jm > 0 ? law.jm / (law.jm - excess) : 1;
+  const double slope_1 = law.c10 * limited + 2 * law.c20 * excess + 3 * law.c30 * excess * excess;
   return 2 * (s - 1 / (s * s)) * (slope_1 + law.c01 / s);
 }
 

@@ -7,10 +7,12 @@
 namespace softkin::calibration {
 
 /// Constants of an incompressible law [MPa]: W = c10 (I1 - 3) + c01 (I2 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3.
-/// neo-hookean: c10 alone; mooney-rivlin: c10, c01; yeoh: c10, c20, c30.
+/// neo-hookean: c10 alone; mooney-rivlin: c10, c01; yeoh: c10, c20, c30; gent: c10 and jm, W = -c10 jm ln(1 - (I1 -
+/// 3) / jm).
 struct IncompressibleLaw {
   Law law = Law::neo_hookean;
   double c10 = 0, c01 = 0, c20 = 0, c30 = 0;
+  double jm = 0;  // gent: I1 - 3 < jm [-]; 0: no limit
 
   /// At rest [MPa]: 6 (c10 + c01).
   [[nodiscard]] double youngs_modulus() const { return 6 * (c10 + c01); }
@@ -19,7 +21,7 @@ struct IncompressibleLaw {
 /// Nominal stress [MPa] under tension along one axis, sides free; s = 1 + strain > 0.
 ///
 /// source  P = 2 (s - s^-2) (W_1 + W_2 / s), W_1 = c10 + 2 c20 (I1 - 3) + 3 c30 (I1 - 3)^2, W_2 = c01,
-///         I1 = s^2 + 2 / s
+///         I1 = s^2 + 2 / s; gent: W_1 = c10 jm / (jm - (I1 - 3))
 [[nodiscard]] double uniaxial_stress(const IncompressibleLaw& law, double strain);
 
 /// The same of a law as scenes have it, which is compressible: the sides take the stretch at which nothing pulls them.

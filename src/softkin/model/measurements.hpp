@@ -63,6 +63,15 @@ struct VoltageRun {
   std::vector<VoltageRow> rows;
 };
 
+/// One test of a strip under tension or compression along one axis over time, its sides free. Before its first row it
+/// is at rest, and has been for long.
+struct RelaxationRun {
+  std::string file, name;                           // name: "run 2"; for messages
+  bool load_imposed = false;                        // creep: the stretch answers; else the stress does
+  std::vector<double> time_s, stretch, stress_MPa;  // times ascend; length over that at rest > 0; nominal
+  std::vector<std::size_t> lines;                   // of the file; empty: not from a file
+};
+
 /// The way of one marker: measured, predicted, or computed elsewhere.
 struct Track {
   std::string name;                            // for messages: its file
