@@ -8,6 +8,7 @@
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/contacts_json.hpp>
+#include <softkin/runs/inverse_text.hpp>
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
@@ -15,7 +16,6 @@
 #include <softkin/runs/workspace_file.hpp>
 #include "command.hpp"
 #include "ik_options.hpp"
-#include "ik_table.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
@@ -97,9 +97,10 @@ class IkRun {
       write_svg(options_.show.plot, runs::plot_of_search(found_, search_.inverse.tolerance_mm, options_.scene));
     if (!options_.json) {
       const std::string found = findings_text(model_, record);
-      print(ik_table(model_, search_.asked, found_, record));
+      const runs::InverseTables tables = runs::inverse_tables(model_, search_.asked, found_, record);
+      print(table_text(tables.actuators) + table_text(tables.goals));
       print((found.empty() ? "" : found + "\n") + sliding_text(record) + std::string(name_of(found_.status)) + ": " +
-            ik_summary(found_) + "\n");
+            runs::inverse_summary(found_) + "\n");
     }
     runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report, options_.inverse(),
                                                   search_.asked, found_, record, answers_.map());

@@ -125,8 +125,7 @@ double read_density(const Node& node) {
 }
 
 MaterialSpec read_material(const Context& context, const Node& node) {
-  Keys known{"region",  "shape_ratio", "weight",       "linear_range",
-             "density", "viscosity",   "permittivity", "remanence"};
+  Keys known{"region", "shape_ratio", "weight", "linear_range", "density", "viscosity", "permittivity", "remanence"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;

@@ -1,20 +1,17 @@
-#include "ik_table.hpp"
-
 #include <algorithm>
 #include <cmath>
-
 #include <softkin/io/table/settings.hpp>
-#include <softkin/io/table/table.hpp>
 #include <softkin/model/names.hpp>
-#include "terminal.hpp"
+#include <softkin/runs/inverse_text.hpp>
+#include <utility>
 
-namespace softkin::cli {
+namespace softkin::runs {
 
 namespace {
 
 constexpr int value_decimals = 4, length_decimals = 3, direction_decimals = 5;
 
-std::string load_text(const Model& model, const Actuator& actuator, const runs::ActuatorRecord& record) {
+std::string load_text(const Model& model, const Actuator& actuator, const ActuatorRecord& record) {
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return "-";
   if (record.slack) return "slack";
   if (!std::isfinite(record.multiplier)) return "unknown";
@@ -22,7 +19,7 @@ std::string load_text(const Model& model, const Actuator& actuator, const runs::
 }
 
 /// "50.0000 kPa": what the actuator's curve gives for the command.
-std::string curve_input_text(const Actuator& actuator, const runs::ActuatorRecord& record) {
+std::string curve_input_text(const Actuator& actuator, const ActuatorRecord& record) {
   if (!actuator.curve) return "-";
   return record.by_curve ? decimal(*record.by_curve, value_decimals) + unit_of_input(actuator.curve->input) : "outside";
 }
@@ -48,15 +45,15 @@ std::string asked_text(const Goal& goal) {
 }
 
 std::string found_text(const Model& model, const Goal& goal, const Points& positions) {
-  const Vec3 place = runs::place_of(model, goal, positions);
+  const Vec3 place = place_of(model, goal, positions);
   if (std::holds_alternative<DirectionGoal>(goal.what)) return coordinates_text(place, direction_decimals);
   return coordinates_text(place, length_decimals) + " mm";
 }
 
 }  // namespace
 
-std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goals, const InverseResult& found,
-                     const runs::StepRecord& step) {
+InverseTables inverse_tables(const Model& model, const std::vector<NamedGoal>& goals, const InverseResult& found,
+                             const StepRecord& step) {
   constexpr auto decimals = Column::Form::decimals;
   Table actuators{{{.title = "actuator", .left = true},
                    {.title = "command", .digits = value_decimals, .form = decimals},
@@ -69,7 +66,7 @@ std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goa
   if (curves) actuators.columns.push_back({.title = "by curve"});
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    const runs::ActuatorRecord& record = step.actuators[a];
+    const ActuatorRecord& record = step.actuators[a];
     actuators.rows.push_back({actuator.name, record.requested, bracketed_unit(actuator),
                               number(actuator.low) + " to " + number(actuator.high), record.achieved,
                               load_text(model, actuator, record)});
@@ -83,14 +80,14 @@ std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goa
     reached.rows.push_back({goals[i].name, asked_text(goals[i].goal),
                             found_text(model, goals[i].goal, found.equilibrium.state.positions),
                             found.errors_mm[static_cast<Index>(i)]});
-  return table_text(actuators) + table_text(reached);
+  return {std::move(actuators), std::move(reached)};
 }
 
-std::string ik_summary(const InverseResult& found) {
+std::string inverse_summary(const InverseResult& found) {
   const auto count = [](int n) { return static_cast<std::size_t>(std::max(0, n)); };
   return "error at most " + number(found.errors_mm.maxCoeff(), 2) + " mm; " +
          counted(count(found.iterations), "iteration") + ", " +
          counted(count(found.equilibria), "equilibrium", "equilibria") + ", " + decimal(found.seconds, 2) + " s";
 }
 
-}  // namespace softkin::cli
+}  // namespace softkin::runs
