@@ -71,7 +71,8 @@ std::string ik_table(const Model& model, const std::vector<runs::NamedGoal>& goa
     const Actuator& actuator = model.actuators[a];
     const runs::ActuatorRecord& record = step.actuators[a];
     actuators.rows.push_back({actuator.name, record.requested, bracketed_unit(actuator),
-                              number(actuator.low) + " to " + number(actuator.high), record.achieved,
+                              number(actuator.low) + " to " + number(actuator.high),
+                              has_measure(actuator) ? Cell(record.achieved) : Cell("-"),
                               load_text(model, actuator, record)});
     if (curves) actuators.rows.back().emplace_back(curve_input_text(actuator, record));
   }
