@@ -101,6 +101,42 @@ def test_what_touches(shape: softkin.Shape) -> None:
     assert pressed.report["steps"][0]["contacts"][0]["pressure_kPa"] == contact.pressure_kPa
 
 
+def test_magnets() -> None:
+    vertices, tetrahedra = block((6, 2, 1), (24, 4, 2))
+    middle = vertices[tetrahedra].mean(axis=1)
+    robot = softkin.Robot(
+        vertices,
+        tetrahedra,
+        regions={"base": {"vertices": np.flatnonzero(vertices[:, 0] == 0)}},
+        materials=[
+            {
+                "youngs_modulus": 1,
+                "poisson_ratio": 0.4,
+                "remanence": {"places": middle, "samples": np.tile([100.0, 0, 0], (len(middle), 1))},
+            }
+        ],
+        fixed=[{"region": "base"}],
+        actuators=[{"name": "field", "kind": "magnetic", "axes": ["y", "z"], "range": (-20, 20)}],
+        markers={"tip": [24, 2, 1]},
+    )
+    assert [info.name for info in robot.actuator_infos] == ["field_y", "field_z"]
+    assert {info.unit for info in robot.actuator_infos} == {"mT"}
+    assert robot.actuator_infos[0].control == "flux density"
+    shape = robot.solve(field_z=10)
+    assert shape.markers["tip"][2] > 1.1
+    load = shape.magnetic_load
+    assert isinstance(load, softkin.MagneticLoad)
+    np.testing.assert_allclose(load.force_N, 0, atol=1e-12)
+    np.testing.assert_allclose(load.moment_Nmm + shape.reactions["base"].moment_Nmm, 0, atol=1e-6)
+    assert 11 < load.center_mm[0] < 12.5
+    assert shape.actuators["field_z"].ratio == 10
+    assert "10 mT" in repr(shape)
+
+
+def test_no_magnets(shape: softkin.Shape) -> None:
+    assert shape.magnetic_load is None
+
+
 def test_overlap(shape: softkin.Shape) -> None:
     assert shape.self_overlap.points == 0 and shape.self_overlap.deepest_mm == 0
     assert shape.self_overlap.at_mm.shape == (3,)

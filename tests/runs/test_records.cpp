@@ -160,6 +160,24 @@ TEST_F(Steps, OfAPathAreReadBack) {
   }
 }
 
+TEST_F(Steps, OfMagnetsAreReadBack) {
+  const Model model = testing::block_model(
+      "softkin: 1\nmesh: {file: block.msh}\nvoid: [chamber]\n"
+      "materials: [{youngs_modulus: 1, poisson_ratio: 0.3, remanence: [100, 0, 50]}]\nfixed: [{region: base}]\n"
+      "actuators: [{name: field, kind: magnetic, direction: [0, 0, 1], range: [-100, 100]}]\n"
+      "markers: [{name: tip, region: tip}]\n");
+  const Statics statics(model);
+  PathJob job(model, statics, testing::steps_of(model, 3), "path.csv", testing::one_thread());
+  const auto records = made(job);
+  const StepRecord& last = records.back();
+  ASSERT_TRUE(last.magnetic.has_value());
+  const StepRecord read = read_back(job.codec(), last);
+  EXPECT_EQ(read.magnetic->force, last.magnetic->force);
+  EXPECT_EQ(read.magnetic->moment, last.magnetic->moment);
+  EXPECT_EQ(read.magnetic->center, last.magnetic->center);
+  expect_damage_refused(job.codec(), last, {"/magnetic", "/magnetic/moment_N_mm", "/magnetic/center_mm"});
+}
+
 /// Friction goes on from where it was.
 TEST_F(Steps, OfWhatRubsKeepWhereItSticks) {
   const Model model = testing::block_model(

@@ -10,17 +10,17 @@ namespace {
 
 using namespace testing;
 
-constexpr double length = 17.2, thickness = 0.84, width = 5, shear_modulus = 0.303;  // [mm], [MPa]
-constexpr double remanence = 143;                                                    // [mT]
+constexpr double strip_length = 17.2, strip_thickness = 0.84, strip_width = 5, strip_modulus = 0.303;  // [mm], [MPa]
+constexpr double strip_remanence = 143;                                                                // [mT]
 
 /// Along x, thin along z; nearly incompressible.
 RobotSpec cantilever(const std::array<int, 3>& cells, double wide) {
   constexpr double poisson_ratio = 0.49;
-  RobotSpec spec = physical_robot(block_mesh(cells, {length, wide, thickness}));
+  RobotSpec spec = physical_robot(block_mesh(cells, {strip_length, wide, strip_thickness}));
   spec.quadratic = true;
-  spec.materials[0].elastic->youngs_modulus = 2 * (1 + poisson_ratio) * shear_modulus;
+  spec.materials[0].elastic->youngs_modulus = 2 * (1 + poisson_ratio) * strip_modulus;
   spec.materials[0].elastic->poisson_ratio = poisson_ratio;
-  magnetise(spec, {remanence, 0, 0});
+  magnetise(spec, {strip_remanence, 0, 0});
   add_field(spec, {"field", UniformField{{0, 0, 1}}}, {FieldCommand::flux_density});
   spec.markers = {{"tip", {std::string("x_high"), {}}}};
   return spec;
@@ -72,14 +72,14 @@ Tip elastica(double load, double strain) {
 
 /// Published measurements of a printed beam of that size, as others digitised them.
 TEST(MagneticCantilever, BendsAsMeasured) {
-  const Model model = compile(cantilever({24, 6, 2}, width));
+  const Model model = compile(cantilever({24, 6, 2}, strip_width));
   const Statics statics(model);
   State start = statics.rest();
   for (const auto& [flux, measured] : {std::pair(4.64, 0.592), std::pair(9.44, 0.755), std::pair(47.2, 0.899)}) {
     const Equilibrium found = statics.solve(values({flux}), start);
     ASSERT_EQ(found.report.status, Status::converged);
     start = found.state;
-    const double across = (marker_at(model, found).z() - 0.5 * thickness) / length;
+    const double across = (marker_at(model, found).z() - 0.5 * strip_thickness) / strip_length;
     std::printf("%.4g mT: %.4f of the length, measured %.4f\n", flux, across, measured);
     EXPECT_LT(std::abs(across / measured - 1), 0.08) << flux;
   }
@@ -89,7 +89,7 @@ TEST(MagneticCantilever, BendsAsMeasured) {
 /// field the strip gets longer by 0.5 %, which an inextensible one does not.
 TEST(MagneticCantilever, IsAMagneticElastica) {
   const std::array<int, 3> cells{24, 2, 2};
-  RobotSpec spec = cantilever(cells, thickness);
+  RobotSpec spec = cantilever(cells, strip_thickness);
   spec.fixed = {{{std::string("x_low"), {}}, {true, false, false}},
                 {{VertexList{{grid_vertex(cells, 0, 1, 1)}}, {}}, {false, true, true}},
                 {{VertexList{{grid_vertex(cells, 0, 0, 1)}}, {}}, {false, false, true}}};
@@ -101,14 +101,16 @@ TEST(MagneticCantilever, IsAMagneticElastica) {
     const Equilibrium found = statics.solve(values({flux}), start);
     ASSERT_EQ(found.report.status, Status::converged);
     start = found.state;
-    const double strain = remanence * flux * inverse_permeability / modulus;
-    const double load = 12 * strain * std::pow(length / thickness, 2);
+    const double strain = strip_remanence * flux * inverse_permeability / modulus;
+    const double load = 12 * strain * std::pow(strip_length / strip_thickness, 2);
     const Tip expected = elastica(load, strain), stiff = elastica(load, 0);
     const Vec3 tip = marker_at(model, found);
     std::printf("%.4g mT: %.4f across, %.4f along; elastica %.4f, %.4f; inextensible %.4f\n", flux,
-                (tip.z() - 0.5 * thickness) / length, tip.x() / length, expected.across, expected.along, stiff.across);
-    EXPECT_LT(std::abs((tip.z() - 0.5 * thickness) / length / expected.across - 1), 0.006) << flux;
-    EXPECT_LT(std::abs((tip.z() - 0.5 * thickness) / length / stiff.across - 1), flux < 10 ? 0.006 : 0.012) << flux;
+                (tip.z() - 0.5 * strip_thickness) / strip_length, tip.x() / strip_length, expected.across,
+                expected.along, stiff.across);
+    EXPECT_LT(std::abs((tip.z() - 0.5 * strip_thickness) / strip_length / expected.across - 1), 0.006) << flux;
+    EXPECT_LT(std::abs((tip.z() - 0.5 * strip_thickness) / strip_length / stiff.across - 1), flux < 10 ? 0.006 : 0.012)
+        << flux;
   }
 }
 

@@ -70,7 +70,7 @@ void expect_free(const physical::Flux& flux) {
   EXPECT_LT((flux.slope - flux.slope.transpose()).norm(), 1e-11 * flux.slope.norm());
 }
 
-const std::vector<Vec3> places{{0, 0, 0.5},  {0, 0, 0},  {1e-7, 0, 3}, {3, -2, 5},
+const std::vector<Vec3> probed{{0, 0, 0.5},  {0, 0, 0},  {1e-7, 0, 3}, {3, -2, 5},
                                {20, 10, -7}, {39, 0, 2}, {90, 50, 60}};
 
 }  // namespace
@@ -79,7 +79,7 @@ TEST(MagneticFields, LoopsAreThoseOfBiotAndSavart) {
   const CoilField coil = two_loops({1, 2, 3});
   FieldSample sample({"coil", coil}, {FieldCommand::current});
   sample.demand.actuation[0] = 2.5;
-  for (const Vec3& place : places) {
+  for (const Vec3& place : probed) {
     Vec3 expected = Vec3::Zero();
     for (const CoilLoop& loop : coil.loops) expected += biot_savart(loop, 2.5, place);
     const physical::Flux flux = sample.at(place);
@@ -112,7 +112,7 @@ TEST(MagneticFields, ADipoleIsASmallLoop) {
   small.demand.actuation[0] = current;
   FieldSample dipole({"magnet", DipoleField{loop.center, moment * loop.axis}}, {FieldCommand::moment_x});
   dipole.demand.actuation[0] = moment * loop.axis.x();
-  for (const Vec3& place : places) {
+  for (const Vec3& place : probed) {
     const Vec3 expected = small.at(place).value;
     EXPECT_LT((dipole.at(place).value - expected).norm(), 1e-4 * expected.norm());
     expect_derivatives(dipole, place, 1);

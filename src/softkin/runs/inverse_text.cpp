@@ -68,7 +68,8 @@ InverseTables inverse_tables(const Model& model, const std::vector<NamedGoal>& g
     const Actuator& actuator = model.actuators[a];
     const ActuatorRecord& record = step.actuators[a];
     actuators.rows.push_back({actuator.name, record.requested, bracketed_unit(actuator),
-                              number(actuator.low) + " to " + number(actuator.high), record.achieved,
+                              number(actuator.low) + " to " + number(actuator.high),
+                              has_measure(actuator) ? Cell(record.achieved) : Cell("-"),
                               load_text(model, actuator, record)});
     if (curves) actuators.rows.back().emplace_back(curve_input_text(actuator, record));
   }

@@ -35,7 +35,8 @@ class Fields {
 
   /// What changes in space, all but Setting::uniform, at a place [mm].
   ///
-  /// source   loops: Simpson et al. 2001 by hypergeometric functions of 4 a^2 rho^2 / (a^2 + r^2)^2, smooth on the axis;
+  /// source   loops: complete elliptic integrals, as in Simpson et al. 2001, "Simple analytic expressions for the
+  ///          magnetic field of a circular current loop", of 4 a^2 rho^2 / (a^2 + r^2)^2, which is smooth on the axis;
   ///          dipole: mu_0 / (4 pi) (3 (m . r) r / r^5 - m / r^3); grid: SplineGrid
   /// returns  false outside a grid, on a wire and on a dipole
   bool flux(const Setting& setting, const Vec3& place, Flux& out) const;
