@@ -12,8 +12,8 @@ namespace softkin::energy {
 template <int K>
 using Nodes = Eigen::Matrix<double, K, 3>;
 
-inline constexpr Law all_laws[] = {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin,
-                                   Law::yeoh, Law::gent};
+inline constexpr Law all_laws[] = {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean,
+                                   Law::mooney_rivlin,       Law::yeoh,         Law::gent};
 
 /// An element kind: K nodes, Q quadrature points.
 template <int K_, int Q_>
@@ -97,8 +97,8 @@ void set_lane(ElasticBlock<K, Q>& block, int lane, const ElasticRest<K, Q>& rest
 }
 
 inline void set_law(LawBlock& block, const ElasticLaw& law) {
-  block = {law.law,       pack(law.mu),  pack(law.lambda), pack(law.c10),
-           pack(law.c01), pack(law.c20), pack(law.c30),    pack(law.bulk), pack(law.jm)};
+  block = {law.law,       pack(law.mu),  pack(law.lambda), pack(law.c10), pack(law.c01),
+           pack(law.c20), pack(law.c30), pack(law.bulk),   pack(law.jm)};
 }
 
 /// Eight elements at rest and the shapes that they now have.

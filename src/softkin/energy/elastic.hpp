@@ -24,8 +24,8 @@ struct ElasticBlock {
 
 template <int K>
 struct ElasticForce {
-  Shape<K> gradient;  // of the energy in the nodes' positions [N]
-  Pack energy;        // [mJ]
+  Shape<K> gradient;   // of the energy in the nodes' positions [N]
+  Pack energy;         // [mJ]
   PackMask inverted;   // lanes with J <= 0 at a quadrature point that has volume
   PackMask forbidden;  // lanes with a deformation that has no energy, at a quadrature point that has volume
 };

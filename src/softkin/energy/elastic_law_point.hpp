@@ -172,8 +172,7 @@ InvariantEnergy barred_first(const LawBlock& law, const Deformation& d, const Fu
 inline InvariantEnergy yeoh(const LawBlock& law, const Deformation& d) {
   return barred_first(law, d, [&](const Pack& stretch) {
     return BarredEnergy{stretch * (law.c10 + stretch * (law.c20 + stretch * law.c30)),
-                        law.c10 + stretch * (2 * law.c20 + 3 * stretch * law.c30),
-                        2 * law.c20 + 6 * stretch * law.c30};
+                        law.c10 + stretch * (2 * law.c20 + 3 * stretch * law.c30), 2 * law.c20 + 6 * stretch * law.c30};
   });
 }
 

@@ -13,8 +13,8 @@ struct LawKeys {
   bool needs_bulk;  // exactly one of bulk_modulus and poisson_ratio
 };
 
-const Keys elastic_keys{"law", "youngs_modulus", "poisson_ratio", "c10", "c01",
-                        "c20", "c30",            "bulk_modulus",  "jm",  "shear_modulus"};
+const Keys elastic_keys{"law", "youngs_modulus", "poisson_ratio", "c10", "c01", "c20", "c30", "bulk_modulus",
+                        "jm",  "shear_modulus"};
 
 const std::vector<LawKeys>& laws() {
   const Keys moduli{"youngs_modulus", "poisson_ratio"}, bulk{"bulk_modulus", "poisson_ratio"};
