@@ -31,8 +31,11 @@ Model sheet_of(DielectricLaw law) {
   spec.fixed = {{{VertexList{{0}}, {}}, {true, true, true}},
                 {{VertexList{{grid_vertex(cells, 2, 0, 0)}}, {}}, {false, true, true}},
                 {{VertexList{{grid_vertex(cells, 0, 2, 0)}}, {}}, {false, false, true}}};
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 40, true);
+  ActuatorSpec skin;
+  skin.name = "skin";
+  skin.kind = ActuatorKind::dea;
   skin.region = "all";
+  skin.high = 40;
   skin.control = Control::load;
   skin.rest = 0;
   spec.actuators = {skin};

@@ -22,7 +22,7 @@ RobotSpec layered_plate(const std::array<int, 3>& cells, const Vec3& size, doubl
 }  // namespace
 
 TEST(PhysicalDea, AFreeLayerTakesItsStretchWithoutStress) {
-  for (const Law law : {Law::neo_hookean, Law::st_venant_kirchhoff, Law::yeoh}) {
+  for (const Law law : {Law::neo_hookean, Law::st_venant_kirchhoff, Law::yeoh, Law::gent}) {
     const std::array<int, 3> cells{5, 4, 1};
     RobotSpec spec = layered_plate(cells, {20, 12, 1}, -1);
     spec.materials[0].elastic = elastic(law, 1, 0.45);

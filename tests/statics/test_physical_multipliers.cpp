@@ -37,7 +37,8 @@ void expect_slopes(const RobotSpec& spec, const Actuation& actuation) {
 }  // namespace
 
 TEST(PhysicalMultipliers, PressureOfAChamber) {
-  for (const Law law : {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh}) {
+  for (const Law law :
+       {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh, Law::gent}) {
     SCOPED_TRACE(static_cast<int>(law));
     RobotSpec spec = bending_finger();
     spec.materials[0].elastic = elastic(law, 1, 0.4);
