@@ -70,7 +70,18 @@ std::string read_setup(const PressureOptions& options, const std::string& actuat
          (options.atmosphere_kPa ? "" : " (default, as in the paper's Eq. (19))") + "\n";
 }
 
+void check(const PressureOptions& options) {
+  check_extension("--output", options.output, {{".yaml", ""}});
+  check_extension("--table", options.table, {{".csv", ""}});
+  check_extension("--plot", options.plot, {{".svg", ""}});
+  if (options.predict && options.robot.scene.empty())
+    throw CLI::ValidationError("--predict", "give --scene too, whose robot is to be predicted");
+  if (!options.actuator.empty() && options.robot.scene.empty())
+    throw CLI::ValidationError("--actuator", "give --scene too, whose actuator it is");
+}
+
 int calibrate_pressure(const PressureOptions& options) {
+  check(options);
   std::vector<fs::path> inputs(options.tests.begin(), options.tests.end());
   std::optional<RobotSpec> spec;
   std::string actuator = "air";
@@ -115,7 +126,7 @@ int calibrate_pressure(const PressureOptions& options) {
   return not_converged;
 }
 
-void add_test(CLI::App& command, PressureOptions& options) {
+void add_options(CLI::App& command, PressureOptions& options) {
   add_value(command, "TESTS", options.tests, "F.csv",
             "Syringe tests: columns p_abs_kpa or p_gauge_kpa (p_kpa with\n--pressure), dv_sy_mm3 or dv_sy_ml (air "
             "pushed out of the syringe\nsince the start), and if you like run and t_s")
@@ -134,9 +145,6 @@ void add_test(CLI::App& command, PressureOptions& options) {
   add_value(command, "--tube-volume", options.tube, "VOLUME", "V_t, air in tubes and sensor (default: 0)");
   add_value(command, "--atmosphere", options.atmosphere_kPa, "KPA",
             "Pressure of the air around, absolute [kPa] (default: 100, as in\nthe paper)", positive_number());
-}
-
-void add_results(CLI::App& command, PressureOptions& options) {
   add_value(command, "-o,--output", options.output, "F.yaml", "The curve, for key 'curve' of the scene's actuator");
   add_value(command, "--table", options.table, "F.csv", "Volume ratio of every row");
   add_value(command, "--plot", options.plot, "F.svg", "Rows and both branches");
@@ -146,16 +154,6 @@ void add_results(CLI::App& command, PressureOptions& options) {
   add_value(command, "--threads", options.threads, "N", "Of --predict; 0: as many as the machine has (default)",
             CLI::Range(0, 512).description(""));
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
-}
-
-void check(const PressureOptions& options) {
-  check_extension("--output", options.output, {{".yaml", ""}});
-  check_extension("--table", options.table, {{".csv", ""}});
-  check_extension("--plot", options.plot, {{".svg", ""}});
-  if (options.predict && options.robot.scene.empty())
-    throw CLI::ValidationError("--predict", "give --scene too, whose robot is to be predicted");
-  if (!options.actuator.empty() && options.robot.scene.empty())
-    throw CLI::ValidationError("--actuator", "give --scene too, whose actuator it is");
 }
 
 struct DeaOptions : calibration::DeaTask {
@@ -264,25 +262,6 @@ void add_options(CLI::App& command, RelaxationOptions& options) {
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
 }
 
-void add_calibrate_pressure(CLI::App& calibrate, Run& run) {
-  const auto options = std::make_shared<PressureOptions>();
-  CLI::App& command = *calibrate.add_subcommand(
-      "pressure", "Volume ratio of a chamber by its pressure, from a syringe test (Fang et al. 2020, Eq. (19))");
-  add_test(command, *options);
-  add_results(command, *options);
-  command.footer(
-      "Rows are in the order of time; where the syringe turns, loading becomes unloading. Exit code: 0 done, 1 the\n"
-      "physical formulation has no equilibrium at some ratio, 2 bad usage or bad input.\nExample:\n"
-      "  softkin calibrate pressure syringe.csv --scene finger.yaml --syringe-volume 60mL \\\n"
-      "      --tube-volume 1.2mL -o air.yaml");
-  command.callback([&run, options] {
-    run = [options] {
-      check(*options);
-      return calibrate_pressure(*options);
-    };
-  });
-}
-
 void add_calibrate_dea(CLI::App& calibrate, Run& run) {
   const auto options = std::make_shared<DeaOptions>();
   CLI::App& command =
@@ -315,7 +294,14 @@ void add_calibrate(CLI::App& app, Run& run) {
       "Before its first row a run is at rest, and has been for long. Exit code: 0 done, 2 bad usage or bad input.\n"
       "Example:\n  softkin calibrate relaxation cycles.csv --law gent -o material.yaml --plot fit.svg",
       add_options, calibrate_relaxation);
-  add_calibrate_pressure(calibrate, run);
+  add_command<PressureOptions>(
+      calibrate, run, "pressure",
+      "Volume ratio of a chamber by its pressure, from a syringe test (Fang et al. 2020, Eq. (19))",
+      "Rows are in the order of time; where the syringe turns, loading becomes unloading. Exit code: 0 done, 1 the\n"
+      "physical formulation has no equilibrium at some ratio, 2 bad usage or bad input.\nExample:\n"
+      "  softkin calibrate pressure syringe.csv --scene finger.yaml --syringe-volume 60mL \\\n"
+      "      --tube-volume 1.2mL -o air.yaml",
+      add_options, calibrate_pressure);
   add_calibrate_dea(calibrate, run);
 }
 

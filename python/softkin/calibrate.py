@@ -290,8 +290,8 @@ def relaxation(
 ) -> Calibration:
     """Viscosity from relaxation, creep and cycles of a strip: a law and Maxwell branches.
 
-    tests          CSV, the stretch imposed: t_s; strain, strain_percent, stretch or length_mm; stress_mpa, stress_kpa or
-                   force_n; run
+    tests          CSV, the stretch imposed: t_s; strain, strain_percent, stretch or length_mm; stress_mpa, stress_kpa
+                   or force_n; run
     creep          CSV, the stress imposed: the same columns
     law            of what does not relax: 'neo-hookean', 'mooney-rivlin', 'yeoh' or 'gent'
     constants      of the law, by name, not to be fitted [MPa; jm: -]

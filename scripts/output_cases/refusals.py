@@ -18,7 +18,7 @@ def several(name, commands, files):
 def usage():
     yield several("no command", [""], {})
     for command in ("fk", "ik", "follow", "workspace", "walk", "compare", "calibrate", "calibrate material",
-                    "calibrate pressure",
+                    "calibrate pressure", "calibrate relaxation",
                     "calibrate dea", "drive", "mesh", "mesh info", "mesh check", "mesh convert", "melt",
                     "fk --frobnicate",
                     "mesh melt", "calibrate oil", "--frobnicate"):

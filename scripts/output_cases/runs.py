@@ -6,7 +6,7 @@ from .case import Case, keep_bytes, keep_lines, keep_steps, marker_path, remove,
 PATH = "t_s,air\n0,1\n0.5,1.1\n1.25,1.2\n2,1.3\n"
 BOTH = "t_s,air,tendon\n0,1,1\n1,1.1,0.98\n3,1.2,0.96\n4,1.3,0.93\n"
 COMMANDS = ("fk", "ik", "follow", "workspace", "walk", "compare", "calibrate", "calibrate material",
-            "calibrate pressure",
+            "calibrate pressure", "calibrate relaxation",
             "calibrate dea", "drive", "mesh", "mesh info", "mesh check", "mesh convert", "measure")
 
 

@@ -6,7 +6,7 @@ from .refusals import several
 
 
 def cases():
-    return [*compare(), *material(), *pressure(), *dea(), *curves(), *drive(), *mesh()]
+    return [*compare(), *material(), *pressure(), *dea(), *relaxation(), *curves(), *drive(), *mesh()]
 
 
 def compare():
@@ -98,6 +98,18 @@ def dea():
                    f"{law}0.5 -o skin.txt", "--law silicone",
                    f"{law}0.5 none.csv", "none.csv"):
         yield several(f"dea {option}", [f"calibrate dea {option}"], {})
+
+
+def relaxation():
+    for name, text in {"unit": "t_s,strain,stress_pa\n0,0.1,1\n", "time": "strain,stress_mpa\n0.1,1\n",
+                       "order": "t_s,strain,stress_mpa\n1,0.1,1\n0,0.1,1\n",
+                       "force": "t_s,strain,force_n\n0,0.1,1\n1,0.1,1\n",
+                       "rest": "t_s,strain,stress_mpa\n0,0,1\n1,0,1\n"}.items():
+        yield several(f"relaxation table, {name}", ["calibrate relaxation bad.csv"], {"bad.csv": text})
+    cycles = "examples/acrylic_strip/cycles.csv"
+    for option in (f"{cycles} --law hookean", f"{cycles} --constants jm=3", f"{cycles} --constants c10",
+                   f"{cycles} --poisson-ratio 0.5", f"{cycles} -o m.txt", f"{cycles} --branches -1", "none.csv"):
+        yield several(f"relaxation {option.replace(cycles, 'cycles')}", [f"calibrate relaxation {option}"], {})
 
 
 def curves():

@@ -101,6 +101,11 @@ def calibrate():
         "calibrate pressure examples/three_chamber_actuator/measured/syringe.csv --syringe-volume 60mL --tube-volume 1.2mL "
         "--scene examples/three_chamber_actuator/three_chamber_actuator.yaml --actuator air1 -o air1.yaml --plot air1.svg --table t.csv"],
         ends=None)
+    strip = "calibrate relaxation examples/acrylic_strip/cycles.csv --law gent"
+    yield Case("calibrate relaxation", [f"{strip} -o m.yaml --plot p.svg --residuals r.csv"])
+    yield Case("calibrate relaxation json", [f"{strip} --branches 2 --json"])
+    yield Case("calibrate relaxation of creep",
+               ["calibrate relaxation --creep examples/acrylic_strip/creep.csv --law gent --constants jm=99.67 -o m.yaml"])
     law = "calibrate dea --law neo-hookean --shear-modulus 0.07 --permittivity 4.4 --thickness 0.5"
     yield Case("calibrate dea law", [f"{law} -o s.yaml --plot s.svg"])
     yield Case("calibrate dea law json", [f"{law} --json"])

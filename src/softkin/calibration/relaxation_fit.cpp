@@ -174,6 +174,11 @@ class Growth {
       if (criterion(n) < criterion(best) - strong_difference) best = n;
     return best;
   }
+  /// To the last digits, which the search for the number of branches has no need of.
+  void polish(std::size_t n) {
+    constexpr double exact = 1e-14;
+    minima_[n] = minimise(problem_, minima_[n].unknowns, exact).value();
+  }
   /// Variance of the residuals.
   [[nodiscard]] double variance(std::size_t n) const {
     return minima_[n].squares / static_cast<double>(problem_.rows() - unknowns_with(n));
@@ -331,6 +336,8 @@ RelaxationFit fit_relaxation(const std::vector<RelaxationRun>& runs, const Relax
     fit.chosen = *options.branches;
     fit.by = BranchCount::asked;
   }
+  growth->polish(fit.chosen);
+  fit.tried[fit.chosen] = fit_of_minimum(problem, *growth, fit.chosen);
   check_modulus(fit.best().element);
   return fit;
 }

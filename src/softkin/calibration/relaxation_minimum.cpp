@@ -67,9 +67,9 @@ struct NormalEquations {
 
 }  // namespace
 
-std::optional<Minimum> minimise(const RelaxationProblem& problem, const VectorXd& start) {
+std::optional<Minimum> minimise(const RelaxationProblem& problem, const VectorXd& start, double enough) {
   constexpr int most_steps = 60;
-  constexpr double enough = 1e-7, least_damping = 1e-12, most_damping = 1e8;
+  constexpr double least_damping = 1e-12, most_damping = 1e8;
   VectorXd unknowns = within_bounds(problem, start);
   std::optional<VectorXd> residuals = problem.residuals(unknowns);
   if (!residuals) return std::nullopt;

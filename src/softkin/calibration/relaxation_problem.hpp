@@ -99,6 +99,9 @@ struct Minimum {
 };
 
 /// Levenberg-Marquardt within the bounds. None where the start has no answer.
-[[nodiscard]] std::optional<Minimum> minimise(const RelaxationProblem& problem, const Eigen::VectorXd& start);
+///
+/// enough  a step that makes the squares less by no more than this share is the last
+[[nodiscard]] std::optional<Minimum> minimise(const RelaxationProblem& problem, const Eigen::VectorXd& start,
+                                              double enough = 1e-7);
 
 }  // namespace softkin::calibration
