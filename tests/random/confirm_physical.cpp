@@ -55,7 +55,8 @@ void add_elements(const Model& model, const Equilibrium& found, Forces& forces) 
   const Points& positions = found.state.positions;
   const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive) {
     const ElementPulls pulls = pulls_of(model.materials[material].elastic, nodes_at(model.rest, nodes, count),
-                                        nodes_at(positions, nodes, count), drive);
+                                        nodes_at(positions, nodes, count), drive,
+                                        {&model.materials[material].viscosity, found.state.elapsed_s});
     for (int i = 0; i < count; ++i) {
       forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
       forces.stiffness[nodes[i]] += pulls.stiffness[i];

@@ -53,6 +53,9 @@ MaterialSpec random_material(Making& m, const std::string& region, double e) {
   material.density = m.draw.chance(0.8) ? m.draw.between(900, 3000) : 0;
   if (m.draw.chance(0.1)) material.linear_range = 0.05;
   if (!m.is(Oddity::materials) || m.draw.chance(0.9)) material.permittivity = m.draw.between(1, 5);
+  if (m.physical && m.draw.chance(0.2))
+    for (int count = m.draw.whole(1, 3); count > 0; --count)
+      material.viscosity.push_back({e * m.draw.log_between(0.01, 1), m.draw.log_between(0.01, 100)});
   return material;
 }
 
@@ -227,6 +230,9 @@ void make_options(Making& m) {
   if (!m.made.sensible && m.draw.chance(0.01)) options.solver = Solver::local_global;
   if (options.solver == Solver::local_global && m.draw.chance(0.3)) options.anderson = m.draw.whole(0, 20);
   if (m.draw.chance(0.1)) options.step_tolerance_mm = m.longest() * m.draw.log_between(1e-10, 1e-6);
+  const auto is_viscous = [](const MaterialSpec& material) { return !material.viscosity.empty(); };
+  if (std::any_of(m.made.spec.materials.begin(), m.made.spec.materials.end(), is_viscous) && m.draw.chance(0.8))
+    options.elapsed_s = m.draw.chance(0.2) ? 0 : m.draw.log_between(1e-4, 1e4);
   if (m.is(Oddity::impatient)) options.max_iterations = m.draw.whole(1, 20);
   if (m.is(Oddity::interrupted)) m.made.interrupt_after = m.draw.whole(1, 30);
   m.made.forgets = m.draw.chance(0.2);

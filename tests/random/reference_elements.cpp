@@ -79,6 +79,20 @@ T field_energy(const Square<T>& f, const RealVec3& e) {
   return T(-0.5L) * sum / determinant(f);
 }
 
+/// Energy of a branch at the end of a step that began relaxed at rest (docs/viscosity.md), but for a constant.
+template <class T>
+T branch_energy(const ViscousBranch& branch, double elapsed_s, const Square<T>& f) {
+  const Real x = static_cast<Real>(elapsed_s) / branch.time_s, m = x > 0 ? -std::expm1(-x) / x : 1;
+  const Square<T> c = cauchy_green(f);
+  const T scale = power(determinant(f), -2.0L / 3);
+  const T modulus = T(static_cast<Real>(branch.modulus_MPa));
+  if (x < 1e-8L) return T(0.5L) * modulus * scale * (c[0][0] + c[1][1] + c[2][2]);
+  Square<T> mean;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) mean[i][j] = T(1 - m) * scale * c[i][j] + T(i == j ? m : 0);
+  return T(1.5L / (1 - m)) * modulus * power(determinant(mean), 1.0L / 3);
+}
+
 /// Derivative of an energy by F.
 template <class Energy>
 RealMat3 slope_of(const RealMat3& gradient, const Energy& energy) {
@@ -219,8 +233,8 @@ RealMat3 inverse_stretch(const RealPoints& rest, Real ratio) {
 
 }  // namespace
 
-ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
-                      const LayerDrive& drive) {
+ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current, const LayerDrive& drive,
+                      const BranchDrive& viscous) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -236,6 +250,15 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
     RealMat3 p = stress(law, gradient);
     Real stiffness = stiffness_bound(law, gradient);
     const Real all = slope.rowwise().norm().sum();
+    if (viscous.branches && std::isfinite(viscous.elapsed_s))
+      for (const ViscousBranch& branch : *viscous.branches) {
+        if (!(gradient.determinant() > 0)) p.setConstant(std::numeric_limits<Real>::quiet_NaN());
+        p += slope_of(gradient, [&](const Square<Dual>& f) { return branch_energy(branch, viscous.elapsed_s, f); });
+        ElasticLaw spring;  // at once, when it is stiffest
+        spring.law = Law::mooney_rivlin;
+        spring.c10 = 0.5 * branch.modulus_MPa;
+        stiffness += stiffness_bound(spring, gradient);
+      }
     if (drive.pressure > 0) {  // the potential rises from the first triangle to the second, whatever the active stretch
       const RealMat3 relaxed = drive.ratio != 1 ? inverse_stretch(rest, drive.ratio) : RealMat3::Identity();
       const RealMat3 whole = gradient * relaxed.inverse(), inverse = whole.inverse();

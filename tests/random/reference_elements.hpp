@@ -34,10 +34,16 @@ struct LayerDrive {
   Real pressure = 0;  // permittivity times the square of the voltage that the layer has [MPa mm^2]
 };
 
+/// Maxwell branches so long after a long rest [s]; infinity: relaxed.
+struct BranchDrive {
+  const std::vector<ViscousBranch>* branches = nullptr;
+  double elapsed_s = 0;
+};
+
 /// rest, current: nodes of a tetrahedron of order 1 (4) or 2 (10: corners, then edges 01, 12, 02, 03, 13, 23) or of a
 /// prism (6).
 [[nodiscard]] ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
-                                    const LayerDrive& drive);
+                                    const LayerDrive& drive, const BranchDrive& viscous);
 
 /// Flux density at a place [mT] and its slopes there, (i, j) of b_i along x_j [mT/mm].
 struct RealFlux {
