@@ -2,6 +2,7 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/walk.hpp>
+#include <softkin/model/magnetic_field.hpp>
 #include <utility>
 
 namespace softkin {
@@ -68,6 +69,16 @@ void check_holds(const Model& model, const Vec3& direction) {
                            " on both sides; hold it so at one foot alone, and the other one along the other axes");
 }
 
+/// A uniform field turns a robot, but pulls at it along no direction.
+void check_fields(const Model& model) {
+  if (!model.magnetism) return;
+  for (const FieldSource& source : model.magnetism->sources)
+    if (!std::holds_alternative<UniformField>(source.field))
+      throw InvalidInput({.file = model.name}, "the magnetic field '" + source.name +
+                                                   "' pulls along the direction of travel: a walk is in fields that "
+                                                   "are the same everywhere");
+}
+
 void check_loads(const Model& model, const Vec3& direction) {
   if (model.dead_load.size() == 0) return;
   const double along = (model.dead_load * direction).sum();
@@ -107,7 +118,8 @@ struct Walker::Parts {
         forces(forces_of(robot.feet[0], robot.feet[1])),
         physical(robot.formulation == Formulation::physical),
         model(physical ? linked(robot, forces) : robot),
-        statics((check_holds(robot, direction), check_loads(robot, direction), check_surroundings(robot), model)),
+        statics((check_holds(robot, direction), check_loads(robot, direction), check_fields(robot),
+                 check_surroundings(robot), model)),
         options(solver),
         actuators(static_cast<Index>(robot.actuators.size())),
         state(statics.rest()) {

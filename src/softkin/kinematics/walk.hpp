@@ -34,8 +34,8 @@ struct WalkStep {
 ///         Liquid crystal elastomer strips as soft crawlers, J. Mech. Phys. Solids 84, 2015
 class Walker {
  public:
-  /// throws  InvalidInput on a model without feet, feet at one place, both feet held along the direction of travel, or
-  ///         loads along it
+  /// throws  InvalidInput on a model without feet, feet at one place, both feet held along the direction of travel,
+  ///         loads along it, or magnetic fields that are not the same everywhere
   Walker(const Model& model, const StaticsOptions& options);
   ~Walker();
   Walker(Walker&&) noexcept;

@@ -10,7 +10,8 @@ namespace {
 
 // [mT]; the strongest magnets that there are have 1,500, and what has less than the other was given in tesla
 constexpr double most_remanence = 2000, least_remanence = 1;
-constexpr double ungiven = 1e-9;  // of a grid's step, rounding
+constexpr Index most_points = 1000;  // splines through so many take a second
+constexpr double ungiven = 1e-9;     // of a grid's step, rounding
 
 Vec3 unit(const ActuatorSpec& spec, const Vec3& vector, const std::string& what) {
   if (!vector.allFinite() || !(vector.norm() > 0))
@@ -50,6 +51,9 @@ struct CheckedField {
     for (int axis = 0; axis < 3; ++axis) {
       if (field.counts[axis] < 4 || !(field.step[axis] > 0) || !std::isfinite(field.step[axis]))
         refuse(spec, "needs a grid of at least 4 points along every axis, that ascend");
+      if (field.counts[axis] > most_points)
+        refuse(spec, "needs a grid of at most " + std::to_string(most_points) + " points along an axis, not " +
+                         std::to_string(field.counts[axis]));
       points *= static_cast<std::size_t>(field.counts[axis]);
     }
     if (points != field.per_ampere.size()) refuse(spec, "needs a flux density at every point of its grid");
