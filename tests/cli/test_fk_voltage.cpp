@@ -76,6 +76,15 @@ TEST(FkVoltage, TellsVoltageAndPlaceOfPullIn) {
   EXPECT_NE(result.output.find("dea 'skin' holds "), std::string::npos) << result.output;
 }
 
+/// From 0 kV, where no shape changes with the voltage to first order.
+TEST(FkVoltage, InverseKinematicsFindsAVoltage) {
+  const ProgramResult result = run_program({"ik", crawler, "--target", "foot2=81,,", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json step = json::parse(result.output)["steps"][0];
+  EXPECT_NEAR(step["markers"]["foot2"][0], 81, 1e-3);
+  EXPECT_NEAR(step["actuation"]["skin"], 10.29, 0.01);
+}
+
 TEST(FkVoltage, Refusals) {
   const auto refused = [](const std::vector<std::string>& more, const std::string& message) {
     std::vector<std::string> arguments{"fk", crawler};

@@ -33,7 +33,8 @@ void check(const Model& model) {
   for (const Marker& marker : model.markers) check(marker.point, vertices);
   for (const Material& material : model.materials) {
     const ElasticLaw& law = material.elastic;
-    require_finite(law.mu + law.lambda + law.c10 + law.c01 + law.c20 + law.c30 + law.bulk, "a modulus is not finite");
+    require_finite(law.mu + law.lambda + law.c10 + law.c01 + law.c20 + law.c30 + law.bulk + law.jm,
+                   "a modulus is not finite");
     require_finite(material.shape_ratio + material.weight + material.density, "a material is not finite");
   }
   const ContactModel& contact = model.contact;

@@ -146,8 +146,10 @@ double voltage_unit(Making& m) {
   constexpr double vacuum = 8.8541878128e-6;  // MPa per (kV/mm)^2
   double thickness = m.size[2];
   const Mesh& mesh = m.mesh();
+  const auto exists = [&](Index v) { return v >= 0 && v < static_cast<Index>(mesh.vertices.rows()); };
   for (const Prism& prism : mesh.prisms)
-    thickness = std::min(thickness, (mesh.vertices.row(prism[3]) - mesh.vertices.row(prism[0])).norm());
+    if (exists(prism[0]) && exists(prism[3]))
+      thickness = std::min(thickness, (mesh.vertices.row(prism[3]) - mesh.vertices.row(prism[0])).norm());
   return thickness * std::sqrt(m.modulus / vacuum);
 }
 
