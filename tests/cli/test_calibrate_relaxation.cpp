@@ -123,7 +123,7 @@ TEST(CalibrateRelaxation, RefusesBadRowsUnitsAndOptionsAndWritesNothing) {
   refuse("run,t_s,strain,stress_mpa\n1,0,0.1,1\n1,1,0.1,1\n2,0,0.1,1\n", {"bad.csv:4", "run 2 has one row"});
   refuse("t_s,strain,stress_mpa\n0,0,0\n1,0,1\n2,0,1\n", {"bad.csv", "no stretch differs from 1"});
   const std::string good = "t_s,strain,stress_mpa\n0,0.1,1\n1,0.1,0.9\n2,0.1,0.85\n4,0.1,0.82\n8,0.1,0.8\n";
-  refuse(good, {"--law 'hookean'", "neo-hookean"}, {"--law", "hookean"});
+  refuse(good, {"law 'hookean'", "neo-hookean"}, {"--law", "hookean"});
   refuse(good, {"no constant 'jm' of neo-hookean"}, {"--constants", "jm=3"});
   refuse(good, {"--constants", "NAME=NUMBER"}, {"--constants", "c10:3"});
   refuse(good, {"jm must be above"}, {"--law", "gent", "--constants", "jm=0.001"});

@@ -2,6 +2,7 @@
 #include <softkin/io/table/csv.hpp>
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/io/table/measurements.hpp>
+#include <softkin/io/table/relaxation_runs.hpp>
 #include <softkin/io/table/settings.hpp>
 
 #include "fuzz/targets.hpp"
@@ -109,6 +110,20 @@ void run_voltage(const Input& input) {
           "a measurement out of range");
 }
 
+void run_relaxation(const Input& input) {
+  for (const StripSize& size : {StripSize{}, StripSize{50.0, 20.0}}) {
+    try {
+      for (const RelaxationRun& run : read_relaxation_runs(input.file("test.csv"), false, size))
+        for (std::size_t i = 0; i < run.time_s.size(); ++i) {
+          require(i == 0 || run.time_s[i - 1] < run.time_s[i], "times do not ascend");
+          require(std::isfinite(run.stress_MPa[i]) && run.stretch[i] > 0 && run.stretch[i] <= 16,
+                  "a measurement out of range");
+        }
+    } catch (const InvalidInput&) {  // a length or a force needs the specimen's size
+    }
+  }
+}
+
 /// Each line a setting, alone and together with those before it; and as a volume.
 void run_settings(const Input& input) {
   for (const Model& model : {finger(), sheet()}) {
@@ -142,6 +157,7 @@ std::vector<Target> table_targets() {
           {"tensile", "tables.dict", run_tensile},
           {"syringe", "tables.dict", run_syringe},
           {"voltage", "tables.dict", run_voltage},
+          {"relaxation", "tables.dict", run_relaxation},
           {"settings", "tables.dict", run_settings}};
 }
 

@@ -19,7 +19,7 @@ Law relaxing_law(const std::string& name) {
     if (name == law_name(law)) return law;
     names.push_back(law_name(law));
   }
-  throw InvalidInput("--law " + excerpt(name) + " is none that relaxation is fitted with" + suggest_name(name, names));
+  throw InvalidInput("law " + excerpt(name) + " is none that relaxation is fitted with" + suggest_name(name, names));
 }
 
 /// "MPa"; jm has none.
@@ -291,7 +291,7 @@ std::string relaxation_fragment(const RelaxationTask& task, const RelaxationResu
   const ElementFit& fit = results.fit.best();
   std::string files, branches;
   for (const std::string& file : task.tests) files += " " + printable(file);
-  for (const std::string& file : task.creep) files += " --creep " + printable(file);
+  for (const std::string& file : task.creep) files += ", creep: " + printable(file);
   for (const ViscousBranch& branch : fit.element.branches)
     branches += std::string(branches.empty() ? "" : ", ") +
                 "{modulus: " + number(scene_scale(task) * branch.modulus_MPa, 5) +
