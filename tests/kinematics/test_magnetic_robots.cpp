@@ -1,6 +1,6 @@
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/map_build.hpp>
-#include <softkin/kinematics/sampling.hpp>
+#include <softkin/kinematics/walk.hpp>
 
 #include "statics/magnetic_samples.hpp"
 
@@ -51,6 +51,20 @@ TEST(MagneticKinematics, AMapTakesFieldsAsItsInputs) {
   Eigen::VectorXd found(3);
   ASSERT_TRUE(map.evaluate(commands.data(), found.data()));
   EXPECT_LT((found - marker_at(model, settled(statics, values({3, -4.5})))).norm(), 0.02);
+}
+
+/// A coil pulls along the direction of travel.
+TEST(MagneticKinematics, WalksAreInUniformFields) {
+  for (const bool coil : {false, true}) {
+    RobotSpec spec = steered_strip(coil);
+    spec.markers.push_back({"base", {std::string("x_low"), {}}});
+    spec.feet = {{"base", 1, 1, {}}, {"tip", 1, 1, {}}};
+    const Model model = compile(spec);
+    if (coil)
+      EXPECT_THROW(Walker(model, {}), InvalidInput);
+    else
+      EXPECT_NO_THROW(Walker(model, {}));
+  }
 }
 
 }  // namespace softkin

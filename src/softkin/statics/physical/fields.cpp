@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 #include <softkin/statics/physical/fields.hpp>
+#include <type_traits>
 
 namespace softkin::physical {
 
@@ -10,49 +11,70 @@ namespace {
 constexpr double loop_constant = 0.1;    // mu_0 / (4 pi) [mT mm / A]
 constexpr double dipole_constant = 1e5;  // the same [mT mm^3 / (A m^2)]
 
-/// A number that depends on the place, with its first and second derivatives.
+/// A number that depends on the place, with its first derivatives, and its second ones where they are asked for.
+template <bool Second>
 struct Local {
   double value = 0;
   Vec3 slope = Vec3::Zero();
-  Mat3 second = Mat3::Zero();
+  struct Nothing {};
+  std::conditional_t<Second, Mat3, Nothing> second{};
+
+  explicit Local(double number = 0, const Vec3& along = Vec3::Zero()) : value(number), slope(along) {
+    if constexpr (Second) second.setZero();
+  }
+
+  friend Local operator+(const Local& a, const Local& b) {
+    Local sum(a.value + b.value, a.slope + b.slope);
+    if constexpr (Second) sum.second = a.second + b.second;
+    return sum;
+  }
+  friend Local operator*(double a, const Local& b) {
+    Local product(a * b.value, a * b.slope);
+    if constexpr (Second) product.second = a * b.second;
+    return product;
+  }
+  friend Local operator*(const Local& a, const Local& b) {
+    Local product(a.value * b.value, a.value * b.slope + b.value * a.slope);
+    if constexpr (Second)
+      product.second =
+          a.value * b.second + b.value * a.second + a.slope * b.slope.transpose() + b.slope * a.slope.transpose();
+    return product;
+  }
 };
 
-Local operator+(const Local& a, const Local& b) {
-  return {a.value + b.value, a.slope + b.slope, a.second + b.second};
-}
-
-Local operator*(double a, const Local& b) {
-  return {a * b.value, a * b.slope, a * b.second};
-}
-
-Local operator*(const Local& a, const Local& b) {
-  return {a.value * b.value, a.value * b.slope + b.value * a.slope,
-          a.value * b.second + b.value * a.second + a.slope * b.slope.transpose() + b.slope * a.slope.transpose()};
-}
-
 /// f(a), by f and its derivatives there.
-Local composed(const Local& a, double f, double f1, double f2) {
-  return {f, f1 * a.slope, f1 * a.second + f2 * a.slope * a.slope.transpose()};
+template <bool Second>
+Local<Second> composed(const Local<Second>& a, double f, double f1, double f2) {
+  Local<Second> of(f, f1 * a.slope);
+  if constexpr (Second) of.second = f1 * a.second + f2 * a.slope * a.slope.transpose();
+  return of;
 }
 
-Local power(const Local& a, double exponent) {
+template <bool Second>
+Local<Second> power(const Local<Second>& a, double exponent) {
   const double f = std::pow(a.value, exponent);
   return composed(a, f, exponent * f / a.value, exponent * (exponent - 1) * f / (a.value * a.value));
 }
 
 /// Along a direction, from a point.
-Local along(const Vec3& from_point, const Vec3& direction) {
-  return {from_point.dot(direction), direction, Mat3::Zero()};
+template <bool Second>
+Local<Second> along(const Vec3& from_point, const Vec3& direction) {
+  return Local<Second>(from_point.dot(direction), direction);
 }
 
-Local square_of(const Vec3& from_point) {
-  return {from_point.squaredNorm(), 2 * from_point, 2 * Mat3::Identity()};
+template <bool Second>
+Local<Second> square_of(const Vec3& from_point) {
+  Local<Second> square(from_point.squaredNorm(), 2 * from_point);
+  if constexpr (Second) square.second = 2 * Mat3::Identity();
+  return square;
 }
 
-void add_component(const Local& local, const Vec3& direction, Flux& out) {
+template <bool Second>
+void add_component(const Local<Second>& local, const Vec3& direction, Flux& out) {
   out.value += local.value * direction;
   out.slope += direction * local.slope.transpose();
-  for (int i = 0; i < 3; ++i) out.second[i] += direction[i] * local.second;
+  if constexpr (Second)
+    for (int i = 0; i < 3; ++i) out.second[i] += direction[i] * local.second;
 }
 
 /// Integrals over a loop's angle, k^2 = t: f of (1 - k cos)^-3/2 and g of cos (1 - k cos)^-3/2 / k, with derivatives by
@@ -114,37 +136,39 @@ struct LoopIntegrals {
   }
 };
 
+template <bool Second>
 bool add_loop(const CoilLoop& loop, double current, const Vec3& place, Flux& out) {
   const double a = loop.radius_mm;
   const Vec3 from_center = place - loop.center;
-  const Local z = along(from_center, loop.axis);
-  const Local square = square_of(from_center);
-  const Local size = square + Local{a * a};
-  const Local across = square + -1.0 * (z * z);  // rho^2
-  const Local t = 4 * a * a * (across * power(size, -2));
+  const Local<Second> z = along<Second>(from_center, loop.axis);
+  const Local<Second> square = square_of<Second>(from_center);
+  const Local<Second> size = square + Local<Second>(a * a);
+  const Local<Second> across = square + -1.0 * (z * z);  // rho^2
+  const Local<Second> t = 4 * a * a * (across * power(size, -2));
   if (!(t.value < 1)) return false;
   const LoopIntegrals of(std::max(0.0, t.value));
-  const Local f = composed(t, of.f, of.f1, of.f2), g = composed(t, of.g, of.g1, of.g2);
+  const Local<Second> f = composed(t, of.f, of.f1, of.f2), g = composed(t, of.g, of.g1, of.g2);
   const double scale = loop_constant * current * loop.turns * a;
-  const Local axial = scale * (power(size, -1.5) * (a * f + -2 * a * (across * power(size, -1) * g)));
-  const Local radial = 2 * a * scale * (z * power(size, -2.5) * g);  // over rho
+  const Local<Second> axial = scale * (power(size, -1.5) * (a * f + -2 * a * (across * power(size, -1) * g)));
+  const Local<Second> radial = 2 * a * scale * (z * power(size, -2.5) * g);  // over rho
   add_component(axial + -1.0 * (radial * z), loop.axis, out);
   for (int i = 0; i < 3; ++i) {
     const Vec3 unit = Vec3::Unit(i);
-    add_component(radial * along(from_center, unit), unit, out);
+    add_component(radial * along<Second>(from_center, unit), unit, out);
   }
   return true;
 }
 
+template <bool Second>
 bool add_dipole(const Vec3& position, const Vec3& moment, const Vec3& place, Flux& out) {
   const Vec3 from = place - position;
   if (!(from.squaredNorm() > 0)) return false;
-  const Local square = square_of(from);
-  const Local toward = 3 * dipole_constant * (along(from, moment) * power(square, -2.5));
+  const Local<Second> square = square_of<Second>(from);
+  const Local<Second> toward = 3 * dipole_constant * (along<Second>(from, moment) * power(square, -2.5));
   add_component(-dipole_constant * power(square, -1.5), moment, out);
   for (int i = 0; i < 3; ++i) {
     const Vec3 unit = Vec3::Unit(i);
-    add_component(toward * along(from, unit), unit, out);
+    add_component(toward * along<Second>(from, unit), unit, out);
   }
   return true;
 }
@@ -216,18 +240,25 @@ Fields::Setting Fields::derivative(Index actuator, const Demand& demand) const {
   return result;
 }
 
-bool Fields::flux(const Setting& setting, const Vec3& place, Flux& out) const {
+template <bool Second>
+bool Fields::sum(const Setting& setting, const Vec3& place, Flux& out) const {
   out = {};
   for (std::size_t s = 0; s < setting.sources.size(); ++s) {
     const auto& [current, position, moment] = setting.sources[s];
     bool known = true;
     if (current != 0 && grids_[s]) known = grids_[s]->add(place, current, out);
     if (const auto* coil = std::get_if<CoilField>(&magnetism_.sources[s].field); coil && current != 0)
-      for (const CoilLoop& loop : coil->loops) known = known && add_loop(loop, current, place, out);
-    if (!moment.isZero(0)) known = add_dipole(position, moment, place, out);
+      for (const CoilLoop& loop : coil->loops) known = known && add_loop<Second>(loop, current, place, out);
+    if (!moment.isZero(0)) known = add_dipole<Second>(position, moment, place, out);
     if (!known) return false;
   }
-  if (setting.moved_along < 0) return true;
+  return true;
+}
+
+bool Fields::flux(const Setting& setting, const Vec3& place, bool second, Flux& out) const {
+  const bool moved = setting.moved_along >= 0;
+  if (!(second || moved ? sum<true>(setting, place, out) : sum<false>(setting, place, out))) return false;
+  if (!moved) return true;
   const Flux there = out;  // the field at x is that of x less the move
   out.value = -there.slope.col(setting.moved_along);
   for (int i = 0; i < 3; ++i) out.slope.row(i) = -there.second[i].col(setting.moved_along).transpose();

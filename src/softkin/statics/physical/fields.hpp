@@ -38,10 +38,14 @@ class Fields {
   /// source   loops: complete elliptic integrals, as in Simpson et al. 2001, "Simple analytic expressions for the
   ///          magnetic field of a circular current loop", of 4 a^2 rho^2 / (a^2 + r^2)^2, which is smooth on the axis;
   ///          dipole: mu_0 / (4 pi) (3 (m . r) r / r^5 - m / r^3); grid: SplineGrid
+  /// second   are second derivatives asked for: they cost as much again; not of a setting that is moved
   /// returns  false outside a grid, on a wire and on a dipole
-  bool flux(const Setting& setting, const Vec3& place, Flux& out) const;
+  bool flux(const Setting& setting, const Vec3& place, bool second, Flux& out) const;
 
  private:
+  template <bool Second>
+  bool sum(const Setting& setting, const Vec3& place, Flux& out) const;
+
   const Model& model_;
   const Magnetism& magnetism_;
   std::vector<std::unique_ptr<const SplineGrid>> grids_;  // per source; none: no grid

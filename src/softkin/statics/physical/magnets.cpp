@@ -148,7 +148,7 @@ std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, cons
       for (Index e = begin; e < end; ++e)
         for (int q = 0; q < Q; ++q) {
           const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
-          if (!fields_.flux(setting, point.place, fluxes[e][q])) known = false;
+          if (!fields_.flux(setting, point.place, false, fluxes[e][q])) known = false;
         }
     });
     for (Index e = 0; e < count; ++e)  // by one thread: elements share vertices
@@ -180,7 +180,7 @@ void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool 
       const auto& poles = set.poles[e][q];
       const Point point = point_of<K>(set.nodes[e], shapes, poles, positions);
       Flux flux;
-      if (!fields_.flux(setting, point.place, flux)) return;  // of a shape that is forbidden
+      if (!fields_.flux(setting, point.place, true, flux)) return;  // of a shape that is forbidden
       Matrix6 second = second_derivative(point, flux);
       if (projected) second = made_positive(second, std::cbrt(set.volumes[e][q]));
       const Mat3 mixed = second.topRightCorner<3, 3>(), of_place = second.bottomRightCorner<3, 3>(),
