@@ -57,7 +57,7 @@ double stretched_block(const ElasticSpec& elastic, double strain) {
   auto scratch = body.make_scratch();
   Points gradient(model.rest.rows(), 3);
   Team alone(1);
-  (void)body.force(Actuation(0), found.state.positions, scratch, gradient, alone);
+  (void)body.force({Actuation(0)}, found.state.positions, scratch, gradient, alone);
   double force = 0;
   for (Index v = 0; v < model.rest.rows(); ++v)
     if (model.rest(v, 0) > side - 1e-9) force += gradient(v, 0);

@@ -15,7 +15,7 @@ using testing::read_text;
 using testing::run_program;
 using testing::TemporaryFolder;
 
-const std::string crawler = std::string(SOFTKIN_SOURCE_DIR) + "/examples/dea_crawler/voltage/crawler.yaml";
+const std::string charged_crawler = std::string(SOFTKIN_SOURCE_DIR) + "/examples/dea_crawler/voltage/crawler.yaml";
 
 /// As wide as under `skin=0.7` of the scene whose area is controlled.
 double foot_at(const std::vector<std::string>& arguments) {
@@ -27,7 +27,7 @@ double foot_at(const std::vector<std::string>& arguments) {
 }  // namespace
 
 TEST(FkVoltage, ReportsWhatTheLayerHolds) {
-  const ProgramResult result = run_program({"fk", crawler, "--set", "skin=10kV", "--json"});
+  const ProgramResult result = run_program({"fk", charged_crawler, "--set", "skin=10kV", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report = json::parse(result.output);
   EXPECT_EQ(report["actuators"]["skin"]["control"], "voltage");
@@ -49,15 +49,16 @@ TEST(FkVoltage, ReportsWhatTheLayerHolds) {
 
 TEST(FkVoltage, WithoutVoltageThePrestretchStays) {
   const std::string by_area = std::string(SOFTKIN_SOURCE_DIR) + "/examples/dea_crawler/dea_crawler.yaml";
-  EXPECT_NEAR(foot_at({"fk", crawler, "--json"}), foot_at({"fk", by_area, "--set", "skin=0.7", "--json"}), 1e-4);
+  EXPECT_NEAR(foot_at({"fk", charged_crawler, "--json"}), foot_at({"fk", by_area, "--set", "skin=0.7", "--json"}),
+              1e-4);
 }
 
 /// Charges are read again from a report.
 TEST(FkVoltage, APathIsResumed) {
   const TemporaryFolder folder;
   const std::string path = folder.write("path.csv", "skin_kV\n0\n5\n9\n"), report = folder / "report.json";
-  const std::vector<std::string> arguments{"fk",       crawler, "--path", path,
-                                           "--report", report,  "-o",     folder / "shape.pvd"};
+  const std::vector<std::string> arguments{"fk",       charged_crawler, "--path", path,
+                                           "--report", report,          "-o",     folder / "shape.pvd"};
   ASSERT_EQ(run_program(arguments).exit_code, 0);
   const std::string before = read_text(report);
   std::vector<std::string> again = arguments;
@@ -68,7 +69,7 @@ TEST(FkVoltage, APathIsResumed) {
 }
 
 TEST(FkVoltage, TellsVoltageAndPlaceOfPullIn) {
-  const ProgramResult result = run_program({"fk", crawler, "--set", "skin=25"});
+  const ProgramResult result = run_program({"fk", charged_crawler, "--set", "skin=25"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.errors.find("limit: skin reached 19.2"), std::string::npos) << result.errors;
   EXPECT_NE(result.errors.find("the voltage of dea 'skin' has its maximum there, 19.2"), std::string::npos);
@@ -78,7 +79,7 @@ TEST(FkVoltage, TellsVoltageAndPlaceOfPullIn) {
 
 /// From 0 kV, where no shape changes with the voltage to first order.
 TEST(FkVoltage, InverseKinematicsFindsAVoltage) {
-  const ProgramResult result = run_program({"ik", crawler, "--target", "foot2=81,,", "--json"});
+  const ProgramResult result = run_program({"ik", charged_crawler, "--target", "foot2=81,,", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json step = json::parse(result.output)["steps"][0];
   EXPECT_NEAR(step["markers"]["foot2"][0], 81, 1e-3);
@@ -87,7 +88,7 @@ TEST(FkVoltage, InverseKinematicsFindsAVoltage) {
 
 TEST(FkVoltage, Refusals) {
   const auto refused = [](const std::vector<std::string>& more, const std::string& message) {
-    std::vector<std::string> arguments{"fk", crawler};
+    std::vector<std::string> arguments{"fk", charged_crawler};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramResult result = run_program(arguments);
     EXPECT_EQ(result.exit_code, 2);

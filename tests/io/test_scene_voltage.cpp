@@ -25,7 +25,7 @@ RobotSpec with_shares(const std::string& text) {
   return parse_scene(voltage_scene, "robots/skin.yaml", files);
 }
 
-std::string refusal_of(const std::string& text) {
+std::string refusal_of_shares(const std::string& text) {
   try {
     (void)with_shares(text);
   } catch (const InvalidInput& error) {
@@ -61,7 +61,7 @@ TEST(SceneVoltage, FilesOfSharesThatAreRefused) {
       {"prism,share\n-1,1\n", "right.csv:2: column 'prism' must hold a whole number from 0, not -1"},
       {"prism,share\n", "no row follows the header"}};
   for (const auto& [text, message] : cases) {
-    const std::string found = refusal_of(text);
+    const std::string found = refusal_of_shares(text);
     EXPECT_NE(found.find(message), std::string::npos) << found;
     EXPECT_EQ(found.find("robots/skin.yaml:7: "), 0u) << found;
   }
