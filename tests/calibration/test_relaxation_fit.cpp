@@ -152,6 +152,29 @@ TEST(RelaxationFit, OtherLaws) {
   expect_found("c01", of_mooney.best().constants[1], 0.03, 0.2);
 }
 
+TEST(RelaxationFit, OneStretchDoesNotTellTwoConstantsApart) {
+  const std::vector<RelaxationRun> one{made_run(held_at(1.5, 0.1, 500, 60), gent_stress, {{0.05, 5}}, 0.003, 1)};
+  for (const Law law : {Law::mooney_rivlin, Law::yeoh, Law::gent})
+    EXPECT_THROW((void)fit_relaxation(one, {law}), InvalidInput);
+  const RelaxationFit held = fit_relaxation(one, {Law::gent, {{"jm", vhb_limit}}});
+  expect_branches(held, {{0.05, 5}}, 0.1);
+  expect_found("shear modulus", held.best().constants[0], vhb_modulus, 0.1);
+  std::vector<RelaxationRun> two = one;  // at two stretches they are apart
+  two.push_back(made_run(held_at(4, 0.1, 500, 60), gent_stress, {{0.05, 5}}, 0.003, 2));
+  expect_found("jm", fit_relaxation(two, {Law::gent}).best().constants[1], vhb_limit, 0.5);
+}
+
+TEST(RelaxationFit, FewRowsCarryFewBranches) {
+  const RelaxationRun few{"a.csv",
+                          "run 1",
+                          false,
+                          {0, 0.5, 1, 2, 4, 8, 16, 32, 64},
+                          std::vector<double>(9, 1.1),
+                          {0.04, 0.038, 0.037, 0.0355, 0.034, 0.033, 0.0325, 0.0323, 0.0322},
+                          {}};
+  EXPECT_EQ(fit_relaxation({few}, {}).tried.size(), 2u);  // three rows for every number
+}
+
 TEST(RelaxationFit, RefusesTestsThatTellNothing) {
   RelaxationRun run{"a.csv", "run 1", false, {0, 1, 2, 3}, {1, 1, 1, 1}, {0, 0, 0, 0}, {}};
   EXPECT_THROW((void)fit_relaxation({run}, {}), InvalidInput);

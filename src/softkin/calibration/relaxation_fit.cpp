@@ -16,9 +16,10 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double grid_per_decade = 4;
-constexpr double finest_share = 1e-4;    // of the answers' rms: nothing finer is measured
-constexpr double strong_difference = 6;  // between values of the criterion
-constexpr double least_share = 1e-3;     // of a branch that a fit begins with, of all
+constexpr double finest_share = 1e-4;         // of the answers' rms: nothing finer is measured
+constexpr double strong_difference = 6;       // between values of the criterion
+constexpr Eigen::Index rows_per_unknown = 3;  // with fewer rows a criterion means little
+constexpr double least_share = 1e-3;          // of a branch that a fit begins with, of all
 
 /// Relaxation times that the rows tell: the shortest interval, but for a few that may be strays, and the longest run.
 std::array<double, 2> resolved_times(const std::vector<RelaxationRun>& runs) {
@@ -156,7 +157,8 @@ class Growth {
                 static_cast<double>(run.time_s.size());
     const Starts starts(problem, grid);
     const std::size_t most = asked.value_or(std::max<std::size_t>(2, grid.size() * 3 / 8));
-    for (std::size_t n = 0; n <= most && unknowns_with(n) < problem.rows(); ++n) {
+    const Eigen::Index most_unknowns = asked ? problem.rows() - 1 : problem.rows() / rows_per_unknown;
+    for (std::size_t n = 0; n <= most && (n == 0 || unknowns_with(n) <= most_unknowns); ++n) {
       if (!add(n, starts) || (!asked && n >= fewest() + 2)) break;
     }
   }
@@ -290,6 +292,20 @@ void check_modulus(const MaxwellElement& element) {
       "or give the law's constants");
 }
 
+/// A test of one stretch says one thing of the law.
+void check_constants(const RelaxationProblem& problem) {
+  std::vector<double> constants;
+  std::string fitted;
+  for (std::size_t c = 0; c < problem.names().size(); ++c) {
+    const double start = problem.names()[c] == "jm" ? 4 * problem.most_excess() : 1;
+    constants.push_back(problem.held(c).value_or(start));
+    if (!problem.held(c)) fitted += (fitted.empty() ? "" : ", ") + problem.names()[c];
+  }
+  if (problem.tells_constants(constants)) return;
+  throw InvalidInput("the tests do not tell the constants " + fitted +
+                     " apart: stretch to several lengths, give constants that are known, or take a law with fewer");
+}
+
 /// Weights of stresses beside stretches, where both answered: their residuals with as many branches as they carry.
 void weigh(RelaxationProblem& problem, const Growth& growth) {
   const VectorXd& unknowns = growth.minima()[growth.fewest()].unknowns;
@@ -310,6 +326,7 @@ RelaxationFit fit_relaxation(const std::vector<RelaxationRun>& runs, const Relax
   if (problem.rows() <= problem.free_constants())
     throw InvalidInput("the tests have fewer rows than the law has constants");
   problem.set_scales(rms_of(runs, false), rms_of(runs, true));
+  check_constants(problem);
   std::optional<Growth> growth(std::in_place, problem, grid, options.branches);
   const auto loaded =
       std::count_if(runs.begin(), runs.end(), [](const RelaxationRun& run) { return run.load_imposed; });

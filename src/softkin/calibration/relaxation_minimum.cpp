@@ -1,7 +1,9 @@
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <softkin/calibration/relaxation_problem.hpp>
+#include <softkin/core/dense.hpp>
 
 namespace softkin::calibration {
 
@@ -50,13 +52,20 @@ struct NormalEquations {
     for (std::size_t i = 0; i < moving.size(); ++i) all[moving[i]] = some[static_cast<Eigen::Index>(i)];
     return all;
   }
+  /// Unknowns that take part in a combination that the rows do not tell have none.
   [[nodiscard]] VectorXd deviations() const {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), singular = 1e-13;
-    const auto count = static_cast<Eigen::Index>(moving.size());
-    const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
-    if (count > 0 && !(factor.vectorD().minCoeff() > singular)) return VectorXd::Constant(size, nan);
-    const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(count, count));
-    return spread(scale.cwiseProduct(inverse.diagonal().cwiseSqrt()), nan);
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), singular = 1e-13, part = 1e-3;
+    if (moving.empty()) return VectorXd::Constant(size, nan);
+    const SymmetricEigen eigen = symmetric_eigen(matrix);
+    VectorXd variances = VectorXd::Zero(right.size());
+    for (Eigen::Index k = 0; k < eigen.values.size(); ++k) {
+      const Eigen::ArrayXd shares = eigen.vectors.col(k).array().square();
+      const bool told = eigen.values[k] > singular * eigen.values.maxCoeff();
+      if (told) variances.array() += shares / eigen.values[k];
+      for (Eigen::Index i = 0; i < shares.size() && !told; ++i)
+        if (shares[i] > part * part) variances[i] = nan;
+    }
+    return spread(scale.cwiseProduct(variances.cwiseSqrt()), nan);
   }
 
   Eigen::Index size = 0;

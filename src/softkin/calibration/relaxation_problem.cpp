@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/calibration/relaxation_problem.hpp>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/model/names.hpp>
@@ -194,6 +195,21 @@ VectorXd RelaxationProblem::law_slopes(const VectorXd& unknowns, double stretch)
                 (2 * step);
   }
   return slopes;
+}
+
+bool RelaxationProblem::tells_constants(const std::vector<double>& constants) const {
+  constexpr double least = 1e-5;  // square of what is left of a column beside the others, over the column
+  const VectorXd start = unknowns(constants, {});
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free_constants_, free_constants_);
+  for (const RelaxationRun& run : runs_)
+    for (const double stretch : run.stretch) {
+      const VectorXd slopes = law_slopes(start, stretch);
+      normal += slopes * slopes.transpose();
+    }
+  if (free_constants_ == 0) return true;
+  const VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
+  return scale.allFinite() &&
+         symmetric_eigenvalues(scale.asDiagonal() * normal * scale.asDiagonal()).minCoeff() > least;
 }
 
 void RelaxationProblem::fill_stress_slopes(const RelaxationRun& run, const VectorXd& unknowns, Part part) const {

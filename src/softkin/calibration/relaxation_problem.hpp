@@ -56,6 +56,9 @@ class RelaxationProblem {
   [[nodiscard]] double slope(const Eigen::VectorXd& unknowns, Eigen::Index unknown) const;
   [[nodiscard]] bool is_modulus(Eigen::Index unknown) const;  // else a logarithm
 
+  /// Do the stretches of the runs tell the constants apart that are not held?
+  [[nodiscard]] bool tells_constants(const std::vector<double>& constants) const;
+
   /// Answers less what was measured, over the scales, run after run. None as of answer_of.
   [[nodiscard]] std::optional<Eigen::VectorXd> residuals(const Eigen::VectorXd& unknowns) const;
   /// Derivatives of the residuals, rows x unknowns: exact but for the integration's tolerance.
