@@ -264,11 +264,12 @@ TEST(Examples, MagneticCantileverReportsItsTorque) {
 /// The field turns once in a cycle, and the crawler goes forward by as much in every one.
 TEST(Examples, MagneticCrawlerWalksInARotatingField) {
   const fs::path folder = examples() / "magnetic_crawler";
+  const testing::TemporaryFolder out;
   const ProgramResult result =
       run_program({"walk", (folder / "magnetic_crawler.yaml").string(), (folder / "gait.csv").string(), "--cycles", "3",
-                   "--json", "--threads", "1"});
+                   "-o", (out / "walk").string(), "--threads", "1"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  const json steps = json::parse(result.output)["steps"];
+  const json steps = json::parse(testing::read_text(out / "walk/report.json"))["steps"];
   std::map<int, double> travel;  // at the end of each cycle
   for (const json& step : steps) {
     EXPECT_EQ(step["status"], "converged");

@@ -167,7 +167,8 @@ TEST_F(Steps, OfMagnetsAreReadBack) {
       "actuators: [{name: field, kind: magnetic, direction: [0, 0, 1], range: [-100, 100]}]\n"
       "markers: [{name: tip, region: tip}]\n");
   const Statics statics(model);
-  PathJob job(model, statics, testing::steps_of(model, 3), "path.csv", testing::one_thread());
+  const auto steps = testing::steps_of(model, 3);
+  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
   const auto records = made(job);
   const StepRecord& last = records.back();
   ASSERT_TRUE(last.magnetic.has_value());
