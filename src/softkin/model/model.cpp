@@ -75,15 +75,16 @@ class Hash {
   }
   void put(const std::optional<double>& value) { add(value.has_value(), value.value_or(0)); }
   void put(const ElementRole& role) { add(role.material, role.actuator, role.region); }
+  // what a robot does not have leaves the digits of older versions
   void put(const ElasticLaw& e) {
     add(e.law, e.mu, e.lambda, e.c10, e.c01, e.c20, e.c30, e.bulk);
-    if (e.law == Law::gent) add(e.jm);  // maps of robots without it stay valid
+    if (e.jm != 0) add(e.jm);
   }
   void put(const ViscousBranch& branch) { add(branch.modulus_MPa, branch.time_s); }
   void put(const Material& m) {
     add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range);
+    if (m.permittivity != 1) add(m.permittivity);
     if (!m.viscosity.empty()) add(m.viscosity);
-    if (m.permittivity != Material().permittivity) add(m.permittivity);
   }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
@@ -97,8 +98,9 @@ class Hash {
     add(c.distance_mm, c.modulus_MPa, c.parts, c.pairs, c.triangles, c.part_of, c.area, c.other_vertices);
   }
   void put(const Actuator& a) {
-    add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.shares,
-        a.prestretch, a.points, a.surface, a.gaps, a.other, a.axis, a.rest_measure);
+    add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.points,
+        a.surface, a.gaps, a.other, a.axis, a.rest_measure);
+    if (under_voltage(a)) add(a.shares, a.prestretch);
   }
 
   std::uint64_t state_ = 0xcbf29ce484222325;
