@@ -57,12 +57,12 @@ struct RelaxationOptions {
 /// Relaxation times lie between the shortest interval of the rows (the 2nd percentile) and the longest run. The number
 /// of branches grows from 0; each fit starts once from the one before and the time of a logarithmic grid that improves
 /// it most, and once from non-negative least squares over the whole grid, whose neighbours are merged; from there all
-/// constants, moduli and times are refined together. What is below 1e-4 of the answers (rms) counts as noise. There are three rows or
-/// more for every unknown.
+/// constants, moduli and times are refined together. What is below 1e-4 of the answers (rms) counts as noise.
+/// There are three rows or more for every unknown.
 ///
 /// source  criterion: BIC = N ln(squares / N) + p ln N; a difference above 6 is strong: Kass, Raftery 1995
-/// throws  InvalidInput on fewer rows than constants, where no stretch differs from 1, or where the tests do not tell the
-///         law's constants apart or show no modulus of the law above 0
+/// throws  InvalidInput on fewer rows than constants, where no stretch differs from 1, or where the tests do not tell
+///         the law's constants apart or show no modulus of the law above 0
 [[nodiscard]] RelaxationFit fit_relaxation(const std::vector<RelaxationRun>& runs, const RelaxationOptions& options);
 
 }  // namespace softkin::calibration
