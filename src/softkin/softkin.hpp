@@ -9,6 +9,7 @@
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/kinematics/trajectory.hpp>
 #include <softkin/kinematics/workspace.hpp>
+#include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/jobs.hpp>

@@ -267,7 +267,7 @@ TEST(Examples, MagneticCrawlerWalksInARotatingField) {
   const testing::TemporaryFolder out;
   const ProgramResult result =
       run_program({"walk", (folder / "magnetic_crawler.yaml").string(), (folder / "gait.csv").string(), "--cycles", "3",
-                   "-o", (out / "walk").string(), "--threads", "1"});
+                   "-o", out / "walk", "--threads", "1"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json steps = json::parse(testing::read_text(out / "walk/report.json"))["steps"];
   std::map<int, double> travel;  // at the end of each cycle
