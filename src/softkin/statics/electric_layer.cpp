@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <softkin/energy/dielectric.hpp>
 #include <softkin/statics/electric_layer.hpp>
