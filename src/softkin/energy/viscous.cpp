@@ -322,8 +322,8 @@ Overstress overstress(const Symmetric& barred, const Symmetric& inverse) {
   return o;
 }
 
-/// Integral of |s|^2 over a step, over its relaxation time, for s = a + b exp(-time), from s at begin and end. rate: the
-/// step over the relaxation time
+/// Integral of |s|^2 over a step, over its relaxation time, for s = a + b exp(-time), from s at begin and end. rate:
+/// the step over the relaxation time
 Pack integral(const Overstress& begin, const Overstress& end, const Pack& rate) {
   // their angle, from the Frobenius norms, which are theirs where strains have the same axes
   const Pack sizes = inner(begin.at, begin.at) * inner(end.at, end.at);

@@ -19,8 +19,8 @@ struct Anchor {
   double slipped_mm = 0;         // way that it slipped since it touches [mm]
 };
 
-/// What the Maxwell elements of a body remember: bar C and every branch's C_v at the quadrature points, as Statics orders
-/// them.
+/// What the Maxwell elements of a body remember: bar C and every branch's C_v at the quadrature points, as Statics
+/// orders them.
 struct ViscousHistory {
   std::vector<double> strains;  // six entries each: xx, yy, zz, xy, yz, xz [-]; determinant 1
 };

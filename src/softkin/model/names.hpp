@@ -15,8 +15,8 @@ namespace softkin {
 [[nodiscard]] const char* command_name(const Actuator& actuator);
 /// Has it a length, an area or a volume.
 [[nodiscard]] bool has_measure(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mm", "mT", "A" or "A m^2"; as a table has it: "[-]",
-/// "[kPa]", ....
+/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mm", "mT", "A" or "A m^2"; as a table has it:
+/// "[-]", "[kPa]", ....
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
 /// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa", "magnet_mx_Am2".
