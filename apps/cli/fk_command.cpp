@@ -120,8 +120,7 @@ class FkRun {
       const bool converged = run_.last().status == Status::converged;
       const Points& positions = run_.last_positions();
       if (!options_.output.empty() && !options_.series())
-        runs::write_shape(options_.output, model_, positions,
-                          answers_.statics().measured(runs::state_of(model_, run_.last(), positions)), converged);
+        runs::write_shape(options_.output, model_, positions, run_.last_deformation(), converged);
       if (!options_.show.image.empty())
         runs::write_image(options_.show.image, model_, positions, options_.show.view, image_title());
       if (!options_.show.plot.empty()) write_plot();

@@ -145,7 +145,7 @@ class ViewRun {
 
   int run(view::LiveServer& server) {
     Equilibrium rest = at_rest(model_, statics_, options_.statics());
-    const ElementDeformation deformation = deformation_of_rest(rest);
+    const ElementDeformation deformation = statics_.measured(rest.state);
     const StepRecord record = runs::step_record(model_, rest, deformation);
     if (rest.report.status != Status::converged) {
       std::fprintf(stderr, "softkin: %s: %s\n", name_of(rest.report.status), shortfall_text(model_, record).c_str());
@@ -156,11 +156,6 @@ class ViewRun {
   }
 
  private:
-  [[nodiscard]] ElementDeformation deformation_of_rest(const Equilibrium& rest) const {
-    return rest.report.status == Status::converged ? statics_.measured(rest.state)
-                                                   : deformation_of(model_, rest.state.positions);
-  }
-
   int serve(view::LiveServer& server, Equilibrium rest) {
     const std::string model = fingerprint_of(model_, options_);
     view::LiveContent content{

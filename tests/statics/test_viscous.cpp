@@ -77,6 +77,18 @@ TEST(Viscosity, ASmallStrainRelaxesByItsBranches) {
   EXPECT_NEAR(pulled(spec, now.flow.history, std::numeric_limits<double>::infinity()).stress, relaxed, 1e-4 * relaxed);
 }
 
+/// A strain that comes evenly, over many relaxation times: what is left of a branch is what its damper takes.
+TEST(Viscosity, ASlowStrainIsBorneByTheDampers) {
+  const double strain = 1e-5, modulus = 50, time = 0.01;
+  const ElasticSpec law = elastic(Law::neo_hookean, 0.2, 0.4);
+  const RobotSpec spec = stretched_cube(1 + strain, true, law, {{modulus, time}});
+  const double relaxed = pulled(spec, nullptr, std::numeric_limits<double>::infinity()).stress;
+  for (const double x : {1e2, 1e3, 1e4, 1e5}) {
+    const double damped = 4.0 / 3 * modulus * strain / x;
+    EXPECT_NEAR(pulled(spec, nullptr, x * time).stress - relaxed, damped, 1e-3 * damped) << x;
+  }
+}
+
 /// At once the branches are springs: the cube is as stiff as one of their shear moduli together. Nearly incompressible,
 /// as they resist no change of volume.
 TEST(Viscosity, InstantAndRelaxedAnswersAreElastic) {

@@ -63,6 +63,8 @@ class Run {
   /// What was made last, kept or not.
   [[nodiscard]] const Record& last() const { return last_; }
   [[nodiscard]] const Points& last_positions() const { return positions_; }
+  /// None before anything was made.
+  [[nodiscard]] const ElementDeformation& last_deformation() const { return deformation_; }
   [[nodiscard]] TypedLog<Record>& log() { return log_; }
 
   /// Of a record and its shape; of one that was made: with its deformation.
@@ -98,7 +100,8 @@ class Run {
     if (keeps) log_.add(made->record, made->positions, made->deformation);
     last_ = std::move(made->record);
     positions_ = std::move(made->positions);
-    if (keeps && watcher_) watcher_(last_, positions_, &made->deformation);
+    deformation_ = std::move(made->deformation);
+    if (keeps && watcher_) watcher_(last_, positions_, &deformation_);
     return keeps ? Advance::made : Advance::lost;
   }
 
@@ -143,6 +146,7 @@ class Run {
   Watcher watcher_{};
   Record last_;
   Points positions_;
+  ElementDeformation deformation_{};
   bool resumed_ = false;
 };
 

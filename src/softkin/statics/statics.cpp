@@ -106,11 +106,14 @@ struct Statics::Parts {
   }
 
   /// of: for messages
-  void check_known(const State& at, const StaticsOptions& options, const std::string& of) const {
+  void check_actuation(const State& at, const StaticsOptions& options, const std::string& of) const {
     check_start(model, at, options);
     if (!at.knows(static_cast<Index>(model.actuators.size())))
       throw InvalidInput(of + " needs the actuation of which it is the equilibrium");
     if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
+  }
+  void check_known(const State& at, const StaticsOptions& options, const std::string& of) const {
+    check_actuation(at, options, of);
     if (physical && at.multipliers.size() != at.actuation.size())
       throw InvalidInput(of + " needs the tensions and pressures of its equilibrium");
   }
@@ -222,7 +225,8 @@ bool Statics::foresees() const {
 
 ElementDeformation Statics::measured(const State& at) const {
   ElementDeformation deformation = deformation_of(parts_->model, at.positions);
-  if (!parts_->physical) return deformation;
+  const bool unknown = at.share < 0 || (at.actuation.size() == 0 && !parts_->model.actuators.empty());
+  if (!parts_->physical || unknown) return deformation;
   const StaticsOptions options;
   parts_->check_known(at, options, "the stress in a shape");
   parts_->physical->measure(at, deformation, *parts_->team(options));
@@ -235,7 +239,7 @@ bool Statics::viscous() const {
 
 ViscousFlow Statics::flow(const State& at) const {
   const StaticsOptions options;
-  parts_->check_known(at, options, "what is remembered of a shape");
+  parts_->check_actuation(at, options, "what is remembered of a shape");
   if (!parts_->physical) return {};
   parts_->check_history(at.history.get(), at.elapsed_s);
   return parts_->physical->flow(at, *parts_->team(options));

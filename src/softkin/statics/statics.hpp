@@ -107,7 +107,7 @@ class Statics {
 
   /// What a shape measures: deformation_of and, physical, the stress of the elements and what holds the robot.
   ///
-  /// at       an equilibrium that solve() returned; physical: its actuation and multipliers must be known
+  /// at       what solve() returned; without its actuation, where a search ended on its way: deformation_of alone
   /// throws   InvalidInput as sensitivity() does
   [[nodiscard]] ElementDeformation measured(const State& at) const;
 

@@ -241,8 +241,7 @@ void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapse
   const auto run = [&](const auto& set) {
     for (std::size_t i = 0; i < set.times.size(); ++i)
       for (int l = 0; l < lanes; ++l) {
-        constexpr double gone = 700;  // exp(-gone) is nothing
-        const double x = std::min(elapsed_s / set.times[i][l], gone), kept = std::exp(-x);
+        const double x = std::min(elapsed_s / set.times[i][l], 1e100), kept = std::exp(-x);
         const double mean = x > 0 ? -std::expm1(-x) / x : 1;
         BranchShares& shares = scratch.shares[set.first_branch + i];
         shares.remembered[l] = kept;
