@@ -6,6 +6,7 @@ import {fieldTests, liveFieldTests} from './field.mjs';
 import {liveTests} from './live.mjs';
 import {reportTests} from './report.mjs';
 import {hasView, stopAll} from './softkin.mjs';
+import {timeTests} from './times.mjs';
 
 mkdirSync(process.argv[3], {recursive: true});
 const browser = await launch();
@@ -26,6 +27,7 @@ async function test(name, act) {
 try {
   await reportTests(browser, test);
   await fieldTests(browser, test);
+  await timeTests(browser, test);
   if (await hasView()) {
     await liveFieldTests(browser, test);
     await liveTests(browser, test);
