@@ -2,6 +2,7 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/core/version.hpp>
 #include <softkin/io/base64.hpp>
