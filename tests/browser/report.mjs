@@ -78,7 +78,7 @@ async function checkFiles(page) {
   await page.waitForFunction(() => Number(document.querySelector('#step').value) > 2);
   await page.locator('#play').click();
   await page.locator('#step').fill('5');
-  assert.match(await text(page, 'step-text'), /^6 of \d+, 2\.50 s$/);
+  assert.match(await text(page, 'step-text'), /^6 of \d+, t = 2\.5 s$/);
   const line = readFileSync(example(name, 'circle.csv'), 'utf8').trim().split('\n')[6].split(',').map(Number);
   const [x, , z] = await tip(page);
   assert.ok(Math.hypot(x - line[1], z - line[2]) < 0.05, 'the waypoint is missed');

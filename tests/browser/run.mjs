@@ -2,9 +2,11 @@
 // Writes screenshots into the folder, to be looked at. SOFTKIN_CHROMIUM: the browser, default /usr/bin/chromium.
 import {mkdirSync} from 'node:fs';
 import {launch} from './browser.mjs';
+import {fieldTests, liveFieldTests} from './field.mjs';
 import {liveTests} from './live.mjs';
 import {reportTests} from './report.mjs';
 import {hasView, stopAll} from './softkin.mjs';
+import {timeTests} from './times.mjs';
 
 mkdirSync(process.argv[3], {recursive: true});
 const browser = await launch();
@@ -24,8 +26,12 @@ async function test(name, act) {
 
 try {
   await reportTests(browser, test);
-  if (await hasView()) await liveTests(browser, test);
-  else console.log('skipped: live mode, this softkin has no view');
+  await fieldTests(browser, test);
+  await timeTests(browser, test);
+  if (await hasView()) {
+    await liveFieldTests(browser, test);
+    await liveTests(browser, test);
+  } else console.log('skipped: live mode, this softkin has no view');
 } finally {
   await browser.close();
   stopAll();

@@ -99,7 +99,7 @@ TEST(HtmlOption, MapWritesAPageToBend) {
 TEST(HtmlOption, FollowWritesItsWaypoints) {
   SKIP_WITHOUT_PAGE();
   const BlockFolder folder(physical_scene());
-  const std::string path = folder.write("path.csv", "tip_x_mm\n20\n20.2\n"), page = folder / "p.html";
+  const std::string path = folder.write("path.csv", "t_s,tip_x_mm\n0,20\n0.5,20.2\n"), page = folder / "p.html";
   const ProgramResult result =
       run_program({"follow", folder.scene, path, "-o", folder / "out", "--html", page, "--threads", "1"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
@@ -107,6 +107,8 @@ TEST(HtmlOption, FollowWritesItsWaypoints) {
   const json shown = shown_by(page);
   ASSERT_EQ(shown.at("steps").size(), 2u);
   EXPECT_NEAR(shown.at("steps").at(1).at("markers").at(0).at(0).get<double>(), 20.2, 0.01);
+  EXPECT_EQ(shown.at("steps").at(0).at("time_s"), 0.0);
+  EXPECT_EQ(shown.at("steps").at(1).at("time_s"), 0.5);
 }
 
 }  // namespace

@@ -178,6 +178,27 @@ TEST(Page, CablesAreWhereTheyAreInTheModel) {
   }
 }
 
+TEST(Page, UniformFieldsTellTheirDirections) {
+  const Model model = block_model(
+      "softkin: 1\nmesh: {file: block.msh}\n"
+      "materials: [{region: all, youngs_modulus: 1, poisson_ratio: 0.3, remanence: [100, 0, 0]}]\n"
+      "fixed: [{region: base}]\nactuators:\n"
+      "  - {name: slanted, kind: magnetic, direction: [3, 0, 4], range: [-2, 2]}\n"
+      "  - {name: field, kind: magnetic, axes: [x, z], range: [-1, 1]}\n"
+      "  - {name: coil, kind: magnetic, coils: [{center: [0, 0, -30], axis: [0, 0, 1], radius: 9}], range: [-1, 1]}\n"
+      "  - {name: magnet, kind: magnetic, dipole: {position: [0, 0, -40], moment: [0, 0, [-1, 1]]}}\n"
+      "  - {name: tendon, kind: cable, points: [[0, 6, 12], [12, 6, 12]], control: tension, range: [0, 5]}\n");
+  const PageJson page = page_of(model, PageDocument(model, ""));
+  std::map<std::string, PageJson> told;
+  for (const PageJson& actuator : page.at("actuators")) told[actuator.at("name")] = actuator;
+  EXPECT_EQ(told.at("slanted").at("flux_density"), PageJson::parse("[0.6, 0.0, 0.8]"));
+  EXPECT_EQ(told.at("slanted").at("kind"), "magnetic");
+  EXPECT_EQ(told.at("slanted").at("unit"), "mT");
+  EXPECT_EQ(told.at("field_x").at("flux_density"), PageJson::parse("[1.0, 0.0, 0.0]"));
+  EXPECT_EQ(told.at("field_z").at("flux_density"), PageJson::parse("[0.0, 0.0, 1.0]"));
+  for (const char* other : {"coil", "magnet_mz", "tendon"}) EXPECT_FALSE(told.at(other).contains("flux_density"));
+}
+
 /// By a search over all elements for each vertex.
 TEST(Page, FieldsAreMeansOfTheElementsAround) {
   const Model model = page_model(2);

@@ -2,9 +2,11 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/core/version.hpp>
 #include <softkin/io/base64.hpp>
+#include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/map_export_parts.hpp>
 #include <softkin/runs/map_tables.hpp>
@@ -65,17 +67,32 @@ std::string load_unit(const Model& model, const Actuator& actuator) {
   return model.formulation == Formulation::physical ? multiplier_unit(actuator) : "";
 }
 
+/// What one mT of its command adds to the flux density everywhere, a unit vector [mT]; none: it makes no uniform field.
+std::optional<Vec3> uniform_flux_density(const Model& model, const Actuator& actuator) {
+  if (actuator.kind != ActuatorKind::magnetic) return std::nullopt;
+  const FieldSource& source = model.magnetism->sources[static_cast<std::size_t>(actuator.other)];
+  const auto* uniform = std::get_if<UniformField>(&source.field);
+  if (uniform == nullptr) return std::nullopt;
+  const int axis = axis_of(static_cast<FieldCommand>(actuator.axis));
+  return axis < 0 ? uniform->direction : Vec3(Vec3::Unit(axis));
+}
+
+Json page_actuator(const Model& model, const Actuator& actuator) {
+  Json json{{"name", actuator.name},
+            {"kind", kind_name(actuator)},
+            {"control", control_name(actuator)},
+            {"unit", command_unit(actuator)},
+            {"low", actuator.low},
+            {"high", actuator.high},
+            {"rest", actuator.rest},
+            {"load_unit", load_unit(model, actuator)}};
+  if (const auto flux_density = uniform_flux_density(model, actuator)) json["flux_density"] = json_of(*flux_density);
+  return json;
+}
+
 Json page_actuators(const Model& model) {
   Json list = Json::array();
-  for (const Actuator& each : model.actuators)
-    list.push_back({{"name", each.name},
-                    {"kind", kind_name(each)},
-                    {"control", control_name(each)},
-                    {"unit", command_unit(each)},
-                    {"low", each.low},
-                    {"high", each.high},
-                    {"rest", each.rest},
-                    {"load_unit", load_unit(model, each)}});
+  for (const Actuator& each : model.actuators) list.push_back(page_actuator(model, each));
   return list;
 }
 

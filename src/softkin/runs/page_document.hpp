@@ -19,7 +19,8 @@ struct VertexField {
 /// What the page (apps/view/web) shows of a robot, its steps and its map, as JSON. Arrays of numbers are
 /// {"f32": base64}, little-endian; also "u16" and "u32". Those of steps are rounded, to 1/131,070 of the span of each
 /// component: {"u16": base64, "low": [...], "step": [...]} stands for low + step u16. Vertices are numbered in the
-/// order of vertices(); lengths in mm, strains without unit, pressures in kPa, forces in N.
+/// order of vertices(); lengths in mm, strains without unit, pressures in kPa, forces in N, times in s. An actuator of
+/// a uniform magnetic field has "flux_density": what one mT of its command adds to that field, a vector [mT].
 class PageDocument {
  public:
   /// model must outlive the object. command: the line that made it, for people

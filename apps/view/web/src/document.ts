@@ -1,10 +1,12 @@
 import {type Packed, unpack} from './base64';
 import type {MapDocument} from './map';
 
-export type Kind = 'cable' | 'dea' | 'pneumatic' | 'motion' | 'force' | 'hold';
-/** control: what is commanded; "length", "area" and "volume" are ratios to those at rest. */
+export type Kind = 'cable' | 'dea' | 'pneumatic' | 'magnetic' | 'motion' | 'force' | 'hold';
+/** control: what is commanded; "length", "area" and "volume" are ratios to those at rest. flux_density: of a uniform
+    magnetic field alone, what one mT of its command adds to it [mT]. */
 export interface Actuator {
   name: string; kind: Kind; control: string; unit: string; low: number; high: number; rest: number; load_unit: string;
+  flux_density?: number[];
 }
 export interface Marker { name: string; at: number[] }
 export interface CablePoint { vertices: number[]; weights: number[] }

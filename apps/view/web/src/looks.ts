@@ -59,13 +59,13 @@ function makeLegend(regions: string[]): HTMLElement {
 }
 
 function makeSwitches(robot: Robot, scene: RobotScene): HTMLElement[] {
-  const {cables, workspace, obstacles, bodies, markers} = robot.document;
+  const {cables, workspace, obstacles, bodies, markers} = robot.document, {field} = scene;
   const around = obstacles.length + bodies.length > 0, who = markers[workspace?.marker ?? 0]?.name ?? 'it';
   const switches: [Part, string, boolean, boolean][] = [
     ['ghost', 'shape at rest', true, true], ['traces', 'ways of markers', true, robot.steps.length > 1],
     ['markers', 'markers', true, true], ['workspace', `where ${plain(who)} can go`, true, workspace !== null],
-    ['around', 'what is around', true, around], ['grid', 'grid', true, true],
-    ['clear', 'see through', cables.length > 0, true],
+    ['around', 'what is around', true, around], ['field', 'magnetic field', true, field !== null],
+    ['grid', 'grid', true, true], ['clear', 'see through', cables.length > 0, true],
   ];
   return switches.filter(([, , , is]) => is).map(([part, words, on]) => {
     const check = element('input', {type: 'checkbox'});

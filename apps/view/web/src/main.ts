@@ -3,6 +3,7 @@ import {type ComparisonDocument, readComparison, showComparison} from './compari
 import {makeCurves} from './curves';
 import {readDocument, type RobotDocument, robotName} from './document';
 import {makeDrag, placeOfHandles} from './drag';
+import {fieldOf} from './field';
 import {listenToKeys} from './keys';
 import {Live} from './live';
 import {makeLivePanel} from './live_panel';
@@ -101,6 +102,7 @@ function start(): void {
     for (const part of parts) part();
     scene.setShape(robot.pose.positions, robot.pose.markers);
     scene.setTarget(robot.target?.at ?? null, robot.target?.marker ?? 0);
+    scene.setField(fieldOf(read.actuators, robot.commands));
     scene.handles.set(placeOfHandles(robot));
     if (!live && robot.pose.from === 'map') meter.show(eventTime());
     tellAtSliders(robot, live && live.state);

@@ -6,12 +6,15 @@ import {
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {colourAt, paint, type Scale} from './colours';
 import type {RobotDocument} from './document';
+import {largestField} from './field';
+import {FieldArrow} from './field_arrow';
 import {Handles} from './handles';
 import {
   bodyColour, CableLine, makeBodies, makeBody, makeCloud, makeGhost, makeGrid, makeObstacle, ofTheme,
 } from './scene_parts';
 
-export type Part = 'ghost' | 'traces' | 'markers' | 'grid' | 'clear' | 'workspace' | 'around';
+export type Part = 'ghost' | 'traces' | 'markers' | 'grid' | 'clear' | 'workspace' | 'around' |
+  'field';
 type Thread = Line<BufferGeometry, LineBasicMaterial>;
 type Ball = Mesh<SphereGeometry, MeshBasicMaterial>;
 
@@ -34,6 +37,8 @@ export class RobotScene {
   readonly controls: OrbitControls;
   readonly gridMm: number;
   readonly handles = new Handles((at) => this.project(at));
+  /** null: the robot is in no uniform field. */
+  readonly field: FieldArrow | null;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly body: Mesh<BufferGeometry, MeshLambertMaterial[]>;
@@ -55,6 +60,8 @@ export class RobotScene {
   private tensions: (number | null)[] = [];
   private waiting = false;
   private eyeIsChosen = false;  // by hand
+  private eyeIsHeld = false;    // while something is dragged
+  private isInSight = true;
   onDrawn: () => void = () => {};
 
   constructor(private readonly canvas: HTMLCanvasElement, robot: RobotDocument, shapes: Float32Array[]) {
@@ -89,6 +96,7 @@ export class RobotScene {
     this.gap.visible = this.target.visible = this.wanted.visible = false;
     ({grid: this.grid, cellMm: this.gridMm} =
       makeGrid(this.size, this.box.getCenter(new Vector3()), this.box.min.z));
+    this.field = this.fieldBeside(largestField(robot.actuators));
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(-0.4, -1, 1.4);
     this.camera.add(sun);
@@ -96,6 +104,7 @@ export class RobotScene {
                    ...this.traces, ...this.cables.flatMap(({rim, core}) => [rim, core]), ...this.balls, this.target,
                    this.gap, this.wanted, this.handles.group);
     if (this.cloud) this.scene.add(this.cloud);
+    if (this.field) this.scene.add(this.field.group);
     this.controls = new OrbitControls(this.camera);
     this.controls.addEventListener('change', () => this.draw());
     this.controls.addEventListener('start', () => this.keepEye());
@@ -104,6 +113,16 @@ export class RobotScene {
     this.resize();
     this.lookFrom(wayFrom.clone());
     this.dress();
+  }
+
+  /** Left of the robot, as long in the largest field as a quarter of the robot. most: along x, y and z [mT] */
+  private fieldBeside(most: number[] | null): FieldArrow | null {
+    if (!most) return null;
+    const mmPerMilliTesla = 0.25 * this.size / Math.hypot(...most);
+    const reach = new Vector3().fromArray(most).multiplyScalar(mmPerMilliTesla);
+    const foot = this.box.getCenter(new Vector3()).setX(this.box.min.x - reach.x - 0.08 * this.size);
+    this.box.expandByPoint(foot.clone().sub(reach)).expandByPoint(foot.clone().add(reach));
+    return new FieldArrow(foot, mmPerMilliTesla);
   }
 
   /** Colours of the theme. */
@@ -115,6 +134,7 @@ export class RobotScene {
     for (const ring of this.rings) ring.material.color = ofTheme('--paper');
     for (const line of this.traces) line.material.color = ofTheme('--trace');
     if (this.cloud && !this.cloud.material.vertexColors) this.cloud.material.color = ofTheme('--accent');
+    this.field?.dress(ofTheme('--field'));
     this.gap.material.color = ofTheme('--bad');
     this.wanted.material.color = ofTheme('--accent');
     const grid = this.grid.material;
@@ -156,11 +176,24 @@ export class RobotScene {
     const shape = new Box3().setFromArray(positions as unknown as number[]);
     if (this.box.containsBox(shape)) return;
     this.box.union(shape.expandByScalar(0.1 * this.size));
-    if (!this.eyeIsChosen) this.lookFrom(wayFrom.clone());
+    this.isInSight = false;
+    this.goBack();
+  }
+
+  private goBack(): void {
+    if (this.eyeIsChosen || this.eyeIsHeld || this.isInSight) return;
+    this.isInSight = true;
+    this.lookFrom(wayFrom.clone());
   }
 
   /** The eye stays where it is, whatever the robot does. */
   keepEye(): void { this.eyeIsChosen = true; }
+
+  /** As that, until it is let go. */
+  holdEye(held: boolean): void {
+    this.eyeIsHeld = held;
+    this.goBack();
+  }
 
   /** By angles of the keyboard [rad], and nearer by a factor. */
   turn(right: number, up: number, nearer: number): void {
@@ -223,6 +256,12 @@ export class RobotScene {
     this.draw();
   }
 
+  /** [mT] */
+  setField(field: number[]): void {
+    this.field?.set(field);
+    this.draw();
+  }
+
   setTarget(target: number[] | null, marker: number): void {
     this.target.visible = this.gap.visible = target !== null;
     if (target) {
@@ -239,6 +278,7 @@ export class RobotScene {
     if (part === 'around') for (const mesh of this.around) mesh.visible = on;
     if (part === 'traces') for (const line of this.traces) line.visible = on;
     if (part === 'markers') for (const ball of this.balls) ball.visible = on;
+    if (part === 'field' && this.field) this.field.group.visible = on;
     if (part === 'clear') for (const material of this.body.material) {
       material.needsUpdate = material.transparent !== on;
       material.transparent = on;
@@ -254,9 +294,13 @@ export class RobotScene {
     return {x: (p.x + 1) / 2 * this.canvas.clientWidth, y: (1 - p.y) / 2 * this.canvas.clientHeight};
   }
 
-  /** Where the pointer is on the plane of the screen through a point. */
-  under(x: number, y: number, through: number[]): number[] {
+  /** From the eye to a place, of unit length. */
+  wayTo(at: number[]): number[] { return new Vector3().fromArray(at).sub(this.camera.position).normalize().toArray(); }
+
+  /** Where the pointer is on a plane through a point, else on that of the screen. */
+  under(x: number, y: number, through: number[], across?: number[]): number[] {
     const at = new Vector3().fromArray(through), normal = this.camera.getWorldDirection(new Vector3());
+    if (across) normal.fromArray(across);
     const ray = new Vector3(2 * x / this.canvas.clientWidth - 1, 1 - 2 * y / this.canvas.clientHeight, 0.5)
       .unproject(this.camera).sub(this.camera.position).normalize();
     const far = at.sub(this.camera.position).dot(normal) / ray.dot(normal);
@@ -274,7 +318,9 @@ export class RobotScene {
 
   private drawNow(): void {
     this.camera.updateMatrixWorld();
-    this.handles.fit(this.camera, 2 * Math.tan(this.camera.fov * Math.PI / 360) / (this.canvas.clientHeight || 1));
+    const mmPerPxAtOne = 2 * Math.tan(this.camera.fov * Math.PI / 360) / (this.canvas.clientHeight || 1);
+    this.handles.fit(this.camera, mmPerPxAtOne);
+    this.field?.fit(this.camera, mmPerPxAtOne);
     this.renderer.render(this.scene, this.camera);
     this.onDrawn();
   }

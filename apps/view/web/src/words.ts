@@ -1,12 +1,12 @@
 import type {Actuator, Kind} from './document';
 
 export const kindWords: Record<Kind, string> = {
-  cable: 'cable', pneumatic: 'air chamber', dea: 'dielectric elastomer', motion: 'moved obstacle', force: 'force',
-  hold: 'hold on a body',
+  cable: 'cable', pneumatic: 'air chamber', dea: 'dielectric elastomer', magnetic: 'magnetic field',
+  motion: 'moved obstacle', force: 'force', hold: 'hold on a body',
 };
 
 /** Not done to what is around the robot, such as a force on a body that it holds. */
-export const drives = ({kind}: Actuator): boolean => kind === 'cable' || kind === 'pneumatic' || kind === 'dea';
+export const drives = ({kind}: Actuator): boolean => kind !== 'motion' && kind !== 'force' && kind !== 'hold';
 
 /** What is commanded, as a unit: "× rest length", "kPa". */
 export function commandWords({unit, control}: Actuator): string {

@@ -1,0 +1,82 @@
+// Steps that have times are played in them.
+import assert from 'node:assert/strict';
+import {writeFileSync} from 'node:fs';
+import {resolve} from 'node:path';
+import {pathToFileURL} from 'node:url';
+import {frames, open, violations} from './browser.mjs';
+import {example, out, softkin} from './softkin.mjs';
+
+const name = 'three_tendon_finger';
+const shown = (page) => page.locator('#step-text').textContent();
+const speeds = (page) => page.locator('#speed option').allTextContents();
+
+/** The page of a file with these rows, which softkin fk or follow takes. */
+async function pageOf(browser, what, rows, options) {
+  const path = out(`${what}_times.csv`), html = out(`${what}_times.html`);
+  writeFileSync(path, rows.join('\n') + '\n');
+  if (what === 'follow') await softkin('follow', example(name), path, '-o', out('followed'), '--html', html);
+  else await softkin('fk', example(name), '--path', path, '--html', html);
+  return open(browser, pathToFileURL(resolve(html)).href, options);
+}
+
+/** How long it plays from the first step to the last [s]. */
+async function played(page) {
+  await page.locator('#step').fill('0');
+  return page.evaluate(() => new Promise((done) => {
+    const text = document.getElementById('step-text'), begin = performance.now();
+    const seen = new MutationObserver(() => {
+      if (!/^4 of 4/.test(text.textContent)) return;
+      seen.disconnect();
+      done((performance.now() - begin) / 1000);
+    });
+    seen.observe(text, {childList: true, characterData: true, subtree: true});
+    document.getElementById('play').click();
+  }));
+}
+
+async function checkSeconds(browser) {
+  const {page, watch, context} = await pageOf(browser, 'fk',
+    ['t_s,tendon1', '0,1', '0.25,0.95', '1.25,0.9', '1.3,0.85'], {scheme: 'dark'});
+  assert.equal(await shown(page), '4 of 4, t = 1.3 s');
+  await page.locator('#step').fill('2');
+  assert.equal(await shown(page), '3 of 4, t = 1.25 s');
+  assert.deepEqual(await speeds(page), ['0.25 ×', '1 ×', '4 ×']);
+  assert.equal(await page.locator('#speed').inputValue(), '1');
+  // from the first step, which is shown already, it goes on with the second
+  const usual = await played(page);
+  assert.ok(usual > 1 && usual < 2, `${usual} s`);
+  await page.getByLabel('Speed').selectOption('4 ×');
+  const faster = await played(page);
+  assert.ok(faster > 0.25 && faster < 0.8 * usual, `${faster} s at 4 ×, ${usual} s at 1 ×`);
+  assert.deepEqual(await violations(page), []);
+  await page.screenshot({path: out('times_seconds.png')});
+  assert.deepEqual([...watch.errors, ...watch.requests], []);
+  await context.close();
+}
+
+async function checkHours(browser) {
+  const {page, watch, context} = await pageOf(browser, 'follow',
+    ['t_s,x_mm,z_mm', '0,76,74', '3600,77,74', '7200,78,74', '14400,79,74'], {width: 390, height: 844});
+  assert.equal(await shown(page), '4 of 4, t = 14400 s');
+  assert.deepEqual(await speeds(page), ['0.25 ×', '1 ×', '4 ×', '500 ×']);
+  assert.equal(await page.locator('#speed').inputValue(), '500');
+  await frames(page);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390);
+  assert.deepEqual(await violations(page), []);
+  await page.screenshot({path: out('times_hours.png')});
+  assert.deepEqual([...watch.errors, ...watch.requests], []);
+  await context.close();
+}
+
+async function checkNone(browser) {
+  const {page, context} = await pageOf(browser, 'fk', ['tendon1', '1', '0.9'], {});
+  assert.equal(await shown(page), '2 of 2');
+  assert.ok(await page.locator('#speed').isHidden());
+  await context.close();
+}
+
+export async function timeTests(browser, test) {
+  await test('times: steps show theirs and are played in them', () => checkSeconds(browser));
+  await test('times: a path of hours is played faster', () => checkHours(browser));
+  await test('times: steps without times have no speed', () => checkNone(browser));
+}
