@@ -120,7 +120,15 @@ void check_report(const Actuation& command, const Equilibrium& found, Confirmati
 
 }  // namespace
 
-Confirmation confirm(const Model& model, const Actuation& command, const Equilibrium& found) {
+State long_rest(const Model& model, StaticsOptions options) {
+  const Statics statics(model);
+  const bool remembers = statics.viscous() && std::isfinite(options.elapsed_s);
+  options.elapsed_s = std::numeric_limits<double>::infinity();
+  return remembers ? statics.solve(model.rest_actuation(), statics.rest(), options).state
+                   : State{model.rest, model.rest_actuation()};
+}
+
+Confirmation confirm(const Model& model, const Actuation& command, const Equilibrium& found, const State& begun) {
   Confirmation out;
   check_report(command, found, out);
   if (!found.state.positions.allFinite()) return out;
@@ -131,7 +139,7 @@ Confirmation confirm(const Model& model, const Actuation& command, const Equilib
   if (!known || !found.state.multipliers.allFinite()) return out;
   out.is_equilibrium = true;
   if (model.formulation == Formulation::physical)
-    confirm_physical(model, found, out);
+    confirm_physical(model, found, begun, out);
   else
     confirm_target_shape(model, found, out);
   return out;

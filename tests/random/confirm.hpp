@@ -23,12 +23,17 @@ struct Confirmation {
 ///
 /// residual    at every free vertex and of every rigid region at most 1e-5 of the largest force that acts at any
 ///             vertex, and what moves of step_mm within the tolerance stand for, plus rounding of the coordinates
+/// begun       where a robot that remembers has stood for long
 /// constraint  1e-8 of the volume or length asked for, plus rounding
 /// step        of Algorithm 1: five times the tolerance, plus rounding
-[[nodiscard]] Confirmation confirm(const Model& model, const Actuation& command, const Equilibrium& found);
+[[nodiscard]] Confirmation confirm(const Model& model, const Actuation& command, const Equilibrium& found,
+                                   const State& begun);
+
+/// Where a robot stands, solved for, before the times of one that remembers begin.
+[[nodiscard]] State long_rest(const Model& model, StaticsOptions options);
 
 // its parts
-void confirm_physical(const Model& model, const Equilibrium& found, Confirmation& out);
+void confirm_physical(const Model& model, const Equilibrium& found, const State& begun, Confirmation& out);
 void confirm_target_shape(const Model& model, const Equilibrium& found, Confirmation& out);
 
 /// How the rigid region may move: along and about which axes.

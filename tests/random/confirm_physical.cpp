@@ -51,12 +51,13 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
           vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
 }
 
-void add_elements(const Model& model, const Equilibrium& found, Forces& forces) {
+void add_elements(const Model& model, const Equilibrium& found, const State& begun, Forces& forces) {
   const Points& positions = found.state.positions;
-  const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive) {
+  const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive, Real begun_ratio) {
+    const BranchDrive branches{&model.materials[material].viscosity, found.state.elapsed_s,
+                               nodes_at(begun.positions, nodes, count), begun_ratio};
     const ElementPulls pulls = pulls_of(model.materials[material].elastic, nodes_at(model.rest, nodes, count),
-                                        nodes_at(positions, nodes, count), drive,
-                                        {&model.materials[material].viscosity, found.state.elapsed_s});
+                                        nodes_at(positions, nodes, count), drive, branches);
     for (int i = 0; i < count; ++i) {
       forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
       forces.stiffness[nodes[i]] += pulls.stiffness[i];
@@ -66,11 +67,12 @@ void add_elements(const Model& model, const Equilibrium& found, Forces& forces) 
     std::array<Index, 10> nodes;
     std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
     if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, {});
+    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, {}, 1);
   }
   for (std::size_t e = 0; e < model.prisms.size(); ++e) {
     const ElementRole& role = model.prism_roles[e];
-    add(model.prisms[e].data(), 6, role.material, drive_of(model, found.state, role));
+    add(model.prisms[e].data(), 6, role.material, drive_of(model, found.state, role),
+        drive_of(model, begun, role).ratio);
   }
 }
 
@@ -356,11 +358,11 @@ void enter_rigid(const Model& model, const RigidRegion& region, const Points& po
 
 }  // namespace
 
-void confirm_physical(const Model& model, const Equilibrium& found, Confirmation& out) {
+void confirm_physical(const Model& model, const Equilibrium& found, const State& begun, Confirmation& out) {
   const State& state = found.state;
   check_places(model, state, out);
   Forces forces(static_cast<Index>(model.rest.rows()));
-  add_elements(model, found, forces);
+  add_elements(model, found, begun, forces);
   add_actuators(model, found, forces, out);
   add_magnets(model, found, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)

@@ -65,11 +65,12 @@ int count_unnoticed_lies(std::uint64_t first, std::uint64_t count) {
       const Model model = compile(robot.spec);
       const Statics statics(model);
       const Equilibrium truth = statics.solve(robot.commands[0], statics.rest(), robot.options);
-      const Confirmation of_truth = confirm(model, robot.commands[0], truth);
+      const State begun = long_rest(model, robot.options);
+      const Confirmation of_truth = confirm(model, robot.commands[0], truth, begun);
       if (truth.report.status != Status::converged || of_truth.blurred || !of_truth.faults.empty()) continue;
       for (const Lie& lie : lies_about(model, truth)) {
         ++told;
-        if (!confirm(model, robot.commands[0], lie.answer).faults.empty()) continue;
+        if (!confirm(model, robot.commands[0], lie.answer, begun).faults.empty()) continue;
         ++unnoticed;
         std::printf("seed %llu: not noticed: %s\n", static_cast<unsigned long long>(seed), lie.name);
       }

@@ -33,9 +33,10 @@ enum class Oddity {
 
 /// A case in the making. The mesh is of cells of about 1 until it is scaled.
 struct Making {
-  explicit Making(std::uint64_t seed) : draw(seed) { made.seed = seed; }
+  explicit Making(std::uint64_t seed) : draw(seed), later(seed ^ 0x6C61746572) { made.seed = seed; }
 
   Draw draw;
+  Draw later;  // of what came to be drawn later: the rest of a seed's robot stays as it was
   RandomCase made;
   std::vector<Oddity> odd;
   std::array<int, 3> cells{1, 1, 1};

@@ -64,13 +64,13 @@ ActuatorSpec random_layer(Making& m) {
 }
 
 /// The same, commanded by tension, pressure or voltage. Ranges are in units of the modulus, until make_loads().
-void command_load(Making& m, ActuatorSpec& spec) {
+void command_load(const Making& m, Draw& draw, ActuatorSpec& spec) {
   spec.control = Control::load;
   spec.rest = 0;
-  spec.low = spec.kind == ActuatorKind::pneumatic ? m.draw.pick({0.0, -0.02}) : 0;
-  spec.high = m.is(Oddity::actuators) ? m.draw.pick({0.1, 1.0, 1e6}) : 0.02;
+  spec.low = spec.kind == ActuatorKind::pneumatic ? draw.pick({0.0, -0.02}) : 0;
+  spec.high = m.is(Oddity::actuators) ? draw.pick({0.1, 1.0, 1e6}) : 0.02;
   if (spec.kind != ActuatorKind::dea) return;
-  spec.prestretch = m.draw.chance(0.4) ? m.draw.between(0.8, 1.1) : 1;
+  spec.prestretch = draw.chance(0.4) ? draw.between(0.8, 1.1) : 1;
   if (!m.is(Oddity::actuators)) spec.high = 0.04;
 }
 
@@ -83,7 +83,8 @@ void make_actuators(Making& m) {
   for (int i = m.draw.chance(0.5) ? m.draw.whole(1, 2) : 0; i > 0; --i) actuators.push_back(random_cable(m));
   for (ActuatorSpec& spec : actuators) {
     if (m.draw.chance(0.3)) spec.weight = m.draw.log_between(0.5, 20);
-    if (m.draw.chance(m.physical ? 0.3 : 0.01)) command_load(m, spec);
+    Draw& draw = spec.kind == ActuatorKind::dea ? m.later : m.draw;
+    if (draw.chance(m.physical ? 0.3 : 0.01)) command_load(m, draw, spec);
     if (!m.is(Oddity::actuators)) continue;
     if (m.draw.chance(0.05)) std::swap(spec.low, spec.high);
     if (m.draw.chance(0.05)) spec.name = "actuator0";

@@ -9,8 +9,9 @@ namespace {
 /// Constants of a law that has Young's modulus e and Poisson's ratio nu at small strains.
 ElasticSpec random_elastic(Making& m, double e, double nu) {
   ElasticSpec spec;
-  spec.law = m.draw.pick({Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::neo_hookean,
-                          Law::mooney_rivlin, Law::yeoh, Law::gent});
+  spec.law = m.draw.pick(
+      {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh});
+  if (m.later.chance(1.0 / 7)) spec.law = Law::gent;
   if (!forbids_inversion(spec.law)) {
     spec.youngs_modulus = e;
     spec.poisson_ratio = nu;
@@ -20,7 +21,7 @@ ElasticSpec random_elastic(Making& m, double e, double nu) {
   const double share = spec.law == Law::mooney_rivlin ? m.draw.between(0, 0.5) : 0;
   if (spec.law == Law::gent) {
     spec.shear_modulus = 2 * half_shear;
-    spec.jm = m.draw.log_between(m.is(Oddity::materials) ? 0.1 : 5, 200);
+    spec.jm = m.later.log_between(m.is(Oddity::materials) ? 0.1 : 5, 200);
   } else {
     spec.c10 = (1 - share) * half_shear;
   }
@@ -52,10 +53,10 @@ MaterialSpec random_material(Making& m, const std::string& region, double e) {
   if (m.physical || m.draw.chance(0.3)) material.elastic = random_elastic(m, e, random_poisson(m));
   material.density = m.draw.chance(0.8) ? m.draw.between(900, 3000) : 0;
   if (m.draw.chance(0.1)) material.linear_range = 0.05;
-  if (!m.is(Oddity::materials) || m.draw.chance(0.9)) material.permittivity = m.draw.between(1, 5);
-  if (m.physical && m.draw.chance(0.2))
-    for (int count = m.draw.whole(1, 3); count > 0; --count)
-      material.viscosity.push_back({e * m.draw.log_between(0.01, 1), m.draw.log_between(0.01, 100)});
+  if (!m.is(Oddity::materials) || m.later.chance(0.9)) material.permittivity = m.later.between(1, 5);
+  if (m.physical && m.later.chance(0.2))
+    for (int count = m.later.whole(1, 3); count > 0; --count)
+      material.viscosity.push_back({e * m.later.log_between(0.01, 1), m.later.log_between(0.01, 100)});
   return material;
 }
 
@@ -233,8 +234,8 @@ void make_options(Making& m) {
   if (options.solver == Solver::local_global && m.draw.chance(0.3)) options.anderson = m.draw.whole(0, 20);
   if (m.draw.chance(0.1)) options.step_tolerance_mm = m.longest() * m.draw.log_between(1e-10, 1e-6);
   const auto is_viscous = [](const MaterialSpec& material) { return !material.viscosity.empty(); };
-  if (std::any_of(m.made.spec.materials.begin(), m.made.spec.materials.end(), is_viscous) && m.draw.chance(0.8))
-    options.elapsed_s = m.draw.chance(0.2) ? 0 : m.draw.log_between(1e-4, 1e4);
+  if (std::any_of(m.made.spec.materials.begin(), m.made.spec.materials.end(), is_viscous) && m.later.chance(0.8))
+    options.elapsed_s = m.later.chance(0.2) ? 0 : m.later.log_between(1e-4, 1e4);
   if (m.is(Oddity::impatient)) options.max_iterations = m.draw.whole(1, 20);
   if (m.is(Oddity::interrupted)) m.made.interrupt_after = m.draw.whole(1, 30);
   m.made.forgets = m.draw.chance(0.2);

@@ -79,17 +79,28 @@ T field_energy(const Square<T>& f, const RealVec3& e) {
   return T(-0.5L) * sum / determinant(f);
 }
 
-/// Energy of a branch at the end of a step that began relaxed at rest (docs/viscosity.md), but for a constant.
+/// J^(-2/3) F^T F.
+RealMat3 barred(const RealMat3& f) {
+  return std::pow(f.determinant(), -2.0L / 3) * f.transpose() * f;
+}
+
+/// Energy of a branch at the end of a step that began relaxed with bar C (docs/viscosity.md), but for a constant.
 template <class T>
-T branch_energy(const ViscousBranch& branch, double elapsed_s, const Square<T>& f) {
+T branch_energy(const ViscousBranch& branch, double elapsed_s, const RealMat3& begun, const Square<T>& f) {
   const Real x = static_cast<Real>(elapsed_s) / branch.time_s, m = x > 0 ? -std::expm1(-x) / x : 1;
   const Square<T> c = cauchy_green(f);
   const T scale = power(determinant(f), -2.0L / 3);
   const T modulus = T(static_cast<Real>(branch.modulus_MPa));
-  if (x < 1e-8L) return T(0.5L) * modulus * scale * (c[0][0] + c[1][1] + c[2][2]);
+  if (x < 1e-8L) {
+    const RealMat3 inverse = begun.inverse();
+    T sum(0);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) sum += T(inverse(i, j)) * c[i][j];
+    return T(0.5L) * modulus * scale * sum;
+  }
   Square<T> mean;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) mean[i][j] = T(1 - m) * scale * c[i][j] + T(i == j ? m : 0);
+    for (int j = 0; j < 3; ++j) mean[i][j] = T(1 - m) * scale * c[i][j] + T(m * begun(i, j));
   return T(1.5L / (1 - m)) * modulus * power(determinant(mean), 1.0L / 3);
 }
 
@@ -250,15 +261,20 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
     RealMat3 p = stress(law, gradient);
     Real stiffness = stiffness_bound(law, gradient);
     const Real all = slope.rowwise().norm().sum();
-    if (viscous.branches && std::isfinite(viscous.elapsed_s))
+    if (viscous.branches && std::isfinite(viscous.elapsed_s)) {
+      RealPoints before = point.slope * jacobian.inverse();
+      if (viscous.begun_ratio != 1) before = before * inverse_stretch(rest, viscous.begun_ratio);
+      const RealMat3 begun = barred((viscous.begun.rowwise() - viscous.begun.row(0)).transpose() * before);
       for (const ViscousBranch& branch : *viscous.branches) {
         if (!(gradient.determinant() > 0)) p.setConstant(std::numeric_limits<Real>::quiet_NaN());
-        p += slope_of(gradient, [&](const Square<Dual>& f) { return branch_energy(branch, viscous.elapsed_s, f); });
+        p += slope_of(gradient,
+                      [&](const Square<Dual>& f) { return branch_energy(branch, viscous.elapsed_s, begun, f); });
         ElasticLaw spring;  // at once, when it is stiffest
         spring.law = Law::mooney_rivlin;
         spring.c10 = 0.5 * branch.modulus_MPa;
-        stiffness += stiffness_bound(spring, gradient);
+        stiffness += stiffness_bound(spring, gradient) * begun.inverse().norm();
       }
+    }
     if (drive.pressure > 0) {  // the potential rises from the first triangle to the second, whatever the active stretch
       const RealMat3 relaxed = drive.ratio != 1 ? inverse_stretch(rest, drive.ratio) : RealMat3::Identity();
       const RealMat3 whole = gradient * relaxed.inverse(), inverse = whole.inverse();

@@ -38,6 +38,8 @@ struct LayerDrive {
 struct BranchDrive {
   const std::vector<ViscousBranch>* branches = nullptr;
   double elapsed_s = 0;
+  RealPoints begun{};    // nodes of the element in that rest
+  Real begun_ratio = 1;  // active stretch there
 };
 
 /// rest, current: nodes of a tetrahedron of order 1 (4) or 2 (10: corners, then edges 01, 12, 02, 03, 13, 23) or of a

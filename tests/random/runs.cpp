@@ -107,10 +107,11 @@ void solve_all(const RandomCase& robot, bool verbose, RunResult& run, std::vecto
   const Model model = compile(robot.spec);
   if (verbose) describe(robot, model);
   const Statics statics(model);
+  const State begun = long_rest(model, robot.options);
   State start = statics.rest();
   for (const Actuation& command : robot.commands) {
     const Equilibrium found = solve(statics, robot, command, start, 1);
-    const Confirmation confirmed = confirm(model, command, found);
+    const Confirmation confirmed = confirm(model, command, found, begun);
     if (verbose) tell(command, found, confirmed);
     take(confirmed, found, run);
     run.outcome = outcome_of(found.report.status);

@@ -54,6 +54,11 @@ Pulled pulled(const RobotSpec& spec, const std::shared_ptr<const ViscousHistory>
   return {held.force.x() / (side * side), statics.flow(found.state)};
 }
 
+/// What the cube remembers that nobody has stretched.
+std::shared_ptr<const ViscousHistory> unstretched(const ElasticSpec& law, const std::vector<ViscousBranch>& branches) {
+  return pulled(stretched_cube(1, false, law, branches), nullptr, std::numeric_limits<double>::infinity()).flow.history;
+}
+
 }  // namespace
 
 /// A strain that is held relaxes as the sum of G_i exp(-t / tau_i), in steps of any length.
@@ -63,7 +68,7 @@ TEST(Viscosity, ASmallStrainRelaxesByItsBranches) {
   const double mu = 0.2 / 2.8, lambda = 0.2 * 0.4 / (1.4 * 0.2);
   const RobotSpec spec = stretched_cube(1 + strain, true, law, vhb);
   const double relaxed = (lambda + 2 * mu) * strain;
-  Pulled now = pulled(spec, nullptr, 0);
+  Pulled now = pulled(spec, unstretched(law, vhb), 0);
   double time = 0;
   for (const double step : {0.0, 0.01, 0.3, 0.3, 2.0, 10.0, 100.0}) {
     if (step > 0) now = pulled(spec, now.flow.history, step);
@@ -82,10 +87,11 @@ TEST(Viscosity, ASlowStrainIsBorneByTheDampers) {
   const double strain = 1e-5, modulus = 50, time = 0.01;
   const ElasticSpec law = elastic(Law::neo_hookean, 0.2, 0.4);
   const RobotSpec spec = stretched_cube(1 + strain, true, law, {{modulus, time}});
+  const auto begin = unstretched(law, {{modulus, time}});
   const double relaxed = pulled(spec, nullptr, std::numeric_limits<double>::infinity()).stress;
   for (const double x : {1e2, 1e3, 1e4, 1e5}) {
     const double damped = 4.0 / 3 * modulus * strain / x;
-    EXPECT_NEAR(pulled(spec, nullptr, x * time).stress - relaxed, damped, 1e-3 * damped) << x;
+    EXPECT_NEAR(pulled(spec, begin, x * time).stress - relaxed, damped, 1e-3 * damped) << x;
   }
 }
 
@@ -103,8 +109,9 @@ TEST(Viscosity, InstantAndRelaxedAnswersAreElastic) {
   ElasticSpec stiff = soft;
   stiff.c10 = together / 2;
   const double infinite = std::numeric_limits<double>::infinity();
+  const auto begin = unstretched(soft, vhb);
   for (const double stretch : {0.7, 1.2, 2.0}) {
-    const double instant = pulled(stretched_cube(stretch, false, soft, vhb), nullptr, 0).stress;
+    const double instant = pulled(stretched_cube(stretch, false, soft, vhb), begin, 0).stress;
     EXPECT_NEAR(instant, pulled(stretched_cube(stretch, false, stiff, {}), nullptr, infinite).stress,
                 1e-8 * std::abs(instant));
     EXPECT_EQ(pulled(stretched_cube(stretch, false, soft, vhb), nullptr, infinite).stress,
@@ -208,7 +215,7 @@ double triangle(double share, double largest) {
 
 /// Largest difference of the stresses over a cycle, over the largest stress.
 double error_over_cycle(const ElasticSpec& law, OneElement apart, double period_s, int steps, double largest) {
-  std::shared_ptr<const ViscousHistory> history;
+  std::shared_ptr<const ViscousHistory> history = unstretched(law, vhb);
   double worst = 0, most = 0;
   for (int i = 1; i <= steps; ++i) {
     const double from = triangle((i - 1.0) / steps, largest), to = triangle(static_cast<double>(i) / steps, largest);
@@ -228,7 +235,7 @@ TEST(Viscosity, AStepOfLargeStrainRelaxesAsTheBranchEquationsDo) {
   OneElement apart(neo_hooke(0.1, 0.45), vhb);
   const double stretch = 2.5;
   const RobotSpec spec = stretched_cube(stretch, false, law, vhb);
-  Pulled now = pulled(spec, nullptr, 0);
+  Pulled now = pulled(spec, unstretched(law, vhb), 0);
   EXPECT_NEAR(now.stress, apart.stress(stretch), 1e-6 * now.stress);
   double step = 0.002;
   for (int i = 0; i < 60; ++i, step *= 1.12) {
@@ -277,8 +284,10 @@ TEST(Viscosity, ABarCreepsUnderALoad) {
   spec.fixed = {{{std::string("x_low"), {}}, {true, false, false}},
                 {{std::string("y_low"), {}}, {false, true, false}},
                 {{std::string("z_low"), {}}, {false, false, true}}};
-  spec.forces = {{"pull", {std::string("x_high"), {}}, {1e-3, 0, 0}}};
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
+  const Model free = compile(spec);
+  const Statics freely(free);
+  spec.forces = {{"pull", {std::string("x_high"), {}}, {1e-3, 0, 0}}};
   const Model model = compile(spec);
   const Statics statics(model);
   const double stress = 1e-3 / 100;
@@ -289,6 +298,7 @@ TEST(Viscosity, ABarCreepsUnderALoad) {
   // shear compliance: J(t) = 1/mu - (1/mu - 1/(mu + G)) exp(-t / retardation)
   const double retardation = time * (mu + added) / mu;
   StaticsOptions options;
+  options.history = freely.flow(settled(freely, {}).state).history;
   options.elapsed_s = 0;
   State state = statics.rest();
   double at = 0;
@@ -303,6 +313,33 @@ TEST(Viscosity, ABarCreepsUnderALoad) {
     options.elapsed_s = step;
     at += step;
   }
+}
+
+/// What hangs in the loads of its scene for long has relaxed under them when times begin: a shape that nobody commands
+/// to change stays, and one that is commanded to jumps as stiffly as it is at once from there.
+TEST(Viscosity, TimesBeginAfterALongRestUnderTheLoads) {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].viscosity = vhb;
+  spec.materials[0].viscosity[0].modulus_MPa = 0.5;
+  spec.materials[0].density = 50000;
+  spec.gravity = {0, 0, -9.81};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium relaxed = settled(statics, values({1}));
+  ASSERT_GT((relaxed.state.positions - model.rest).cwiseAbs().maxCoeff(), 0.05);
+  StaticsOptions timed;
+  for (const double time : {0.0, 0.5, 100.0}) {
+    timed.elapsed_s = time;
+    const Equilibrium found = statics.solve(values({1}), statics.rest(), timed);
+    ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
+    EXPECT_LT((found.state.positions - relaxed.state.positions).cwiseAbs().maxCoeff(), 1e-5) << time;
+    EXPECT_LT(statics.flow(found.state).lost_mJ, 1e-9);
+  }
+  timed.elapsed_s = 0;
+  const Equilibrium jumped = statics.solve(values({1.2}), statics.rest(), timed);
+  timed.history = statics.flow(relaxed.state).history;
+  const Equilibrium told = statics.solve(values({1.2}), relaxed.state, timed);
+  EXPECT_LT((jumped.state.positions - told.state.positions).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 /// From the shape before as from rest: the same.

@@ -344,7 +344,9 @@ InverseResult solve_inverse_from(const Model& model, const Statics& statics, con
     return result;
   }
   const double error = goal_errors(model, goals, first.state.positions).maxCoeff();
-  result = solve_inverse(model, statics, goals, first, options, progress);
+  InverseOptions begun = options;  // at the start's time
+  begun.statics.history = first.state.history;
+  result = solve_inverse(model, statics, goals, first, begun, progress);
   result.history.insert(result.history.begin(), {first.actuation, first.report.status, error, first.report.iterations});
   ++result.equilibria;
   result.seconds = seconds();

@@ -38,7 +38,7 @@ struct State {
   Eigen::VectorXd multipliers{};  // m: tension [N], gauge pressure [kPa], voltage [kV], else 0; empty: not known
   double share = 1;  // of dead loads, prestretch and displacements of supports; -1: of no equilibrium that is known [-]
   std::vector<Anchor> anchors{};                    // of friction, sorted by vertex, then part; empty: nothing rubs yet
-  std::shared_ptr<const ViscousHistory> history{};  // viscous: at the beginning of the time step; none: relaxed at rest
+  std::shared_ptr<const ViscousHistory> history{};  // viscous: at the beginning of the time step
   double elapsed_s = std::numeric_limits<double>::infinity();  // since then; 0: instant, infinity: relaxed
 
   /// Whether it tells of which actuation, of so many values, positions is an equilibrium.

@@ -2,6 +2,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <mutex>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/model/names.hpp>
@@ -125,8 +127,57 @@ struct Statics::Parts {
       throw InvalidInput("the history of the material is of another robot");
   }
 
+  [[nodiscard]] double paper_tolerance() const { return 8e-8 * model.diagonal_mm; }
+  [[nodiscard]] double tolerance(const StaticsOptions& options) const {
+    return options.step_tolerance_mm > 0 ? options.step_tolerance_mm : paper_tolerance();
+  }
+  [[nodiscard]] physical::Equilibria::Options physical_options(const StaticsOptions& options) const {
+    const double longest = tolerance(options), blur = 1e-6 * std::max(1.0, longest / paper_tolerance());
+    return {longest, options.max_iterations, options.keep_history, options.reuse_factor, options.stable,
+            blur,    options.history,        options.elapsed_s};
+  }
+
+  /// Where a viscous robot has stood for long, relaxed, before times begin: found once. Else not converged.
+  Equilibrium long_rest(StaticsOptions options, const ProgressCallback& progress, Team& team) {
+    const std::lock_guard lock(rested_mutex);
+    if (rested) return *rested;
+    options.history = nullptr;
+    options.elapsed_s = std::numeric_limits<double>::infinity();
+    State start;
+    start.positions = model.rest;
+    Equilibrium found = physical->solve(model.rest_actuation(), start, physical_options(options), progress, team);
+    if (found.report.status == Status::converged) {
+      rested = found;
+      remembered = physical->flow(found.state, team).history;
+    }
+    return found;
+  }
+
+  /// In the physical formulation.
+  Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions& options,
+                    const ProgressCallback& progress, Team& team) {
+    const bool begins = physical->system().viscous() && std::isfinite(options.elapsed_s) && !options.history;
+    if (!begins) return physical->solve(actuation, start, physical_options(options), progress, team);
+    Equilibrium rest = long_rest(options, progress, team);
+    if (rest.report.status != Status::converged) {
+      rest.actuation = actuation;
+      rest.state.actuation.resize(0);
+      rest.state.share = -1;
+      rest.report.reached = 0;
+      rest.report.remark = "where the robot rests before times begin: " + rest.report.remark;
+      return rest;
+    }
+    physical::Equilibria::Options begun = physical_options(options);
+    begun.history = remembered;
+    const bool from_rest = start.actuation.size() == 0 && start.positions == model.rest;
+    return physical->solve(actuation, from_rest ? rest.state : start, begun, progress, team);
+  }
+
   const Model& model;
-  std::atomic<int> worthwhile = 1;  // threads
+  std::mutex rested_mutex;
+  std::optional<Equilibrium> rested;
+  std::shared_ptr<const ViscousHistory> remembered;  // of rested
+  std::atomic<int> worthwhile = 1;                   // threads
   TeamPool teams;
   std::optional<TargetShape> target_shape;
   std::optional<physical::Equilibria> physical;
@@ -171,25 +222,18 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   }
   const State& begun = near.positions.rows() > 0 ? near : start;
   const TeamPool::Lent team = parts_->team(options);
-  const double paper_tolerance = 8e-8 * model.diagonal_mm;
-
-  const double tolerance = options.step_tolerance_mm > 0 ? options.step_tolerance_mm : paper_tolerance;
   Equilibrium result;
   parts_->check_history(options.history.get(), options.elapsed_s);
   if (parts_->physical) {
     if (options.solver == Solver::local_global)
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
-    result = parts_->physical->solve(
-        actuation, begun,
-        {tolerance, options.max_iterations, options.keep_history, options.reuse_factor, options.stable,
-         1e-6 * std::max(1.0, tolerance / paper_tolerance), options.history, options.elapsed_s},
-        progress, *team);
+    result = parts_->solve(actuation, begun, options, progress, *team);
   } else {
     if (options.stable)
       throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
     result.actuation = actuation;
     result.state.positions = begun.positions;
-    result.report.tolerance_mm = tolerance;
+    result.report.tolerance_mm = parts_->tolerance(options);
     const Parts::TargetShape& parts = *parts_->target_shape;
     if (options.solver == Solver::newton)
       parts.newton.solve(begun.actuation, options, progress, *team, result);
@@ -240,9 +284,15 @@ bool Statics::viscous() const {
 ViscousFlow Statics::flow(const State& at) const {
   const StaticsOptions options;
   parts_->check_actuation(at, options, "what is remembered of a shape");
-  if (!parts_->physical) return {};
+  if (!viscous()) return {};
   parts_->check_history(at.history.get(), at.elapsed_s);
-  return parts_->physical->flow(at, *parts_->team(options));
+  const TeamPool::Lent team = parts_->team(options);
+  if (at.history || std::isinf(at.elapsed_s)) return parts_->physical->flow(at, *team);
+  if (parts_->long_rest(options, {}, *team).report.status != Status::converged)
+    throw InvalidInput("the robot has no equilibrium at rest, where its times begin");
+  State begun = at;
+  begun.history = parts_->remembered;
+  return parts_->physical->flow(begun, *team);
 }
 
 void Statics::forget() const {

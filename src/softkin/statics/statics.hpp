@@ -30,8 +30,8 @@ struct StaticsOptions {
   /// The factor of an earlier solve that ended at the start, where no other thread has taken it by then: the same
   /// result within the tolerance. false: bit for bit that of a new object.
   bool reuse_factor = true;
-  /// Viscous: what the material remembers, none: relaxed at rest; and the time that passes until the shape asked for
-  /// [s], >= 0: 0 is the instant answer, infinity the relaxed one, which does not depend on the history.
+  /// Viscous: what the material remembers, none: a long rest under the scene's loads; and the time that passes until
+  /// the shape asked for [s], >= 0: 0 is the instant answer, infinity the relaxed one, which depends on no history.
   std::shared_ptr<const ViscousHistory> history{};
   double elapsed_s = std::numeric_limits<double>::infinity();
 };

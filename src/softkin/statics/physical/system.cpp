@@ -129,7 +129,11 @@ Demand System::unbalanced(const Iterate& at, const Demand& demand, Workspace& wo
   hold_friction(at, work, team);
   evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(actuators()), false), work, balance, team);
   work.unbalanced = work.gradient;
-  return {demand.actuation, demand.share, 1};
+  Eigen::VectorXd force(freedoms_->size());
+  freedoms_->reduce(work.gradient, at.positions, force);
+  constexpr double balanced = 1e-6;  // of what elements pull with: Newton's method does not need a way for that
+  const bool matters = freedoms_->largest(force) > balanced * elastic_.largest_pull(work.elastic, team);
+  return {demand.actuation, demand.share, matters ? 1.0 : 0.0};
 }
 
 System::Imbalance System::imbalance(const Balance& balance, const Workspace& work, Team& team) const {
