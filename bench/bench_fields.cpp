@@ -17,6 +17,7 @@ using namespace softkin::bench;
 struct Options {
   std::vector<double> sizes{5000, 45000}, quadratic_sizes{5000, 15000};
   int steps = 30, threads = 0;
+  std::string only;
 };
 
 /// A robot on its way along a path of its one actuator.
@@ -105,15 +106,21 @@ void compare(double size, FingerKind kind, const Options& options) {
   all.emplace_back("uniform field",
                    std::make_unique<Tracked>(by_field(finger, uniform, FieldCommand::flux_density), 0, 2000, options));
   all.emplace_back("coil", std::make_unique<Tracked>(by_field(finger, coil, FieldCommand::current), 0, 500, options));
+  const auto asked = [&](const char* what) { return options.only.empty() || options.only == what; };
   for (int step = 0; step <= options.steps; ++step)
-    for (auto& [what, robot] : all) robot->step(step);
-  const double elastic = median(all[0].second->seconds), pressed = median(all[2].second->seconds);
+    for (auto& [what, robot] : all)
+      if (asked(what)) robot->step(step);
+  const bool compared = options.only.empty();
+  const double elastic = compared ? median(all[0].second->seconds) : 0,
+               pressed = compared ? median(all[2].second->seconds) : 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!asked(all[i].first)) continue;
     const Tracked& robot = *all[i].second;
     const double typical = median(robot.seconds);
     std::printf("%9lld  %-9s %-16s %11.2f %8.2f %10.1f %10.2f%s\n", static_cast<long long>(body_tetrahedra(cell)),
                 kind == FingerKind::physical ? "linear" : "quadratic", all[i].first, 1e3 * typical,
-                typical / (i < 2 ? elastic : pressed), static_cast<double>(robot.iterations) / options.steps,
+                compared ? typical / (i < 2 ? elastic : pressed) : 1,
+                static_cast<double>(robot.iterations) / options.steps,
                 static_cast<double>(robot.factorisations) / options.steps, robot.complete ? "" : "  not all converged");
     std::fflush(stdout);
   }
@@ -136,6 +143,7 @@ int main(int argc, char** argv) {
   app.add_option("--sizes", options.sizes, "body tetrahedra of order 1")->delimiter(',');
   app.add_option("--quadratic-sizes", options.quadratic_sizes, "of order 2")->delimiter(',');
   app.add_option("--steps", options.steps, "of the path")->check(CLI::PositiveNumber);
+  app.add_option("--only", options.only, "one of what the robot is moved by, to profile it");
   app.add_option("--threads", options.threads, "0: as many as the machine has");
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

@@ -176,3 +176,25 @@ def test_shipped_relaxation_tests_are_those_that_their_script_makes(examples: Pa
     subprocess.run([sys.executable, folder / "make_tests.py", tmp_path], check=True)
     for name in ("cycles.csv", "creep.csv"):
         assert (tmp_path / name).read_text() == (folder / name).read_text()
+
+
+def test_the_shipped_syringe_reads_what_the_chamber_did(examples: Path, tmp_path: Path) -> None:
+    """Of a cycle to 40 kPa and back: the branches of the calibration are those of the report."""
+    up = [(0.0, 1.0), (20.0, 1.4), (40.0, 1.9)]
+    down = [(20.0, 1.5), (0.0, 1.06)]
+    steps = [
+        {"time_s": float(time), "actuators": {"air": {"pressure_kPa": p, "achieved": ratio}}}
+        for time, (p, ratio) in enumerate(up + down)
+    ]
+    report, test = tmp_path / "fast.json", tmp_path / "syringe.csv"
+    report.write_text(json.dumps({"steps": steps}))
+    script = examples / "pneumatic_finger" / "cycles" / "syringe.py"
+    subprocess.run([sys.executable, script, test, report], check=True)
+    found = calibrate.pressure(test, chamber_volume="22518mm3", syringe_volume="60mL")
+    for p, ratio in up:
+        assert found.ratio(p) == pytest.approx(ratio, abs=1e-5)
+    assert found.unloading is not None
+    for p, ratio in down:
+        nearest = int(abs(found.unloading.input - p).argmin())
+        assert found.unloading.input[nearest] == pytest.approx(p, abs=1e-4)
+        assert found.unloading.ratio[nearest] == pytest.approx(ratio, abs=1e-5)

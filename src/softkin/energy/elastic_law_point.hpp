@@ -127,7 +127,7 @@ inline InvariantEnergy neo_hookean(const LawBlock& law, const Deformation& d) {
 inline InvariantEnergy mooney_rivlin(const LawBlock& law, const Deformation& d) {
   const Pack j = positive_jacobian(d.jacobian);
   const Pack per_j = 1 / j;
-  const Pack root = 1 / cbrt(j);
+  const Pack root = inverse_cbrt(j);
   const Pack scale = root * root, square = scale * scale;
   const Pack first = law.c10 * scale * d.first, second = law.c01 * square * d.second;
   const Pack swelling = j - 1;
@@ -152,7 +152,7 @@ template <class Function>
 InvariantEnergy barred_first(const LawBlock& law, const Deformation& d, const Function& f) {
   const Pack j = positive_jacobian(d.jacobian);
   const Pack per_j = 1 / j;
-  const Pack root = 1 / cbrt(j);
+  const Pack root = inverse_cbrt(j);
   const Pack scale = root * root;
   const Pack barred = scale * d.first, swelling = j - 1;
   const BarredEnergy barred_energy = f(barred - 3);
@@ -195,7 +195,7 @@ PackMask has_no_energy(const LawBlock& constants, const Pack33& f, const Pack& j
   if constexpr (!forbids_inversion(law)) return PackMask{};
   PackMask none = jacobian <= 0;
   if constexpr (law == Law::gent) {
-    const Pack root = 1 / cbrt(positive_jacobian(jacobian));
+    const Pack root = inverse_cbrt(positive_jacobian(jacobian));
     none |= root * root * inner(f, f) - 3 >= constants.jm;
   }
   return none;

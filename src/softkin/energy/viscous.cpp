@@ -69,7 +69,7 @@ Strain strain_at(const Pack3 (&slope)[K], const Shape<K>& current) {
   s.gradient = deformation_gradient<K>(slope, current);
   const Pack3* f = s.gradient.row;
   s.jacobian = positive_jacobian(dot(f[0], cross(f[1], f[2])));
-  const Pack root = 1 / cbrt(s.jacobian);
+  const Pack root = inverse_cbrt(s.jacobian);
   s.scale = root * root;
   const Pack33 c = transpose_times(s.gradient, s.gradient);
   s.right = {{c.row[0].x, c.row[1].y, c.row[2].z, c.row[0].y, c.row[1].z, c.row[0].z}};
@@ -82,7 +82,8 @@ struct Branch {
   Symmetric before;   // what M has from the step's begin
   Symmetric flowed;   // M
   Symmetric inverse;  // A = C_v^-1 at the end
-  Pack root;          // cube root of the determinant of M
+  Pack root;          // cube root of the determinant of M, and its inverse
+  Pack inverse_root;
   Pack ended;
 };
 
@@ -109,8 +110,11 @@ Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s
   b.flowed = b.before;
   add(b.flowed, b.ended, s.barred);
   const Symmetric cofactors = cofactor(b.flowed);
-  b.root = cbrt(determinant(b.flowed, cofactors));
-  b.inverse = scaled(1 / (b.root * b.root), cofactors);
+  const Pack size = determinant(b.flowed, cofactors);
+  b.inverse_root = inverse_cbrt(size);
+  const Pack square = b.inverse_root * b.inverse_root;
+  b.root = size * square;
+  b.inverse = scaled(square, cofactors);
   return b;
 }
 
@@ -193,7 +197,7 @@ void set_point(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlock& 
     const Branch b = branch_at(viscous, q, i, s);
     const Pack modulus = volume * viscous.modulus[i];
     add_stress(modulus, b, s, sum);
-    const Pack alpha = 2 * modulus * b.ended / b.root * s.scale * s.scale;
+    const Pack alpha = 2 * modulus * b.ended * b.inverse_root * s.scale * s.scale;
     const Pack trace = inner(b.inverse, s.right);
     const Symmetric turned = sandwich(b.inverse, s.right);
     add_square(c, (1.0 / 3) * alpha, b.inverse);
@@ -324,26 +328,22 @@ Overstress overstress(const Symmetric& barred, const Symmetric& inverse) {
 
 /// Integral of |s|^2 over a step, over its relaxation time, for s = a + b exp(-time), from s at begin and end. rate:
 /// the step over the relaxation time
-Pack integral(const Overstress& begin, const Overstress& end, const Pack& rate) {
+Pack integral(const Overstress& begin, const Overstress& end, const Pack& rate, const BranchShares& shares) {
   // their angle, from the Frobenius norms, which are theirs where strains have the same axes
   const Pack sizes = inner(begin.at, begin.at) * inner(end.at, end.at);
   const Pack both =
       select(sizes > 0, inner(begin.at, end.at) * sqrt(begin.size * end.size / max(sizes, pack(1e-300))), Pack{});
-  Pack total{};
-  for (int l = 0; l < lanes; ++l) {
-    const double x = rate[l];
-    if (!(x > 0)) continue;
-    // |s|^2 = |a|^2 + 2 a b e^-t + |b|^2 e^-2t with a = (end - e^-x begin) / (1 - e^-x), b = (begin - end) / (1 - e^-x)
-    const double e = std::exp(-x), gone = -std::expm1(-x), per = 1 / (gone * gone);
-    const double aa = per * (end.size[l] - 2 * e * both[l] + e * e * begin.size[l]);
-    const double bb = per * (begin.size[l] - 2 * both[l] + end.size[l]);
-    const double ab = per * ((1 + e) * both[l] - end.size[l] - e * begin.size[l]);
-    const double closed = aa * x + 2 * ab * gone + 0.5 * bb * gone * (1 + e);
-    // short steps cancel: there |s|^2 changes evenly
-    const double even = x * (begin.size[l] + both[l] + end.size[l]) / 3;
-    total[l] = std::max(0.0, x < 1e-3 ? even : closed);
-  }
-  return total;
+  // |s|^2 = |a|^2 + 2 a b e^-t + |b|^2 e^-2t with a = (end - e^-x begin) / (1 - e^-x), b = (begin - end) / (1 - e^-x)
+  const Pack& e = shares.remembered;
+  const Pack gone = select(rate < 0.5, rate * (shares.remembered + shares.begun), 1 - e);
+  const Pack per = 1 / max(gone * gone, pack(1e-300));
+  const Pack aa = per * (end.size - 2 * e * both + e * e * begin.size);
+  const Pack bb = per * (begin.size - 2 * both + end.size);
+  const Pack ab = per * ((1 + e) * both - end.size - e * begin.size);
+  const Pack closed = aa * rate + 2 * ab * gone + 0.5 * bb * gone * (1 + e);
+  // short steps cancel: there |s|^2 changes evenly
+  const Pack even = rate * (begin.size + both + end.size) / 3;
+  return max(select(rate < 1e-3, even, closed), Pack{});
 }
 
 }  // namespace
@@ -361,9 +361,10 @@ Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Pa
     keep(s.barred);
     for (int i = 0; i < viscous.branches; ++i) {
       const Branch b = branch_at(viscous, q, i, s);
-      keep(scaled(1 / b.root, b.flowed));
+      keep(scaled(b.inverse_root, b.flowed));
       const Overstress begin = overstress(remembered(viscous, q, -1), cofactor(remembered(viscous, q, i)));
-      lost += 0.5 * block.volume[q] * viscous.modulus[i] * integral(begin, overstress(s.barred, b.inverse), rate[i]);
+      lost += 0.5 * block.volume[q] * viscous.modulus[i] *
+              integral(begin, overstress(s.barred, b.inverse), rate[i], viscous.shares[i]);
     }
   }
   return lost;

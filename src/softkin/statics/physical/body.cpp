@@ -238,16 +238,22 @@ void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapse
   scratch.elapsed_s = elapsed_s;
   scratch.shares.resize(branches_);
   scratch.rates.resize(branches_);
+  std::vector<Pack>& rates = scratch.rates;
   const auto run = [&](const auto& set) {
     for (std::size_t i = 0; i < set.times.size(); ++i)
       for (int l = 0; l < lanes; ++l) {
-        const double x = std::min(elapsed_s / set.times[i][l], 1e100), kept = std::exp(-x);
-        const double mean = x > 0 ? -std::expm1(-x) / x : 1;
         BranchShares& shares = scratch.shares[set.first_branch + i];
+        if (l > 0 && set.times[i][l] == set.times[i][l - 1]) {
+          for (Pack* each : {&shares.remembered, &shares.begun, &shares.ended, &rates[set.first_branch + i]})
+            (*each)[l] = (*each)[l - 1];
+          continue;
+        }
+        const double x = elapsed_s / set.times[i][l], kept = std::exp(-x);
+        const double mean = x > 0 ? -std::expm1(-x) / x : 1;
         shares.remembered[l] = kept;
         shares.begun[l] = std::max(0.0, mean - kept);
         shares.ended[l] = 1 - mean;
-        scratch.rates[set.first_branch + i][l] = x;
+        rates[set.first_branch + i][l] = std::min(x, 1e12);  // finite
       }
   };
   for (const auto& set : linear_) run(set);
