@@ -104,8 +104,8 @@ void compare(double size, FingerKind kind, const Options& options) {
   all.emplace_back("volume, viscous", std::make_unique<Tracked>(viscous(finger), 1, 1.3, options));
   all.emplace_back("pressure", std::make_unique<Tracked>(by_pressure(finger), 0, 20, options));
   all.emplace_back("uniform field",
-                   std::make_unique<Tracked>(by_field(finger, uniform, FieldCommand::flux_density), 0, 2000, options));
-  all.emplace_back("coil", std::make_unique<Tracked>(by_field(finger, coil, FieldCommand::current), 0, 500, options));
+                   std::make_unique<Tracked>(by_field(finger, uniform, FieldCommand::flux_density), 0, 40, options));
+  all.emplace_back("coil", std::make_unique<Tracked>(by_field(finger, coil, FieldCommand::current), 0, 10, options));
   const auto asked = [&](const char* what) { return options.only.empty() || options.only == what; };
   for (int step = 0; step <= options.steps; ++step)
     for (auto& [what, robot] : all)

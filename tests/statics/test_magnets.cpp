@@ -289,4 +289,35 @@ TEST(MagneticRobots, AWayEndsWhereTheGridDoes) {
   EXPECT_LT(found.state.positions.col(2).maxCoeff(), 7);
 }
 
+/// A strip that the field bends onto a floor: it stays above, and floor and base bear each other, since a uniform field
+/// pulls at nothing.
+TEST(MagneticRobots, AFieldPressesARobotOntoAFloor) {
+  RobotSpec spec = physical_robot(block_mesh({12, 2, 1}, {24, 4, 1}));
+  spec.quadratic = true;
+  spec.materials[0].elastic->youngs_modulus = 0.3;
+  magnetise(spec, {100, 0, 0});
+  add_field(spec, {"field", UniformField{{0, 0, -1}}}, {FieldCommand::flux_density});
+  const Model free = compile(spec);
+  constexpr double deep = -4;
+  EXPECT_LT(settled(Statics(free), values({8})).state.positions.col(2).minCoeff(), 2 * deep);
+  ContactSpec contact;
+  contact.distance_mm = 0.05;
+  contact.obstacles = {{"floor", Halfspace{{0, 0, deep}, {0, 0, 1}}, std::nullopt, {}}};
+  spec.contact = contact;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, values({8}));
+  const double lowest = found.state.positions.topRows(free.rest.rows()).col(2).minCoeff();
+  EXPECT_GT(lowest, deep);
+  EXPECT_LT(lowest, deep + 0.05);
+  const ElementDeformation measured = statics.measured(found.state);
+  ASSERT_TRUE(measured.contacts.has_value());
+  ASSERT_EQ(measured.contacts->pairs.size(), 1u);
+  const double borne = measured.contacts->pairs[0].normal_N;
+  EXPECT_GT(borne, 1e-3);
+  const std::vector<Reaction> held = reactions(model, found.state.positions, measured);
+  EXPECT_NEAR(held[0].force.z(), -borne, 1e-6 * borne);
+  EXPECT_LT(std::hypot(held[0].force.x(), held[0].force.y()), 1e-6 * borne);
+}
+
 }  // namespace softkin
