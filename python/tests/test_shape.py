@@ -40,7 +40,7 @@ def test_what_it_tells(shape: softkin.Shape, robot: softkin.Robot) -> None:
 
 
 def test_layer_under_voltage(examples: Path) -> None:
-    crawler = softkin.Robot(examples / "dea_crawler/voltage/crawler.yaml")
+    crawler = softkin.load(examples / "dea_crawler/voltage/crawler.yaml")
     (info,) = crawler.actuator_infos
     assert (info.control, info.unit, info.column, info.load_key) == ("voltage", "kV", "skin_kV", "voltage_kV")
     shape = crawler.solve(skin=5)
@@ -50,7 +50,7 @@ def test_layer_under_voltage(examples: Path) -> None:
     assert skin.charge_nC == pytest.approx(5 * skin.capacitance_pF)  # nC = pF kV
     assert 5 / 1.5 < skin.field_kV_mm * 0.5 < 5 * 1.5  # the layer is about 0.5 mm thick
     assert "5 kV" in shape._repr_html_()
-    area = softkin.Robot(examples / "dea_crawler/dea_crawler.yaml").solve().actuators["skin"]
+    area = softkin.load(examples / "dea_crawler/dea_crawler.yaml").solve().actuators["skin"]
     assert area.charge_nC is None and area.load is None
     with pytest.raises(AttributeError, match="no voltage: its area is controlled"):
         area.voltage_kV
