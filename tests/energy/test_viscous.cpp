@@ -17,6 +17,7 @@ struct Sample {
   Pack modulus[branches], rate[branches];
   BranchShares shares[branches];
   std::vector<double> strains = std::vector<double>(std::size_t{6} * lanes * (branches + 1) * Q);
+  mutable std::vector<double> begun = std::vector<double>(std::size_t{begun_entries} * lanes * branches * Q);
 
   /// time: over the relaxation time of the first branch, twice that of the second
   Sample(Random& random, double time) {
@@ -55,7 +56,12 @@ struct Sample {
     c << e(0), e(3), e(5), e(3), e(1), e(4), e(5), e(4), e(2);
     return c;
   }
-  [[nodiscard]] ViscousBlock viscous() const { return {branches, modulus, shares, strains.data()}; }
+  [[nodiscard]] ViscousBlock viscous() const {
+    ViscousBlock made{branches, modulus, shares, strains.data()};
+    begin_step<Q>(made, begun.data());
+    made.begun = begun.data();
+    return made;
+  }
   void load(const Nodes<K>& nodes, Shape<K>& shape) const {
     for (int a = 0; a < K; ++a)
       for (int l = 0; l < lanes; ++l) set_lane(shape[a], l, nodes.row(a).transpose());

@@ -79,7 +79,8 @@ Strain strain_at(const Pack3 (&slope)[K], const Shape<K>& current) {
 
 /// A branch at the end of the step.
 struct Branch {
-  Symmetric before;   // what M has from the step's begin
+  Symmetric before;  // what M has from the step's begin, and the cube root of its determinant
+  Pack before_root;
   Symmetric flowed;   // M
   Symmetric inverse;  // A = C_v^-1 at the end
   Pack root;          // cube root of the determinant of M, and its inverse
@@ -102,11 +103,11 @@ Symmetric remembered(const ViscousBlock& viscous, int q, int branch) {
 }
 
 Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s) {
-  const BranchShares& shares = viscous.shares[branch];
   Branch b;
-  b.before = scaled(shares.remembered, remembered(viscous, q, branch));
-  add(b.before, shares.begun, remembered(viscous, q, -1));
-  b.ended = shares.ended;
+  const double* begun = viscous.begun + begun_entries * lanes * (viscous.branches * q + branch);
+  std::memcpy(b.before.at, begun, sizeof(b.before.at));
+  std::memcpy(&b.before_root, begun + 6 * lanes, sizeof(b.before_root));
+  b.ended = viscous.shares[branch].ended;
   b.flowed = b.before;
   add(b.flowed, b.ended, s.barred);
   const Symmetric cofactors = cofactor(b.flowed);
@@ -119,12 +120,10 @@ Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s
 }
 
 /// 3 (root - root at no strain's share) / ended - 3, without the cancellation of a short step.
-Pack stored(const Branch& b, const Strain& s) {
-  const Symmetric cofactors = cofactor(b.before);
-  const Pack first = inner(cofactors, s.barred), second = inner(b.before, cofactor(s.barred));
-  const Pack root = cbrt(determinant(b.before, cofactors));
+Pack stored(const Branch& b, const Strain& s, const Symmetric& barred_cofactors) {
+  const Pack first = inner(cofactor(b.before), s.barred), second = inner(b.before, barred_cofactors);
   const Pack above = first + b.ended * (second + b.ended);
-  return 3 * (above / (b.root * b.root + b.root * root + root * root) - 1);
+  return 3 * (above / (b.root * b.root + b.root * b.before_root + b.before_root * b.before_root) - 1);
 }
 
 /// Second Piola-Kirchhoff stress of the branches, and C^-1.
@@ -264,6 +263,20 @@ void add_projected(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlo
 
 }  // namespace
 
+template <int Q>
+void begin_step(const ViscousBlock& viscous, double* begun) {
+  for (int q = 0; q < Q; ++q) {
+    const Symmetric strain = remembered(viscous, q, -1);
+    for (int i = 0; i < viscous.branches; ++i, begun += begun_entries * lanes) {
+      Symmetric before = scaled(viscous.shares[i].remembered, remembered(viscous, q, i));
+      add(before, viscous.shares[i].begun, strain);
+      const Pack root = cbrt(determinant(before, cofactor(before)));
+      std::memcpy(begun, before.at, sizeof(before.at));
+      std::memcpy(begun + 6 * lanes, &root, sizeof(root));
+    }
+  }
+}
+
 template <int K, int Q>
 void add_viscous_force(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current,
                        ElasticForce<K>& out) {
@@ -271,10 +284,11 @@ void add_viscous_force(const ElasticBlock<K, Q>& block, const ViscousBlock& visc
     const Strain s = strain_at<K>(block.slope[q], current);
     BranchStress sum;
     sum.inverse_right = inverse_of_right(s);
+    const Symmetric cofactors = cofactor(s.barred);
     Pack energy{};
     for (int i = 0; i < viscous.branches; ++i) {
       const Branch b = branch_at(viscous, q, i, s);
-      energy += 0.5 * viscous.modulus[i] * stored(b, s);
+      energy += 0.5 * viscous.modulus[i] * stored(b, s, cofactors);
       add_stress(viscous.modulus[i], b, s, sum);
     }
     out.energy += block.volume[q] * energy;
@@ -370,6 +384,9 @@ Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Pa
   return lost;
 }
 
+template void begin_step<1>(const ViscousBlock&, double*);
+template void begin_step<4>(const ViscousBlock&, double*);
+template void begin_step<6>(const ViscousBlock&, double*);
 template void add_viscous_force(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, ElasticForce<4>&);
 template void add_viscous_stiffness(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, bool,
                                     ElasticStiffness<4>&);

@@ -27,7 +27,18 @@ struct ViscousBlock {
   const BranchShares* shares = nullptr;  // of every branch
   const double* strains = nullptr;       // at the begin, by quadrature point: bar C, then C_v of every branch; by entry
                                          // (xx, yy, zz, xy, yz, xz) and lane; null: unit matrices
+  const double* begun = nullptr;         // begin_step() of these
 };
+
+/// Numbers of ViscousBlock::begun at each quadrature point for each branch, in every lane: what M has from the step's
+/// begin, and the cube root of its determinant.
+inline constexpr int begun_entries = 7;
+
+/// What is the same for every shape that a step may end with.
+///
+/// viscous  but for its begun
+template <int Q>
+void begin_step(const ViscousBlock& viscous, double* begun);
 
 /// Adds energy and gradient of the branches. Where J <= 0 they are finite and meaningless.
 template <int K, int Q>

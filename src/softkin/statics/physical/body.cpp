@@ -4,23 +4,13 @@
 #include <numeric>
 #include <softkin/statics/electric_layer.hpp>
 #include <softkin/statics/physical/body.hpp>
+#include <softkin/statics/physical/load_block.hpp>
 
 namespace softkin::physical {
 
 using namespace energy;
 
 namespace {
-
-template <int K>
-void load(const Points& positions, const std::array<std::array<Index, lanes>, K>& nodes, Shape<K>& shape) {
-  for (int i = 0; i < K; ++i)
-    for (int l = 0; l < lanes; ++l) {
-      const double* p = positions.data() + 3 * static_cast<std::ptrdiff_t>(nodes[i][l]);
-      shape[i].x[l] = p[0];
-      shape[i].y[l] = p[1];
-      shape[i].z[l] = p[2];
-    }
-}
 
 /// Elements along a curve through space that keeps neighbours together: their vertices share cache lines.
 template <class Element>
@@ -70,12 +60,6 @@ Mat3 lane_of(const Pack33& matrix, int lane) {
   Mat3 one;
   for (int r = 0; r < 3; ++r) one.row(r) = lane_of(matrix.row[r], lane).transpose();
   return one;
-}
-
-/// Numbers that a block of viscous elements remembers.
-template <int Q>
-std::size_t strains_each(int branches) {
-  return std::size_t{6} * Q * lanes * (static_cast<std::size_t>(branches) + 1);
 }
 
 double von_mises(const Mat3& stress) {
@@ -157,7 +141,9 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
     set.first_branch = branches_;
     set.first_strain = strains_;
     branches_ += set.moduli.size();
-    if (set.branches > 0) strains_ += strains_each<Q>(set.branches) * set.blocks.size();
+    set.first_begun = begun_;
+    strains_ += set.strains_each() * set.blocks.size();
+    begun_ += set.begun_each() * set.blocks.size();
   });
   const auto each_pull = [&](const auto& visit) {
     each_set([&]<int K, int Q>(Set<K, Q>& set) {
@@ -221,70 +207,6 @@ void Body::stretch_layers(const Demand& demand, Scratch& scratch) const {
             set_lane(scratch.layers[index][b].slope[q][i], l, shrink * lane_of(set.blocks[b].slope[q][i], l));
       }
   }
-}
-
-template <int K, int Q>
-ViscousBlock Body::branches_of(const Set<K, Q>& set, std::size_t block, const Scratch& scratch) const {
-  const std::size_t first = block * static_cast<std::size_t>(set.branches);
-  const double* strains = scratch.history ? scratch.history->strains.data() + set.first_strain : nullptr;
-  return {set.branches, set.moduli.data() + first, scratch.shares.data() + set.first_branch + first,
-          strains ? strains + strains_each<Q>(set.branches) * block : nullptr};
-}
-
-void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch) const {
-  if (!viscous()) return;
-  scratch.history = std::move(history);
-  if (scratch.elapsed_s == elapsed_s && !scratch.shares.empty()) return;
-  scratch.elapsed_s = elapsed_s;
-  scratch.shares.resize(branches_);
-  scratch.rates.resize(branches_);
-  std::vector<Pack>& rates = scratch.rates;
-  const auto run = [&](const auto& set) {
-    for (std::size_t i = 0; i < set.times.size(); ++i)
-      for (int l = 0; l < lanes; ++l) {
-        BranchShares& shares = scratch.shares[set.first_branch + i];
-        if (l > 0 && set.times[i][l] == set.times[i][l - 1]) {
-          for (Pack* each : {&shares.remembered, &shares.begun, &shares.ended, &rates[set.first_branch + i]})
-            (*each)[l] = (*each)[l - 1];
-          continue;
-        }
-        const double x = elapsed_s / set.times[i][l], kept = std::exp(-x);
-        const double mean = x > 0 ? -std::expm1(-x) / x : 1;
-        shares.remembered[l] = kept;
-        shares.begun[l] = std::max(0.0, mean - kept);
-        shares.ended[l] = 1 - mean;
-        rates[set.first_branch + i][l] = std::min(x, 1e12);  // finite
-      }
-  };
-  for (const auto& set : linear_) run(set);
-  for (const auto& set : quadratic_) run(set);
-  for (const auto& set : prisms_) run(set);
-}
-
-std::shared_ptr<const ViscousHistory> Body::flow(const Demand& demand, const Points& positions, Scratch& scratch,
-                                                 double& lost_mJ, Team& team) const {
-  auto after = std::make_shared<ViscousHistory>();
-  after->strains.resize(strains_);
-  stretch_layers(demand, scratch);
-  Pack lost{};
-  std::vector<Pack> of_blocks;
-  each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
-    if (set.branches == 0) return;
-    of_blocks.resize(blocks.size());
-    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
-      Shape<K> shape;
-      for (Index b = begin; b < end; ++b) {
-        load<K>(positions, set.nodes[b], shape);
-        const auto block = static_cast<std::size_t>(b);
-        double* strains = after->strains.data() + set.first_strain + strains_each<Q>(set.branches) * block;
-        const Pack* rates = scratch.rates.data() + set.first_branch + block * static_cast<std::size_t>(set.branches);
-        of_blocks[b] = energy::flow<K, Q>(blocks[b], branches_of(set, block, scratch), rates, shape, strains);
-      }
-    });
-    for (const Pack& part : of_blocks) lost += part;
-  });
-  lost_mJ = sum(lost);
-  return after;
 }
 
 template <int K, int Q>

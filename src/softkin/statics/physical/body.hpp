@@ -29,6 +29,7 @@ class Body {
     double elapsed_s = std::numeric_limits<double>::infinity();   // since then; infinity: no branch pulls
     std::vector<energy::BranchShares> shares;                     // of viscous sets, by block and branch, by then
     std::vector<energy::Pack> rates;                              // the same: that time over their relaxation times
+    std::vector<double> begun;                                    // the same: energy::begin_step() of them
 
     [[nodiscard]] bool pulls_viscously() const { return elapsed_s < std::numeric_limits<double>::infinity(); }
   };
@@ -38,7 +39,7 @@ class Body {
   [[nodiscard]] bool viscous() const { return branches_ > 0; }
   /// What Maxwell branches remember, and the time since then [s], for all that is evaluated next. history: as flow()
   /// gives it, or null
-  void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch) const;
+  void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch, Team& team) const;
   /// What they remember of a shape that the time ends with. lost_mJ: becomes the energy that they lose there
   [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const Demand& demand, const Points& positions,
                                                            Scratch& scratch, double& lost_mJ, Team& team) const;
@@ -105,7 +106,16 @@ class Body {
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
     std::vector<energy::Pack> permittivity;               // under voltage: as energy/dielectric.hpp takes it
     std::vector<energy::Pack> moduli, times;              // of branches, by block: [MPa], [s]
-    std::size_t first_branch = 0, first_strain = 0;       // of its branches in Scratch, in a history
+    std::size_t first_branch = 0, first_strain = 0, first_begun = 0;  // of its branches in Scratch, a history, begun
+
+    /// Numbers that a block remembers.
+    [[nodiscard]] std::size_t strains_each() const {
+      return branches > 0 ? std::size_t{6} * Q * energy::lanes * (static_cast<std::size_t>(branches) + 1) : 0;
+    }
+    /// Of Scratch::begun.
+    [[nodiscard]] std::size_t begun_each() const {
+      return std::size_t{energy::begun_entries} * Q * energy::lanes * static_cast<std::size_t>(branches);
+    }
   };
 
   template <int K, int Q, class Element>
@@ -113,7 +123,14 @@ class Body {
                   const Element& nodes);
   void add_field(const Model& model, Set<6, 6>& set);
   template <int K, int Q>
-  [[nodiscard]] energy::ViscousBlock branches_of(const Set<K, Q>& set, std::size_t block, const Scratch& scratch) const;
+  [[nodiscard]] static energy::ViscousBlock branches_of(const Set<K, Q>& set, std::size_t block,
+                                                        const Scratch& scratch) {
+    const std::size_t first = block * static_cast<std::size_t>(set.branches);
+    const double* strains = scratch.history ? scratch.history->strains.data() + set.first_strain : nullptr;
+    return {set.branches, set.moduli.data() + first, scratch.shares.data() + set.first_branch + first,
+            strains ? strains + set.strains_each() * block : nullptr,
+            scratch.begun.data() + set.first_begun + set.begun_each() * block};
+  }
   void gather(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;
@@ -150,7 +167,7 @@ class Body {
   std::vector<Set<4, 1>> linear_;
   std::vector<Set<10, 4>> quadratic_;
   std::vector<Set<6, 6>> prisms_;
-  std::size_t blocks_ = 0, branches_ = 0, strains_ = 0;
+  std::size_t blocks_ = 0, branches_ = 0, strains_ = 0, begun_ = 0;
   Index pulls_ = 0;
   std::vector<Index> pull_starts_, pull_order_;  // pulls at each vertex
 };

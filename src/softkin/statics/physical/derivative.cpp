@@ -121,7 +121,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
 
 Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
   Lease lease(*this, at.positions, reuse_factor);
-  system_.set_time(at.history, at.elapsed_s, lease.work());
+  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
   return Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(at), {at.actuation, at.share});
 }
 

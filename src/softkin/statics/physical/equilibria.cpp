@@ -31,7 +31,7 @@ Demand demand_of(const System& system, const Model& model, const State& start) {
 
 void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) const {
   Lease lease(*this, at.positions, true);
-  system_.set_time(at.history, at.elapsed_s, lease.work());
+  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
   system_.measure(system_.iterate(at), {at.actuation, at.share}, lease.work(), out, team);
   out.multipliers = at.multipliers;
 }
@@ -39,7 +39,7 @@ void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) c
 bool Equilibria::foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const {
   if (system_.contact()) return false;
   Lease lease(*this, at.positions, true);
-  system_.set_time(at.history, at.elapsed_s, lease.work());
+  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
   return physical::foresee(system_, {at.actuation, at.share}, {actuation, at.share}, lease.work(), team,
                            system_.iterate(at), positions);
 }
@@ -48,7 +48,7 @@ ViscousFlow Equilibria::flow(const State& at, Team& team) const {
   ViscousFlow flow;
   if (!system_.viscous()) return flow;
   Lease lease(*this, at.positions, true);
-  system_.set_time(at.history, at.elapsed_s, lease.work());
+  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
   flow.history = system_.flow(at, lease.work(), flow.lost_mJ, team);
   return flow;
 }
@@ -103,7 +103,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   system_.hold(from, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
-  system_.set_time(options.history, options.elapsed_s, lease.work());
+  system_.set_time(options.history, options.elapsed_s, lease.work(), team);
   const bool rests = start.positions == model.rest && start.actuation.size() == 0;
   const bool same_time =
       rests ? !options.history : start.history == options.history && start.elapsed_s == options.elapsed_s;

@@ -190,7 +190,7 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
   }
   System::Balance balance;
   const Demand demand{at.actuation, at.share};
-  system.set_time(at.history, at.elapsed_s, work_);
+  system.set_time(at.history, at.elapsed_s, work_, team);
   system.hold_friction(iterate_, work_, team);
   system.evaluate(iterate_, demand, active_, work_, balance, team);
   (void)system.factorise(iterate_, demand, active_, System::Stiffness::exact, 0, work_, team);

@@ -118,10 +118,11 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
   freedoms_->reduce(work.gradient, at.positions, balance.force);
 }
 
-void System::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work) const {
+void System::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work,
+                      Team& team) const {
   if (!viscous()) return;
   if (history != work.elastic.history || elapsed_s != work.elastic.elapsed_s) work.tangents.at.resize(0, 3);
-  elastic_.set_time(std::move(history), elapsed_s, work.elastic);
+  elastic_.set_time(std::move(history), elapsed_s, work.elastic, team);
 }
 
 Demand System::unbalanced(const Iterate& at, const Demand& demand, Workspace& work, Team& team) const {

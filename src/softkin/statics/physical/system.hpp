@@ -107,7 +107,7 @@ class System {
   [[nodiscard]] Imbalance imbalance(const Balance& balance, const Workspace& work, Team& team) const;
 
   /// What Maxwell branches remember, and the time since then [s], for all that a workspace evaluates next; see Body.
-  void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work) const;
+  void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work, Team& team) const;
   [[nodiscard]] bool viscous() const { return elastic_.viscous(); }
   /// What they remember of an equilibrium; see Body.
   [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const State& at, Workspace& work, double& lost_mJ,

@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical/body.hpp>
+#include <softkin/statics/physical/load_block.hpp>
+
+/// What the branches of a body remember, and what time does to them.
+
+namespace softkin::physical {
+
+using namespace energy;
+
+namespace {
+
+/// Lane by lane; what the lane before has is not made again.
+void set_shares(const Pack& time, double elapsed_s, BranchShares& shares, Pack& rate) {
+  for (int l = 0; l < lanes; ++l) {
+    if (l > 0 && time[l] == time[l - 1]) {
+      for (Pack* each : {&shares.remembered, &shares.begun, &shares.ended, &rate}) (*each)[l] = (*each)[l - 1];
+      continue;
+    }
+    const double x = elapsed_s / time[l], kept = std::exp(-x), mean = x > 0 ? -std::expm1(-x) / x : 1;
+    shares.remembered[l] = kept;
+    shares.begun[l] = std::max(0.0, mean - kept);
+    shares.ended[l] = 1 - mean;
+    rate[l] = std::min(x, 1e12);  // finite
+  }
+}
+
+}  // namespace
+
+void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch,
+                    Team& team) const {
+  if (!viscous()) return;
+  const bool same_step = scratch.elapsed_s == elapsed_s && !scratch.shares.empty();
+  if (same_step && scratch.history == history) return;
+  scratch.history = std::move(history);
+  scratch.elapsed_s = elapsed_s;
+  scratch.shares.resize(branches_);
+  scratch.rates.resize(branches_);
+  scratch.begun.resize(begun_);
+  each_set([&]<int K, int Q>(const Set<K, Q>& set) {
+    if (set.branches == 0) return;
+    team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+      for (Index b = begin; b < end; ++b) {
+        const auto block = static_cast<std::size_t>(b), first = block * static_cast<std::size_t>(set.branches);
+        for (std::size_t i = first; !same_step && i < first + static_cast<std::size_t>(set.branches); ++i)
+          set_shares(set.times[i], elapsed_s, scratch.shares[set.first_branch + i],
+                     scratch.rates[set.first_branch + i]);
+        begin_step<Q>(branches_of(set, block, scratch),
+                      scratch.begun.data() + set.first_begun + set.begun_each() * block);
+      }
+    });
+  });
+}
+
+std::shared_ptr<const ViscousHistory> Body::flow(const Demand& demand, const Points& positions, Scratch& scratch,
+                                                 double& lost_mJ, Team& team) const {
+  auto after = std::make_shared<ViscousHistory>();
+  after->strains.resize(strains_);
+  stretch_layers(demand, scratch);
+  Pack lost{};
+  std::vector<Pack> of_blocks;
+  each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
+    if (set.branches == 0) return;
+    of_blocks.resize(blocks.size());
+    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+      Shape<K> shape;
+      for (Index b = begin; b < end; ++b) {
+        load<K>(positions, set.nodes[b], shape);
+        const auto block = static_cast<std::size_t>(b);
+        double* strains = after->strains.data() + set.first_strain + set.strains_each() * block;
+        const Pack* rates = scratch.rates.data() + set.first_branch + block * static_cast<std::size_t>(set.branches);
+        of_blocks[b] = energy::flow<K, Q>(blocks[b], branches_of(set, block, scratch), rates, shape, strains);
+      }
+    });
+    for (const Pack& part : of_blocks) lost += part;
+  });
+  lost_mJ = sum(lost);
+  return after;
+}
+
+}  // namespace softkin::physical
