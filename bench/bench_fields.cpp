@@ -46,6 +46,8 @@ class Tracked {
     factorisations += found.report.factorisations;
   }
 
+  [[nodiscard]] double moved_mm() const { return largest_move(model_.rest, state_.positions); }
+
   std::vector<double> seconds;
   int iterations = 0, factorisations = 0;
   bool complete = true;
@@ -117,9 +119,9 @@ void compare(double size, FingerKind kind, const Options& options) {
     if (!asked(all[i].first)) continue;
     const Tracked& robot = *all[i].second;
     const double typical = median(robot.seconds);
-    std::printf("%9lld  %-9s %-16s %11.2f %8.2f %10.1f %10.2f%s\n", static_cast<long long>(body_tetrahedra(cell)),
-                kind == FingerKind::physical ? "linear" : "quadratic", all[i].first, 1e3 * typical,
-                compared ? typical / (i < 2 ? elastic : pressed) : 1,
+    std::printf("%9lld  %-9s %-16s %10.1f %11.2f %8.2f %10.1f %10.2f%s\n",
+                static_cast<long long>(body_tetrahedra(cell)), kind == FingerKind::physical ? "linear" : "quadratic",
+                all[i].first, robot.moved_mm(), 1e3 * typical, compared ? typical / (i < 2 ? elastic : pressed) : 1,
                 static_cast<double>(robot.iterations) / options.steps,
                 static_cast<double>(robot.factorisations) / options.steps, robot.complete ? "" : "  not all converged");
     std::fflush(stdout);
@@ -128,8 +130,8 @@ void compare(double size, FingerKind kind, const Options& options) {
 
 int run(const Options& options) {
   print_machine();
-  std::printf("%9s  %-9s %-16s %11s %8s %10s %10s\n", "body tets", "elements", "moved by", "median [ms]", "ratio",
-              "iterations", "factorisat.");
+  std::printf("%9s  %-9s %-16s %10s %11s %8s %10s %10s\n", "body tets", "elements", "moved by", "far [mm]",
+              "median [ms]", "ratio", "iterations", "factorisat.");
   for (const double size : options.sizes) compare(size, FingerKind::physical, options);
   for (const double size : options.quadratic_sizes) compare(size, FingerKind::physical_quadratic, options);
   return 0;
