@@ -54,8 +54,8 @@ function readTimes({columns, rows, lines}: Table): number[] | null {
   });
 }
 
-/** Names that a column of an actuator may have. */
-const namesOf = ({name, unit}: Actuator): string[] => unit ? [name, `${name}_${unit}`] : [name];
+/** Names that a column of an actuator may have: magnet_Am2 of A m^2. */
+const namesOf = ({name, unit}: Actuator): string[] => unit ? [name, `${name}_${unit.replace(/[ ^]/g, '')}`] : [name];
 
 /** The value; throws where the actuator cannot have it. what: names it */
 export function inRange(value: number, {low, high, unit}: Actuator, line: number, what: string): number {

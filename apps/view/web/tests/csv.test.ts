@@ -17,6 +17,12 @@ test('columns of actuators are commands; others rest', () => {
   assert.deepEqual(read('left.air_kPa,air\n20,1.5'), {kind: 'commands', rows: [[1.5, 20]], lines: [2], times: null});
 });
 
+test('a unit of several words is one in the name of a column', () => {
+  const magnet = actuator('magnet', 'A m^2', -1, 1, 0);
+  assert.deepEqual(readPath('magnet_Am2\n0.5', [magnet], [tip]).rows, [[0.5]]);
+  assert.throws(() => readPath('wind\n1', [magnet], [tip]), /this robot has magnet_Am2/);
+});
+
 test('coordinates are waypoints; those without column do not count', () => {
   assert.deepEqual(read('x_mm,z_mm\n1,-2e1\n'),
                    {kind: 'waypoints', rows: [[{marker: 0, at: [1, null, -20]}]], lines: [2], times: null});
