@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "statics/physical_samples.hpp"
+#include "statics/runge_kutta.hpp"
 
 namespace softkin {
 
@@ -52,6 +53,13 @@ Pulled pulled(const RobotSpec& spec, const std::shared_ptr<const ViscousHistory>
   EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
   const Reaction held = reactions(model, found.state.positions, statics.measured(found.state))[1];
   return {held.force.x() / (side * side), statics.flow(found.state)};
+}
+
+RobotSpec viscous_finger() {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].viscosity = vhb;
+  spec.materials[0].viscosity[0].modulus_MPa = 0.5;
+  return spec;
 }
 
 /// What the cube remembers that nobody has stretched.
@@ -150,27 +158,16 @@ class OneElement {
 
   /// Nominal stress along the axis at a stretch [MPa].
   [[nodiscard]] double stress(double stretch) const {
-    return stress_along(stretch, side_at(stretch, flowed_), flowed_);
+    return principal(stretch, side_at(stretch, flowed_), flowed_, true);
   }
 
   void advance(double from, double to, double time, int steps) {
-    const double h = time / steps;
-    for (int i = 0; i < steps; ++i) {
-      const auto at = [&](double share) { return from + (to - from) * (i + share) / steps; };
-      const std::vector<double> a = rate(at(0), flowed_), b = rate(at(0.5), moved(a, h / 2)),
-                                c = rate(at(0.5), moved(b, h / 2)), d = rate(at(1), moved(c, h));
-      for (std::size_t k = 0; k < flowed_.size(); ++k) flowed_[k] += h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
-    }
+    integrate(flowed_, from, to, time, steps, [this](double l, const Flowed& flowed) { return rate(l, flowed); });
   }
 
  private:
   using Flowed = std::vector<double>;  // of each branch C_v along the axis; across it is 1 / sqrt of that
 
-  [[nodiscard]] Flowed moved(const Flowed& rates, double time) const {
-    Flowed result = flowed_;
-    for (std::size_t k = 0; k < result.size(); ++k) result[k] += time * rates[k];
-    return result;
-  }
   [[nodiscard]] Flowed rate(double stretch, const Flowed& flowed) const {
     const double across = side_at(stretch, flowed), j = stretch * across * across, scale = std::pow(j, -2.0 / 3);
     Flowed rates;
@@ -179,9 +176,6 @@ class OneElement {
       rates.push_back((along - (along / flowed[k] + 2 * aside) / 3 * flowed[k]) / branches_[k].time_s);
     }
     return rates;
-  }
-  [[nodiscard]] double stress_along(double stretch, double across, const Flowed& flowed) const {
-    return principal(stretch, across, flowed, true);
   }
   [[nodiscard]] double principal(double stretch, double across, const Flowed& flowed, bool along) const {
     const double j = stretch * across * across, scale = std::pow(j, -2.0 / 3), own = along ? stretch : across;
@@ -318,9 +312,7 @@ TEST(Viscosity, ABarCreepsUnderALoad) {
 /// What hangs in the loads of its scene for long has relaxed under them when times begin: a shape that nobody commands
 /// to change stays, and one that is commanded to jumps as stiffly as it is at once from there.
 TEST(Viscosity, TimesBeginAfterALongRestUnderTheLoads) {
-  RobotSpec spec = bending_finger();
-  spec.materials[0].viscosity = vhb;
-  spec.materials[0].viscosity[0].modulus_MPa = 0.5;
+  RobotSpec spec = viscous_finger();
   spec.materials[0].density = 50000;
   spec.gravity = {0, 0, -9.81};
   const Model model = compile(spec);
@@ -344,10 +336,7 @@ TEST(Viscosity, TimesBeginAfterALongRestUnderTheLoads) {
 
 /// From the shape before as from rest: the same.
 TEST(Viscosity, TheStartOfASearchDoesNotMatter) {
-  RobotSpec spec = bending_finger();
-  spec.materials[0].viscosity = vhb;
-  spec.materials[0].viscosity[0].modulus_MPa = 0.5;
-  const Model model = compile(spec);
+  const Model model = compile(viscous_finger());
   const Statics statics(model);
   StaticsOptions options;
   options.elapsed_s = 0;
@@ -367,10 +356,7 @@ TEST(Viscosity, TheStartOfASearchDoesNotMatter) {
 
 /// Derivatives of a shape within a time step.
 TEST(Viscosity, SensitivitiesAreThoseOfTheTimeStep) {
-  RobotSpec spec = bending_finger();
-  spec.materials[0].viscosity = vhb;
-  spec.materials[0].viscosity[0].modulus_MPa = 0.5;
-  const Model model = compile(spec);
+  const Model model = compile(viscous_finger());
   const Statics statics(model);
   StaticsOptions options;
   options.elapsed_s = 0;

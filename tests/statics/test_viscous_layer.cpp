@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "statics/physical_samples.hpp"
+#include "statics/runge_kutta.hpp"
 
 /// A layer of dielectric elastomer that lags behind its voltage.
 
@@ -46,23 +47,12 @@ class SheetApart {
   [[nodiscard]] double stretch_at(double voltage_kV) const { return stretch_at(voltage_kV, flowed_); }
 
   void advance(double from_kV, double to_kV, double time, int steps) {
-    const double h = time / steps;
-    for (int i = 0; i < steps; ++i) {
-      const auto at = [&](double share) { return from_kV + (to_kV - from_kV) * (i + share) / steps; };
-      const Flowed a = rate(at(0), flowed_), b = rate(at(0.5), moved(a, h / 2)), c = rate(at(0.5), moved(b, h / 2)),
-                   d = rate(at(1), moved(c, h));
-      for (std::size_t k = 0; k < flowed_.size(); ++k) flowed_[k] += h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
-    }
+    integrate(flowed_, from_kV, to_kV, time, steps, [this](double u, const Flowed& flowed) { return rate(u, flowed); });
   }
 
  private:
   using Flowed = std::vector<double>;  // of each branch C_v along the sheet; across it is 1 / square of that
 
-  [[nodiscard]] Flowed moved(const Flowed& rates, double time) const {
-    Flowed result = flowed_;
-    for (std::size_t k = 0; k < result.size(); ++k) result[k] += time * rates[k];
-    return result;
-  }
   [[nodiscard]] Flowed rate(double voltage_kV, const Flowed& flowed) const {
     const double l = stretch_at(voltage_kV, flowed), along = l * l, across = 1 / (along * along);
     Flowed rates;
