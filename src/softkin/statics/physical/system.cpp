@@ -130,11 +130,9 @@ Demand System::unbalanced(const Iterate& at, const Demand& demand, Workspace& wo
   hold_friction(at, work, team);
   evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(actuators()), false), work, balance, team);
   work.unbalanced = work.gradient;
-  Eigen::VectorXd force(freedoms_->size());
-  freedoms_->reduce(work.gradient, at.positions, force);
   constexpr double balanced = 1e-6;  // of what elements pull with: Newton's method does not need a way for that
-  const bool matters = freedoms_->largest(force) > balanced * elastic_.largest_pull(work.elastic, team);
-  return {demand.actuation, demand.share, matters ? 1.0 : 0.0};
+  const Imbalance left = imbalance(balance, work, team);
+  return {demand.actuation, demand.share, left.residual > balanced * left.pull ? 1.0 : 0.0};
 }
 
 System::Imbalance System::imbalance(const Balance& balance, const Workspace& work, Team& team) const {
