@@ -21,6 +21,7 @@ struct LargeAllocator {
 
   Value* allocate(std::size_t count) {
     constexpr std::size_t page = std::size_t{1} << 21, line = 64;
+    if (count > (std::size_t{1} << 60) / sizeof(Value)) throw std::bad_alloc();
     const std::size_t bytes = count * sizeof(Value), unit = bytes < 2 * page ? line : page;
     void* memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
     if (memory == nullptr) throw std::bad_alloc();

@@ -1,14 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <softkin/core/index.hpp>
 
 namespace softkin {
 
 static_assert(EIGEN_MAX_ALIGN_BYTES == 64 && EIGEN_MAX_STATIC_ALIGN_BYTES == 64,
               "matrices of softkin are aligned otherwise: link the CMake target softkin::softkin");
 
-using Index = std::int32_t;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 

@@ -3,15 +3,13 @@
 #include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
 #include <softkin/core/types.hpp>
-#include <vector>
 
 namespace softkin::linear {
 
 /// Work space of factor_front, kept from front to front.
 template <class Number>
 struct FrontWork {
-  LargeVector<Number> scaled, plain;  // rows below the pivot block: L, and L D, in panels of 64 bytes a column
-  std::vector<Number> corner;         // L of the pivot block, by rows
+  LargeVector<Number> scaled, plain, corner;  // as FrontBlock has them (linear/kernels/front.hpp)
 };
 
 /// Rows that a front's columns need for `size` rows: kernels write past the end.
@@ -23,8 +21,7 @@ template <class Number>
 /// Values after a front's last column that kernels may read.
 inline constexpr Index front_slack = 16;
 
-/// Columns of a front that are eliminated together, and multiplications for which a loop is shared by a team.
-inline constexpr Index front_block = 64;
+/// Multiplications for which a loop is shared by a team.
 inline constexpr double worth_sharing = 4e6;
 
 /// First columns of a dense symmetric matrix eliminated: A = L D L^T without pivoting.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/core/types.hpp>
+#include <softkin/linear/kernels/front.hpp>
 
 namespace softkin::linear {
 
@@ -15,14 +15,13 @@ inline constexpr Index solve_slack = 8;
 /// y        `columns` <= columns_together columns, `stride` >= size + solve_slack apart
 /// forward  y_own := L_own^-1 y_own, y_below := y_below - L_below y_own
 template <class Number>
-void solve_forward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);
+void solve_forward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
+  SOFTKIN_RUN_KERNEL(solve_forward(panel, size, pivots, y, stride, columns));
+}
 /// backward  y_own := L_own^-T (y_own - L_below^T y_below). y holds zeros in the slack of its columns.
 template <class Number>
-void solve_backward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);
-
-extern template void solve_forward(const double*, Index, Index, double*, Index, Index);
-extern template void solve_forward(const float*, Index, Index, double*, Index, Index);
-extern template void solve_backward(const double*, Index, Index, double*, Index, Index);
-extern template void solve_backward(const float*, Index, Index, double*, Index, Index);
+void solve_backward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
+  SOFTKIN_RUN_KERNEL(solve_backward(panel, size, pivots, y, stride, columns));
+}
 
 }  // namespace softkin::linear

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/linear/block_matrix.hpp>
+#include <softkin/linear/kernels/front.hpp>
 
 namespace softkin::linear {
 
@@ -16,11 +17,6 @@ struct Front {
 
   [[nodiscard]] Index pivots() const { return end - begin; }
   [[nodiscard]] Index size() const { return pivots() + below; }
-};
-
-/// Rows below a front that stand together in its parent's, too.
-struct RowRun {
-  Index from, to, length;
 };
 
 /// Symbolic factorisation: fronts in postorder, cut into independent pieces.

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <softkin/linear/front_rows.hpp>
 #include <softkin/linear/front_solve.hpp>
 #include <softkin/linear/sparse_ldlt.hpp>
 #include <utility>
@@ -19,6 +18,11 @@ void each_column(Index columns, Index rows, Team& team, const Body& body) {
       for (Index c = begin; c < end; ++c) body(c);
     });
   }
+}
+
+template <class Number>
+void run_add_columns(const FrontSum<Number>& sum, const RowRun* run, Index low, Index high) {
+  SOFTKIN_RUN_KERNEL(add_run_columns(sum, run, low, high));
 }
 
 /// Room for a front's arena; what stood in the memory is lost.
@@ -113,7 +117,7 @@ void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& valu
   const Index stride = front_stride<Number>(own.size());
   each_column(own.pivots(), stride, team, [&](Index c) {
     Number* column = front + static_cast<std::ptrdiff_t>(c) * stride;
-    std::fill(column + c / 8 * 8, column + stride, Number(0));
+    std::fill(column + c / 16 * 16, column + stride, Number(0));  // a panel of the kernels has 16 rows at most
   });
   for (Index node = own.begin_node; node < own.end_node; ++node) {
     const Index width = tree_->pattern.width(node);
@@ -144,14 +148,9 @@ void SparseLdltOf<Number>::add_children(Index index, Index begin, Index end, Num
     while (first < last && first->to + first->length <= begin) ++first;
     const RowRun* beyond = first;
     while (beyond < last && beyond->to < end) ++beyond;
+    const FrontSum<Number> sum{update, front, child_stride, stride, last};
     each_column(static_cast<Index>(beyond - first), child.below, team, [&](Index k) {
-      const Index low = std::max(0, begin - first[k].to), high = std::min(first[k].length, end - first[k].to);
-      for (Index c = low; c < high; ++c) {
-        Number* to = front + static_cast<std::ptrdiff_t>(first[k].to + c) * stride;
-        const Number* from = update + static_cast<std::ptrdiff_t>(first[k].from + c) * child_stride;
-        add_run(to + first[k].to + c, from + first[k].from + c, first[k].length - c);
-        for (const RowRun* run = first + k + 1; run < last; ++run) add_run(to + run->to, from + run->from, run->length);
-      }
+      run_add_columns(sum, first + k, std::max(0, begin - first[k].to), std::min(first[k].length, end - first[k].to));
     });
   }
 }

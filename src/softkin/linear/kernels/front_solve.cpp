@@ -1,34 +1,37 @@
-#ifdef __AVX512F__
-#include <immintrin.h>
-#endif
+#include <softkin/core/lanes.hpp>
+#include <softkin/linear/kernels/front.hpp>
 
-#include <softkin/linear/front_rows.hpp>
-#include <softkin/linear/front_solve.hpp>
-
-namespace softkin::linear {
+namespace softkin::linear::SOFTKIN_TARGET {
 
 namespace {
 
-using Eight = Rows<double>;
-constexpr Index height = panel_rows<double>;
+using namespace softkin::SOFTKIN_TARGET;
 
-/// Eight values of L, in double precision.
-Eight values(const double* l) {
+using Few = Vector<double>;
+constexpr Index height = lanes_of<double>;
+
+/// Values of L, in double precision.
+Few values(const double* l) {
   return load(l);
 }
-Eight values(const float* l) {
-#ifdef __AVX512F__
+Few values(const float* l) {
+#if defined(__AVX512F__)
   return _mm512_cvtps_pd(_mm256_loadu_ps(l));  // gcc 12 makes two halves of the conversion below
 #else
-  typedef float Half __attribute__((vector_size(32)));
+  typedef float Half __attribute__((vector_size(vector_bytes / 2)));
   Half r;
   std::memcpy(&r, l, sizeof r);
-  return __builtin_convertvector(r, Eight);
+  return __builtin_convertvector(r, Few);
 #endif
 }
 
-double sum(const Eight& r) {
-  return ((r[0] + r[4]) + (r[2] + r[6])) + ((r[1] + r[5]) + (r[3] + r[7]));
+double sum(const Few& r) {
+  if constexpr (height == 8)
+    return ((r[0] + r[4]) + (r[2] + r[6])) + ((r[1] + r[5]) + (r[3] + r[7]));
+  else if constexpr (height == 4)
+    return (r[0] + r[2]) + (r[1] + r[3]);
+  else
+    return r[0] + r[1];
 }
 
 /// Forward by `Width` columns of L that begin at column k: their triangle, then all rows below it.
@@ -44,11 +47,11 @@ void forward_block(const Number* panel, Index size, Index k, double* y, Index st
     for (int i = 0; i < Width; ++i) at[i] = own[c][i];
   }
   for (Index r = k + Width; r < size; r += height) {
-    Eight rest[Columns];
+    Few rest[Columns];
     for (int c = 0; c < Columns; ++c) rest[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Eight column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Few column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
       for (int c = 0; c < Columns; ++c) rest[c] -= own[c][j] * column;
     }
     for (int c = 0; c < Columns; ++c) store(y + c * static_cast<std::ptrdiff_t>(stride) + r, rest[c]);
@@ -59,13 +62,13 @@ void forward_block(const Number* panel, Index size, Index k, double* y, Index st
 template <int Columns, int Width, class Number>
 void backward_block(const Number* panel, Index size, Index k, double* y, Index stride) {
   const Number* l = panel + static_cast<std::ptrdiff_t>(k) * size;
-  Eight sums[Columns][Width] = {};
+  Few sums[Columns][Width] = {};
   for (Index r = k + Width; r < size; r += height) {
-    Eight known[Columns];
+    Few known[Columns];
     for (int c = 0; c < Columns; ++c) known[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Eight column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Few column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
       for (int c = 0; c < Columns; ++c) sums[c][j] += column * known[c];
     }
   }
@@ -97,13 +100,21 @@ void forward(const Number* panel, Index size, Index pivots, double* y, Index str
   forward_rest<Columns, width / 2>(panel, size, k, pivots, y, stride);
 }
 
+/// The last columns of L that fill no block: `Width` of them where k says so, then twice as many.
+template <int Columns, int Width, int Most, class Number>
+Index backward_rest(const Number* panel, Index size, Index k, double* y, Index stride) {
+  if constexpr (Width < Most) {
+    if (k % (2 * Width) != 0) backward_block<Columns, Width>(panel, size, k -= Width, y, stride);
+    k = backward_rest<Columns, 2 * Width, Most>(panel, size, k, y, stride);
+  }
+  return k;
+}
+
 template <int Columns, class Number>
 void backward(const Number* panel, Index size, Index pivots, double* y, Index stride) {
-  constexpr int width = Columns <= 2 ? 8 : 4;  // sums that the vector registers hold
-  Index k = pivots;
-  if (k % 2 != 0) backward_block<Columns, 1>(panel, size, k -= 1, y, stride);
-  if (k % 4 != 0) backward_block<Columns, 2>(panel, size, k -= 2, y, stride);
-  if (k % width != 0) backward_block<Columns, 4>(panel, size, k -= 4, y, stride);
+  // sums that the vector registers hold
+  constexpr int most = registers / 2 / Columns, width = most >= 8 ? 8 : most >= 4 ? 4 : 2;
+  Index k = backward_rest<Columns, 1, width>(panel, size, pivots, y, stride);
   for (; k > 0; k -= width) backward_block<Columns, width>(panel, size, k - width, y, stride);
 }
 
@@ -139,4 +150,4 @@ template void solve_forward(const float*, Index, Index, double*, Index, Index);
 template void solve_backward(const double*, Index, Index, double*, Index, Index);
 template void solve_backward(const float*, Index, Index, double*, Index, Index);
 
-}  // namespace softkin::linear
+}  // namespace softkin::linear::SOFTKIN_TARGET

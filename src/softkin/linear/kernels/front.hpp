@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <softkin/core/target.hpp>
+
+namespace softkin::linear {
+
+/// Columns of a front that are eliminated together.
+inline constexpr Index front_block = 64;
+
+/// Values of work space for a block's pivots: L in groups of columns, then the pivots' inverses.
+inline constexpr Index corner_values = front_block * (front_block + 1);
+
+/// A block of columns of a front, and where its elimination stands.
+template <class Number>
+struct FrontBlock {
+  Number* front;               // as factor_front takes it
+  Index size, stride, pivots;  // of the front
+  Index begin, width;          // of the block
+  Number* corner;              // corner_values
+  Number *plain, *scaled;      // of the rows below the block: L D, and L; front_panels(size) rows of front_block values
+
+  [[nodiscard]] Number* at(Index row, Index column) const {
+    return front + static_cast<std::ptrdiff_t>(column) * stride + row;
+  }
+  [[nodiscard]] Index first() const { return begin + width; }  // row and column below the block
+  [[nodiscard]] Index rest() const { return size - first(); }
+};
+
+/// Rows of work space for a front of `size` rows, on any target.
+[[nodiscard]] constexpr Index front_panels(Index size) {
+  return size + 64;
+}
+
+/// Rows of a front's column that stand together somewhere in its parent's, too.
+struct RowRun {
+  Index from, to, length;
+};
+
+/// Columns of what a front leaves that are added to its parent's columns.
+template <class Number>
+struct FrontSum {
+  const Number* from;  // what the child leaves: its column and row 0
+  Number* to;          // the parent's column and row 0
+  Index from_stride, to_stride;
+  const RowRun* last;  // beyond the child's last run
+};
+
+SOFTKIN_KERNELS(
+    /// L and D of the pivot block; L in place and into the corner.
+    /// returns  negative pivots, those below `least` in magnitude among them, which become -least
+    template <class Number> Index factor_corner(const FrontBlock<Number>& block, Number least, Number* diagonal);
+
+    /// Strips of rows below the block: what one thread takes at a time.
+    template <class Number> Index strip_count(const FrontBlock<Number>& block);
+
+    /// Strips [low, high) below the block: L D = A L_corner^-T into `plain`, L into `scaled` and in place.
+    template <class Number> void solve_strips(const FrontBlock<Number>& block, Index low, Index high);
+
+    /// Strips [low, high): the lower triangle of the columns beyond the block minus scaled plain^T. Of what stands
+    /// there beyond the front's pivots the first block takes no notice: it is as if it were zero.
+    template <class Number> void update_strips(const FrontBlock<Number>& block, Index low, Index high);
+
+    /// Columns [low, high) of the run `run`, and all runs after it below them.
+    template <class Number> void add_run_columns(const FrontSum<Number>& sum, const RowRun* run, Index low, Index high);
+
+    /// One front's part of a solution (linear/front_solve.hpp).
+    template <class Number>
+    void solve_forward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);
+    template <class Number>
+    void solve_backward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);)
+
+}  // namespace softkin::linear
