@@ -162,12 +162,13 @@ struct Options {
   double eigen_up_to = 50000;
 };
 
+template <class Number>
 FactorTimes time_softkin(PhysicalParts& parts, const Eigen::SparseMatrix<double>& matrix, int repeat) {
   FactorTimes times;
   const Eigen::VectorXd b = Eigen::VectorXd::Ones(matrix.rows());
   Eigen::MatrixXd x;
   double begin = now();
-  linear::SparseLdlt factor(parts.pattern());
+  linear::SparseLdltOf<Number> factor(parts.pattern());
   times.analyse = now() - begin;
   std::vector<double> factors, solves;
   for (int i = 0; i < repeat; ++i) {
@@ -186,9 +187,12 @@ FactorTimes time_softkin(PhysicalParts& parts, const Eigen::SparseMatrix<double>
   return times;
 }
 
-void print_times(const char* name, const FactorTimes& times, double flops) {
-  std::printf("           %-18s %11.3f %11.2f %10.2f %9.2f %13.3g %10.1e\n", name, 1e3 * times.analyse,
+/// peak  rate of a dense product of the same precision [flop/s]; 0: not compared
+void print_times(const char* name, const FactorTimes& times, double flops, double peak = 0) {
+  std::printf("           %-18s %11.3f %11.2f %10.2f %9.2f %13.3g %10.1e", name, 1e3 * times.analyse,
               1e3 * times.factor, 1e-9 * flops / times.factor, 1e3 * times.solve, times.nonzeros, times.residual);
+  if (peak > 0) std::printf("   %.0f %% of a dense product's rate", 100 * flops / times.factor / peak);
+  std::printf("\n");
   std::fflush(stdout);
 }
 
@@ -222,6 +226,10 @@ int run_with(int threads, const Options& options) {
   std::printf("%9s  %-18s %11s %11s %10s %9s %13s %10s\n", "body tets", "", "analyse[ms]", "factor [ms]", "GFlop/s",
               "solve[ms]", "nonzeros of L", "residual");
   Ratios cholmod_ratios, eigen_ratios;
+  Team team(threads);
+  const double peak = product_rate<double>(team), single_peak = product_rate<float>(team);
+  std::printf("dense products (Eigen, %s): %.1f GFlop/s in double, %.1f in single precision\n", name_of(target()),
+              1e-9 * peak, 1e-9 * single_peak);
   for (const double size : options.sizes) {
     const double cell = cell_for(size);
     const Model model = compile(finger_robot(bellows_finger(cell), FingerKind::physical, "finger"));
@@ -241,8 +249,11 @@ int run_with(int threads, const Options& options) {
                 static_cast<long long>(body_tetrahedra(cell)), static_cast<long long>(matrix.rows()),
                 static_cast<long long>(matrix.nonZeros()), parts.flops(),
                 parts.projected() ? "; made positive definite element by element" : "");
-    const FactorTimes own = time_softkin(parts, matrix, options.repeat);
-    print_times("softkin", own, parts.flops());
+    const FactorTimes own = time_softkin<double>(parts, matrix, options.repeat);
+    print_times("softkin", own, parts.flops(), peak);
+    const FactorTimes single = time_softkin<float>(parts, matrix, options.repeat);
+    print_times("  in single", single, parts.flops(), single_peak);
+    std::printf("           the factor in single precision is %.2f times as fast\n", own.factor / single.factor);
     print_sharing(parts.pattern());
     if (const std::optional<FactorTimes> cholmod = time_cholmod_supernodal(matrix, options.repeat)) {
       print_times("CHOLMOD supernodal", *cholmod, parts.flops());

@@ -9,6 +9,8 @@
 #include <softkin/linear/front_kernel.hpp>
 #include <thread>
 
+#include "kernels/dense_product.hpp"
+
 namespace softkin::bench {
 
 namespace {
@@ -22,22 +24,9 @@ std::string processor() {
 
 constexpr int runs = 5;
 
-double dgemm_rate(Team& team) {
-  constexpr Index size = 960;
-  const Index count = team.size();
-  std::vector<Eigen::MatrixXd> a(count), b(count), c(count);
-  for (Index i = 0; i < count; ++i) {
-    a[i] = Eigen::MatrixXd::Random(size, size);
-    b[i] = Eigen::MatrixXd::Random(size, size);
-    c[i] = Eigen::MatrixXd::Zero(size, size);
-  }
-  double best = 0;
-  for (int run = 0; run < runs; ++run) {
-    const double begin = now();
-    team.each(count, [&](Index i) { c[i].noalias() = a[i] * b[i]; });
-    best = std::max(best, 2.0 * size * size * size * count / (now() - begin));
-  }
-  return best;
+template <class Number>
+void multiply(const Number* a, const Number* b, Number* c, Index size) {
+  SOFTKIN_RUN_KERNEL(multiply_dense(a, b, c, size));
 }
 
 double front_rate(Team& team) {
@@ -71,6 +60,29 @@ double triad_rate(Team& team) {
 
 }  // namespace
 
+template <class Number>
+double product_rate(Team& team) {
+  constexpr Index size = 960;
+  const Index count = team.size();
+  using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
+  std::vector<Matrix> a(count), b(count), c(count);
+  for (Index i = 0; i < count; ++i) {
+    a[i] = Matrix::Random(size, size);
+    b[i] = Matrix::Random(size, size);
+    c[i] = Matrix::Zero(size, size);
+  }
+  double best = 0;
+  for (int run = 0; run < runs; ++run) {
+    const double begin = now();
+    team.each(count, [&](Index i) { multiply(a[i].data(), b[i].data(), c[i].data(), size); });
+    best = std::max(best, 2.0 * size * size * size * count / (now() - begin));
+  }
+  return best;
+}
+
+template double product_rate<double>(Team&);
+template double product_rate<float>(Team&);
+
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -100,11 +112,12 @@ std::string machine_text() {
   const double gibibytes =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1073741824.0;
   return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
-         std::to_string(std::lround(gibibytes)) + " GiB; compiler " __VERSION__ ", flags " SOFTKIN_BENCH_FLAGS;
+         std::to_string(std::lround(gibibytes)) + " GiB; instruction set " + name_of(target()) +
+         "; compiler " __VERSION__ ", flags " SOFTKIN_BENCH_FLAGS;
 }
 
 Rates measure_rates(Team& team) {
-  return {dgemm_rate(team), front_rate(team), triad_rate(team)};
+  return {product_rate<double>(team), front_rate(team), triad_rate(team)};
 }
 
 }  // namespace softkin::bench

@@ -18,9 +18,14 @@ namespace softkin::bench {
 /// Processor, cores, memory, compiler and flags, in a line or two.
 [[nodiscard]] std::string machine_text();
 
+/// C = A B, 960 x 960 on every thread, by Eigen with the instructions that softkin runs with: the most of several runs
+/// [flop/s].
+template <class Number>
+[[nodiscard]] double product_rate(Team& team);
+
 /// What the machine can do, measured: the most of several runs.
 struct Rates {
-  double dgemm = 0;      // C = A B, 960 x 960 on every thread (Eigen) [flop/s]
+  double dgemm = 0;      // product_rate<double>() [flop/s]
   double front = 0;      // softkin's LDL^T of a dense front of 4000 [flop/s]
   double bandwidth = 0;  // a = b + s c over 3 arrays far larger than the caches [byte/s]
 };

@@ -19,10 +19,13 @@ Target choose() {
   if (here.empty()) throw InvalidInput("this processor has no SSE4.2, without which softkin does not run");
   const char* asked = std::getenv("SOFTKIN_TARGET");
   if (asked == nullptr || *asked == '\0') return here.front();
-  const auto found = std::find_if(here.begin(), here.end(), [&](Target each) { return asked == std::string(name_of(each)); });
+  const auto found =
+      std::find_if(here.begin(), here.end(), [&](Target each) { return asked == std::string(name_of(each)); });
   if (found != here.end()) return *found;
-  throw InvalidInput("SOFTKIN_TARGET=" + std::string(asked) + ": not an instruction set that softkin is made for and this "
-                     "processor has; those are " + names_of(here));
+  throw InvalidInput("SOFTKIN_TARGET=" + std::string(asked) +
+                     ": not an instruction set that softkin is made for and this "
+                     "processor has; those are " +
+                     names_of(here));
 }
 
 }  // namespace

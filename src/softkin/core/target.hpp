@@ -43,14 +43,14 @@ enum class Target {
   namespace avx512 {         \
   __VA_ARGS__                \
   }
-#define SOFTKIN_RUN_KERNEL(...)  \
-  switch (::softkin::target()) { \
-    case Target::avx512:         \
+#define SOFTKIN_RUN_KERNEL(...)   \
+  switch (::softkin::target()) {  \
+    case Target::avx512:          \
       return avx512::__VA_ARGS__; \
-    case Target::avx2:           \
-      return avx2::__VA_ARGS__;  \
-    default:                     \
-      return sse4::__VA_ARGS__;  \
+    case Target::avx2:            \
+      return avx2::__VA_ARGS__;   \
+    default:                      \
+      return sse4::__VA_ARGS__;   \
   }
 #elif defined(__aarch64__)
 #define SOFTKIN_KERNELS(...) \

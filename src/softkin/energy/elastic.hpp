@@ -1,40 +1,9 @@
 #pragma once
 
-#include <softkin/core/elastic_law.hpp>
 #include <softkin/core/types.hpp>
-#include <softkin/energy/pack.hpp>
+#include <softkin/energy/kernels/elastic.hpp>
 
 namespace softkin::energy {
-
-/// Constants of a law, one set per lane [MPa]; meaning as in ElasticLaw.
-struct LawBlock {
-  Law law = Law::neo_hookean;
-  Pack mu{}, lambda{}, c10{}, c01{}, c20{}, c30{}, bulk{}, jm{};
-};
-
-/// Elements of K nodes and Q quadrature points (4, 1: linear tetrahedra; 10, 4: quadratic ones; 6, 6: prisms), one per
-/// lane, all of one law. F = sum_a x_a slope_a^T. A dielectric elastomer's active stretch, F = F_e F_a, is in the
-/// slopes: slope_a = F_a^-T (slope of the passive element).
-template <int K, int Q>
-struct ElasticBlock {
-  LawBlock law;
-  Pack3 slope[Q][K];  // gradients of the shape functions in the rest shape [1/mm]
-  Pack volume[Q];     // rest volume that the point stands for [mm^3]; 0 in lanes without an element
-};
-
-template <int K>
-struct ElasticForce {
-  Shape<K> gradient;   // of the energy in the nodes' positions [N]
-  Pack energy;         // [mJ]
-  PackMask inverted;   // lanes with J <= 0 at a quadrature point that has volume
-  PackMask forbidden;  // lanes with a deformation that has no energy, at a quadrature point that has volume
-};
-
-/// Blocks (a, b), b <= a, of a symmetric matrix of K x K blocks of 3 x 3, at a (a + 1) / 2 + b [N/mm].
-template <int K>
-struct ElasticStiffness {
-  Pack33 block[K * (K + 1) / 2];
-};
 
 /// Energy and its gradient, in every lane. Where a law has no energy, as J <= 0 and it forbids inversion or bar I1
 /// is at its limit or beyond, the result is finite and meaningless, and the lane is marked in `forbidden`.
@@ -43,7 +12,9 @@ struct ElasticStiffness {
 /// current  positions [mm]
 /// throws   InvalidInput on a law that does not exist
 template <int K, int Q>
-void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out);
+void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out) {
+  SOFTKIN_RUN_KERNEL(elastic_force(block, current, out));
+}
 
 /// Cauchy stress, force per deformed area, at every quadrature point and in every lane [MPa]; meaningless as the energy
 /// is where a law forbids inversion.
@@ -51,7 +22,9 @@ void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, Ela
 /// source   sigma = P F^T / J, P = dW/dF; of a dielectric elastomer F and J are those of the elastic part
 /// throws   InvalidInput on a law that does not exist
 template <int K, int Q>
-void elastic_stress(const ElasticBlock<K, Q>& block, const Shape<K>& current, Pack33 (&stress)[Q]);
+void elastic_stress(const ElasticBlock<K, Q>& block, const Shape<K>& current, Pack33 (&stress)[Q]) {
+  SOFTKIN_RUN_KERNEL(elastic_stress(block, current, stress));
+}
 
 /// Second derivative of the energy. projected: with d^2W/dF^2 of every quadrature point replaced by the nearest
 /// positive semidefinite matrix. Finite everywhere; where the corotational law's rotation is not unique (mirrored
@@ -61,7 +34,9 @@ void elastic_stress(const ElasticBlock<K, Q>& block, const Shape<K>& current, Pa
 /// throws  InvalidInput on a law that does not exist
 template <int K, int Q>
 void elastic_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, bool projected,
-                       ElasticStiffness<K>& out);
+                       ElasticStiffness<K>& out) {
+  SOFTKIN_RUN_KERNEL(elastic_stiffness(block, current, projected, out));
+}
 
 /// Shape functions' gradients and volumes of one element at rest.
 ///
@@ -84,14 +59,6 @@ struct ElasticRest {
 /// throws  InvalidInput where the triangles span no area
 [[nodiscard]] Mat3 layer_frame(const Eigen::Matrix<double, 6, 3>& rest);
 
-/// elastic_stiffness with d^2W/dF^2 replaced by the nearest positive semidefinite matrix, in every lane.
-///
-/// source  in the frame of the principal stretches the 9 x 9 matrix of an isotropic law is a 3 x 3 block (stretches)
-///         and three 2 x 2 blocks (symmetric and antisymmetric shears); Smith, De Goes, Kim 2019, "Analytic
-///         eigensystems for isotropic distortion energies", Section 4
-template <int K, int Q>
-void projected_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out);
-
 /// What a step lacks to turn an element instead of shearing it. A linear step of a body that bends far enlarges it as
 /// it turns it; the deformation gradient F with rate F' is better led to exp([w]) (F + F' - [w] F), w being the rate at
 /// which the rotation of F turns.
@@ -101,6 +68,8 @@ void projected_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& curren
 /// pull     sum over quadrature points of volume (exp([w]) (F + F' - [w] F) - F - F') slope_a [mm^2 mm]
 /// source   the rotation-strain coordinates of Huang et al. 2011, used as a retraction: second order in the step
 template <int K, int Q>
-void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull);
+void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull) {
+  SOFTKIN_RUN_KERNEL(turning_pull(block, current, step, pull));
+}
 
 }  // namespace softkin::energy

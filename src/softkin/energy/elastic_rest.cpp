@@ -107,4 +107,8 @@ Mat3 layer_frame(const Eigen::Matrix<double, 6, 3>& rest) {
   return frame;
 }
 
+void refuse_law(Law law) {
+  throw InvalidInput("elastic law " + std::to_string(static_cast<int>(law)) + ": there is no such law");
+}
+
 }  // namespace softkin::energy

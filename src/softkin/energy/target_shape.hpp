@@ -1,43 +1,32 @@
 #pragma once
 
+#include <softkin/energy/kernels/target_shape.hpp>
 #include <softkin/energy/rotation.hpp>
 
 namespace softkin::energy {
 
-/// Body elements of K vertices (4: tetrahedra, 6: prisms), one per lane.
-template <int K>
-struct BodyBlock {
-  Shape<K> rest;     // centred [mm]
-  Pack volume;       // at rest [mm^3]
-  Pack weight;       // w_i Vol_i [mm^3]; 0 in lanes without an element
-  Pack shape_ratio;  // R_omega [-]
-  bool blended;      // is any shape ratio below 1
-};
-
-/// Actuation elements of K vertices (3: cable triangle, 4: pneumatic tetrahedron, 6: DEA prism), one per lane. The
-/// target shape at ratio a is constant + f(a) grown + g(a) thinned; f, g: a, - (cable); cbrt(a), - (pneumatic);
-/// sqrt(a), 1 / a (DEA).
-template <int K>
-struct ActuationBlock {
-  Shape<K> constant, grown, thinned;  // centred [mm]
-  Pack measure;                       // length [mm], volume [mm^3] or mean area of top and bottom [mm^2] at rest
-  Pack weight;                        // w_i Vol_i [mm^3]; 0 in lanes without an element
-};
-
-/// What an element pulls with: weight (V^t - N V^d), and its energy weight ||N V^d - V^t||^2 [mm^5], Eq. (1).
-template <int K>
-struct ElementPull {
-  Shape<K> pull;
-  Pack energy;
-};
-
 /// Signed volume of every lane [mm^3]; current need not be centred. Prisms: bilinear sides, exact.
-[[nodiscard]] Pack volume(const Shape<4>& current);
-[[nodiscard]] Pack volume(const Shape<6>& current);
+[[nodiscard]] inline Pack volume(const Shape<4>& current) {
+  const auto run = [&](double* kept) { SOFTKIN_RUN_KERNEL(volume_of_blocks(current, kept)); };
+  Pack value;
+  run(&value[0]);
+  return value;
+}
+[[nodiscard]] inline Pack volume(const Shape<6>& current) {
+  const auto run = [&](double* kept) { SOFTKIN_RUN_KERNEL(volume_of_blocks(current, kept)); };
+  Pack value;
+  run(&value[0]);
+  return value;
+}
 
 /// What an actuation element has now of what its actuator controls: length, volume, mean area over the rest's [-].
 template <int K>
-[[nodiscard]] Pack current_ratio(const ActuationBlock<K>& block, const Shape<K>& current);
+[[nodiscard]] Pack current_ratio(const ActuationBlock<K>& block, const Shape<K>& current) {
+  const auto run = [&](double* kept) { SOFTKIN_RUN_KERNEL(current_ratio(block, current, kept)); };
+  Pack value;
+  run(&value[0]);
+  return value;
+}
 
 /// Local step of a body element.
 ///
@@ -47,7 +36,9 @@ template <int K>
 /// deviation the volume-preserving target of an element below an eighth of its volume turns linearly into the rigid
 ///           one, which an inverted element takes whole: Eq. (4) would enlarge inverted elements
 template <int K>
-void pull_of_body(const BodyBlock<K>& block, Shape<K>& current, PackRotation& rotation, ElementPull<K>& out);
+void pull_of_body(const BodyBlock<K>& block, Shape<K>& current, PackRotation& rotation, ElementPull<K>& out) {
+  SOFTKIN_RUN_KERNEL(pull_of_body(block, current, rotation, out));
+}
 
 /// Local step of an actuation element at the local ratios given.
 ///
@@ -55,7 +46,9 @@ void pull_of_body(const BodyBlock<K>& block, Shape<K>& current, PackRotation& ro
 /// source  Fang et al. 2020, Eq. (2), Section II-D and Fig. 4
 template <int K>
 void pull_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, Shape<K>& current, PackRotation& rotation,
-                       ElementPull<K>& out);
+                       ElementPull<K>& out) {
+  SOFTKIN_RUN_KERNEL(pull_of_actuation(block, ratio, current, rotation, out));
+}
 
 /// Target shapes of Fig. 4 for one element at rest, split as ActuationBlock has it: rows are points.
 template <int K>

@@ -4,23 +4,13 @@
 
 namespace softkin::energy {
 
-/// Blocks (a, b), b <= a, of a symmetric matrix of K x K blocks of 3 x 3, at a (a + 1) / 2 + b [mm^3].
-template <int K>
-struct TargetStiffness {
-  Pack33 block[K * (K + 1) / 2];
-};
-
-/// How an element's ratio answers to its shape, and its pull to the ratio: b and grad a of
-/// d pull = w b (grad a . d current).
-template <int K>
-struct RatioCoupling {
-  Shape<K> pull_slope;   // d pull / d ratio [mm^4]
-  Shape<K> ratio_slope;  // d current_ratio / d current [1/mm]
-};
-
 /// Gradient of every lane's volume [mm^2].
-void volume_slope(const Shape<4>& current, Shape<4>& out);
-void volume_slope(const Shape<6>& current, Shape<6>& out);
+inline void volume_slope(const Shape<4>& current, Shape<4>& out) {
+  SOFTKIN_RUN_KERNEL(volume_slope_of_blocks(current, out));
+}
+inline void volume_slope(const Shape<6>& current, Shape<6>& out) {
+  SOFTKIN_RUN_KERNEL(volume_slope_of_blocks(current, out));
+}
 
 /// The change of a body element's pull with its shape, -K d with K the derivative of minus the pull.
 ///
@@ -31,13 +21,17 @@ void volume_slope(const Shape<6>& current, Shape<6>& out);
 ///           omega = (tr(S) I - S)^-1 sum_i q_i x d_i, q = R T, S = sum_i x_i q_i^T, as R^T H stays symmetric
 template <int K>
 void pull_change_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation,
-                         const Shape<K>& change, Shape<K>& out);
+                         const Shape<K>& change, Shape<K>& out) {
+  SOFTKIN_RUN_KERNEL(pull_change_of_body(block, current, rotation, change, out));
+}
 
 /// The same of an actuation element whose ratio changes by ratio_change.
 template <int K>
 void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, const Pack& ratio_change,
                               const Shape<K>& current, const PackRotation& rotation, const Shape<K>& change,
-                              Shape<K>& out);
+                              Shape<K>& out) {
+  SOFTKIN_RUN_KERNEL(pull_change_of_actuation(block, ratio, ratio_change, current, rotation, change, out));
+}
 
 /// The pull by which elements, turned as their targets are, ask for a move: w (exp(omega) (X + d - omega x X) - X) with
 /// the change d and omega of pull_change_of_body. To first order w d; a bend by a large angle stays one.
@@ -45,19 +39,30 @@ void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio,
 /// out  a target for the global step, not a derivative
 template <int K>
 void turned_move_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation,
-                         const Shape<K>& change, Shape<K>& out);
+                         const Shape<K>& change, Shape<K>& out) {
+  SOFTKIN_RUN_KERNEL(turned_move_of_body(block, current, rotation, change, out));
+}
 template <int K>
 void turned_move_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
-                              const PackRotation& rotation, const Shape<K>& change, Shape<K>& out);
+                              const PackRotation& rotation, const Shape<K>& change, Shape<K>& out) {
+  SOFTKIN_RUN_KERNEL(turned_move_of_actuation(block, ratio, current, rotation, change, out));
+}
 
 /// How current_ratio changes with the shape, along `change`; neither need be centred.
 template <int K>
-[[nodiscard]] Pack ratio_change(const ActuationBlock<K>& block, const Shape<K>& current, const Shape<K>& change);
+[[nodiscard]] Pack ratio_change(const ActuationBlock<K>& block, const Shape<K>& current, const Shape<K>& change) {
+  const auto run = [&](double* kept) { SOFTKIN_RUN_KERNEL(ratio_change(block, current, change, kept)); };
+  Pack value;
+  run(&value[0]);
+  return value;
+}
 
 /// How the pull answers to the element's own ratio and that to the shape; current is centred.
 template <int K>
 void ratio_coupling(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
-                    const PackRotation& rotation, RatioCoupling<K>& out);
+                    const PackRotation& rotation, RatioCoupling<K>& out) {
+  SOFTKIN_RUN_KERNEL(ratio_coupling(block, ratio, current, rotation, out));
+}
 
 /// The stiffness of body elements: minus the derivative of the pull.
 ///
@@ -68,7 +73,9 @@ void ratio_coupling(const ActuationBlock<K>& block, const Pack& ratio, const Sha
 ///            be negative: where an eigenvalue of (tr(S) I - S) in the metric G G^T is below 1, it becomes 1
 template <int K>
 void stiffness_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation, bool projected,
-                       TargetStiffness<K>& out);
+                       TargetStiffness<K>& out) {
+  SOFTKIN_RUN_KERNEL(stiffness_of_body(block, current, rotation, projected, out));
+}
 
 /// The same of actuation elements at their ratios.
 ///
@@ -77,6 +84,8 @@ void stiffness_of_body(const BodyBlock<K>& block, const Shape<K>& current, const
 template <int K>
 void stiffness_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, bool redistributed,
                             const Shape<K>& current, const PackRotation& rotation, bool projected,
-                            TargetStiffness<K>& out);
+                            TargetStiffness<K>& out) {
+  SOFTKIN_RUN_KERNEL(stiffness_of_actuation(block, ratio, redistributed, current, rotation, projected, out));
+}
 
 }  // namespace softkin::energy

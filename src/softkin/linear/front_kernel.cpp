@@ -41,8 +41,8 @@ Index factor_front(Number* front, Index size, Index pivots, Number least, Number
     work.scaled.resize(most);
   }
   work.corner.resize(corner_values);
-  FrontBlock<Number> block{front, size, front_stride<Number>(size), pivots, 0, 0, work.corner.data(), work.plain.data(),
-                           work.scaled.data()};
+  FrontBlock<Number> block{
+      front, size, front_stride<Number>(size), pivots, 0, 0, work.corner.data(), work.plain.data(), work.scaled.data()};
   Index negative = 0;
   for (block.begin = 0; block.begin < pivots; block.begin += front_block) {
     block.width = std::min(front_block, pivots - block.begin);

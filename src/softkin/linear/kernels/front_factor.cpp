@@ -65,8 +65,7 @@ template <int Panels, class Number, class Visit>
 /// plain   L D of those panels in the columns before, a panel every `block_width` columns
 template <int Panels, class Number>
 [[gnu::always_inline]] inline void reduce_group(const Number* rows, Index stride, Index group, Index columns,
-                                                const Number* corner, const Number* plain,
-                                                Sums<Panels, Number>& sums) {
+                                                const Number* corner, const Number* plain, Sums<Panels, Number>& sums) {
   using T = Tile<Number>;
 #pragma GCC unroll 8
   for (int c = 0; c < T::columns; ++c)

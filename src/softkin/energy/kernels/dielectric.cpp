@@ -1,7 +1,6 @@
-#include <softkin/energy/dielectric.hpp>
-#include <softkin/energy/elastic_law_point.hpp>
+#include <softkin/energy/kernels/elastic_law_point.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -46,8 +45,12 @@ void add_second(const FieldPoint& p, int a, int b, Pack33& k) {
 
 }  // namespace
 
-void add_dielectric_force(const DielectricPrisms& prisms, const Pack& permittivity, double voltage_kV,
-                          const Shape<nodes>& current, ElasticForce<nodes>& out) {
+void add_dielectric_force(const energy::DielectricPrisms& elements, const energy::Pack& constant, double voltage_kV,
+                          const energy::Shape<nodes>& shape, energy::ElasticForce<nodes>& force) {
+  const DielectricPrisms& prisms = wide(elements);
+  const Pack& permittivity = wide(constant);
+  const Shape<nodes>& current = wide(shape);
+  ElasticForce<nodes>& out = wide(force);
   const PackMask charged = permittivity * voltage_kV * voltage_kV > 0;
   for (int q = 0; q < points; ++q) {
     const FieldPoint p = field_point(prisms, q, permittivity, voltage_kV, current);
@@ -58,8 +61,12 @@ void add_dielectric_force(const DielectricPrisms& prisms, const Pack& permittivi
   }
 }
 
-void add_maxwell_stress(const DielectricPrisms& prisms, const Pack& permittivity, double voltage_kV,
-                        const Shape<nodes>& current, Pack33 (&stress)[points]) {
+void add_maxwell_stress(const energy::DielectricPrisms& elements, const energy::Pack& constant, double voltage_kV,
+                        const energy::Shape<nodes>& shape, energy::Pack33 (&out)[points]) {
+  const DielectricPrisms& prisms = wide(elements);
+  const Pack& permittivity = wide(constant);
+  const Shape<nodes>& current = wide(shape);
+  Pack33(&stress)[points] = wide(out);
   for (int q = 0; q < points; ++q) {
     const FieldPoint p = field_point(prisms, q, permittivity, voltage_kV, current);
     add_outer(stress[q], permittivity * p.field, p.field);
@@ -67,8 +74,12 @@ void add_maxwell_stress(const DielectricPrisms& prisms, const Pack& permittivity
   }
 }
 
-void add_dielectric_stiffness(const DielectricPrisms& prisms, const Pack& permittivity, double voltage_kV,
-                              const Shape<nodes>& current, ElasticStiffness<nodes>& out) {
+void add_dielectric_stiffness(const energy::DielectricPrisms& elements, const energy::Pack& constant, double voltage_kV,
+                              const energy::Shape<nodes>& shape, energy::ElasticStiffness<nodes>& stiffness) {
+  const DielectricPrisms& prisms = wide(elements);
+  const Pack& permittivity = wide(constant);
+  const Shape<nodes>& current = wide(shape);
+  ElasticStiffness<nodes>& out = wide(stiffness);
   FieldPoint at[points];
   for (int q = 0; q < points; ++q) at[q] = field_point(prisms, q, permittivity, voltage_kV, current);
   for (int a = 0, ab = 0; a < nodes; ++a)
@@ -76,4 +87,4 @@ void add_dielectric_stiffness(const DielectricPrisms& prisms, const Pack& permit
       for (const FieldPoint& p : at) add_second(p, a, b, out.block[ab]);
 }
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <softkin/core/error.hpp>
-#include <softkin/energy/elastic.hpp>
+#include <softkin/energy/kernels/elastic.hpp>
+#include <softkin/energy/kernels/wide.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 /// A deformation gradient and what the laws that are functions of the invariants need of it, in every lane.
 struct Deformation {
@@ -229,7 +229,7 @@ void dispatch(Law law, const Work& work) {
     case Law::gent:
       return work.template operator()<Law::gent>();
   }
-  throw InvalidInput("elastic law " + std::to_string(static_cast<int>(law)) + ": there is no such law");
+  refuse_law(law);
 }
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

@@ -1,8 +1,7 @@
-#include <softkin/energy/elastic.hpp>
-#include <softkin/energy/elastic_law_point.hpp>
-#include <softkin/energy/elastic_polar.hpp>
+#include <softkin/energy/kernels/elastic_law_point.hpp>
+#include <softkin/energy/kernels/elastic_polar.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -138,17 +137,20 @@ void exact_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, E
 }  // namespace
 
 template <int K, int Q>
-void elastic_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, bool projected,
-                       ElasticStiffness<K>& out) {
+void elastic_stiffness(const energy::ElasticBlock<K, Q>& block, const energy::Shape<K>& current, bool projected,
+                       energy::ElasticStiffness<K>& out) {
   if (projected) {
-    projected_stiffness(block, current, out);
+    projected_stiffness<K, Q>(wide(block), wide(current), wide(out));
   } else {
-    dispatch(block.law.law, [&]<Law law>() { exact_stiffness<law, K, Q>(block, current, out); });
+    dispatch(block.law.law, [&]<Law law>() { exact_stiffness<law, K, Q>(wide(block), wide(current), wide(out)); });
   }
 }
 
-template void elastic_stiffness(const ElasticBlock<4, 1>&, const Shape<4>&, bool, ElasticStiffness<4>&);
-template void elastic_stiffness(const ElasticBlock<10, 4>&, const Shape<10>&, bool, ElasticStiffness<10>&);
-template void elastic_stiffness(const ElasticBlock<6, 6>&, const Shape<6>&, bool, ElasticStiffness<6>&);
+template void elastic_stiffness(const energy::ElasticBlock<4, 1>&, const energy::Shape<4>&, bool,
+                                energy::ElasticStiffness<4>&);
+template void elastic_stiffness(const energy::ElasticBlock<10, 4>&, const energy::Shape<10>&, bool,
+                                energy::ElasticStiffness<10>&);
+template void elastic_stiffness(const energy::ElasticBlock<6, 6>&, const energy::Shape<6>&, bool,
+                                energy::ElasticStiffness<6>&);
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

@@ -1,9 +1,41 @@
 #pragma once
 
-#include <softkin/energy/target_shape.hpp>
+#include <softkin/energy/kernels/rotation_wide.hpp>
+#include <softkin/energy/kernels/target_shape.hpp>
 
 /// Formulas that the pulls of the target-shape formulation share with their derivatives.
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
+
+template <int K>
+using BodyBlock = BodyBlockOf<Pack, K>;
+template <int K>
+using ActuationBlock = ActuationBlockOf<Pack, K>;
+template <int K>
+using ElementPull = ElementPullOf<Pack, K>;
+template <int K>
+using TargetStiffness = TargetStiffnessOf<Pack, K>;
+template <int K>
+using RatioCoupling = RatioCouplingOf<Pack, K>;
+
+inline Pack six_volumes(const Pack3& a, const Pack3& b, const Pack3& c) {
+  return dot(a, cross(b, c));
+}
+
+inline Pack volume(const Shape<4>& p) {
+  return six_volumes(p[1] - p[0], p[2] - p[0], p[3] - p[0]) / 6;
+}
+
+inline Pack volume(const Shape<6>& v) {
+  Shape<6> p;
+  for (int i = 0; i < 6; ++i) p[i] = v[i] - v[0];
+  Pack six = six_volumes(p[0], p[2], p[1]) + six_volumes(p[3], p[4], p[5]);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    six += 0.5 * (six_volumes(p[i], p[j], p[j + 3]) + six_volumes(p[i], p[j + 3], p[i + 3]) +
+                  six_volumes(p[i], p[j], p[i + 3]) + six_volumes(p[j], p[j + 3], p[i + 3]));
+  }
+  return six / 6;
+}
 
 /// H of best_rotation
 template <int K>
@@ -66,4 +98,4 @@ inline void soft_target_slope(const Pack& volume_ratio, Pack& scaled, Pack& rigi
   rigid = select(whole | inverted, zero, pack(-1 / whole_from));
 }
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

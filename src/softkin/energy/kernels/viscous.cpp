@@ -1,10 +1,11 @@
 #include <cstring>
-#include <softkin/energy/elastic_law_point.hpp>
-#include <softkin/energy/viscous.hpp>
+#include <softkin/energy/kernels/elastic_law_point.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
+
+using softkin::energy::SOFTKIN_TARGET::inner;
 
 /// A symmetric matrix in every lane: xx, yy, zz, xy, yz, xz.
 struct Symmetric {
@@ -264,7 +265,8 @@ void add_projected(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlo
 }  // namespace
 
 template <int Q>
-void begin_step(const ViscousBlock& viscous, double* begun) {
+void begin_step(const energy::ViscousBlock& branches, double* begun) {
+  const ViscousBlock& viscous = wide(branches);
   for (int q = 0; q < Q; ++q) {
     const Symmetric strain = remembered(viscous, q, -1);
     for (int i = 0; i < viscous.branches; ++i, begun += begun_entries * lanes) {
@@ -278,8 +280,12 @@ void begin_step(const ViscousBlock& viscous, double* begun) {
 }
 
 template <int K, int Q>
-void add_viscous_force(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current,
-                       ElasticForce<K>& out) {
+void add_viscous_force(const energy::ElasticBlock<K, Q>& elements, const energy::ViscousBlock& branches,
+                       const energy::Shape<K>& shape, energy::ElasticForce<K>& force) {
+  const ElasticBlock<K, Q>& block = wide(elements);
+  const ViscousBlock& viscous = wide(branches);
+  const Shape<K>& current = wide(shape);
+  ElasticForce<K>& out = wide(force);
   for (int q = 0; q < Q; ++q) {
     const Strain s = strain_at<K>(block.slope[q], current);
     BranchStress sum;
@@ -298,8 +304,12 @@ void add_viscous_force(const ElasticBlock<K, Q>& block, const ViscousBlock& visc
 }
 
 template <int K, int Q>
-void add_viscous_stiffness(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current,
-                           bool projected, ElasticStiffness<K>& out) {
+void add_viscous_stiffness(const energy::ElasticBlock<K, Q>& elements, const energy::ViscousBlock& branches,
+                           const energy::Shape<K>& shape, bool projected, energy::ElasticStiffness<K>& stiffness) {
+  const ElasticBlock<K, Q>& block = wide(elements);
+  const ViscousBlock& viscous = wide(branches);
+  const Shape<K>& current = wide(shape);
+  ElasticStiffness<K>& out = wide(stiffness);
   for (int q = 0; q < Q; ++q) {
     if (projected) {
       add_projected<K>(block.slope[q], block.volume[q], viscous, q, current, out);
@@ -312,8 +322,12 @@ void add_viscous_stiffness(const ElasticBlock<K, Q>& block, const ViscousBlock& 
 }
 
 template <int K, int Q>
-void add_viscous_stress(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Shape<K>& current,
-                        Pack33 (&stress)[Q]) {
+void add_viscous_stress(const energy::ElasticBlock<K, Q>& elements, const energy::ViscousBlock& branches,
+                        const energy::Shape<K>& shape, energy::Pack33 (&out)[Q]) {
+  const ElasticBlock<K, Q>& block = wide(elements);
+  const ViscousBlock& viscous = wide(branches);
+  const Shape<K>& current = wide(shape);
+  Pack33(&stress)[Q] = wide(out);
   for (int q = 0; q < Q; ++q) {
     const Strain s = strain_at<K>(block.slope[q], current);
     BranchStress sum;
@@ -363,8 +377,12 @@ Pack integral(const Overstress& begin, const Overstress& end, const Pack& rate, 
 }  // namespace
 
 template <int K, int Q>
-Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Pack* rate, const Shape<K>& current,
-          double* strains) {
+void flow(const energy::ElasticBlock<K, Q>& elements, const energy::ViscousBlock& branches, const energy::Pack* rates,
+          const energy::Shape<K>& shape, double* strains, double* kept) {
+  const ElasticBlock<K, Q>& block = wide(elements);
+  const ViscousBlock& viscous = wide(branches);
+  const Pack* rate = wide(rates);
+  const Shape<K>& current = wide(shape);
   Pack lost{};
   const auto keep = [&strains](const Symmetric& strain) {
     std::memcpy(strains, strain.at, sizeof(strain.at));
@@ -381,26 +399,35 @@ Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Pa
               integral(begin, overstress(s.barred, b.inverse), rate[i], viscous.shares[i]);
     }
   }
-  return lost;
+  SOFTKIN_TARGET::keep(lost, kept);
 }
 
-template void begin_step<1>(const ViscousBlock&, double*);
-template void begin_step<4>(const ViscousBlock&, double*);
-template void begin_step<6>(const ViscousBlock&, double*);
-template void add_viscous_force(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, ElasticForce<4>&);
-template void add_viscous_stiffness(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, bool,
-                                    ElasticStiffness<4>&);
-template void add_viscous_stress(const ElasticBlock<4, 1>&, const ViscousBlock&, const Shape<4>&, Pack33 (&)[1]);
-template Pack flow(const ElasticBlock<4, 1>&, const ViscousBlock&, const Pack*, const Shape<4>&, double*);
-template void add_viscous_force(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, ElasticForce<10>&);
-template void add_viscous_stiffness(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, bool,
-                                    ElasticStiffness<10>&);
-template void add_viscous_stress(const ElasticBlock<10, 4>&, const ViscousBlock&, const Shape<10>&, Pack33 (&)[4]);
-template Pack flow(const ElasticBlock<10, 4>&, const ViscousBlock&, const Pack*, const Shape<10>&, double*);
-template void add_viscous_force(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, ElasticForce<6>&);
-template void add_viscous_stiffness(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, bool,
-                                    ElasticStiffness<6>&);
-template void add_viscous_stress(const ElasticBlock<6, 6>&, const ViscousBlock&, const Shape<6>&, Pack33 (&)[6]);
-template Pack flow(const ElasticBlock<6, 6>&, const ViscousBlock&, const Pack*, const Shape<6>&, double*);
+template void begin_step<1>(const energy::ViscousBlock&, double*);
+template void begin_step<4>(const energy::ViscousBlock&, double*);
+template void begin_step<6>(const energy::ViscousBlock&, double*);
+template void add_viscous_force(const energy::ElasticBlock<4, 1>&, const energy::ViscousBlock&, const energy::Shape<4>&,
+                                energy::ElasticForce<4>&);
+template void add_viscous_stiffness(const energy::ElasticBlock<4, 1>&, const energy::ViscousBlock&,
+                                    const energy::Shape<4>&, bool, energy::ElasticStiffness<4>&);
+template void add_viscous_stress(const energy::ElasticBlock<4, 1>&, const energy::ViscousBlock&,
+                                 const energy::Shape<4>&, energy::Pack33 (&)[1]);
+template void flow(const energy::ElasticBlock<4, 1>&, const energy::ViscousBlock&, const energy::Pack*,
+                   const energy::Shape<4>&, double*, double* kept);
+template void add_viscous_force(const energy::ElasticBlock<10, 4>&, const energy::ViscousBlock&,
+                                const energy::Shape<10>&, energy::ElasticForce<10>&);
+template void add_viscous_stiffness(const energy::ElasticBlock<10, 4>&, const energy::ViscousBlock&,
+                                    const energy::Shape<10>&, bool, energy::ElasticStiffness<10>&);
+template void add_viscous_stress(const energy::ElasticBlock<10, 4>&, const energy::ViscousBlock&,
+                                 const energy::Shape<10>&, energy::Pack33 (&)[4]);
+template void flow(const energy::ElasticBlock<10, 4>&, const energy::ViscousBlock&, const energy::Pack*,
+                   const energy::Shape<10>&, double*, double* kept);
+template void add_viscous_force(const energy::ElasticBlock<6, 6>&, const energy::ViscousBlock&, const energy::Shape<6>&,
+                                energy::ElasticForce<6>&);
+template void add_viscous_stiffness(const energy::ElasticBlock<6, 6>&, const energy::ViscousBlock&,
+                                    const energy::Shape<6>&, bool, energy::ElasticStiffness<6>&);
+template void add_viscous_stress(const energy::ElasticBlock<6, 6>&, const energy::ViscousBlock&,
+                                 const energy::Shape<6>&, energy::Pack33 (&)[6]);
+template void flow(const energy::ElasticBlock<6, 6>&, const energy::ViscousBlock&, const energy::Pack*,
+                   const energy::Shape<6>&, double*, double* kept);
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

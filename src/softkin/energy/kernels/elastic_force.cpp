@@ -1,7 +1,7 @@
-#include <softkin/energy/elastic_law_point.hpp>
-#include <softkin/energy/elastic_polar.hpp>
+#include <softkin/energy/kernels/elastic_law_point.hpp>
+#include <softkin/energy/kernels/elastic_polar.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -76,12 +76,17 @@ void force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForc
 }  // namespace
 
 template <int K, int Q>
-void elastic_force(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticForce<K>& out) {
-  dispatch(block.law.law, [&]<Law law>() { force<law, K, Q>(block, current, out); });
+void elastic_force(const energy::ElasticBlock<K, Q>& block, const energy::Shape<K>& current,
+                   energy::ElasticForce<K>& out) {
+  dispatch(block.law.law, [&]<Law law>() { force<law, K, Q>(wide(block), wide(current), wide(out)); });
 }
 
 template <int K, int Q>
-void elastic_stress(const ElasticBlock<K, Q>& block, const Shape<K>& current, Pack33 (&stress)[Q]) {
+void elastic_stress(const energy::ElasticBlock<K, Q>& elements, const energy::Shape<K>& shape,
+                    energy::Pack33 (&out)[Q]) {
+  const ElasticBlock<K, Q>& block = wide(elements);
+  const Shape<K>& current = wide(shape);
+  Pack33(&stress)[Q] = wide(out);
   dispatch(block.law.law, [&]<Law law>() {
     for (int q = 0; q < Q; ++q) {
       const Pack33 f = deformation_gradient<K>(block.slope[q], current);
@@ -92,11 +97,11 @@ void elastic_stress(const ElasticBlock<K, Q>& block, const Shape<K>& current, Pa
   });
 }
 
-template void elastic_stress(const ElasticBlock<4, 1>&, const Shape<4>&, Pack33 (&)[1]);
-template void elastic_stress(const ElasticBlock<10, 4>&, const Shape<10>&, Pack33 (&)[4]);
-template void elastic_stress(const ElasticBlock<6, 6>&, const Shape<6>&, Pack33 (&)[6]);
-template void elastic_force(const ElasticBlock<4, 1>&, const Shape<4>&, ElasticForce<4>&);
-template void elastic_force(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticForce<10>&);
-template void elastic_force(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticForce<6>&);
+template void elastic_stress(const energy::ElasticBlock<4, 1>&, const energy::Shape<4>&, energy::Pack33 (&)[1]);
+template void elastic_stress(const energy::ElasticBlock<10, 4>&, const energy::Shape<10>&, energy::Pack33 (&)[4]);
+template void elastic_stress(const energy::ElasticBlock<6, 6>&, const energy::Shape<6>&, energy::Pack33 (&)[6]);
+template void elastic_force(const energy::ElasticBlock<4, 1>&, const energy::Shape<4>&, energy::ElasticForce<4>&);
+template void elastic_force(const energy::ElasticBlock<10, 4>&, const energy::Shape<10>&, energy::ElasticForce<10>&);
+template void elastic_force(const energy::ElasticBlock<6, 6>&, const energy::Shape<6>&, energy::ElasticForce<6>&);
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

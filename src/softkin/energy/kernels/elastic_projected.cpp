@@ -1,8 +1,7 @@
-#include <softkin/energy/elastic.hpp>
-#include <softkin/energy/elastic_law_point.hpp>
-#include <softkin/energy/elastic_polar.hpp>
+#include <softkin/energy/kernels/elastic_law_point.hpp>
+#include <softkin/energy/kernels/elastic_polar.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -149,4 +148,4 @@ template void projected_stiffness(const ElasticBlock<4, 1>&, const Shape<4>&, El
 template void projected_stiffness(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticStiffness<10>&);
 template void projected_stiffness(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticStiffness<6>&);
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

@@ -1,9 +1,8 @@
-#include <softkin/energy/elastic.hpp>
-#include <softkin/energy/elastic_law_point.hpp>
-#include <softkin/energy/elastic_polar.hpp>
-#include <softkin/energy/rotation.hpp>
+#include <softkin/energy/kernels/elastic_law_point.hpp>
+#include <softkin/energy/kernels/elastic_polar.hpp>
+#include <softkin/energy/kernels/rotation_wide.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -30,8 +29,8 @@ PackRotation exponential(const Pack3& turn) {
   }
   const Pack angle = sqrt(square);
   for (int l = 0; l < lanes; ++l) {
-    q.w[l] = std::cos(0.5 * angle[l]);
-    scale[l] = angle[l] > 1e-8 ? std::sin(0.5 * angle[l]) / angle[l] : 0.5;
+    q.w[l] = __builtin_cos(0.5 * angle[l]);
+    scale[l] = angle[l] > 1e-8 ? __builtin_sin(0.5 * angle[l]) / angle[l] : 0.5;
   }
   q.x = scale * turn.x;
   q.y = scale * turn.y;
@@ -42,7 +41,11 @@ PackRotation exponential(const Pack3& turn) {
 }  // namespace
 
 template <int K, int Q>
-void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, const Shape<K>& step, Shape<K>& pull) {
+void turning_pull(const energy::ElasticBlock<K, Q>& elements, const energy::Shape<K>& shape,
+                  const energy::Shape<K>& moves, energy::Shape<K>& out) {
+  const ElasticBlock<K, Q>& block = wide(elements);
+  const Shape<K>&current = wide(shape), &step = wide(moves);
+  Shape<K>& pull = wide(out);
   for (int a = 0; a < K; ++a) pull[a] = Pack3{pack(0), pack(0), pack(0)};
   for (int q = 0; q < Q; ++q) {
     const Pack33 gradient = deformation_gradient<K>(block.slope[q], current);
@@ -63,8 +66,11 @@ void turning_pull(const ElasticBlock<K, Q>& block, const Shape<K>& current, cons
   }
 }
 
-template void turning_pull<4, 1>(const ElasticBlock<4, 1>&, const Shape<4>&, const Shape<4>&, Shape<4>&);
-template void turning_pull<10, 4>(const ElasticBlock<10, 4>&, const Shape<10>&, const Shape<10>&, Shape<10>&);
-template void turning_pull<6, 6>(const ElasticBlock<6, 6>&, const Shape<6>&, const Shape<6>&, Shape<6>&);
+template void turning_pull<4, 1>(const energy::ElasticBlock<4, 1>&, const energy::Shape<4>&, const energy::Shape<4>&,
+                                 energy::Shape<4>&);
+template void turning_pull<10, 4>(const energy::ElasticBlock<10, 4>&, const energy::Shape<10>&,
+                                  const energy::Shape<10>&, energy::Shape<10>&);
+template void turning_pull<6, 6>(const energy::ElasticBlock<6, 6>&, const energy::Shape<6>&, const energy::Shape<6>&,
+                                 energy::Shape<6>&);
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

@@ -1,8 +1,8 @@
-#include <softkin/energy/elastic_law_point.hpp>
-#include <softkin/energy/elastic_polar.hpp>
-#include <softkin/energy/rotation.hpp>
+#include <softkin/energy/kernels/elastic_law_point.hpp>
+#include <softkin/energy/kernels/elastic_polar.hpp>
+#include <softkin/energy/kernels/rotation_wide.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -121,4 +121,4 @@ Principal principal(const Pack33& symmetric) {
   return {{a, b, c}, transposed({{axis[0], axis[1], axis[2]}})};
 }
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

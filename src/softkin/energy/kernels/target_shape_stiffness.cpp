@@ -1,8 +1,7 @@
-#include <softkin/energy/target_shape_parts.hpp>
-#include <softkin/energy/target_shape_stiffness.hpp>
-#include <softkin/energy/turn_response.hpp>
+#include <softkin/energy/kernels/target_shape_parts.hpp>
+#include <softkin/energy/kernels/turn_response_wide.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -84,6 +83,30 @@ void add_area_slope(const Shape<6>& p, int first, double scale, Shape<6>& out) {
   out[first + 2] = out[first + 2] + third;
 }
 
+void volume_slope(const Shape<4>& p, Shape<4>& out) {
+  const Pack3 a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
+  const Pack sixth = pack(1.0 / 6);
+  out[1] = sixth * cross(b, c);
+  out[2] = sixth * cross(c, a);
+  out[3] = sixth * cross(a, b);
+  out[0] = pack(-1) * (out[1] + out[2] + out[3]);
+}
+
+void volume_slope(const Shape<6>& v, Shape<6>& out) {
+  Shape<6> p;
+  for (int i = 0; i < 6; ++i) p[i] = v[i] - v[0];
+  for (Pack3& point : out) point = Pack3{};
+  add_triple(p, 0, 2, 1, 1.0 / 6, out);
+  add_triple(p, 3, 4, 5, 1.0 / 6, out);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    add_triple(p, i, j, j + 3, 1.0 / 12, out);
+    add_triple(p, i, j + 3, i + 3, 1.0 / 12, out);
+    add_triple(p, i, j, i + 3, 1.0 / 12, out);
+    add_triple(p, j, j + 3, i + 3, 1.0 / 12, out);
+  }
+}
+
 void measure_slope(const Shape<3>& current, Shape<3>& out) {
   const Pack3 along = current[1] - current[0];
   const Pack length = norm(along);
@@ -153,33 +176,22 @@ constexpr double least_turn = 1e-6;
 
 }  // namespace
 
-void volume_slope(const Shape<4>& p, Shape<4>& out) {
-  const Pack3 a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
-  const Pack sixth = pack(1.0 / 6);
-  out[1] = sixth * cross(b, c);
-  out[2] = sixth * cross(c, a);
-  out[3] = sixth * cross(a, b);
-  out[0] = pack(-1) * (out[1] + out[2] + out[3]);
+void volume_slope_of_blocks(const energy::Shape<4>& current, energy::Shape<4>& out) {
+  volume_slope(wide(current), wide(out));
 }
-
-void volume_slope(const Shape<6>& v, Shape<6>& out) {
-  Shape<6> p;
-  for (int i = 0; i < 6; ++i) p[i] = v[i] - v[0];
-  for (Pack3& point : out) point = Pack3{};
-  add_triple(p, 0, 2, 1, 1.0 / 6, out);
-  add_triple(p, 3, 4, 5, 1.0 / 6, out);
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    add_triple(p, i, j, j + 3, 1.0 / 12, out);
-    add_triple(p, i, j + 3, i + 3, 1.0 / 12, out);
-    add_triple(p, i, j, i + 3, 1.0 / 12, out);
-    add_triple(p, j, j + 3, i + 3, 1.0 / 12, out);
-  }
+void volume_slope_of_blocks(const energy::Shape<6>& current, energy::Shape<6>& out) {
+  volume_slope(wide(current), wide(out));
 }
 
 template <int K>
-void pull_change_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation,
-                         const Shape<K>& change, Shape<K>& out) {
+void pull_change_of_body(const energy::BodyBlock<K>& block_kept, const energy::Shape<K>& current_kept,
+                         const energy::PackRotation& rotation_kept, const energy::Shape<K>& change_kept,
+                         energy::Shape<K>& out_kept) {
+  const BodyBlock<K>& block = wide(block_kept);
+  const Shape<K>& current = wide(current_kept);
+  const PackRotation& rotation = wide(rotation_kept);
+  const Shape<K>& change = wide(change_kept);
+  Shape<K>& out = wide(out_kept);
   const BodyShares share = shares(block, current);
   Shape<K> target, moved;
   turned<K>(rotation, block.rest, target);
@@ -198,10 +210,11 @@ void pull_change_of_body(const BodyBlock<K>& block, const Shape<K>& current, con
                              along_rest * target[i] + along_current * current[i]);
 }
 
+namespace {
+
 template <int K>
-void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, const Pack& ratio_change,
-                              const Shape<K>& current, const PackRotation& rotation, const Shape<K>& change,
-                              Shape<K>& out) {
+void actuation_change(const ActuationBlock<K>& block, const Pack& ratio, const Pack& ratio_change,
+                      const Shape<K>& current, const PackRotation& rotation, const Shape<K>& change, Shape<K>& out) {
   Shape<K> target, slope, moved;
   actuation_target<K>(block, ratio, rotation, target, slope);
   for (int i = 0; i < K; ++i) moved[i] = change[i];
@@ -211,42 +224,81 @@ void pull_change_of_actuation(const ActuationBlock<K>& block, const Pack& ratio,
   for (int i = 0; i < K; ++i) out[i] = block.weight * (cross(turn, target[i]) + ratio_change * slope[i] - moved[i]);
 }
 
+}  // namespace
+
 template <int K>
-void turned_move_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation,
-                         const Shape<K>& change, Shape<K>& out) {
+void pull_change_of_actuation(const energy::ActuationBlock<K>& block_kept, const energy::Pack& ratio_kept,
+                              const energy::Pack& ratio_change_kept, const energy::Shape<K>& current_kept,
+                              const energy::PackRotation& rotation_kept, const energy::Shape<K>& change_kept,
+                              energy::Shape<K>& out_kept) {
+  actuation_change<K>(wide(block_kept), wide(ratio_kept), wide(ratio_change_kept), wide(current_kept),
+                      wide(rotation_kept), wide(change_kept), wide(out_kept));
+}
+
+template <int K>
+void turned_move_of_body(const energy::BodyBlock<K>& block_kept, const energy::Shape<K>& current_kept,
+                         const energy::PackRotation& rotation_kept, const energy::Shape<K>& change_kept,
+                         energy::Shape<K>& out_kept) {
+  const BodyBlock<K>& block = wide(block_kept);
+  const Shape<K>& current = wide(current_kept);
+  const PackRotation& rotation = wide(rotation_kept);
+  const Shape<K>& change = wide(change_kept);
+  Shape<K>& out = wide(out_kept);
   Shape<K> target;
   turned<K>(rotation, block.rest, target);
   turned_move<K>(block.weight, current, target, change, out);
 }
 
 template <int K>
-void turned_move_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
-                              const PackRotation& rotation, const Shape<K>& change, Shape<K>& out) {
+void turned_move_of_actuation(const energy::ActuationBlock<K>& block_kept, const energy::Pack& ratio_kept,
+                              const energy::Shape<K>& current_kept, const energy::PackRotation& rotation_kept,
+                              const energy::Shape<K>& change_kept, energy::Shape<K>& out_kept) {
+  const ActuationBlock<K>& block = wide(block_kept);
+  const Pack& ratio = wide(ratio_kept);
+  const Shape<K>& current = wide(current_kept);
+  const PackRotation& rotation = wide(rotation_kept);
+  const Shape<K>& change = wide(change_kept);
+  Shape<K>& out = wide(out_kept);
   Shape<K> target, slope;
   actuation_target<K>(block, ratio, rotation, target, slope);
   turned_move<K>(block.weight, current, target, change, out);
 }
 
 template <int K>
-Pack ratio_change(const ActuationBlock<K>& block, const Shape<K>& current, const Shape<K>& change) {
+void ratio_change(const energy::ActuationBlock<K>& block_kept, const energy::Shape<K>& current_kept,
+                  const energy::Shape<K>& change_kept, double* kept) {
+  const ActuationBlock<K>& block = wide(block_kept);
+  const Shape<K>& current = wide(current_kept);
+  const Shape<K>& change = wide(change_kept);
   Shape<K> slope;
   measure_slope(current, slope);
-  return inner<K>(slope, change) / block.measure;
+  keep(inner<K>(slope, change) / block.measure, kept);
 }
 
 template <int K>
-void ratio_coupling(const ActuationBlock<K>& block, const Pack& ratio, const Shape<K>& current,
-                    const PackRotation& rotation, RatioCoupling<K>& out) {
+void ratio_coupling(const energy::ActuationBlock<K>& block_kept, const energy::Pack& ratio_kept,
+                    const energy::Shape<K>& current_kept, const energy::PackRotation& rotation_kept,
+                    energy::RatioCoupling<K>& out_kept) {
+  const ActuationBlock<K>& block = wide(block_kept);
+  const Pack& ratio = wide(ratio_kept);
+  const Shape<K>& current = wide(current_kept);
+  const PackRotation& rotation = wide(rotation_kept);
+  RatioCoupling<K>& out = wide(out_kept);
   Shape<K> still;
   for (Pack3& point : still) point = Pack3{};
-  pull_change_of_actuation<K>(block, ratio, pack(1), current, rotation, still, out.pull_slope);
+  actuation_change<K>(block, ratio, pack(1), current, rotation, still, out.pull_slope);
   measure_slope(current, out.ratio_slope);
   for (Pack3& point : out.ratio_slope) point = (1 / block.measure) * point;
 }
 
 template <int K>
-void stiffness_of_body(const BodyBlock<K>& block, const Shape<K>& current, const PackRotation& rotation, bool projected,
-                       TargetStiffness<K>& out) {
+void stiffness_of_body(const energy::BodyBlock<K>& block_kept, const energy::Shape<K>& current_kept,
+                       const energy::PackRotation& rotation_kept, bool projected,
+                       energy::TargetStiffness<K>& out_kept) {
+  const BodyBlock<K>& block = wide(block_kept);
+  const Shape<K>& current = wide(current_kept);
+  const PackRotation& rotation = wide(rotation_kept);
+  TargetStiffness<K>& out = wide(out_kept);
   Shape<K> target, mode;
   turned<K>(rotation, block.rest, target);
   const Pack33 stiffness = turn_stiffness<K>(current, target);
@@ -267,7 +319,7 @@ void stiffness_of_body(const BodyBlock<K>& block, const Shape<K>& current, const
   const Pack trace = max(inner<K>(answer, mode) / block.volume, pack(0));
   const Pack square = select(slopes > 0, trace / slopes, pack(0));
   // lanes that are not blended are exact unless projected
-  const PackMask bounded = projected | (block.shape_ratio < 1);
+  const PackMask bounded = block.shape_ratio < (projected ? 2 : 1);
   const Pack least = select(bounded, share.of_rest / max(straight, pack(1e-12)), pack(least_turn));
   const Pack33 compliance =
       share.of_rest * turn_response(stiffness, turn_stiffness<K>(target, target), max(least, pack(least_turn)));
@@ -275,9 +327,15 @@ void stiffness_of_body(const BodyBlock<K>& block, const Shape<K>& current, const
 }
 
 template <int K>
-void stiffness_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, bool redistributed,
-                            const Shape<K>& current, const PackRotation& rotation, bool projected,
-                            TargetStiffness<K>& out) {
+void stiffness_of_actuation(const energy::ActuationBlock<K>& block_kept, const energy::Pack& ratio_kept,
+                            bool redistributed, const energy::Shape<K>& current_kept,
+                            const energy::PackRotation& rotation_kept, bool projected,
+                            energy::TargetStiffness<K>& out_kept) {
+  const ActuationBlock<K>& block = wide(block_kept);
+  const Pack& ratio = wide(ratio_kept);
+  const Shape<K>& current = wide(current_kept);
+  const PackRotation& rotation = wide(rotation_kept);
+  TargetStiffness<K>& out = wide(out_kept);
   Shape<K> target, mode;
   actuation_target<K>(block, ratio, rotation, target, mode);
   const Pack33 stiffness = turn_stiffness<K>(current, target), inertia = turn_stiffness<K>(target, target);
@@ -296,42 +354,53 @@ void stiffness_of_actuation(const ActuationBlock<K>& block, const Pack& ratio, b
   assemble<K>(block.weight, pack(1), target, compliance, square, mode, out);
 }
 
-template void pull_change_of_body(const BodyBlock<4>&, const Shape<4>&, const PackRotation&, const Shape<4>&,
-                                  Shape<4>&);
-template void pull_change_of_body(const BodyBlock<6>&, const Shape<6>&, const PackRotation&, const Shape<6>&,
-                                  Shape<6>&);
-template void pull_change_of_actuation(const ActuationBlock<3>&, const Pack&, const Pack&, const Shape<3>&,
-                                       const PackRotation&, const Shape<3>&, Shape<3>&);
-template void pull_change_of_actuation(const ActuationBlock<4>&, const Pack&, const Pack&, const Shape<4>&,
-                                       const PackRotation&, const Shape<4>&, Shape<4>&);
-template void pull_change_of_actuation(const ActuationBlock<6>&, const Pack&, const Pack&, const Shape<6>&,
-                                       const PackRotation&, const Shape<6>&, Shape<6>&);
-template void turned_move_of_body(const BodyBlock<4>&, const Shape<4>&, const PackRotation&, const Shape<4>&,
-                                  Shape<4>&);
-template void turned_move_of_body(const BodyBlock<6>&, const Shape<6>&, const PackRotation&, const Shape<6>&,
-                                  Shape<6>&);
-template void turned_move_of_actuation(const ActuationBlock<3>&, const Pack&, const Shape<3>&, const PackRotation&,
-                                       const Shape<3>&, Shape<3>&);
-template void turned_move_of_actuation(const ActuationBlock<4>&, const Pack&, const Shape<4>&, const PackRotation&,
-                                       const Shape<4>&, Shape<4>&);
-template void turned_move_of_actuation(const ActuationBlock<6>&, const Pack&, const Shape<6>&, const PackRotation&,
-                                       const Shape<6>&, Shape<6>&);
-template Pack ratio_change(const ActuationBlock<3>&, const Shape<3>&, const Shape<3>&);
-template Pack ratio_change(const ActuationBlock<4>&, const Shape<4>&, const Shape<4>&);
-template Pack ratio_change(const ActuationBlock<6>&, const Shape<6>&, const Shape<6>&);
-template void ratio_coupling(const ActuationBlock<3>&, const Pack&, const Shape<3>&, const PackRotation&,
-                             RatioCoupling<3>&);
-template void ratio_coupling(const ActuationBlock<4>&, const Pack&, const Shape<4>&, const PackRotation&,
-                             RatioCoupling<4>&);
-template void ratio_coupling(const ActuationBlock<6>&, const Pack&, const Shape<6>&, const PackRotation&,
-                             RatioCoupling<6>&);
-template void stiffness_of_body(const BodyBlock<4>&, const Shape<4>&, const PackRotation&, bool, TargetStiffness<4>&);
-template void stiffness_of_body(const BodyBlock<6>&, const Shape<6>&, const PackRotation&, bool, TargetStiffness<6>&);
-template void stiffness_of_actuation(const ActuationBlock<3>&, const Pack&, bool, const Shape<3>&, const PackRotation&,
-                                     bool, TargetStiffness<3>&);
-template void stiffness_of_actuation(const ActuationBlock<4>&, const Pack&, bool, const Shape<4>&, const PackRotation&,
-                                     bool, TargetStiffness<4>&);
-template void stiffness_of_actuation(const ActuationBlock<6>&, const Pack&, bool, const Shape<6>&, const PackRotation&,
-                                     bool, TargetStiffness<6>&);
+template void pull_change_of_body(const energy::BodyBlock<4>&, const energy::Shape<4>&, const energy::PackRotation&,
+                                  const energy::Shape<4>&, energy::Shape<4>&);
+template void pull_change_of_body(const energy::BodyBlock<6>&, const energy::Shape<6>&, const energy::PackRotation&,
+                                  const energy::Shape<6>&, energy::Shape<6>&);
+template void pull_change_of_actuation(const energy::ActuationBlock<3>&, const energy::Pack&, const energy::Pack&,
+                                       const energy::Shape<3>&, const energy::PackRotation&, const energy::Shape<3>&,
+                                       energy::Shape<3>&);
+template void pull_change_of_actuation(const energy::ActuationBlock<4>&, const energy::Pack&, const energy::Pack&,
+                                       const energy::Shape<4>&, const energy::PackRotation&, const energy::Shape<4>&,
+                                       energy::Shape<4>&);
+template void pull_change_of_actuation(const energy::ActuationBlock<6>&, const energy::Pack&, const energy::Pack&,
+                                       const energy::Shape<6>&, const energy::PackRotation&, const energy::Shape<6>&,
+                                       energy::Shape<6>&);
+template void turned_move_of_body(const energy::BodyBlock<4>&, const energy::Shape<4>&, const energy::PackRotation&,
+                                  const energy::Shape<4>&, energy::Shape<4>&);
+template void turned_move_of_body(const energy::BodyBlock<6>&, const energy::Shape<6>&, const energy::PackRotation&,
+                                  const energy::Shape<6>&, energy::Shape<6>&);
+template void turned_move_of_actuation(const energy::ActuationBlock<3>&, const energy::Pack&, const energy::Shape<3>&,
+                                       const energy::PackRotation&, const energy::Shape<3>&, energy::Shape<3>&);
+template void turned_move_of_actuation(const energy::ActuationBlock<4>&, const energy::Pack&, const energy::Shape<4>&,
+                                       const energy::PackRotation&, const energy::Shape<4>&, energy::Shape<4>&);
+template void turned_move_of_actuation(const energy::ActuationBlock<6>&, const energy::Pack&, const energy::Shape<6>&,
+                                       const energy::PackRotation&, const energy::Shape<6>&, energy::Shape<6>&);
+template void ratio_change(const energy::ActuationBlock<3>&, const energy::Shape<3>&, const energy::Shape<3>&,
+                           double* kept);
+template void ratio_change(const energy::ActuationBlock<4>&, const energy::Shape<4>&, const energy::Shape<4>&,
+                           double* kept);
+template void ratio_change(const energy::ActuationBlock<6>&, const energy::Shape<6>&, const energy::Shape<6>&,
+                           double* kept);
+template void ratio_coupling(const energy::ActuationBlock<3>&, const energy::Pack&, const energy::Shape<3>&,
+                             const energy::PackRotation&, energy::RatioCoupling<3>&);
+template void ratio_coupling(const energy::ActuationBlock<4>&, const energy::Pack&, const energy::Shape<4>&,
+                             const energy::PackRotation&, energy::RatioCoupling<4>&);
+template void ratio_coupling(const energy::ActuationBlock<6>&, const energy::Pack&, const energy::Shape<6>&,
+                             const energy::PackRotation&, energy::RatioCoupling<6>&);
+template void stiffness_of_body(const energy::BodyBlock<4>&, const energy::Shape<4>&, const energy::PackRotation&, bool,
+                                energy::TargetStiffness<4>&);
+template void stiffness_of_body(const energy::BodyBlock<6>&, const energy::Shape<6>&, const energy::PackRotation&, bool,
+                                energy::TargetStiffness<6>&);
+template void stiffness_of_actuation(const energy::ActuationBlock<3>&, const energy::Pack&, bool,
+                                     const energy::Shape<3>&, const energy::PackRotation&, bool,
+                                     energy::TargetStiffness<3>&);
+template void stiffness_of_actuation(const energy::ActuationBlock<4>&, const energy::Pack&, bool,
+                                     const energy::Shape<4>&, const energy::PackRotation&, bool,
+                                     energy::TargetStiffness<4>&);
+template void stiffness_of_actuation(const energy::ActuationBlock<6>&, const energy::Pack&, bool,
+                                     const energy::Shape<6>&, const energy::PackRotation&, bool,
+                                     energy::TargetStiffness<6>&);
 
-}  // namespace softkin::energy
+}  // namespace softkin::energy::SOFTKIN_TARGET

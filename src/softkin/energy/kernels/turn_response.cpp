@@ -1,6 +1,7 @@
-#include <softkin/energy/turn_response.hpp>
+#include <softkin/energy/kernels/turn_response.hpp>
+#include <softkin/energy/kernels/turn_response_wide.hpp>
 
-namespace softkin::energy {
+namespace softkin::energy::SOFTKIN_TARGET {
 
 namespace {
 
@@ -98,4 +99,12 @@ Pack33 turn_response(const Pack33& stiffness, const Pack33& metric, const Pack& 
   return out;
 }
 
-}  // namespace softkin::energy
+void turn_response_of_blocks(const energy::Pack33& stiffness, double* kept) {
+  keep(turn_response(wide(stiffness)), kept);
+}
+void turn_response_of_blocks(const energy::Pack33& stiffness, const energy::Pack33& metric, const energy::Pack& least,
+                             double* kept) {
+  keep(turn_response(wide(stiffness), wide(metric), wide(least)), kept);
+}
+
+}  // namespace softkin::energy::SOFTKIN_TARGET

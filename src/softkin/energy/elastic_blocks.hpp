@@ -1,0 +1,75 @@
+#pragma once
+
+#include <softkin/core/elastic_law.hpp>
+#include <softkin/energy/pack.hpp>
+
+namespace softkin::energy {
+
+/// Constants of a law, one set per lane [MPa]; meaning as in ElasticLaw.
+template <class Pack>
+struct LawBlockOf {
+  Law law = Law::neo_hookean;
+  Pack mu{}, lambda{}, c10{}, c01{}, c20{}, c30{}, bulk{}, jm{};
+};
+
+/// Elements of K nodes and Q quadrature points (4, 1: linear tetrahedra; 10, 4: quadratic ones; 6, 6: prisms), one per
+/// lane, all of one law. F = sum_a x_a slope_a^T. A dielectric elastomer's active stretch, F = F_e F_a, is in the
+/// slopes: slope_a = F_a^-T (slope of the passive element).
+template <class Pack, int K, int Q>
+struct ElasticBlockOf {
+  LawBlockOf<Pack> law;
+  Pack3Of<Pack> slope[Q][K];  // gradients of the shape functions in the rest shape [1/mm]
+  Pack volume[Q];             // rest volume that the point stands for [mm^3]; 0 in lanes without an element
+};
+
+template <class Pack, int K>
+struct ElasticForceOf {
+  Pack3Of<Pack> gradient[K];      // of the energy in the nodes' positions [N]
+  Pack energy;                    // [mJ]
+  typename Pack::Mask inverted;   // lanes with J <= 0 at a quadrature point that has volume
+  typename Pack::Mask forbidden;  // lanes with a deformation that has no energy, at a quadrature point that has volume
+};
+
+/// Blocks (a, b), b <= a, of a symmetric matrix of K x K blocks of 3 x 3, at a (a + 1) / 2 + b [N/mm].
+template <class Pack, int K>
+struct ElasticStiffnessOf {
+  Pack33Of<Pack> block[K * (K + 1) / 2];
+};
+
+/// What a branch is at the end of a time step is made of, x being the step over its relaxation time.
+template <class Pack>
+struct BranchSharesOf {
+  Pack remembered;  // exp(-x): of C_v at its begin
+  Pack begun;       // (1 - exp(-x)) / x - exp(-x): of the strain there
+  Pack ended;       // the rest: of the strain at its end
+};
+
+/// Maxwell branches of the elements of a block over a time step: springs and dampers in series, beside the elastic law
+/// (energy/viscous.hpp).
+template <class Pack>
+struct ViscousBlockOf {
+  int branches = 0;
+  const Pack* modulus = nullptr;                 // G of every branch [MPa]; 0 in lanes that have fewer
+  const BranchSharesOf<Pack>* shares = nullptr;  // of every branch
+  const double* strains = nullptr;               // at the begin, by quadrature point: bar C, then C_v of every branch;
+                                                 // by entry (xx, yy, zz, xy, yz, xz) and lane; null: unit matrices
+  const double* begun = nullptr;                 // begin_step() of these
+};
+
+/// Numbers of ViscousBlock::begun at each quadrature point for each branch, in every lane: what M has from the step's
+/// begin, and the cube root of its determinant.
+inline constexpr int begun_entries = 7;
+
+using LawBlock = LawBlockOf<Pack>;
+template <int K, int Q>
+using ElasticBlock = ElasticBlockOf<Pack, K, Q>;
+template <int K>
+using ElasticForce = ElasticForceOf<Pack, K>;
+template <int K>
+using ElasticStiffness = ElasticStiffnessOf<Pack, K>;
+using BranchShares = BranchSharesOf<Pack>;
+using ViscousBlock = ViscousBlockOf<Pack>;
+/// Prisms between two electrodes (energy/dielectric.hpp).
+using DielectricPrisms = ElasticBlock<6, 6>;
+
+}  // namespace softkin::energy
