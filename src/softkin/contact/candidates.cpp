@@ -42,6 +42,16 @@ auto boxes_of(const Items& items, const Points& from, const Points& to) {
   };
 }
 
+/// met(group, lane, bits), as the kernel calls it.
+template <int of_asker, int of_other, class Callback>
+void run_meet(const Askers& askers, const TreeLevels& tree, const Callback& met) {
+  const Met call = [](void* context, Index group, int lane, unsigned bits) {
+    (*static_cast<const Callback*>(context))(group, lane, bits);
+  };
+  void* context = const_cast<Callback*>(&met);
+  SOFTKIN_RUN_KERNEL(meet<of_asker, of_other>(askers, tree, call, context));
+}
+
 MovingBox enlarged(MovingBox box, double reach) {
   box.at.min().array() -= reach;
   box.at.max().array() += reach;
@@ -120,30 +130,25 @@ void BroadPhase::pair_up(const Features<of_query>& queries, const Features<of_ot
   constexpr Index groups_a_piece = 32;
   constexpr bool same = of_query == of_other;
   const WideTree &query_tree = queries.tree, &tree = others.tree;
+  out.clear();
+  if (tree.size() == 0) return;
+  TreeLevels levels = tree.levels();
+  levels.nodes = others.nodes.data();
   const Index pieces = (query_tree.groups() + groups_a_piece - 1) / groups_a_piece;
   if (found_.size() < static_cast<std::size_t>(pieces)) found_.resize(static_cast<std::size_t>(pieces));
   const auto pair_group = [&](Index group, std::vector<Pair>& found) {
-    MovingBox boxes[8];
-    EightBoxes eight;
-    const EightNodes& nodes = queries.nodes[static_cast<std::size_t>(group)];
+    EightBoxes boxes;
     const int lanes = static_cast<int>(std::min<Index>(8, query_tree.size() - 8 * group));
-    for (int lane = 0; lane < lanes; ++lane) {
-      boxes[lane] = enlarged(query_tree.boxes(group).at(lane), reach);
-      eight.set(lane, boxes[lane]);
-    }
-    tree.visit(WideTree::joint(eight), same ? group : 0, [&](Index other) {
-      const EightNodes& other_nodes = others.nodes[static_cast<std::size_t>(other)];
-      for (unsigned some = eight.may_meet(tree.box(other)); some != 0; some &= some - 1) {
-        const int lane = __builtin_ctz(some);
-        unsigned bits =
-            tree.boxes(other).may_meet(boxes[lane]) & ~that_share<of_other, of_query>(other_nodes, nodes, lane);
-        if (same && other == group) bits &= ~0u << (lane + 1);
-        for (; bits != 0; bits &= bits - 1) {
-          const Pair pair{query_tree.item(group, lane), tree.item(other, __builtin_ctz(bits))};
-          if (keep(pair)) found.push_back(pair);
-        }
+    for (int lane = 0; lane < lanes; ++lane) boxes.set(lane, enlarged(query_tree.boxes(group).at(lane), reach));
+    const auto met = [&](Index other, int lane, unsigned bits) {
+      for (; bits != 0; bits &= bits - 1) {
+        const Pair pair{query_tree.item(group, lane), tree.item(other, __builtin_ctz(bits))};
+        if (keep(pair)) found.push_back(pair);
       }
-    });
+    };
+    const Askers askers{boxes, &queries.nodes[static_cast<std::size_t>(group)], lanes, same ? group : 0,
+                        same ? group : -1};
+    run_meet<of_query, of_other>(askers, levels, met);
   };
   team.each(pieces, [&](Index piece) {
     std::vector<Pair>& found = found_[static_cast<std::size_t>(piece)];
@@ -151,7 +156,6 @@ void BroadPhase::pair_up(const Features<of_query>& queries, const Features<of_ot
     const Index end = std::min(query_tree.groups(), (piece + 1) * groups_a_piece);
     for (Index group = piece * groups_a_piece; group < end; ++group) pair_group(group, found);
   });
-  out.clear();
   for (Index piece = 0; piece < pieces; ++piece) {
     const std::vector<Pair>& found = found_[static_cast<std::size_t>(piece)];
     out.insert(out.end(), found.begin(), found.end());

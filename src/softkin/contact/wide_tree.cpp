@@ -12,6 +12,7 @@ WideTree::WideTree(const Points& centres) : items_(static_cast<std::size_t>(cent
     blocks = (blocks + 7) / 8;
     levels_.emplace_back(blocks);
   } while (blocks > 1);
+  for (const Level& level : levels_) level_boxes_.push_back(level.data());
 }
 
 /// Halves along the longest side until eight are left, so that every cut falls between two blocks of a level.
