@@ -42,16 +42,6 @@ auto boxes_of(const Items& items, const Points& from, const Points& to) {
   };
 }
 
-/// met(group, lane, bits), as the kernel calls it.
-template <int of_asker, int of_other, class Callback>
-void run_meet(const Askers& askers, const TreeLevels& tree, const Callback& met) {
-  const Met call = [](void* context, Index group, int lane, unsigned bits) {
-    (*static_cast<const Callback*>(context))(group, lane, bits);
-  };
-  void* context = const_cast<Callback*>(&met);
-  SOFTKIN_RUN_KERNEL(meet<of_asker, of_other>(askers, tree, call, context));
-}
-
 MovingBox enlarged(MovingBox box, double reach) {
   box.at.min().array() -= reach;
   box.at.max().array() += reach;
@@ -132,8 +122,7 @@ void BroadPhase::pair_up(const Features<of_query>& queries, const Features<of_ot
   const WideTree &query_tree = queries.tree, &tree = others.tree;
   out.clear();
   if (tree.size() == 0) return;
-  TreeLevels levels = tree.levels();
-  levels.nodes = others.nodes.data();
+  const TreeLevels levels = tree.levels(others.nodes.data());
   const Index pieces = (query_tree.groups() + groups_a_piece - 1) / groups_a_piece;
   if (found_.size() < static_cast<std::size_t>(pieces)) found_.resize(static_cast<std::size_t>(pieces));
   const auto pair_group = [&](Index group, std::vector<Pair>& found) {

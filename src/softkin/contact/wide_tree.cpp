@@ -12,7 +12,6 @@ WideTree::WideTree(const Points& centres) : items_(static_cast<std::size_t>(cent
     blocks = (blocks + 7) / 8;
     levels_.emplace_back(blocks);
   } while (blocks > 1);
-  for (const Level& level : levels_) level_boxes_.push_back(level.data());
 }
 
 /// Halves along the longest side until eight are left, so that every cut falls between two blocks of a level.
@@ -32,6 +31,12 @@ void WideTree::sort(const Points& centres, Index begin, Index end) {
   });
   sort(centres, begin, middle);
   sort(centres, middle, end);
+}
+
+TreeLevels WideTree::levels(const EightNodes* nodes) const {
+  TreeLevels levels{{}, nodes, static_cast<Index>(levels_.size())};
+  for (std::size_t i = 0; i < levels_.size(); ++i) levels.boxes[i] = levels_[i].data();
+  return levels;
 }
 
 MovingBox WideTree::joint(const EightBoxes& boxes) {

@@ -42,13 +42,21 @@ struct EightBoxes : EightLanes {
   }
 };
 
+/// met(group, lane, bits) as the kernel says.
+template <int of_asker, int of_other, class Callback>
+void run_meet(const Askers& askers, const TreeLevels& tree, const Callback& met) {
+  const Met call = [](void* context, Index group, int lane, unsigned bits) {
+    (*static_cast<const Callback*>(context))(group, lane, bits);
+  };
+  void* context = const_cast<Callback*>(&met);
+  SOFTKIN_RUN_KERNEL(meet<of_asker, of_other>(askers, tree, call, context));
+}
+
 /// A tree of axis-aligned boxes with eight branches at every node. Its order is chosen once; boxes come and go.
 class WideTree {
  public:
   /// centres  of the items at rest; those that are near each other come to stand together
   explicit WideTree(const Points& centres);
-  WideTree(WideTree&&) = default;
-  WideTree(const WideTree&) = delete;
 
   [[nodiscard]] Index size() const { return static_cast<Index>(items_.size()); }
   /// Groups of eight items that stand together.
@@ -67,8 +75,19 @@ class WideTree {
   template <class BoxOf>
   void refit(const BoxOf& box_of, Team& team);
 
-  /// Levels as kernels take them, but for the vertices of the items; as long as the tree stands.
-  [[nodiscard]] TreeLevels levels() const { return {level_boxes_.data(), nullptr, static_cast<Index>(levels_.size())}; }
+  /// Levels as kernels take them, as long as the tree stands.
+  [[nodiscard]] TreeLevels levels(const EightNodes* nodes) const;
+
+  /// visit(item) for every item that may meet the box.
+  template <class Visit>
+  void each_met(const MovingBox& box, const Visit& visit) const {
+    if (size() == 0) return;
+    EightBoxes boxes;
+    boxes.set(0, box);
+    run_meet<0, 0>({boxes, nullptr, 1, 0, -1}, levels(nullptr), [&](Index group, int, unsigned bits) {
+      for (; bits != 0; bits &= bits - 1) visit(item(group, __builtin_ctz(bits)));
+    });
+  }
 
  private:
   using Level = std::vector<EightBoxes>;
@@ -78,7 +97,6 @@ class WideTree {
 
   std::vector<Index> items_;
   std::vector<Level> levels_;  // [0]: of the items; lane l of block b of a level: block 8 b + l of the level below
-  std::vector<const EightLanes*> level_boxes_;
 };
 
 template <class BoxOf>

@@ -39,6 +39,13 @@ BlockColumns in_order(const Matrix& matrix, const Ordering& ordering, LargeVecto
   return pattern;
 }
 
+void forward(const SupernodeColumns& node, double* rows, double* above) {
+  SOFTKIN_RUN_KERNEL(forward_supernode(node, rows, above));
+}
+void backward(const SupernodeColumns& node, double* rows) {
+  SOFTKIN_RUN_KERNEL(backward_supernode(node, rows));
+}
+
 }  // namespace
 
 SparseFactor::SparseFactor(const Matrix& matrix, const std::vector<Index>& order) {
@@ -72,79 +79,45 @@ void SparseFactor::add_supernode(const Front& front, const double* lower) {
   nodes_.back().inner_rows = static_cast<Index>(std::lower_bound(rows, rows + node.row_count, top_) - rows);
 }
 
-void SparseFactor::forward(const Supernode& node, Row* rows, Row* above) const {
-  const Index width = node.width();
-  Row* x = rows + node.begin;
-  const double* p = values_.data() + node.first_value;
-  for (Index i = 1; i < width; p += i, ++i)
-    for (Index c = 0; c < i; ++c) x[i] -= p[c] * x[c];
-
-  const Index* target = rows_.data() + node.first_row;
-  const auto at = [&](Index r) -> Row& { return r < node.inner_rows ? rows[target[r]] : above[target[r] - top_]; };
-  Index r = 0;
-  for (; r + 4 <= node.row_count; r += 4, p += 4 * width) {  // four rows share the loads of x
-    Row a{}, b{}, c{}, d{};
-    for (Index k = 0; k < width; ++k) {
-      a += p[k] * x[k];
-      b += p[width + k] * x[k];
-      c += p[2 * width + k] * x[k];
-      d += p[3 * width + k] * x[k];
-    }
-    at(r) -= a;
-    at(r + 1) -= b;
-    at(r + 2) -= c;
-    at(r + 3) -= d;
-  }
-  for (; r < node.row_count; ++r, p += width) {
-    Row a{};
-    for (Index k = 0; k < width; ++k) a += p[k] * x[k];
-    at(r) -= a;
-  }
-}
-
-void SparseFactor::backward(const Supernode& node, Row* rows) const {
-  const Index width = node.width();
-  Row* x = rows + node.begin;
-  for (Index k = 0; k < width; ++k) x[k] *= inverse_diagonal_[node.begin + k];
-
-  const Index* source = rows_.data() + node.first_row;
-  const double* p = values_.data() + node.first_below();
-  Index r = 0;
-  for (; r + 4 <= node.row_count; r += 4, p += 4 * width) {
-    const Row a = rows[source[r]], b = rows[source[r + 1]], c = rows[source[r + 2]], d = rows[source[r + 3]];
-    for (Index k = 0; k < width; ++k) x[k] -= p[k] * a + p[width + k] * b + p[2 * width + k] * c + p[3 * width + k] * d;
-  }
-  for (; r < node.row_count; ++r, p += width)
-    for (Index k = 0; k < width; ++k) x[k] -= p[k] * rows[source[r]];
-
-  p = values_.data() + node.first_below();
-  for (Index i = width - 1; i >= 1; --i) {
-    p -= i;
-    for (Index k = 0; k < i; ++k) x[k] -= p[k] * x[i];
-  }
+SupernodeColumns SparseFactor::columns_of(const Supernode& node) const {
+  return {node.begin,
+          node.width(),
+          node.row_count,
+          node.inner_rows,
+          top_,
+          rows_.data() + node.first_row,
+          values_.data() + node.first_value,
+          values_.data() + node.first_below(),
+          inverse_diagonal_.data() + node.begin};
 }
 
 void SparseFactor::solve(Points& right_side, Team& team) const {
   const Index n = size(), above_rows = n - top_, count = static_cast<Index>(piece_nodes_.size()) - 1;
-  std::vector<Row> rows(n), above(static_cast<std::size_t>(count) * above_rows, Row{});
-  for (Index k = 0; k < n; ++k)
-    rows[k] = Row{right_side(order_[k], 0), right_side(order_[k], 1), right_side(order_[k], 2), 0};
+  // four numbers a row: three coordinates and a spare
+  LargeVector<double> rows(4 * static_cast<std::size_t>(n));
+  std::vector<double> above(4 * static_cast<std::size_t>(count) * above_rows);
+  for (Index k = 0; k < n; ++k) {
+    for (int c = 0; c < 3; ++c) rows[4 * static_cast<std::size_t>(k) + c] = right_side(order_[k], c);
+    rows[4 * static_cast<std::size_t>(k) + 3] = 0;
+  }
 
   team.each(count, [&](Index i) {
-    Row* own = above.data() + static_cast<std::size_t>(i) * above_rows;
-    for (Index s = piece_nodes_[i]; s < piece_nodes_[i + 1]; ++s) forward(nodes_[s], rows.data(), own);
+    double* own = above.data() + 4 * static_cast<std::size_t>(i) * above_rows;
+    for (Index s = piece_nodes_[i]; s < piece_nodes_[i + 1]; ++s) forward(columns_of(nodes_[s]), rows.data(), own);
   });
   for (Index i = 0; i < count; ++i)
-    for (Index k = 0; k < above_rows; ++k) rows[top_ + k] += above[static_cast<std::size_t>(i) * above_rows + k];
+    for (Index k = 0; k < 4 * above_rows; ++k)
+      rows[4 * static_cast<std::size_t>(top_) + k] += above[4 * static_cast<std::size_t>(i) * above_rows + k];
   const Index first_of_top = piece_nodes_.back(), end = static_cast<Index>(nodes_.size());
-  for (Index s = first_of_top; s < end; ++s) forward(nodes_[s], rows.data(), rows.data() + top_);
-  for (Index s = end - 1; s >= first_of_top; --s) backward(nodes_[s], rows.data());
+  for (Index s = first_of_top; s < end; ++s)
+    forward(columns_of(nodes_[s]), rows.data(), rows.data() + 4 * static_cast<std::size_t>(top_));
+  for (Index s = end - 1; s >= first_of_top; --s) backward(columns_of(nodes_[s]), rows.data());
   team.each(count, [&](Index i) {
-    for (Index s = piece_nodes_[i + 1] - 1; s >= piece_nodes_[i]; --s) backward(nodes_[s], rows.data());
+    for (Index s = piece_nodes_[i + 1] - 1; s >= piece_nodes_[i]; --s) backward(columns_of(nodes_[s]), rows.data());
   });
 
   for (Index k = 0; k < n; ++k)
-    for (int c = 0; c < 3; ++c) right_side(order_[k], c) = rows[k][c];
+    for (int c = 0; c < 3; ++c) right_side(order_[k], c) = rows[4 * static_cast<std::size_t>(k) + c];
 }
 
 }  // namespace softkin::linear

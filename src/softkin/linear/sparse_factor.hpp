@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <softkin/core/team.hpp>
+#include <softkin/linear/kernels/supernode.hpp>
 #include <vector>
 
 namespace softkin::linear {
@@ -26,9 +27,6 @@ class SparseFactor {
   [[nodiscard]] std::int64_t nonzeros() const { return static_cast<std::int64_t>(values_.size()) + size(); }
 
  private:
-  /// Three coordinates and a spare: one vector register.
-  typedef double Row __attribute__((vector_size(4 * sizeof(double))));
-
   /// Columns [begin, end) of L: below the diagonal, row by row, then its rows further down, `width` values each.
   struct Supernode {
     Index begin, end;
@@ -44,8 +42,7 @@ class SparseFactor {
   };
 
   void add_supernode(const Front& front, const double* lower);
-  void forward(const Supernode& node, Row* rows, Row* above) const;
-  void backward(const Supernode& node, Row* rows) const;
+  [[nodiscard]] SupernodeColumns columns_of(const Supernode& node) const;
 
   std::vector<Index> order_;
   std::vector<Index> piece_nodes_;  // first supernode of every piece, then that of the top

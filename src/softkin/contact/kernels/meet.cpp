@@ -139,6 +139,7 @@ void meet(const Askers& askers, const TreeLevels& tree, Met met, void* context) 
   }
 }
 
+template void meet<0, 0>(const Askers&, const TreeLevels&, Met, void*);
 template void meet<1, 3>(const Askers&, const TreeLevels&, Met, void*);
 template void meet<2, 2>(const Askers&, const TreeLevels&, Met, void*);
 

@@ -22,7 +22,7 @@ struct alignas(32) EightNodes {
 
 /// Levels of a WideTree, that of its items first.
 struct TreeLevels {
-  const EightLanes* const* boxes;
+  const EightLanes* boxes[12];  // 11 levels of eight hold what an Index counts
   const EightNodes* nodes;  // of the items
   Index count;
 };

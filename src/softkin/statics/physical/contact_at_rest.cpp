@@ -202,15 +202,12 @@ std::optional<Crossing> find_crossing(RestingSurfaces& at) {
     const Index own = at.at_edge(static_cast<Index>(e));
     contact::Box box(at.rest(p));
     box.extend(at.rest(q));
-    tree.visit(still(box), 0, [&](Index group) {
-      for (unsigned bits = tree.boxes(group).may_meet(still(box)); bits != 0; bits &= bits - 1) {
-        const Index t = tree.item(group, __builtin_ctz(bits));
-        const contact::Corners& c = at.corners(t);
-        const bool shared = std::any_of(c.begin(), c.end(), [p, q](Index v) { return v == p || v == q; });
-        if (shared || found || !at.may_touch(own, t)) continue;
-        if (const auto place = crossing(at.rest(p), at.rest(q), at.rest(c[0]), at.rest(c[1]), at.rest(c[2])))
-          found = Crossing{own, t, *place};
-      }
+    tree.each_met(still(box), [&](Index t) {
+      const contact::Corners& c = at.corners(t);
+      const bool shared = std::any_of(c.begin(), c.end(), [p, q](Index v) { return v == p || v == q; });
+      if (shared || found || !at.may_touch(own, t)) return;
+      if (const auto place = crossing(at.rest(p), at.rest(q), at.rest(c[0]), at.rest(c[1]), at.rest(c[2])))
+        found = Crossing{own, t, *place};
     });
   }
   return found;
