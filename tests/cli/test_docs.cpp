@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "run_program.hpp"
+#include "support/patience.hpp"
 
 namespace softkin {
 namespace {
@@ -184,6 +185,14 @@ std::vector<std::string> commands_of_make_run() {
   return commands;
 }
 
+/// No command of a document takes as long: 5 minutes, more where solves take more than usual.
+int longest_command_s() {
+  const std::string finger = (source / "examples/pneumatic_finger/pneumatic_finger.yaml").string();
+  return static_cast<int>(300 * testing::times_slower(3, [&] {
+                            EXPECT_EQ(testing::run_program({"fk", finger, "--set", "air=1.4"}).exit_code, 0);
+                          }));
+}
+
 /// A folder like a fresh clone in which softkin has been built.
 class Clone {
  public:
@@ -198,13 +207,16 @@ class Clone {
   /// Each command runs once, however often it stands somewhere.
   const ProgramResult& run(const std::string& command) {
     const auto [found, added] = results_.try_emplace(command);
-    if (added) found->second = run_line("cd " + testing::shell_quoted(folder_ / "") + " && timeout 300 " + command);
+    if (added)
+      found->second = run_line("cd " + testing::shell_quoted(folder_ / "") + " && timeout " + std::to_string(limit_s_) +
+                               " " + command);
     return found->second;
   }
   [[nodiscard]] std::size_t runs() const { return results_.size(); }
 
  private:
   TemporaryFolder folder_;
+  const int limit_s_ = longest_command_s();
   std::map<std::string, ProgramResult> results_;
 };
 
