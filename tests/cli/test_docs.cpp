@@ -152,12 +152,11 @@ const std::set<std::string> outputs{"-o",      "--output",   "--report", "--imag
 /// Names of the Makefile's commands.
 std::set<std::string> make_targets() {
   std::istringstream stream(testing::read_text(source / "Makefile"));
+  std::set<std::string> targets;
   for (std::string line; std::getline(stream, line);)
-    if (line.starts_with(".PHONY:")) {
-      const std::vector<std::string> names = words_of(line.substr(7));
-      return {names.begin(), names.end()};
-    }
-  return {};
+    if (line.starts_with(".PHONY:"))
+      for (const std::string& name : words_of(line.substr(7))) targets.insert(name);
+  return targets;
 }
 
 std::set<std::string> presets() {
