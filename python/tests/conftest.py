@@ -27,9 +27,9 @@ def command() -> str:
     return found
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture
 def patience() -> float:
-    """Limits on time hold on an idle machine of 2023: how many times as long they are on this one, beside what else it does."""
+    """Limits on time hold on an idle machine of 2023: how many times as long they are here, beside what else is done now."""
     begin, root = time.perf_counter(), 1.0
     for _ in range(500_000):
         root = 0.5 * (root + 2 / root)
