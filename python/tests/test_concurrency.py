@@ -80,7 +80,7 @@ WORK = {
     ),
     "inverse": ("robot = beam(46, 13)", "robot.inverse(tip=(60, 12, 12))"),
     "map": ("robot = beam(15, 5)", "robot.map(accuracy_mm=1e-7, threads=2)"),
-    "map that answers": ("robot = beam(4, 5)\nmade = robot.map(checks=1)", "made.solve(np.full((10**7, 3), 1.5))"),
+    "map that answers": ("robot = beam(4, 5)\nmade = robot.map(checks=1)", "made.solve(np.full((4 * 10**6, 3), 1.5))"),
 }
 
 
