@@ -226,8 +226,10 @@ bool number_in(const std::string& word, double& value, double& tolerance) {
   const std::string digits = word.substr(begin, word.find_last_of("0123456789") - begin + 1);
   const std::size_t point = digits.find('.');
   const double decimals = point == std::string::npos ? 0 : static_cast<double>(digits.size() - point - 1);
-  // a solve ends some hundredths of a mm from the equilibrium, and where depends on rounding
+  // a solve ends some hundredths of a mm from the equilibrium, and where depends on rounding; so does what is left of
+  // an error, 6e-08 or 4.6e-08
   tolerance = decimals == 0 ? 0 : std::min(0.1, 100 * std::pow(10, -decimals));
+  if (digits.find("e-") != std::string::npos) tolerance = 1e-3;
   char* end = nullptr;
   value = std::strtod(digits.c_str(), &end);
   return end == digits.c_str() + digits.size();
