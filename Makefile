@@ -19,13 +19,18 @@ BENCH ?= iteration factor tracking newton
 # tested under the address and undefined-behaviour sanitizers too; large rooms with some files only (tests/CMakeLists.txt)
 sanitized := core model io statics kinematics drive runs view
 empty :=
-sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
+sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))(_deep)?$$
 
-.PHONY: help setup build run test test-release test-page test-sanitize test-threads test-fuzz test-python fuzz python docs random bench format format-check clean
+.PHONY: help setup build run python docs bench random fuzz format format-check clean
+.PHONY: test setup-tests test-release test-page test-python
+.PHONY: test-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep
+# one after the other: each of them uses every core
+.NOTPARALLEL:
 
 help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
-	@echo 'make test          install what is missing, build everything, run all tests and checks'
+	@echo 'make test          install what is missing, build, and test the release build, the page and Python: in short'
+	@echo 'make test-deep     the tests that take longer: every command of the documents, sanitizers, fuzzing, notebooks, benchmarks'
 	@echo 'make build         build build/softkin'
 	@echo 'make python        install what is missing, and the Python package in build-python (docs/python.md)'
 	@echo 'make docs          the documentation as a site, build-docs/site/index.html, its links checked; with robots to bend'
@@ -72,23 +77,29 @@ python:
 	build-python/bin/pip install --quiet .
 	@echo "softkin is in build-python: build-python/bin/python examples/python/first_bend.py"
 
-test:
+# Each test is in one of these two.
+test: setup-tests format-check test-release test-page test-python
+
+test-deep: setup-tests test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep
+
+setup-tests:
 	@$(SETUP) --tests
-	$(MAKE) --no-print-directory format-check
-	$(MAKE) --no-print-directory test-release
-	$(MAKE) --no-print-directory test-page
-	$(MAKE) --no-print-directory test-sanitize
-	$(MAKE) --no-print-directory test-threads
-	$(MAKE) --no-print-directory test-fuzz
-	$(MAKE) --no-print-directory test-python
 
 test-release:
+	cmake --preset release -DSOFTKIN_TESTS=ON -DSOFTKIN_BENCH=OFF
+	cmake --build --preset release
+	ctest --test-dir build --parallel $(cores) --no-tests=error --label-exclude '^deep$$'
+
+test-release-deep:
 	cmake --preset release -DSOFTKIN_TESTS=ON -DSOFTKIN_BENCH=ON
 	cmake --build --preset release
-	ctest --test-dir build --parallel $(cores) --no-tests=error
+	ctest --test-dir build --parallel $(cores) --no-tests=error --label-regex '^deep$$'
 
 test-page:
 	scripts/test_page.sh build/softkin build/page-tests
+
+test-page-deep:
+	scripts/test_page.sh build/softkin build/page-tests live
 
 test-sanitize:
 	cmake --preset sanitize
@@ -105,17 +116,29 @@ test-fuzz:
 	cmake --build --preset sanitize --target softkin_fuzz
 	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
 
-# in the folder where test-release built all but the extension module
-test-python:
+# the package with its $(extras), in a folder of its own: built where test-release built all but the extension module
+define install_package
 	@PYTHON=$(PYTHON) $(SETUP) --python
 	rm -rf build-wheel/test
-	$(PYTHON) -m venv --clear build-wheel/venv
+	$(PYTHON) -m venv build-wheel/venv
 	CXX=$${CXX:-c++} build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test --config-settings=build-dir=build \
-	  --config-settings=cmake.define.SOFTKIN_TESTS=ON --config-settings=cmake.define.SOFTKIN_BENCH=ON .
+	  --config-settings=cmake.define.SOFTKIN_TESTS=ON .
 	cmake --preset release
-	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[all,docs,test]"
-	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin examples/python scripts/notebooks.py scripts/site.py
-	build-wheel/venv/bin/pytest -q python/tests
+	build-wheel/venv/bin/pip install --quiet --force-reinstall --no-deps build-wheel/test/*.whl
+	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[$(extras)]"
+endef
+
+test-python: extras = test
+test-python:
+	$(install_package)
+	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin
+	build-wheel/venv/bin/pytest -q -m 'not deep' python/tests
+
+test-python-deep: extras = all,docs,test
+test-python-deep:
+	$(install_package)
+	build-wheel/venv/bin/mypy --strict --no-error-summary examples/python scripts/notebooks.py scripts/site.py
+	build-wheel/venv/bin/pytest -q -m deep python/tests
 
 docs: build
 	@PYTHON=$(PYTHON) $(SETUP) --python

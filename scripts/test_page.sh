@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Tests the page of apps/view/web: its types, its units, and in headless Chromium the pages and live mode of a program.
-#   scripts/test_page.sh PROGRAM FOLDER   FOLDER: what npm installs, and screenshots, to be looked at
+# Tests the page of apps/view/web: its types, its units, and in headless Chromium the pages of a program; or its live mode.
+#   scripts/test_page.sh PROGRAM FOLDER [live]   FOLDER: what npm installs, and screenshots, to be looked at
 # Exit codes: 0 all of it passes, or there is no page to test, which is said; 1 something fails, 2 usage.
 set -euo pipefail
 
-[ $# -eq 2 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
+part=${3:-files}
+[[ $# -ge 2 && $# -le 3 && $part =~ ^(files|live)$ ]] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 program=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
@@ -26,8 +27,10 @@ taken() {
   (cd "$folder/$1" && npm ci --no-audit --no-fund --loglevel=error)
 }
 
-taken web "$source/apps/view/web"
-(cd "$folder/web" && npm run --silent check && npm test --silent)
+if [ "$part" = files ]; then
+  taken web "$source/apps/view/web"
+  (cd "$folder/web" && npm run --silent check && npm test --silent)
+fi
 taken browser "$source/tests/browser"
 cd "$folder/browser"
-SOFTKIN_SOURCE=$source node run.mjs "$program" "$folder/screenshots"
+SOFTKIN_SOURCE=$source node run.mjs "$program" "$folder/screenshots" "$part"

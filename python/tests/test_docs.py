@@ -33,6 +33,7 @@ def test_the_tour_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert (tmp_path / "bent.vtu").exists() and (tmp_path / "bent.png").exists()
 
 
+@pytest.mark.deep
 def test_the_map_that_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (shown,) = [block for block in blocks("python.md", "python") if "robot.map(" in block]
     monkeypatch.chdir(tmp_path)
@@ -66,6 +67,7 @@ def hose(file: Path) -> None:
     file.write_text("\n".join(lines) + "\n")
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("place", [0, 1], ids=["SOFA", "Abaqus"])
 def test_coming_from(place: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shown = blocks("coming_from.md", "python")
@@ -105,6 +107,7 @@ def test_a_neo_hooke_of_abaqus() -> None:
     assert shape.reactions["fixed_4"].force_N[0] == pytest.approx(100 * stress, rel=1e-7)
 
 
+@pytest.mark.deep
 @pytest.mark.skipif(importlib.util.find_spec("pytetwild") is None, reason="pytetwild is not installed")
 def test_a_mesh_from_the_shell(tmp_path: Path) -> None:
     from softkin.mesh import Surface, write_stl

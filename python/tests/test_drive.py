@@ -8,7 +8,7 @@ import subprocess
 import threading
 import time
 import tty
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -125,14 +125,31 @@ def test_send(short: drive.Plan, board: Board, tmp_path: Path) -> None:
 
 def test_orders_from_another_thread(finger: softkin.Robot) -> None:
     board = Board(delay_s=0.02)
+
+    def at(lines: int, order: Callable[[], None]) -> None:
+        """Gives it when so many more lines than now have been executed."""
+        from_now = lines + len(board.executed)
+
+        def wait() -> None:
+            while len(board.executed) < from_now:
+                time.sleep(0.001)
+            order()
+
+        threading.Thread(target=wait, daemon=True).start()
+
     plan = drive.plan(finger, [[1 - 0.0005 * i, 1, 1] for i in range(100)], times=[0.2 * i for i in range(100)])
     with drive.Marlin(board.port, boot_wait_s=0) as link:
-        threading.Timer(0.3, link.pause).start()
-        threading.Timer(0.4, link.go_on).start()
-        threading.Timer(0.6, link.stop).start()
+
+        def pause_a_while() -> None:
+            link.pause()
+            time.sleep(0.1)
+            link.go_on()
+
+        at(15, pause_a_while)
+        at(30, link.stop)
         sent = link.send(plan)
         assert sent.end == "stopped" and 0 < sent.acknowledged < sent.lines
-        threading.Timer(0.3, link.quick_stop).start()
+        at(15, link.quick_stop)
         assert link.send(plan).end == "quick stopped"
         link.close()
     board.close()

@@ -40,7 +40,7 @@ assert max(mesh.deviation_mm.values()) <= 3 * mesh.tolerance_mm  # no two runs a
 assert abs(mesh.volumes["chamber"].mesh_mm3 / 22518 - 1) < 2e-3 > abs(mesh.volumes["body"].mesh_mm3 / 51942 - 1)
 """,
     "first_bend": "assert shape.actuation[0] == 1.4 and shape.converged",
-    "map_closed_loop": "assert np.median(errors) < 0.03 < 0.3 < np.median(blind) and np.median(times) < 2e-4",
+    "map_closed_loop": "assert np.median(errors) < 0.03 < 0.3 < np.median(blind) and np.median(times) < 2e-4 * PATIENCE",
     "inverse_and_path": "assert answer.reached and not far.reached and waypoint.number == 12 and waypoint.reached",
 }
 
@@ -70,8 +70,9 @@ def test_an_example_is_short_and_its_notebook_made_of_it(example: Path, maker: M
         assert notebook.read_text() == made, "python scripts/notebooks.py makes it anew"
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("example", WITH_CELLS, ids=lambda path: str(path.stem))
-def test_notebook(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notebook(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, patience: float) -> None:
     skip_without("nbclient", "ipykernel", *NEEDS.get(example.stem, ()))
     import nbclient
     import nbformat
@@ -81,9 +82,9 @@ def test_notebook(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     notebook: Any = nbformat.read(example.with_suffix(".ipynb"), as_version=4)
     nbformat.validate(notebook)
     if example.stem in CHECKS:
-        notebook.cells.append(nbformat.v4.new_code_cell(CHECKS[example.stem]))
+        notebook.cells.append(nbformat.v4.new_code_cell(f"PATIENCE = {patience}\n{CHECKS[example.stem]}"))
     client = nbclient.NotebookClient(
-        notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": tmp_path}}
+        notebook, timeout=300 * patience, kernel_name="python3", resources={"metadata": {"path": tmp_path}}
     )
     client.execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", ())]
@@ -94,9 +95,10 @@ def test_notebook(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         check_usable(read_msh(tmp_path / "out/finger.msh"), tmp_path)
 
 
-def test_script_with_processes(tmp_path: Path) -> None:
+@pytest.mark.deep
+def test_script_with_processes(tmp_path: Path, patience: float) -> None:
     script = ROOT / "examples" / "python" / "stiffness_study.py"
-    run = subprocess.run([sys.executable, str(script)], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    run = subprocess.run([sys.executable, str(script)], cwd=tmp_path, capture_output=True, text=True, timeout=300 * patience)
     assert run.returncode == 0, run.stderr
     lines = run.stdout.splitlines()
     assert len(lines) == 8 and lines[0].startswith(" 0.20 MPa: ") and lines[7].startswith(" 2.00 MPa: ")

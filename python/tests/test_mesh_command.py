@@ -33,6 +33,7 @@ def tip_height(folder, share):
     return step["markers"]["tip"][2]
 
 
+@pytest.mark.deep
 @needs_tetwild
 @pytest.mark.parametrize("chambers_as", ["region", "void"])
 def test_from_stl_files_to_a_scene_that_moves(files, capsys, chambers_as):
@@ -61,6 +62,7 @@ def test_from_stl_files_to_a_scene_that_moves(files, capsys, chambers_as):
     assert inflated - at_rest == pytest.approx(-0.075, abs=0.02)  # mm: the wall above the cavity is the thinner one
 
 
+@pytest.mark.deep
 @needs_tetwild
 def test_scenes_without_chambers_hold_the_low_end_and_keep_names(files):
     mesh = from_surfaces(BODY, parts={"on": box((10, 3, 3), (20, 7, 7))}, edge_length=5)

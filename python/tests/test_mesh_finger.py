@@ -22,6 +22,7 @@ def markers(scene):
     return {name: np.array(point) for name, point in step["markers"].items()}
 
 
+@pytest.mark.deep
 @pytest.mark.skipif(find_gmsh() is None, reason="the program gmsh is not installed")
 def test_the_remeshed_finger_bends_as_the_shipped_one(tmp_path):
     theirs = markers(FOLDER / "pneumatic_finger.yaml")

@@ -7,7 +7,7 @@ from softkin.mesh import InvalidInput, MeshWarning, Surface, from_surfaces, mesh
 from softkin.mesh.command import main
 from softkin.mesh.gmsh_program import find_gmsh
 
-pytestmark = pytest.mark.skipif(find_gmsh() is None, reason="the program gmsh is not installed")
+pytestmark = [pytest.mark.deep, pytest.mark.skipif(find_gmsh() is None, reason="the program gmsh is not installed")]
 
 BODY = box((0, 0, 0), (20, 10, 10))
 CAVITY = box((3, 3, 3), (12, 7, 7))

@@ -77,6 +77,7 @@ def test_a_cut_file_is_one_clear_error(tmp_path, cut):
         read_msh(tmp_path / "cut.msh")
 
 
+@pytest.mark.deep
 def test_meshio_round_trip(tmp_path):
     meshio = pytest.importorskip("meshio", reason="meshio is not installed")
     for mesh in (example(), overlapping()):
@@ -88,6 +89,7 @@ def test_meshio_round_trip(tmp_path):
         VolumeMesh.from_meshio(meshio.Mesh(np.zeros((8, 3)), [("hexahedron", np.arange(8)[None])]))
 
 
+@pytest.mark.deep
 def test_pyvista_round_trip(tmp_path):
     pyvista = pytest.importorskip("pyvista", reason="PyVista is not installed")
     same(VolumeMesh.from_pyvista(example().to_pyvista()), example())
@@ -99,6 +101,7 @@ def test_pyvista_round_trip(tmp_path):
         VolumeMesh.from_pyvista(pyvista.Sphere())
 
 
+@pytest.mark.deep
 def test_surfaces_of_pyvista_and_meshio():
     from softkin.mesh.surface import as_surface
 

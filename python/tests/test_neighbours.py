@@ -11,6 +11,8 @@ from beams import block
 import softkin
 from softkin.mesh import VolumeMesh, read_msh
 
+pytestmark = pytest.mark.deep
+
 DESCRIPTION = {
     "materials": [{"youngs_modulus": 1, "poisson_ratio": 0.4}],
     "fixed": [{"halfspace": {"point": (0, 0, 0), "normal": (-1, 0, 0)}}],

@@ -116,6 +116,7 @@ def test_wrong_paths(robot: softkin.Robot, tmp_path: Path) -> None:
         robot.follow([[64000, 1000, 1000]])
 
 
+@pytest.mark.deep
 def test_tables_with_pandas(robot: softkin.Robot) -> None:
     pytest.importorskip("pandas", reason="pandas is not installed")
     run = robot.follow(targets(robot)[:1])

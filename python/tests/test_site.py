@@ -12,6 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
+@pytest.mark.deep
 def test_its_links_hold(command: str, tmp_path: Path) -> None:
     pytest.importorskip("mkdocs", reason="the site needs pip install softkin[docs]")
     pytest.importorskip("latex2mathml", reason="the site needs pip install softkin[docs]")

@@ -82,6 +82,7 @@ def test_wrong_workspaces(robot: softkin.Robot, tmp_path: Path) -> None:
         robot.workspace(8).hull("tpi")
 
 
+@pytest.mark.deep
 def test_pandas(robot: softkin.Robot) -> None:
     pytest.importorskip("pandas", reason="pandas is not installed")
     cloud = robot.workspace(8)

@@ -17,9 +17,12 @@
 #include "machine.hpp"
 #include "newton_runs.hpp"
 #include "physical_parts.hpp"
+#include "support/patience.hpp"
 
 namespace softkin::bench {
 namespace {
+
+using testing::patient;
 
 constexpr double coarse = 4.68;  // [mm]
 
@@ -142,7 +145,7 @@ TEST(Bend, SaysHowFarAFingerBends) {
 }
 
 TEST(Child, SendsBackAndMeasuresMemory) {
-  const auto small = measure<double>([] { return 3.5; }, 20);
+  const auto small = measure<double>([] { return 3.5; }, patient(20));
   ASSERT_TRUE(small.result.has_value());
   EXPECT_EQ(*small.result, 3.5);
   const auto large = measure<double>(
@@ -150,7 +153,7 @@ TEST(Child, SendsBackAndMeasuresMemory) {
         const std::vector<double> values(32 << 20, 1.0);  // 256 MiB
         return values[12345];
       },
-      20);
+      patient(20));
   ASSERT_TRUE(large.result.has_value());
   EXPECT_GT(large.end.peak_mib, 256);
   EXPECT_LT(large.end.peak_mib, small.end.peak_mib + 300);
@@ -158,7 +161,7 @@ TEST(Child, SendsBackAndMeasuresMemory) {
 }
 
 TEST(Child, SaysHowItFailed) {
-  const auto thrown = measure<int>([]() -> int { throw InvalidInput("a failure on purpose"); }, 20);
+  const auto thrown = measure<int>([]() -> int { throw InvalidInput("a failure on purpose"); }, patient(20));
   EXPECT_FALSE(thrown.result.has_value());
   EXPECT_EQ(thrown.end.exit_code, 1);
   const auto late = measure<int>(
@@ -170,8 +173,8 @@ TEST(Child, SaysHowItFailed) {
   EXPECT_FALSE(late.result.has_value());
   EXPECT_TRUE(late.end.timed_out);
   EXPECT_LT(late.end.seconds, 30);
-  EXPECT_EQ(run_program({"sh", "-c", "exit 7"}, ".", "", {}, 20).exit_code, 7);
-  EXPECT_EQ(run_program({"sh", "-c", "exit $WANTED"}, ".", "", {"WANTED=5"}, 20).exit_code, 5);
+  EXPECT_EQ(run_program({"sh", "-c", "exit 7"}, ".", "", {}, patient(20)).exit_code, 7);
+  EXPECT_EQ(run_program({"sh", "-c", "exit $WANTED"}, ".", "", {"WANTED=5"}, patient(20)).exit_code, 5);
   EXPECT_TRUE(on_path("sh"));
   EXPECT_FALSE(on_path("no such program"));
 }
@@ -184,7 +187,7 @@ FingerSource coarse_finger() {
 
 TEST(Runs, EverySolverComesWithinTheErrorAskedFor) {
   const FingerSource source = coarse_finger();
-  const auto answers = find_answers(source, FingerKind::target_shape, {4}, 1, 60);
+  const auto answers = find_answers(source, FingerKind::target_shape, {4}, 1, patient(60));
   ASSERT_TRUE(answers.result.has_value());
   ASSERT_EQ(answers.result->count, 1);
   const Target& target = answers.result->targets[0];
@@ -268,14 +271,14 @@ TEST(CalculixRun, AgreesWithThePhysicalFormulation) {
   if (!on_path("ccx")) GTEST_SKIP() << "CalculiX is not there";
   for (const FingerKind kind : {FingerKind::physical, FingerKind::physical_quadratic}) {
     const FingerSource source = coarse_finger();
-    const auto answers = find_answers(source, kind, {1}, 1, 120);
+    const auto answers = find_answers(source, kind, {1}, 1, patient(120));
     ASSERT_TRUE(answers.result.has_value());
     ASSERT_EQ(answers.result->count, 1);
     const std::string folder = temporary("softkin_bench_ccx");
     std::filesystem::create_directories(folder);
     RunOptions options;
     options.tip_error_mm = 0.05;
-    options.limit = 120;
+    options.limit = patient(120);
     const CalculixRun found =
         run_calculix(source, kind, *answers.result, answers.result->targets[0], folder, 1, options);
     std::filesystem::remove_all(folder);

@@ -6,6 +6,16 @@ const chromiumFile = process.env.SOFTKIN_CHROMIUM ?? '/usr/bin/chromium';
 const flags = ['--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
                '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
 
+const slower = (() => {
+  const begin = performance.now();
+  let root = 1;
+  for (let i = 0; i < 4e6; ++i) root = 0.5 * (root + 2 / root) + 1e-9 * i;
+  return Math.max(1, (performance.now() - begin) / 40);
+})();
+
+/** A limit on time [ms] as it holds on an idle machine of 2023, made longer for slow and busy ones. */
+export const patient = (milliseconds) => milliseconds * slower;
+
 /** Browsers' own words on a connection that is gone: live mode tries again. */
 const expected = /WebSocket connection to|ERR_CONNECTION_REFUSED/;
 
@@ -34,6 +44,7 @@ export async function open(browser, url, {width = 1280, height = 720, scheme = '
   const context = await browser.newContext({viewport: {width, height}, colorScheme: scheme, hasTouch: width < 600,
                                             acceptDownloads: true, offline});
   const page = await context.newPage(), watch = new Watch(page, url.split('#')[0]);
+  page.setDefaultTimeout(patient(60000));
   await page.goto(url);
   await page.waitForSelector('#table td');
   return {page, watch, context};

@@ -100,7 +100,7 @@ export async function fieldTests(browser, test) {
 }
 
 const answered = (page) => page.waitForFunction(() =>
-  /^Computed: converged/.test(document.querySelector('#state').textContent), null, {timeout: 60000});
+  /^Computed: converged/.test(document.querySelector('#state').textContent), null);
 
 async function checkLive(page) {
   await page.waitForFunction(() => /^You control/.test(document.querySelector('#live-words').textContent));

@@ -1,12 +1,12 @@
 // Live mode (softkin view): windows, control, and shapes that are those of softkin fk.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
-import {drag, dropFile, frames, moveSlider, open, tip, tipOnScreen, tipText, violations} from './browser.mjs';
+import {drag, dropFile, frames, moveSlider, open, patient, tip, tipOnScreen, tipText, violations} from './browser.mjs';
 import {example, forward, mapOf, out, serve} from './softkin.mjs';
 
 const name = 'three_tendon_finger', actuators = ['tendon1', 'tendon2', 'tendon3'];
 const far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
-const until = (page, id, pattern, timeout = 60000) => page.waitForFunction(([of, text]) =>
+const until = (page, id, pattern, timeout = patient(60000)) => page.waitForFunction(([of, text]) =>
   new RegExp(text).test(document.getElementById(of).textContent), [id, pattern.source], {timeout});
 const off = (page) => page.locator('#actuator-0').isDisabled();
 
@@ -108,7 +108,6 @@ async function checkReconnection(page, server, more) {
 async function allOf(browser, test, more, kind) {
   let server = await serve(example(name), 0, ...more);
   const {page, watch} = await open(browser, server.url, {offline: false});
-  page.setDefaultTimeout(60000);
   await test(`${kind}: the window with the secret has control`, () => until(page, 'live-words', /^You control/));
   await test(`${kind}: sliders lead where softkin fk leads`, () => checkSliders(page));
   await test(`${kind}: targets`, () => checkTarget(page));
@@ -131,7 +130,7 @@ async function allOf(browser, test, more, kind) {
 async function checkMapMadeMeanwhile(browser) {
   const server = await serve(example(name), 0, '--make-map');
   const {page, watch} = await open(browser, server.url, {offline: false});
-  const whileOthersWork = 300000;  // maps are made at the lowest priority
+  const whileOthersWork = patient(300000);  // maps are made at the lowest priority
   await until(page, 'origin', /What is shown at once, .* is a closed formula made of \d+ solved shapes/, whileOthersWork);
   await until(page, 'live-words', /^You control/);
   await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));  // which needs a map

@@ -147,7 +147,6 @@ export async function reportTests(browser, test) {
   writeFileSync(out('path.csv'), [head, ...rows].join('\n'));
   await softkin('fk', example(name), '--path', out('path.csv'), '--map', map, '--html', file);
   const url = pathToFileURL(resolve(file)).href, {page, watch, context} = await open(browser, url);
-  page.setDefaultTimeout(20000);
   await test('report is smaller than 3 MB', () => assert.ok(statSync(file).size < 3e6, `${statSync(file).size} B`));
   await test('report: sliders lead where softkin fk leads', () => checkNumbers(page, map));
   await test('report: targets are dragged and typed, undone and reset', () => checkTarget(page));

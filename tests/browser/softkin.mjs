@@ -8,7 +8,7 @@ import {promisify} from 'node:util';
 const run = promisify(execFile);
 const [program, folder] = process.argv.slice(2);
 if (!program || !folder) {
-  console.error('usage: node run.mjs SOFTKIN OUT_FOLDER');
+  console.error('usage: node run.mjs SOFTKIN OUT_FOLDER files|live');
   process.exit(2);
 }
 

@@ -70,6 +70,15 @@ inline void expect_words(const std::string& text, const std::vector<std::string>
     EXPECT_NE(text.find(word), std::string::npos) << "no '" << word << "' in:\n" << text;
 }
 
+/// The number that stands after some words; a failure where they or it are missing.
+inline double number_after(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  double number = 0;
+  if (at == std::string::npos || !(std::istringstream(text.substr(at + words.size())) >> number))
+    ADD_FAILURE() << "no number after '" << words << "' in:\n" << text;
+  return number;
+}
+
 inline std::string shell_quoted(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);

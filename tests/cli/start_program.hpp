@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "run_program.hpp"
+#include "support/patience.hpp"
 
 namespace softkin::testing {
 
@@ -60,10 +61,10 @@ class StartedProgram {
 
   void send(int signal_number) const { ::kill(process_, signal_number); }
 
-  /// Waits until condition(); false where the program ended or a minute passed before.
+  /// Waits until condition(); false where the program ended or a minute passed before, more where all is slow.
   template <class Condition>
   [[nodiscard]] bool wait_until(const Condition& condition) const {
-    for (int i = 0; i < 60000; ++i) {
+    for (int i = 0; i < 1000 * patient(60); ++i) {
       if (condition()) return true;
       siginfo_t state = {};
       ::waitid(P_PID, static_cast<id_t>(process_), &state, WEXITED | WNOHANG | WNOWAIT);

@@ -79,7 +79,7 @@ TEST(MapPieces, SmoothOnesAreOneBox) {
 }
 
 TEST(MapPieces, BesideAKinkCommandsAreOutsideInsteadOfWrong) {
-  const Made made(kinked, 3000);
+  const Made made(kinked, 1500);
   const auto [inside, largest] = made.compared(kinked);
   EXPECT_GT(inside, 0.6);
   EXPECT_LT(inside, 1);

@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Formulations, FollowPath, ::testing::Values(Formulation
 
 TEST(Trajectory, PredictionSavesEquilibria) {
   const Robot robot(Formulation::target_shape);
-  const MarkerPath path = made_by_actuation(robot, 41);
+  const MarkerPath path = made_by_actuation(robot, 21);
   TrajectoryOptions without;
   without.predict = false;
   const auto plain = follow_path(robot.model, robot.statics, path, without);

@@ -18,7 +18,11 @@
 #include <utility>
 #include <vector>
 
+#include "support/patience.hpp"
+
 namespace softkin::view::testing {
+
+using softkin::testing::patient;
 
 /// A socket to 127.0.0.1 that waits no longer than it is told.
 class PlainSocket {
@@ -55,7 +59,7 @@ class PlainSocket {
   }
 
   /// What comes next, so many bytes; none where less comes until then.
-  std::optional<std::string> take(std::size_t count, double seconds = 5) {
+  std::optional<std::string> take(std::size_t count, double seconds = patient(5)) {
     while (read_.size() < count)
       if (!fill(seconds)) return std::nullopt;
     std::string bytes = read_.substr(0, count);
@@ -64,7 +68,7 @@ class PlainSocket {
   }
 
   /// Up to and with the mark.
-  std::optional<std::string> take_until(std::string_view mark, double seconds = 5) {
+  std::optional<std::string> take_until(std::string_view mark, double seconds = patient(5)) {
     std::size_t at;
     while ((at = read_.find(mark)) == std::string::npos)
       if (!fill(seconds)) return std::nullopt;
@@ -72,7 +76,7 @@ class PlainSocket {
   }
 
   /// All until the other side closes; none where it does not.
-  std::optional<std::string> take_rest(double seconds = 5) {
+  std::optional<std::string> take_rest(double seconds = patient(5)) {
     while (fill(seconds)) {
     }
     if (!closed_) return std::nullopt;
@@ -177,7 +181,7 @@ class LiveClient {
   }
 
   /// The next message that is no ping, which are answered; none where nothing comes. Servers do not mask.
-  std::optional<LiveMessage> receive(double seconds = 5) {
+  std::optional<LiveMessage> receive(double seconds = patient(5)) {
     LiveMessage message;
     for (bool first = true;;) {
       const auto head = socket_.take(2, seconds);
@@ -221,7 +225,7 @@ class LiveClient {
     return false;
   }
   /// The next shape, or the one with a number.
-  std::optional<LiveFrame> shape(std::int64_t id = -1, double seconds = 5) {
+  std::optional<LiveFrame> shape(std::int64_t id = -1, double seconds = patient(5)) {
     while (const auto message = receive(seconds)) {
       if (message->opcode == closing) return std::nullopt;
       if (message->opcode != binary) continue;
@@ -231,7 +235,7 @@ class LiveClient {
     return std::nullopt;
   }
   /// The code with which the server closes; 0: it does not, -1: it goes without a word.
-  int close_code(double seconds = 5) {
+  int close_code(double seconds = patient(5)) {
     while (const auto message = receive(seconds))
       if (message->opcode == closing) return message->close_code();
     return socket_.is_closed() ? -1 : 0;

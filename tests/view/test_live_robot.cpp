@@ -23,7 +23,7 @@ class Kept {
   LiveShape answer(RequestId id) {
     std::unique_lock<std::mutex> lock(mutex_);
     LiveShape found;
-    const bool came = changed_.wait_for(lock, std::chrono::seconds(20), [&] {
+    const bool came = changed_.wait_for(lock, std::chrono::duration<double>(testing::patient(20)), [&] {
       for (const auto& each : answers_)
         if (each->shape.id == id) return found = each->shape, true;
       return false;
@@ -179,7 +179,7 @@ TEST(LiveRobot, EndsAmidASolve) {
                   statics.solve(model.rest_actuation(), statics.rest(), one_thread()), [](const auto&) {});
   robot.ask({1, TargetRequest{1, 0, {100, 100, 100}}});
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  EXPECT_TRUE(robot.stop(5));
+  EXPECT_TRUE(robot.stop(testing::patient(5)));
 }
 
 }  // namespace

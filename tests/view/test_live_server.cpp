@@ -23,10 +23,10 @@ bool is_status(const std::string& answer, int status) {
   return answer.find("HTTP/1.1 " + std::to_string(status) + " ") == 0;
 }
 
-/// Waits until something holds, 5 s at most.
+/// Waits until something holds, 5 s at most, more where all is slow.
 template <class Holds>
 bool comes_true(const Holds& holds) {
-  for (const auto begin = Clock::now(); seconds_since(begin) < 5;) {
+  for (const auto begin = Clock::now(); seconds_since(begin) < patient(5);) {
     if (holds()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
@@ -254,7 +254,7 @@ TEST(LiveServer, SlowReadersDelayNobody) {
     ASSERT_TRUE(control.shape(static_cast<std::int64_t>(id)).has_value()) << id;
     slowest = std::max(slowest, seconds_since(begin));
   }
-  EXPECT_LT(slowest, 1);
+  EXPECT_LT(slowest, patient(1));
   // one on its way, those that fitted into sockets, and the newest
   std::vector<int> seen;
   while (seen.empty() || seen.back() < static_cast<int>(shapes)) {
@@ -269,20 +269,20 @@ TEST(LiveServer, SlowReadersDelayNobody) {
 
 TEST(LiveServer, EndsWhatDoesNotComeOn) {
   LiveLimits limits;
-  limits.head_s = 0.4;
-  limits.stalled_s = 0.5;
-  limits.idle_s = 1;
+  limits.head_s = patient(0.4);
+  limits.stalled_s = patient(0.5);
+  limits.idle_s = patient(1);
   Served served(some_model(), limits);
   PlainSocket loris(served.port()), mute(served.port());
   loris.send("GET / HTTP/1.1\r\nHost: ");
   LiveClient without_hello(served.port());
   LiveClient silent = served.client(""), stalled = served.client("", 4096), answers = served.client();
   for (int i = 0; i < 10; ++i) served.server.show(made_up_shape(1, 200000));
-  EXPECT_EQ(loris.take_rest(2), "");
-  EXPECT_EQ(mute.take_rest(2), "");
-  EXPECT_EQ(without_hello.close_code(2), 1008);
+  EXPECT_EQ(loris.take_rest(patient(2)), "");
+  EXPECT_EQ(mute.take_rest(patient(2)), "");
+  EXPECT_EQ(without_hello.close_code(patient(2)), 1008);
   // after twice the time that they may be silent; the stalled one is not silent
-  for (const auto begin = Clock::now(); seconds_since(begin) < 2.5;) {
+  for (const auto begin = Clock::now(); seconds_since(begin) < patient(2.5);) {
     (void)answers.receive(0.1);
     stalled.send("", pong);
   }
@@ -331,7 +331,7 @@ TEST(LiveServer, SaysThatItGoes) {
   served->server.stop();
   EXPECT_EQ(client.close_code(), 1001);
   served.reset();
-  EXPECT_LT(seconds_since(begin), 1);
+  EXPECT_LT(seconds_since(begin), patient(1));
 }
 
 TEST(LiveServer, TellsThatAPortIsBusy) {
