@@ -9,11 +9,6 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
                       -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 add_compile_definitions(SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
-if(SOFTKIN_ARCH)
-  add_compile_options(-march=${SOFTKIN_ARCH})
-elseif(SOFTKIN_NATIVE)
-  add_compile_options(-march=native)
-endif()
 if(NOT SOFTKIN_SANITIZE)
   add_compile_options(-Werror)  # another compiler, and what sanitizers insert, warn of more
 else()

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <softkin/core/target.hpp>
 #include <softkin/runs/page.hpp>
 #include <string>
 
@@ -25,7 +26,8 @@ std::string chosen_command(const CLI::App& app) {
 int main(int argc, char** argv) {
   CLI::App app{"softkin: kinematics of soft robots. Lengths in mm, ratios without unit.", "softkin"};
   app.formatter(std::make_shared<cli::PageFormatter>());
-  app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
+  app.set_version_flag("--version",
+                       [] { return std::string("softkin " SOFTKIN_VERSION ", instruction set ") + name_of(target()); });
   app.require_subcommand(0, 1);  // "1" would hide the name of a command that does not exist
   app.callback([&app] {
     if (app.get_subcommands().empty())
@@ -48,6 +50,7 @@ int main(int argc, char** argv) {
   cli::add_map(app, run);
   cli::add_view_command(app, run);
   return cli::outcome_of([&] {
+    (void)target();  // refused, where it is, before anything is done
     std::string command = "softkin";
     if (const std::string wrong = cli::misspelt(app, argc, argv, command); !wrong.empty())
       return cli::refuse_usage(wrong, command);

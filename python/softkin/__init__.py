@@ -5,6 +5,7 @@ Lengths are in mm, pressures in kPa (gauge), forces in N, ratios without unit. d
 
 from . import calibrate, compare, drive, measure
 from ._core import ActuatorInfo
+from ._build import BuildInfo, build_info
 from ._core import version as __version__
 from ._solving import Progress
 from .errors import InvalidInput, NotConverged, SoftkinWarning
@@ -24,6 +25,7 @@ __all__ = [
     "ActuatorInfo",
     "ActuatorState",
     "Answer",
+    "BuildInfo",
     "Contact",
     "Deformation",
     "FollowRun",
@@ -54,6 +56,7 @@ __all__ = [
     "Waypoint",
     "Workspace",
     "__version__",
+    "build_info",
     "calibrate",
     "compare",
     "drive",

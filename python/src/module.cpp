@@ -1,4 +1,5 @@
 #include <softkin/core/error.hpp>
+#include <softkin/core/target.hpp>
 #include <softkin/core/version.hpp>
 
 #include "bindings.hpp"
@@ -10,6 +11,10 @@ NB_MODULE(_core, module) {
   using namespace softkin;
   module.doc() = "What softkin does in C++; the public interface is the package softkin.";
   module.attr("version") = version();
+  module.attr("instruction_set") = name_of(target());
+  nb::list others;
+  for (const Target each : targets_here()) others.append(name_of(each));
+  module.attr("instruction_sets_here") = nb::tuple(others);
   nb::exception<InvalidInput>(module, "InvalidInput", PyExc_ValueError).doc() =
       "Input that softkin refuses: one sentence that begins with where it stands.";
   nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {

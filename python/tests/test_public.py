@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -43,6 +45,29 @@ def test_all_is_sorted_and_there() -> None:
     assert softkin.__all__ == sorted(softkin.__all__)
     for name in softkin.__all__:
         assert hasattr(softkin, name)
+
+
+def test_build_info() -> None:
+    info = softkin.build_info
+    assert info.version == softkin.__version__
+    assert info.instruction_set in info.instruction_sets_here
+    for asked in info.instruction_sets_here:
+        code = "import softkin; print(softkin.build_info.instruction_set)"
+        told = subprocess.run(
+            [sys.executable, "-c", code], env={**os.environ, "SOFTKIN_TARGET": asked}, capture_output=True, text=True
+        )
+        assert told.stdout == asked + "\n"
+
+
+def test_instruction_set_that_is_none() -> None:
+    told = subprocess.run(
+        [sys.executable, "-c", "import softkin"],
+        env={**os.environ, "SOFTKIN_TARGET": "mmx"},
+        capture_output=True,
+        text=True,
+    )
+    assert told.returncode != 0
+    assert "SOFTKIN_TARGET=mmx: not an instruction set" in told.stderr
 
 
 def test_version() -> None:

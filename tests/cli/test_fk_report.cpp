@@ -120,8 +120,8 @@ void expect_step_form(const json& step, const std::vector<std::string>& more) {
 TEST(FkReport, HasTheFormOfTheDesign) {
   const BlockFolder folder;
   const json report = solve_block(folder, "1.5").report;
-  expect_keys(report, {"softkin", "scene", "robot_fingerprint", "formulation", "materials", "actuators", "solver",
-                       "units", "mesh", "notes", "warnings", "steps", "seconds"});
+  expect_keys(report, {"softkin", "instruction_set", "scene", "robot_fingerprint", "formulation", "materials",
+                       "actuators", "solver", "units", "mesh", "notes", "warnings", "steps", "seconds"});
   EXPECT_EQ(report["scene"], folder.scene);
   EXPECT_EQ(report["mesh"], json({{"order", 1}, {"vertices", 96}, {"tetrahedra", 270}, {"prisms", 0}}));
   EXPECT_EQ(report["solver"], json({{"name", "newton"}, {"tolerance_mm", 0.0}, {"max_iterations", 50000}}));
@@ -129,7 +129,9 @@ TEST(FkReport, HasTheFormOfTheDesign) {
   EXPECT_EQ(report["materials"], json::parse(R"([{"region": "body", "shape_ratio": 1.0, "weight": 1.0}])"));
   EXPECT_EQ(report["units"]["energy"], "mm^5");
   EXPECT_EQ(report["units"]["residual"], "mm^4");
-  EXPECT_EQ(run_program({"--version"}).output, "softkin " + report["softkin"].get<std::string>() + "\n");
+  EXPECT_EQ(run_program({"--version"}).output, "softkin " + report["softkin"].get<std::string>() +
+                                                   ", instruction set " + report["instruction_set"].get<std::string>() +
+                                                   "\n");
   ASSERT_EQ(report["steps"].size(), 1u);
   const json& step = report["steps"][0];
   expect_step_form(step, {});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <softkin/core/target.hpp>
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
@@ -102,6 +103,7 @@ Json solver_json(const StaticsOptions& options, const UsedMap* map) {
 Json head_json(const Model& model, const std::string& scene, const StaticsOptions& options,
                const UsedMap* map = nullptr) {
   return {{"softkin", SOFTKIN_VERSION},
+          {"instruction_set", name_of(target())},
           {"scene", scene},
           {"robot_fingerprint", fingerprint_of(model)},
           {"formulation", formulation_name(model.formulation)},
