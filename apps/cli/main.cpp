@@ -30,7 +30,8 @@ int main(int argc, char** argv) {
   app.callback([&app] {
     if (app.get_subcommands().empty())
       throw CLI::RequiredError(
-          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh, view)");
+          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh, view, "
+          "examples)");
   });
   runs::keep_command({argv, argv + argc});
   cli::Run run;
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
   cli::add_workspace(app, run);
   cli::add_map(app, run);
   cli::add_view_command(app, run);
+  cli::add_examples(app, run);
   return cli::outcome_of([&] {
     std::string command = "softkin";
     if (const std::string wrong = cli::misspelt(app, argc, argv, command); !wrong.empty())

@@ -8,6 +8,7 @@ from ._core import ActuatorInfo
 from ._core import version as __version__
 from ._solving import Progress
 from .errors import InvalidInput, NotConverged, SoftkinWarning
+from .examples import example
 from .grasp import Grasp, Pull
 from .inverse import Answer
 from .maps import KinematicMap, MapAnswer, MapCheck, MapInput, MapOutput, MapProgress, load_map
@@ -57,6 +58,7 @@ __all__ = [
     "calibrate",
     "compare",
     "drive",
+    "example",
     "load",
     "load_map",
     "measure",
