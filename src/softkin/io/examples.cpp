@@ -83,7 +83,8 @@ std::vector<ExampleActuator> actuators_of(const fs::path& scene) {
 std::vector<fs::path> files_of(const fs::path& folder, const std::string& name) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder / name))
-    if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
+    if (entry.is_regular_file() && entry.path().extension() != ".pyc")  // pip compiles what it installs
+      files.push_back(entry.path().lexically_relative(folder));
   std::sort(files.begin(), files.end());
   return files;
 }
