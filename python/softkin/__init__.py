@@ -9,6 +9,7 @@ from ._build import BuildInfo, build_info
 from ._core import version as __version__
 from ._solving import Progress
 from .errors import InvalidInput, NotConverged, SoftkinWarning
+from .examples import example
 from .grasp import Grasp, Pull
 from .inverse import Answer
 from .maps import KinematicMap, MapAnswer, MapCheck, MapInput, MapOutput, MapProgress, load_map
@@ -60,6 +61,7 @@ __all__ = [
     "calibrate",
     "compare",
     "drive",
+    "example",
     "load",
     "load_map",
     "measure",

@@ -455,7 +455,10 @@ TEST(Help, OfEveryCommandFitsAPage) {
                                                                                        {"mesh"},
                                                                                        {"mesh", "info"},
                                                                                        {"mesh", "check"},
-                                                                                       {"mesh", "convert"}}) {
+                                                                                       {"mesh", "convert"},
+                                                                                       {"examples"},
+                                                                                       {"examples", "list"},
+                                                                                       {"examples", "copy"}}) {
     std::vector<std::string> arguments = command;
     arguments.emplace_back("--help");
     const ProgramResult help = run_program(arguments);

@@ -1,0 +1,20 @@
+# Toolchain: builds for aarch64 (64-bit ARM) with Debian's cross compiler, and runs what it built under qemu.
+#   scripts/arm_sysroot.sh && cmake -S . -B build-arm/build -G Ninja --toolchain cmake/aarch64.cmake -DSOFTKIN_NATIVE=OFF
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+
+set(SOFTKIN_SYSROOT ${CMAKE_CURRENT_LIST_DIR}/../build-arm/sysroot CACHE PATH "What scripts/arm_sysroot.sh has filled")
+get_filename_component(SOFTKIN_SYSROOT ${SOFTKIN_SYSROOT} ABSOLUTE)
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SOFTKIN_SYSROOT)
+if(NOT EXISTS ${SOFTKIN_SYSROOT}/packages.txt)
+  message(FATAL_ERROR "there is nothing to link with in ${SOFTKIN_SYSROOT}: scripts/arm_sysroot.sh fills it")
+endif()
+set(CMAKE_SYSROOT ${SOFTKIN_SYSROOT})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L ${SOFTKIN_SYSROOT})

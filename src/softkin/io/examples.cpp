@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <softkin/core/error.hpp>
+#include <softkin/io/examples.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/io/json_text.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scene/scene.hpp>
+#include <softkin/model/names.hpp>
+#include <sstream>
+#include <utility>
+
+namespace softkin {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::pair<const char*, const char*> short_names[] = {
+    {"bar", "two_material_bar"},
+    {"cantilever", "magnetic_cantilever"},
+    {"chambers", "three_chamber_actuator"},
+    {"crawler", "dea_crawler"},
+    {"finger", "pneumatic_finger"},
+    {"gripper", "cable_gripper"},
+    {"strip", "acrylic_strip"},
+    {"tendons", "three_tendon_finger"},
+    {"two_fingers", "two_finger_gripper"},
+    {"two_materials", "cable_gripper_two_materials"},
+};
+
+constexpr const char* readme = "README.md";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+/// Commands of the sources' documents as they are typed beside a copy.
+std::string beside_copy(const std::string& text) {
+  return replaced(replaced(text, "build/softkin ", "softkin "), " examples/", " ");
+}
+
+std::vector<std::string> names_of(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (fs::exists(entry.path() / readme)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Example read_example(const fs::path& folder, const std::string& name) {
+  Example example;
+  example.name = name;
+  for (const auto& [word, of] : short_names)
+    if (of == name) example.short_name = word;
+  std::istringstream lines(beside_copy(read_file(folder / name / readme)));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("# ") && example.title.empty()) example.title = line.substr(2);
+    std::istringstream words(line);
+    std::string word;
+    if (!(words >> word) || word != "softkin") continue;
+    do example.command.push_back(word);
+    while (words >> word);
+    break;
+  }
+  for (const std::string& word : example.command)
+    if (word.ends_with(".yaml") && example.scene.empty()) example.scene = word;
+  return example;
+}
+
+std::vector<ExampleActuator> actuators_of(const fs::path& scene) {
+  std::vector<ExampleActuator> actuators;
+  for (const Actuator& each : compile(read_scene(scene)).actuators)
+    if (each.kind < ActuatorKind::motion)  // of the robot, not of what is around it
+      actuators.push_back({each.name, kind_name(each), command_unit(each), each.low, each.high});
+  return actuators;
+}
+
+/// Files of the folder and of those in it, relative to the folder of all examples.
+std::vector<fs::path> files_of(const fs::path& folder, const std::string& name) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / name))
+    if (entry.is_regular_file() && entry.path().extension() != ".pyc")  // pip compiles what it installs
+      files.push_back(entry.path().lexically_relative(folder));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Examples that scenes of this one name: "../pneumatic_finger/pneumatic_finger.msh".
+std::vector<std::string> neighbours_of(const fs::path& folder, const std::string& name) {
+  static const std::regex place(R"(file: *\.\./(\w+)/)");
+  std::vector<std::string> neighbours;
+  for (const fs::path& file : files_of(folder, name)) {
+    if (file.extension() != ".yaml") continue;
+    const std::string text = read_file(folder / file);
+    for (std::sregex_iterator found(text.begin(), text.end(), place), end; found != end; ++found)
+      if (const std::string other = (*found)[1]; fs::exists(folder / other / readme)) neighbours.push_back(other);
+  }
+  std::sort(neighbours.begin(), neighbours.end());
+  neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+  return neighbours;
+}
+
+Json json_of(const Example& example) {
+  Json actuators = Json::array();
+  for (const ExampleActuator& each : example.actuators)
+    actuators.push_back(
+        {{"name", each.name}, {"kind", each.kind}, {"unit", each.unit}, {"range", Json::array({each.low, each.high})}});
+  return {{"name", example.name},   {"short_name", example.short_name}, {"title", example.title},
+          {"scene", example.scene}, {"actuators", actuators},           {"command", example.command}};
+}
+
+}  // namespace
+
+fs::path examples_above(const fs::path& file) {
+  for (fs::path folder = file.parent_path(), last; folder != last; last = folder, folder = folder.parent_path()) {
+    std::error_code failure;
+    if (fs::path examples = folder / "share/softkin/examples"; fs::is_directory(examples, failure)) return examples;
+  }
+  throw InvalidInput(
+      "examples: they were not installed with this softkin: share/softkin/examples is in no folder above " +
+      file.string());
+}
+
+std::vector<Example> all_examples(const fs::path& folder) {
+  std::vector<Example> examples;
+  for (const std::string& name : names_of(folder)) {
+    examples.push_back(read_example(folder, name));
+    if (const std::string& scene = examples.back().scene; !scene.empty())
+      examples.back().actuators = actuators_of(folder / scene);
+  }
+  return examples;
+}
+
+Example find_example(const fs::path& folder, const std::string& name) {
+  const std::vector<std::string> names = names_of(folder);
+  std::vector<std::string> known, meant;
+  for (const std::string& each : names) {
+    if (each == name) return read_example(folder, each);
+    if (each.starts_with(name)) meant.push_back(each);
+    known.push_back(each);
+  }
+  for (const auto& [word, of] : short_names) {
+    if (word == name) return read_example(folder, of);
+    known.emplace_back(word);
+  }
+  if (name.empty() || meant.empty()) {
+    const bool near = !nearest_name(name, known).empty();
+    throw InvalidInput("examples: there is none named " + excerpt(name) + suggest_name(name, near ? known : names));
+  }
+  if (meant.size() > 1) {
+    std::string text = meant[0];
+    for (std::size_t i = 1; i < meant.size(); ++i) text += (i + 1 < meant.size() ? ", " : " or ") + meant[i];
+    throw InvalidInput("examples: " + excerpt(name) + " may be " + text);
+  }
+  return read_example(folder, meant[0]);
+}
+
+CopiedExample copy_example(const fs::path& folder, const std::string& name, const fs::path& to) {
+  CopiedExample copied{find_example(folder, name), {}};
+  std::vector<std::string> wanted = neighbours_of(folder, copied.example.name);
+  wanted.insert(wanted.begin(), copied.example.name);
+  std::vector<std::pair<fs::path, std::string>> missing;
+  for (const std::string& each : wanted)
+    for (const fs::path& file : files_of(folder, each)) {
+      const fs::path copy = to / file;
+      std::string content = read_file(folder / file);
+      if (file.filename() == readme) content = beside_copy(content);
+      copied.files.push_back(copy);
+      std::error_code failure;
+      if (!fs::exists(fs::symlink_status(copy, failure)))
+        missing.emplace_back(copy, std::move(content));
+      else if (read_file(copy) != content)
+        throw InvalidInput({copy.string()}, "is there already and not the example's: nothing was copied");
+    }
+  std::vector<Output> outputs;
+  for (const auto& [file, content] : missing) outputs.push_back({"examples copy", file});
+  const OutputFolders folders(outputs);
+  for (const auto& [file, content] : missing) write_file(file, content);
+  for (std::string& word : copied.example.command)
+    if (word.starts_with(copied.example.name + "/")) word = (to / word).lexically_normal().string();
+  return copied;
+}
+
+std::string to_json(const std::vector<Example>& examples) {
+  Json json = Json::array();
+  for (const Example& example : examples) json.push_back(json_of(example));
+  return json_text(json);
+}
+
+std::string to_json(const CopiedExample& copied) {
+  Json json = json_of(copied.example);
+  json.erase("actuators");
+  for (const fs::path& file : copied.files) json["files"].push_back(file.string());
+  return json_text(json);
+}
+
+}  // namespace softkin
