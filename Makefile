@@ -23,7 +23,7 @@ sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))(_deep)
 
 .PHONY: help setup build run python docs bench random fuzz format format-check clean
 .PHONY: test setup-tests test-release test-page test-python
-.PHONY: test-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep
+.PHONY: test-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep test-arm
 # one after the other: each of them uses every core
 .NOTPARALLEL:
 
@@ -31,6 +31,7 @@ help:
 	@echo 'make run           install what is missing, build, and bend the example finger by both formulations'
 	@echo 'make test          install what is missing, build, and test the release build, the page and Python: in short'
 	@echo 'make test-deep     the tests that take longer: every command of the documents, sanitizers, fuzzing, notebooks, benchmarks'
+	@echo 'make test-arm      build for aarch64, and run the tests of core, linear, energy and contact under qemu'
 	@echo 'make build         build build/softkin'
 	@echo 'make python        install what is missing, and the Python package in build-python (docs/python.md)'
 	@echo 'make docs          the documentation as a site, build-docs/site/index.html, its links checked; with robots to bend'
@@ -116,6 +117,13 @@ test-fuzz:
 	cmake --build --preset sanitize --target softkin_fuzz
 	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
 
+test-arm:
+	@$(SETUP) --arm
+	scripts/arm_sysroot.sh
+	cmake -S . -B build-arm/build -G Ninja --toolchain cmake/aarch64.cmake -DSOFTKIN_OPENCV=OFF -DSOFTKIN_BENCH=OFF -DSOFTKIN_TESTS=ON
+	cmake --build build-arm/build --target test_core test_linear test_energy test_contact
+	ctest --test-dir build-arm/build --parallel $(cores) --no-tests=error --tests-regex '^(core|(linear|energy|contact)_neon)$$'
+
 # the package with its $(extras), in a folder of its own: built where test-release built all but the extension module
 define install_package
 	@PYTHON=$(PYTHON) $(SETUP) --python
@@ -176,4 +184,4 @@ format-check:
 	@$(CLANG_FORMAT) --dry-run --Werror $(sources)
 
 clean:
-	rm -rf build build-debug build-docs build-sanitize build-threads
+	rm -rf build build-arm build-debug build-docs build-sanitize build-threads

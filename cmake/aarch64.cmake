@@ -1,5 +1,5 @@
 # Toolchain: builds for aarch64 (64-bit ARM) with Debian's cross compiler, and runs what it built under qemu.
-#   scripts/arm_sysroot.sh && cmake -S . -B build-arm/build -G Ninja --toolchain cmake/aarch64.cmake -DSOFTKIN_NATIVE=OFF
+#   scripts/arm_sysroot.sh && cmake -S . -B build-arm/build -G Ninja --toolchain cmake/aarch64.cmake
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)

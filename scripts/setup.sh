@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what softkin needs to build (with --tests: also what its tests need; with --python: what its Python package
-# needs of PYTHON, python3 if not said), and only what is missing.
+# needs of PYTHON, python3 if not said; with --arm: what building for aarch64 and running it here needs), and only what
+# is missing.
 # Exit codes: 0 everything is there, 2 it is not and could not be installed.
 set -euo pipefail
 
@@ -19,7 +20,8 @@ case "${1:-}" in
     "$python" -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
     "$python" -c 'import os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null || packages+=(python3-dev)
     ;;
-  *) echo "usage: scripts/setup.sh [--tests | --python]" >&2; exit 2 ;;
+  --arm) packages+=(g++-aarch64-linux-gnu qemu-user) ;;
+  *) echo "usage: scripts/setup.sh [--tests | --python | --arm]" >&2; exit 2 ;;
 esac
 
 fail() {

@@ -88,8 +88,7 @@ for python in "${pythons[@]}"; do
   "$python" -m venv --clear "$work/builder"
   # the library is the same for every one
   CXX=${CXX:-c++} run "$work/builder/bin/pip" wheel --no-deps --wheel-dir "$work/raw" "$source" \
-    --config-settings=build-dir="$build" --config-settings=cmake.define.SOFTKIN_NATIVE=OFF \
-    --config-settings=cmake.define.SOFTKIN_OPENCV=OFF
+    --config-settings=build-dir="$build" --config-settings=cmake.define.SOFTKIN_OPENCV=OFF
 done
 finish "$work/raw"
 newest=$(ls -t "$out"/softkin-*x86_64.whl | head -n 1)
@@ -107,7 +106,7 @@ for python in "${pythons[@]}"; do
   echo "wheels: building for aarch64 with $("$python" --version)"
   # The headers of Python are this machine's: on 64-bit Linux they differ in nothing that a module uses.
   PATH=$work/tools/bin:$PATH run cmake -S "$source" -B "$build-arm" -G Ninja --toolchain "$source/cmake/aarch64.cmake" \
-    -DSOFTKIN_NATIVE=OFF -DSOFTKIN_OPENCV=OFF -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=OFF -DSOFTKIN_PYTHON=ON \
+    -DSOFTKIN_OPENCV=OFF -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=OFF -DSOFTKIN_PYTHON=ON \
     -UPython_* -UPYTHON_* -DPython_EXECUTABLE="$("$python" -c 'import sys; print(sys.executable)')" \
     -DPython_INCLUDE_DIR="$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')" \
     -Dnanobind_DIR="$("$work/tools/bin/python" -m nanobind --cmake_dir)"

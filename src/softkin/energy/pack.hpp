@@ -48,22 +48,25 @@ SOFTKIN_INLINE MaskOf<B> mask_part(const F& f, const PackOf<B>& a, const Others&
   return r;
 }
 
-#define SOFTKIN_OPERATOR(op)                                                              \
-  template <int B>                                                                        \
-  SOFTKIN_INLINE PackOf<B> operator op(const PackOf<B>& a, const PackOf<B>& b) {          \
-    return each_part([](auto x, auto y) [[gnu::always_inline]] { return x op y; }, a, b); \
-  }                                                                                       \
-  template <int B>                                                                        \
-  SOFTKIN_INLINE PackOf<B> operator op(const PackOf<B>& a, double b) {                    \
-    return each_part([b](auto x) [[gnu::always_inline]] { return x op b; }, a);           \
-  }                                                                                       \
-  template <int B>                                                                        \
-  SOFTKIN_INLINE PackOf<B> operator op(double a, const PackOf<B>& b) {                    \
-    return each_part([a](auto y) [[gnu::always_inline]] { return a op y; }, b);           \
-  }                                                                                       \
-  template <int B, class Other>                                                           \
-  SOFTKIN_INLINE PackOf<B>& operator op##=(PackOf<B>& a, const Other& b) {                \
-    return a = a op b;                                                                    \
+#define SOFTKIN_OPERATOR(op)                                                         \
+  template <int B>                                                                   \
+  SOFTKIN_INLINE PackOf<B> operator op(const PackOf<B>& a, const PackOf<B>& b) {     \
+    return each_part(                                                                \
+        [](auto x, auto y) __attribute__((always_inline)) { return x op y; }, a, b); \
+  }                                                                                  \
+  template <int B>                                                                   \
+  SOFTKIN_INLINE PackOf<B> operator op(const PackOf<B>& a, double b) {               \
+    return each_part(                                                                \
+        [b](auto x) __attribute__((always_inline)) { return x op b; }, a);           \
+  }                                                                                  \
+  template <int B>                                                                   \
+  SOFTKIN_INLINE PackOf<B> operator op(double a, const PackOf<B>& b) {               \
+    return each_part(                                                                \
+        [a](auto y) __attribute__((always_inline)) { return a op y; }, b);           \
+  }                                                                                  \
+  template <int B, class Other>                                                      \
+  SOFTKIN_INLINE PackOf<B>& operator op##=(PackOf<B>& a, const Other& b) {           \
+    return a = a op b;                                                               \
   }
 SOFTKIN_OPERATOR(+)
 SOFTKIN_OPERATOR(-)
@@ -71,14 +74,16 @@ SOFTKIN_OPERATOR(*)
 SOFTKIN_OPERATOR(/)
 #undef SOFTKIN_OPERATOR
 
-#define SOFTKIN_COMPARISON(op)                                                            \
-  template <int B>                                                                        \
-  SOFTKIN_INLINE MaskOf<B> operator op(const PackOf<B>& a, const PackOf<B>& b) {          \
-    return mask_part([](auto x, auto y) [[gnu::always_inline]] { return x op y; }, a, b); \
-  }                                                                                       \
-  template <int B>                                                                        \
-  SOFTKIN_INLINE MaskOf<B> operator op(const PackOf<B>& a, double b) {                    \
-    return mask_part([b](auto x) [[gnu::always_inline]] { return x op b; }, a);           \
+#define SOFTKIN_COMPARISON(op)                                                       \
+  template <int B>                                                                   \
+  SOFTKIN_INLINE MaskOf<B> operator op(const PackOf<B>& a, const PackOf<B>& b) {     \
+    return mask_part(                                                                \
+        [](auto x, auto y) __attribute__((always_inline)) { return x op y; }, a, b); \
+  }                                                                                  \
+  template <int B>                                                                   \
+  SOFTKIN_INLINE MaskOf<B> operator op(const PackOf<B>& a, double b) {               \
+    return mask_part(                                                                \
+        [b](auto x) __attribute__((always_inline)) { return x op b; }, a);           \
   }
 SOFTKIN_COMPARISON(<)
 SOFTKIN_COMPARISON(>)
@@ -111,7 +116,8 @@ SOFTKIN_INLINE MaskOf<B> operator~(const MaskOf<B>& a) {
 
 template <int B>
 SOFTKIN_INLINE PackOf<B> operator-(const PackOf<B>& a) {
-  return each_part([](auto x) [[gnu::always_inline]] { return -x; }, a);
+  return each_part(
+      [](auto x) __attribute__((always_inline)) { return -x; }, a);
 }
 
 template <class Pack>
@@ -140,22 +146,26 @@ inline PackOf<B> log(const PackOf<B>& a) {
 
 template <int B>
 SOFTKIN_INLINE PackOf<B> select(const MaskOf<B>& condition, const PackOf<B>& yes, const PackOf<B>& no) {
-  return each_part([](auto y, auto n, auto c) [[gnu::always_inline]] { return c ? y : n; }, yes, no, condition);
+  return each_part(
+      [](auto y, auto n, auto c) __attribute__((always_inline)) { return c ? y : n; }, yes, no, condition);
 }
 
 template <int B>
 SOFTKIN_INLINE PackOf<B> min(const PackOf<B>& a, const PackOf<B>& b) {
-  return each_part([](auto x, auto y) [[gnu::always_inline]] { return x < y ? x : y; }, a, b);
+  return each_part(
+      [](auto x, auto y) __attribute__((always_inline)) { return x < y ? x : y; }, a, b);
 }
 
 template <int B>
 SOFTKIN_INLINE PackOf<B> max(const PackOf<B>& a, const PackOf<B>& b) {
-  return each_part([](auto x, auto y) [[gnu::always_inline]] { return x > y ? x : y; }, a, b);
+  return each_part(
+      [](auto x, auto y) __attribute__((always_inline)) { return x > y ? x : y; }, a, b);
 }
 
 template <int B>
 SOFTKIN_INLINE PackOf<B> abs(const PackOf<B>& a) {
-  return each_part([](auto x) [[gnu::always_inline]] { return x < 0 ? -x : x; }, a);
+  return each_part(
+      [](auto x) __attribute__((always_inline)) { return x < 0 ? -x : x; }, a);
 }
 
 template <int B>
@@ -176,7 +186,7 @@ inline PackOf<B> inverse_cbrt(const PackOf<B>& a) {
   const MaskOf<B> ordinary = (a > 1e-290) & (a < 1e290);
   if (any(~ordinary)) return each_lane(a, [](double x) { return 1 / __builtin_cbrt(x); });
   return each_part(
-      [](auto x) [[gnu::always_inline]] {
+      [](auto x) __attribute__((always_inline)) {
         using Bits = typename MaskOf<B>::Part;
         using Part = typename PackOf<B>::Part;
         const Bits third = (((Bits)x >> 32) * 0x55555556) >> 32;

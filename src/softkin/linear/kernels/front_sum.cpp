@@ -7,6 +7,22 @@ namespace {
 
 using namespace softkin::SOFTKIN_TARGET;
 
+/// to += from, less than 2 `Bytes` of them: halves, quarters and so on of a register.
+template <class Number, int Bytes>
+[[gnu::always_inline]] inline void add_few(Number* to, const Number* from, Index length) {
+  constexpr Index lanes = Bytes / static_cast<Index>(sizeof(Number));
+  if (length >= lanes) {
+    typedef Number Some __attribute__((vector_size(Bytes)));
+    Some a, b;
+    std::memcpy(&a, to, sizeof a);
+    std::memcpy(&b, from, sizeof b);
+    a += b;
+    std::memcpy(to, &a, sizeof a);
+    to += lanes, from += lanes, length -= lanes;
+  }
+  if constexpr (lanes > 1) add_few<Number, Bytes / 2>(to, from, length);
+}
+
 /// to += from, for runs that are mostly short.
 template <class Number>
 [[gnu::always_inline]] inline void add_run(Number* to, const Number* from, Index length) {
@@ -22,7 +38,7 @@ template <class Number>
     _mm512_mask_storeu_ps(to, some, _mm512_maskz_loadu_ps(some, to) + _mm512_maskz_loadu_ps(some, from));
   }
 #else
-  for (Index i = 0; i < length; ++i) to[i] += from[i];
+  add_few<Number, vector_bytes / 2>(to, from, length);
 #endif
 }
 
