@@ -411,7 +411,7 @@ TEST(FkHelp, NamesEveryOptionInALine) {
 TEST(FkHelp, WithoutACommandOneLineHelps) {
   EXPECT_EQ(run_program({}).errors,
             "softkin: a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, "
-            "mesh, view) is "
+            "mesh, view, examples) is "
             "required "
             "(softkin --help tells more)\n");
   EXPECT_EQ(run_program({}).exit_code, 2);

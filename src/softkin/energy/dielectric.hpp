@@ -4,14 +4,15 @@
 
 namespace softkin::energy {
 
-// DielectricPrisms, prisms between two electrodes: the potential is 0 on their first triangle and the voltage on the second, and between
-// them what the interpolation of the nodes makes of it.
+// DielectricPrisms, prisms between two electrodes: the potential is 0 on their first triangle and the voltage on the
+// second, and between them what the interpolation of the nodes makes of it.
 //
 // Energy per rest volume: -eps/2 J |F^-T E_0|^2, with E_0 = voltage grad(zeta), zeta the share of the voltage at a
 // point: the electric enthalpy of a linear dielectric whose voltage is held, in the rest frame.
 //
 // source  Z. Suo, X. Zhao, W. Greene, JMPS 56, 2008, "A nonlinear field theory of deformable dielectrics", ideal
 //         dielectric elastomers
+
 /// Permittivity of a vacuum [MPa per (kV/mm)^2]: 8.8541878128e-12 F/m.
 inline constexpr double vacuum_permittivity_MPa = 8.8541878128e-6;
 

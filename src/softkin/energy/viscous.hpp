@@ -4,7 +4,8 @@
 
 namespace softkin::energy {
 
-// ViscousBlock: Maxwell branches of the elements of a block over a time step: springs and dampers in series, beside the elastic law.
+// ViscousBlock: Maxwell branches of the elements of a block over a time step: springs and dampers in series, beside the
+// elastic law.
 //
 // source  a branch stores G/2 (bar C : C_v^-1 - 3) and flows by dC_v/dt = (bar C - (bar C : C_v^-1) C_v / 3) / tau,
 //         det C_v = 1; bar C = J^(-2/3) C, of a dielectric elastomer that of the elastic part. Reese, Govindjee 1998.

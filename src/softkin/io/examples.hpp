@@ -24,14 +24,19 @@ struct Example {
 };
 
 /// The folder of all examples: share/softkin/examples in one of the folders above this program or library.
+///
 /// throws  InvalidInput: there is none
 [[nodiscard]] std::filesystem::path examples_above(const std::filesystem::path& file);
 
-/// All of them, sorted by name. throws  InvalidInput naming what cannot be read
+/// All of them, sorted by name.
+///
+/// throws  InvalidInput naming what cannot be read
 [[nodiscard]] std::vector<Example> all_examples(const std::filesystem::path& folder);
 
 /// One by its name, its short name, or a beginning that no other name has; without its actuators, which take reading
-/// its mesh. throws  InvalidInput naming the nearest ones
+/// its mesh.
+///
+/// throws  InvalidInput naming the nearest ones
 [[nodiscard]] Example find_example(const std::filesystem::path& folder, const std::string& name);
 
 struct CopiedExample {
@@ -39,8 +44,9 @@ struct CopiedExample {
   std::vector<std::filesystem::path> files;  // all that are there now, those of its neighbours last
 };
 
-/// Copies an example into a folder of its name below `to`, with those beside it whose meshes it takes. Commands in its README
-/// lose what they have of the sources' places.
+/// Copies an example into a folder of its name below `to`, with those beside it whose meshes it takes. Commands in its
+/// README lose what they have of the sources' places.
+///
 /// throws  InvalidInput, before anything is written, where a file is there that is not the same
 [[nodiscard]] CopiedExample copy_example(const std::filesystem::path& folder, const std::string& name,
                                          const std::filesystem::path& to);

@@ -5,7 +5,8 @@
 
 namespace softkin::linear {
 
-/// Columns [begin, begin + width) of L: below the diagonal, row by row, then its rows further down, `width` values each.
+/// Columns [begin, begin + width) of L: below the diagonal, row by row, then its rows further down, `width` values
+/// each.
 struct SupernodeColumns {
   Index begin, width;
   Index row_count, inner_rows;     // rows further down, and how many of them come before the top
