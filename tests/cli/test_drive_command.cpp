@@ -144,6 +144,56 @@ TEST(DriveCommand, TakesThePressuresOfVolumes) {
   EXPECT_TRUE(has(folder.drive({"--dry-run"}).output, "t_s,air_kPa\n0,0\n1,33\n"));
 }
 
+/// Where an actuator has a measured curve, a pump gets the pressures of that, not those of the model: by columns in kPa
+/// as they stand, by volumes as the report of either formulation has them.
+TEST(DriveCommand, TakesThePressuresOfCurves) {
+  const std::string folder = SOFTKIN_SOURCE_DIR "/examples/three_chamber_actuator/";
+  const std::string scene = folder + "measured/actuator.yaml";
+  const testing::TemporaryFolder work;
+  const std::string hardware = folder + "three_chamber_actuator.hardware.yaml";
+  const std::string by_pressure = work.write("pressures.csv", "t_s,air1_kPa\n0,0\n1,60\n2,120\n");
+  const std::string expected = "t_s,regulator1_kPa\n0,0\n1,60\n2,120\n";
+  const auto schedule_of = [&](const std::string& commands, const std::vector<std::string>& options) {
+    const std::string schedule = work / "schedule.csv";
+    std::vector<std::string> arguments{"drive", scene, commands, "--hardware", hardware, "--schedule", schedule};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return read_text(schedule);
+  };
+  EXPECT_EQ(schedule_of(by_pressure, {}), expected);
+
+  for (const std::string formulation : {"target-shape", "physical"}) {
+    const std::string report = work / (formulation + ".json");
+    const ProgramResult fk =
+        run_program({"fk", scene, "--path", by_pressure, "--formulation", formulation, "--report", report});
+    ASSERT_EQ(fk.exit_code, 0) << fk.errors;
+    std::string rows = "t_s,air1\n";
+    const json steps = json::parse(read_text(report))["steps"];
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      rows += std::to_string(i) + "," + steps[i]["actuation"]["air1"].dump() + "\n";
+    const std::string by_volume = work.write("volumes.csv", rows);
+    const std::string text = schedule_of(by_volume, {"--pressures", report});
+    std::istringstream lines(text);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "t_s,regulator1_kPa");
+    for (const double kpa : {0.0, 60.0, 120.0}) {
+      ASSERT_TRUE(std::getline(lines, line));
+      EXPECT_NEAR(std::stod(line.substr(line.find(',') + 1)), kpa, 1e-6) << formulation << ": " << text;
+    }
+    const ProgramResult twice =
+        run_program({"drive", scene, by_pressure, "--hardware", hardware, "--pressures", report, "--dry-run"});
+    EXPECT_EQ(twice.exit_code, 2);
+    EXPECT_NE(twice.errors.find("its pressures are of no use"), std::string::npos) << twice.errors;
+  }
+  const std::string both = work.write("both.csv", "t_s,air1_kPa,air1_pressure_kPa\n0,0,0\n1,60,70\n");
+  const ProgramResult refused = run_program({"drive", scene, both, "--hardware", hardware, "--dry-run"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.errors.find("columns 'air1_pressure_kPa' and 'air1_kPa' both say its pressure"), std::string::npos)
+      << refused.errors;
+}
+
 /// Pressures of a map are those of the solver; what it was not made for is refused.
 TEST(DriveCommand, TakesThePressuresOfAMap) {
   const DriveFolder folder(one_motor + "chambers: [{actuator: air, limits_kPa: [0, 5000]}]\n", testing::scene_to_map());

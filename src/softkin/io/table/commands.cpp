@@ -150,6 +150,7 @@ class Reader {
 
   Commands read(const std::string& report) {
     take_pressures();
+    take_curve_pressures();
     for (const std::string& column : table_.columns)
       if (const auto a = actuator_of_column(model_, column)) commands_.commanded[static_cast<std::size_t>(*a)] = true;
     const std::vector<ActuationStep> steps = PathReader(model_, table_, Settings(model_.actuators.size())).steps();
@@ -182,6 +183,24 @@ class Reader {
     }
   }
 
+  /// What is commanded by a curve of pressure is what a pump is to be sent.
+  void take_curve_pressures() {
+    for (std::size_t column = 0; column < table_.columns.size(); ++column)
+      for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+        const Actuator& actuator = model_.actuators[a];
+        const std::string unit = curve_unit_of(actuator, table_.columns[column]);
+        if (unit.empty() || !is_commanded_by_volume(actuator)) continue;
+        if (commands_.pressure_known[a])
+          throw InvalidInput({table_.file}, "columns '" + actuator.name + pressure_end + "' and '" +
+                                                table_.columns[column] +
+                                                "' both say its pressure; leave out one of them");
+        commands_.pressure_known[a] = true;
+        const double gauge_zero = unit == "kPa_abs" ? actuator.curve->atmosphere_kPa : 0;
+        for (std::size_t row = 0; row < table_.rows.size(); ++row)
+          pressures_[row][static_cast<Index>(a)] = table_.rows[row][column] - gauge_zero;
+      }
+  }
+
   [[nodiscard]] std::optional<std::size_t> chamber_of(const std::string& column) const {
     for (std::size_t a = 0; a < model_.actuators.size(); ++a)
       if (is_commanded_by_volume(model_.actuators[a]) && column == model_.actuators[a].name + pressure_end) return a;
@@ -199,7 +218,7 @@ class Reader {
     } catch (const Json::exception&) {
       throw InvalidInput({file},
                          "this is no report of softkin, or it has no pressures: those come from the physical "
-                         "formulation");
+                         "formulation, or from measured curves");
     }
   }
 
@@ -218,9 +237,21 @@ class Reader {
       throw InvalidInput({file}, "its step " + std::to_string(index) + " has not converged: it has no pressures");
     for (const std::size_t a : chambers) {
       row.pressures_kpa[static_cast<Index>(a)] =
-          step.at("actuators").at(model_.actuators[a].name).at("pressure_kPa").get<double>();
+          pressure_of(file, index, step.at("actuators").at(model_.actuators[a].name), model_.actuators[a]);
       commands_.pressure_known[a] = true;
     }
+  }
+
+  /// The gauge pressure that a report has of a chamber: that of its measured curve, where there is one, before the
+  /// model's.
+  [[nodiscard]] static double pressure_of(const std::string& file, std::size_t index, const Json& told,
+                                          const Actuator& actuator) {
+    if (!actuator.curve || !told.contains(curve_key(*actuator.curve))) return told.at("pressure_kPa").get<double>();
+    const Json& by_curve = told.at(curve_key(*actuator.curve));
+    if (by_curve.is_null())
+      throw InvalidInput({file}, "its step " + std::to_string(index) + " has no pressure of '" + actuator.name +
+                                     "': its curve does not reach so far");
+    return by_curve.get<double>();
   }
 
   const Model& model_;
@@ -247,7 +278,8 @@ std::vector<std::size_t> chambers_without_pressures(const Model& model, const Co
     if (!is_commanded_by_volume(model.actuators[a]) || !commands.commanded[a]) continue;
     if (commands.pressure_known[a])
       throw InvalidInput({file}, "its pressures are of no use: " + commands.file + " has the column '" +
-                                     model.actuators[a].name + pressure_end + "' already");
+                                     model.actuators[a].name + pressure_end + "' already" +
+                                     (model.actuators[a].curve ? curve_columns(model.actuators[a]) : ""));
     chambers.push_back(a);
   }
   if (chambers.empty())

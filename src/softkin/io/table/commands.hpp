@@ -29,7 +29,8 @@ struct ActuationStep {
 [[nodiscard]] std::optional<Index> actuator_of_column(const Model& model, const std::string& column);
 
 /// Reads a file of commands, and the pressures of chambers that are commanded by volume: from columns air_pressure_kPa,
-/// or from the report of the run that made the commands (empty: none).
+/// from columns that command by a measured curve (air_kPa), or from the report of the run that made the commands
+/// (empty: none), where a measured curve's comes before the model's.
 ///
 /// throws  InvalidInput naming file and line: what fk --path refuses; pressures of other actuators or given twice; a
 ///         report of other commands
