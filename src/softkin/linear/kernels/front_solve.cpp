@@ -25,10 +25,11 @@ Few values(const float* l) {
 #endif
 }
 
-double sum(const Few& r) {
-  if constexpr (height == 8)
+template <class Lanes>
+double sum(const Lanes& r) {
+  if constexpr (sizeof(Lanes) == 64)
     return ((r[0] + r[4]) + (r[2] + r[6])) + ((r[1] + r[5]) + (r[3] + r[7]));
-  else if constexpr (height == 4)
+  else if constexpr (sizeof(Lanes) == 32)
     return (r[0] + r[2]) + (r[1] + r[3]);
   else
     return r[0] + r[1];
