@@ -103,8 +103,8 @@ void meet_group(const Askers& askers, const One (&each)[8], const TreeLevels& tr
   const One around = tree.count == 1 ? joint(boxes) : lane_of(tree.boxes[1][group / 8], group % 8);
   for (unsigned some = may_meet(askers.boxes, around); some != 0; some &= some - 1) {
     const int lane = __builtin_ctz(some);
-    unsigned bits =
-        may_meet(boxes, each[lane]) & ~that_share<of_other, of_asker>(tree.nodes[group], *askers.nodes, lane);
+    unsigned bits = may_meet(boxes, each[lane]);
+    if constexpr (of_asker > 0) bits &= ~that_share<of_other, of_asker>(tree.nodes[group], *askers.nodes, lane);
     if (group == askers.own) bits &= ~0u << (lane + 1);
     if (bits != 0) met(context, group, lane, bits);
   }

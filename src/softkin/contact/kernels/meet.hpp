@@ -23,7 +23,7 @@ struct alignas(32) EightNodes {
 /// Levels of a WideTree, that of its items first.
 struct TreeLevels {
   const EightLanes* boxes[12];  // 11 levels of eight hold what an Index counts
-  const EightNodes* nodes;  // of the items
+  const EightNodes* nodes;      // of the items
   Index count;
 };
 
@@ -41,7 +41,7 @@ using Met = void (*)(void* context, Index group, int lane, unsigned bits);
 
 SOFTKIN_KERNELS(
     /// Calls met(context, ...) for all that may be met on the way, as moves against each other tell, but for what has a
-    /// vertex in common; always in the same order.
+    /// vertex in common; always in the same order. <0, 0>: vertices are not looked at, nodes may be null.
     template <int of_asker, int of_other>
     void meet(const Askers& askers, const TreeLevels& tree, Met met, void* context);)
 
