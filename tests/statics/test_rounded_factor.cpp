@@ -28,6 +28,10 @@ struct Bent {
   Points shape;
 };
 
+double tolerance_mm(const Model& model) {
+  return 1e-7 * model.diagonal_mm;
+}
+
 Bent bend(const Model& model, Precision precision) {
   const physical::System system(model);
   physical::System::Workspace work(system);
@@ -35,7 +39,7 @@ Bent bend(const Model& model, Precision precision) {
   Team team(1);
   Bent bent;
   const ProgressCallback silent;
-  physical::Newton newton(system, work, team, {1e-7 * model.diagonal_mm, 1e-6, 200, true}, silent, bent.report);
+  physical::Newton newton(system, work, team, {tolerance_mm(model), 1e-6, 200, true}, silent, bent.report);
   physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
   bent.outcome = newton.solve({Actuation::Constant(1, 0.99), 1}, {true}, physical::Newton::Policy::descend, false, at);
   bent.shape = at.positions;
@@ -46,19 +50,23 @@ Bent bend(const Model& model, Precision precision) {
 
 /// A factor in single precision makes a long strip too stiff in bending, and where that shows steps are refined, or a
 /// factor is made in double precision: there are hardly more of them than with that alone, and they lead to the same.
+/// Where rounding, which each instruction set does in its own order, leads where no step helps, double precision begins
+/// again: then there are at most twice as many.
 TEST(RoundedFactor, LongStripsBendAsInDouble) {
-  int single_factors = 0;
+  int single_factors = 0, begun_again = 0;
   for (const double cell : {2.0, 1.0, 0.5})
     for (const int cells : {50, 100, 200, 400}) {
       const Model model = compile(strip(cells, cells * cell));
       const Bent single = bend(model, Precision::enough), twice = bend(model, Precision::twice);
       EXPECT_EQ(single.outcome, twice.outcome) << cell << " " << cells;
-      EXPECT_LE(single.report.factorisations, twice.report.factorisations + 1) << cell << " " << cells;
+      EXPECT_LE(single.report.factorisations, 2 * twice.report.factorisations) << cell << " " << cells;
+      begun_again += single.report.factorisations > twice.report.factorisations + 1;
       EXPECT_LE(single.report.iterations, 2 * twice.report.iterations) << cell << " " << cells;
-      EXPECT_LT(distance(single.shape, twice.shape), 1e-6) << cell << " " << cells;
+      EXPECT_LT(distance(single.shape, twice.shape), 2 * tolerance_mm(model)) << cell << " " << cells;
       single_factors += single.report.factorisations - single.report.factorisations_in_double;
     }
   EXPECT_GT(single_factors, 5);
+  EXPECT_LE(begun_again, 2);
 }
 
 /// Far from straight a rounded factor may lead where no step helps: then double precision begins again.
@@ -68,7 +76,7 @@ TEST(RoundedFactor, WhatGetsStuckIsTriedInDouble) {
     const Bent single = bend(model, Precision::enough), twice = bend(model, Precision::twice);
     EXPECT_EQ(single.outcome, physical::Newton::Outcome::converged) << cells;
     EXPECT_EQ(single.outcome, twice.outcome) << cells;
-    EXPECT_LT(distance(single.shape, twice.shape), 1e-6) << cells;
+    EXPECT_LT(distance(single.shape, twice.shape), 2 * tolerance_mm(model)) << cells;
   }
 }
 
