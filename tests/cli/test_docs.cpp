@@ -232,6 +232,7 @@ bool number_in(const std::string& word, double& value, double& tolerance) {
   if (digits.find("e-") != std::string::npos) tolerance = 1e-3;
   char* end = nullptr;
   value = std::strtod(digits.c_str(), &end);
+  if (decimals == 0 && tolerance == 0 && std::abs(value) > 500) tolerance = 1;  // whole steps of a motor, from a length
   return end == digits.c_str() + digits.size();
 }
 
