@@ -84,7 +84,7 @@ def test_notebook(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     if example.stem in CHECKS:
         notebook.cells.append(nbformat.v4.new_code_cell(f"PATIENCE = {patience}\n{CHECKS[example.stem]}"))
     client = nbclient.NotebookClient(
-        notebook, timeout=300 * patience, kernel_name="python3", resources={"metadata": {"path": tmp_path}}
+        notebook, timeout=int(300 * patience), kernel_name="python3", resources={"metadata": {"path": tmp_path}}
     )
     client.execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", ())]
@@ -98,7 +98,7 @@ def test_notebook(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 @pytest.mark.deep
 def test_script_with_processes(tmp_path: Path, patience: float) -> None:
     script = ROOT / "examples" / "python" / "stiffness_study.py"
-    run = subprocess.run([sys.executable, str(script)], cwd=tmp_path, capture_output=True, text=True, timeout=300 * patience)
+    run = subprocess.run([sys.executable, str(script)], cwd=tmp_path, capture_output=True, text=True, timeout=int(300 * patience))
     assert run.returncode == 0, run.stderr
     lines = run.stdout.splitlines()
     assert len(lines) == 8 and lines[0].startswith(" 0.20 MPa: ") and lines[7].startswith(" 2.00 MPa: ")
