@@ -48,8 +48,7 @@ function(softkin_precompile target)
   endif()
 endfunction()
 
-# softkin_compile_together(TARGET): its files in groups, for half the work; not rooms with inner loops, which came out
-# fastest file by file
+# softkin_compile_together(TARGET): its files in groups, for half the work; not kernels
 function(softkin_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTKIN_UNITY} UNITY_BUILD_BATCH_SIZE 10)
   # a class of a test file is nobody else's
@@ -101,4 +100,5 @@ function(softkin_room name)
   target_link_libraries(softkin_${name} PUBLIC softkin_settings ${ARGN})
   set_target_properties(softkin_${name} PROPERTIES EXPORT_NAME ${name})
   softkin_precompile(softkin_${name})
+  softkin_compile_together(softkin_${name})
 endfunction()

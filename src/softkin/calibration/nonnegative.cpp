@@ -1,4 +1,3 @@
-#include <Eigen/QR>
 #include <softkin/calibration/nonnegative.hpp>
 #include <softkin/core/dense.hpp>
 #include <vector>
@@ -18,9 +17,11 @@ struct Compressed {
     }
     right = b;
     if (full.rows() <= full.cols()) return;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
-    right = (qr.householderQ().transpose() * b).head(full.cols());
-    matrix = qr.matrixQR().topRows(full.cols()).triangularView<Eigen::Upper>();
+    Eigen::MatrixXd both(full.rows(), full.cols() + 1);
+    both << matrix, b;
+    const Eigen::MatrixXd triangle = triangle_of(both);
+    matrix = triangle.topLeftCorner(full.cols(), full.cols());
+    right = triangle.topRightCorner(full.cols(), 1);
   }
 
   Eigen::MatrixXd matrix;

@@ -1,4 +1,3 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,7 +43,7 @@ struct NormalEquations {
   [[nodiscard]] VectorXd step(double damping) const {
     Eigen::MatrixXd damped = matrix;
     damped.diagonal().array() += damping;
-    return spread(-scale.cwiseProduct(damped.ldlt().solve(right)), 0);
+    return spread(-scale.cwiseProduct(solve_symmetric(damped, right)), 0);
   }
   /// Of every unknown by what these are of those that move; rest: the others.
   [[nodiscard]] VectorXd spread(const VectorXd& some, double rest) const {

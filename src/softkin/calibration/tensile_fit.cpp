@@ -1,4 +1,3 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <softkin/calibration/tensile_fit.hpp>
@@ -97,7 +96,7 @@ Eigen::VectorXd bounded_fit(const Eigen::MatrixXd& columns, const Eigen::VectorX
   at_bound = row.dot(free) < bound;
   if (!at_bound) return free;
   const Eigen::MatrixXd normal = (scale.asDiagonal() * columns.transpose() * columns * scale.asDiagonal());
-  const Eigen::VectorXd away = scale.cwiseProduct(normal.ldlt().solve(scale.cwiseProduct(row)));
+  const Eigen::VectorXd away = scale.cwiseProduct(solve_symmetric(normal, scale.cwiseProduct(row)));
   return free + away * (bound - row.dot(free)) / row.dot(away);
 }
 

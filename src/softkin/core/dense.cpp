@@ -1,15 +1,10 @@
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <cmath>
 #include <softkin/core/dense.hpp>
 
 namespace softkin {
-
-SingularValues singular_values(const Eigen::MatrixXd& matrix) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
-  return {svd.singularValues(), svd.matrixV()};
-}
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
@@ -20,9 +15,40 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-LeastSquares least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
-  return {qr.solve(right), qr.rank()};
+Vec3 principal_values(const Mat3& symmetric) {
+  return Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  return matrix.ldlt().solve(right);
+}
+
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) {
+  return Eigen::FullPivLU<Eigen::MatrixXd>(matrix).inverse();
+}
+
+CholeskyFactor::CholeskyFactor(const Eigen::MatrixXd& matrix) : lower_(matrix) {
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(lower_);
+  positive_ = factor.info() == Eigen::Success;
+  lower_.triangularView<Eigen::StrictlyUpper>().setZero();
+}
+
+Eigen::MatrixXd CholeskyFactor::solve(const Eigen::MatrixXd& right) const {
+  Eigen::MatrixXd x = right;
+  solve_lower(x);
+  lower_.triangularView<Eigen::Lower>().transpose().solveInPlace(x);
+  return x;
+}
+
+Eigen::VectorXd CholeskyFactor::solve(const Eigen::VectorXd& right) const {
+  Eigen::VectorXd x = right;
+  lower_.triangularView<Eigen::Lower>().solveInPlace(x);
+  lower_.triangularView<Eigen::Lower>().transpose().solveInPlace(x);
+  return x;
+}
+
+void CholeskyFactor::solve_lower(Eigen::MatrixXd& columns) const {
+  lower_.triangularView<Eigen::Lower>().solveInPlace(columns);
 }
 
 Eigen::VectorXd lopsided(Eigen::Index size) {

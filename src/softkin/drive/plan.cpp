@@ -8,8 +8,8 @@ namespace softkin::drive {
 
 namespace {
 
-constexpr std::size_t longest_line = 78;  // of 96, less number, checksum and end
-constexpr std::size_t moves_ahead = 64;   // that a board plans, at most
+constexpr std::size_t longest_command = 78;  // of 96, less number, checksum and end
+constexpr std::size_t moves_ahead = 64;      // that a board plans, at most
 
 std::string coordinate(double value) {
   std::string text = decimal(value, 5);
@@ -103,7 +103,7 @@ class Writer {
   }
 
   void add_line(std::string text, double patience, std::size_t row) {
-    if (text.size() > longest_line)
+    if (text.size() > longest_command)
       throw InvalidInput("a line of G-code is longer than Marlin reads: " + text +
                          ": use fewer axes, or more mm of cable per mm of axis (steps_per_mm)");
     program_.lines.push_back({std::move(text), patience, position(), row});

@@ -1,5 +1,5 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <softkin/core/dense.hpp>
 #include <softkin/energy/rotation.hpp>
 
 namespace softkin::energy {
@@ -12,9 +12,8 @@ void davenport(const double (&correlation)[9], double (&quaternion)[4]) {
   k.block<1, 3>(0, 1) = a.transpose();
   k.block<3, 1>(1, 0) = a;
   k.block<3, 3>(1, 1) = h + h.transpose() - h.trace() * Mat3::Identity();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(k);
   Eigen::Map<Eigen::Vector4d> q(quaternion);
-  q = eigen.eigenvectors().col(3).normalized();
+  q = symmetric_eigen(k).vectors.col(3).normalized();
 }
 
 Mat3 best_rotation(const Mat3& correlation) {

@@ -1,6 +1,6 @@
 #include <libqhull_r/libqhull_r.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/hull.hpp>
 
@@ -79,7 +80,7 @@ Frame frame_of(const Points& points) {
   frame.centre = points.colwise().mean();
   const Points centred = points.rowwise() - frame.centre.transpose();
   const Mat3 spread = centred.transpose() * centred;
-  frame.axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().rowwise().reverse();
+  frame.axes = symmetric_eigen(spread).vectors.rowwise().reverse();
   const Points turned = centred * frame.axes;
   frame.extents = (turned.colwise().maxCoeff() - turned.colwise().minCoeff()).transpose();
   return frame;

@@ -1,4 +1,3 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/dense.hpp>
@@ -38,11 +37,11 @@ struct Region {
 /// Are all eigenvalues above so much? By determinant and trace, the others being as large as they may: where that does
 /// not tell, false.
 bool clearly_above(const Eigen::MatrixXd& symmetric, double least) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(symmetric);
-  if (factor.info() != Eigen::Success) return false;
+  const CholeskyFactor factor(symmetric);
+  if (!factor.positive()) return false;
   const Eigen::Index others = symmetric.rows() - 1;
   double bound = 1;
-  for (Eigen::Index i = 0; i <= others; ++i) bound *= factor.matrixLLT()(i, i) * factor.matrixLLT()(i, i);
+  for (Eigen::Index i = 0; i <= others; ++i) bound *= factor.lower()(i, i) * factor.lower()(i, i);
   const double largest = others > 0 ? symmetric.trace() / static_cast<double>(others) : 1;
   for (Eigen::Index i = 0; i < others; ++i) bound /= largest;
   return bound > least;
@@ -139,8 +138,8 @@ class SmallProgram {
     if (count == 0) return relief.resize(0);
     Eigen::MatrixXd face(count, row.size());
     for (Eigen::Index i = 0; i < count; ++i) face.row(i) = rows_.row(held_[static_cast<std::size_t>(i)]);
-    const Eigen::MatrixXd response = factor_.solve(face.transpose());
-    relief = (face * response).ldlt().solve(face * step);
+    const Eigen::MatrixXd response = factor_.solve(Eigen::MatrixXd(face.transpose()));
+    relief = solve_symmetric(face * response, face * step);
     step -= response * relief;
   }
 
@@ -178,7 +177,7 @@ class SmallProgram {
     return true;
   }
 
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  CholeskyFactor factor_;
   const Eigen::MatrixXd& rows_;
   const Eigen::VectorXd& bounds_;
   Eigen::VectorXd at_;

@@ -1,4 +1,4 @@
-#include <Eigen/QR>
+#include <softkin/core/dense.hpp>
 #include <softkin/linear/anderson.hpp>
 
 namespace softkin::linear {
@@ -38,7 +38,7 @@ Points Anderson::next(const Points& x, const Points& image) {
     right[i] = step_changes_[i].cwiseProduct(step).sum();
   }
   Points mixed = image;
-  const Eigen::VectorXd share = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(normal).solve(right);
+  const Eigen::VectorXd share = MinimumNorm(normal).solve(right);
   for (Index i = 0; i < count; ++i) mixed -= share[i] * image_changes_[i];
   return mixed;
 }

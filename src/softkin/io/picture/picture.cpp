@@ -14,15 +14,14 @@ namespace softkin {
 
 namespace {
 
-constexpr int smallest = 64, largest = 8192;            // width and height [pixel]
+constexpr int fewest_pixels = 64, most_pixels = 8192;   // width and height [pixel]
 constexpr int legend_width = 320, legend_height = 240;  // the smallest picture with a legend [pixel]
 constexpr double filled = 0.9;                          // share of the drawing area that the layers fill
-constexpr double coincident = 0.005;                    // share of the layers' size that is as good as no distance
+constexpr double no_distance = 0.005;                   // share of the layers' size that is as good as no distance
 constexpr double deepest = 1e12;                        // [pixel]
 constexpr double shadow = 0.42, highlight = 0.18;       // how much the light darkens and brightens
 
 using Place = Canvas::Place;
-using Anchor = Canvas::Anchor;
 
 constexpr Rgb ink{0.13, 0.13, 0.15}, grey{0.45, 0.45, 0.48};
 constexpr std::array<Rgb, 3> axis_colors{{{0.80, 0.20, 0.15}, {0.15, 0.52, 0.22}, {0.13, 0.35, 0.75}}};
@@ -53,9 +52,9 @@ class Checker {
 
   void check(const PictureOptions& options) const {
     for (const auto& [name, pixels] : {std::pair("width", options.width), std::pair("height", options.height)}) {
-      if (pixels >= smallest && pixels <= largest) continue;
+      if (pixels >= fewest_pixels && pixels <= most_pixels) continue;
       refuse("picture " + std::string(name) + " " + std::to_string(pixels) + " is outside [" +
-             std::to_string(smallest) + ", " + std::to_string(largest) + "] pixels");
+             std::to_string(fewest_pixels) + ", " + std::to_string(most_pixels) + "] pixels");
     }
   }
 
@@ -170,7 +169,7 @@ class Legend {
     if (!options_.title.empty()) {
       const double size = title_cell * cell_;
       const std::string title = Canvas::fitted(options_.title, size, options_.width - 2 * margin * cell_);
-      canvas.text({options_.width / 2.0, 14 * cell_}, title, size, ink, Anchor::middle);
+      canvas.text({options_.width / 2.0, 14 * cell_}, title, size, ink, Canvas::Anchor::middle);
     }
     if (has_values()) draw_color_bar(canvas);
     draw_scale_bar(pixels_per_mm, canvas);
@@ -216,8 +215,8 @@ class Legend {
       y -= (bottom - top) / (ticks - 1);
     }
     const std::string label = Canvas::fitted(options_.value_label, cell_, bottom - top);
-    canvas.text({options_.width - (margin + cap / 2) * cell_, (top + bottom) / 2}, label, cell_, ink, Anchor::middle,
-                true);
+    canvas.text({options_.width - (margin + cap / 2) * cell_, (top + bottom) / 2}, label, cell_, ink,
+                Canvas::Anchor::middle, true);
   }
 
   void draw_scale_bar(double pixels_per_mm, Canvas& canvas) const {
@@ -227,7 +226,7 @@ class Legend {
     const Place middle((low.x() + high.x()) / 2, options_.height - (margin + 3) * cell_);
     const Place left = middle - Place(half, 0), right = middle + Place(half, 0), up(0, tick);
     canvas.strokes({{left, right}, {left - up, left + up}, {right - up, right + up}}, 0.8 * cell_, ink);
-    canvas.text(middle - Place(0, 8 * cell_), number(length) + " mm", cell_, ink, Anchor::middle);
+    canvas.text(middle - Place(0, 8 * cell_), number(length) + " mm", cell_, ink, Canvas::Anchor::middle);
   }
 
   void draw_axes(Canvas& canvas) const {
@@ -243,7 +242,7 @@ class Legend {
       const Place side = along.norm() > 0.2 ? Place(along.normalized()) : Place(-0.7, 0.7);
       const std::string letter(1, static_cast<char>('x' + i));
       const Place middle = tip + letter_distance * cell_ * side + Place(0.5 * cell_, -1 * cell_);
-      canvas.text(middle, letter, cell_, axis_colors[i], Anchor::middle);
+      canvas.text(middle, letter, cell_, axis_colors[i], Canvas::Anchor::middle);
     }
     canvas.strokes({{origin, origin}}, 2 * cell_, grey);
   }
@@ -340,7 +339,7 @@ void draw_mark(const PictureMark& mark, const Screen& screen, double cell, Canva
   canvas.strokes(strokes, thickness, mark.color);
   const Place beside = last + Place(6 * cell, -5 * cell);
   for (const auto& [line, color] : {std::pair(3.0, Rgb{1, 1, 1}), std::pair(1.0, Rgb(mark.color))})
-    canvas.text(beside, mark.label, cell, color, Anchor::start, false, line);
+    canvas.text(beside, mark.label, cell, color, Canvas::Anchor::start, false, line);
 }
 
 void refuse_edge_on(const std::vector<ScreenLayer>& layers, const Checker& checker) {
@@ -371,7 +370,7 @@ std::string picture_png(const std::filesystem::path& path, const std::vector<Pic
   for (const PictureLayer& layer : layers)
     drawn.push_back({on_screen(layer, screen, values), layer.opacity, layer.behind});
   refuse_edge_on(drawn, checker);
-  RgbImage image = rasterize(drawn, coincident * screen.size, options.width, options.height);
+  RgbImage image = rasterize(drawn, no_distance * screen.size, options.width, options.height);
   Canvas canvas(image);
   for (const PictureMark& mark : marks) draw_mark(mark, screen, legend.cell(), canvas);
   legend.draw(screen.scale, image);

@@ -9,8 +9,8 @@ namespace softkin {
 
 namespace {
 
-constexpr double margin = 14, gap = 18, title_size = 15, title_height = 26;  // [pixel]
-constexpr double largest = 1e300;                                            // beyond it extents overflow
+constexpr double margin = 14, gap = 18, heading_size = 15, heading_height = 26;  // [pixel]
+constexpr double largest_extent = 1e300;                                         // beyond it extents overflow
 
 [[noreturn]] void refuse(const std::string& where, const std::string& why) {
   throw InvalidInput("plot: " + where + ": " + why);
@@ -23,10 +23,10 @@ std::string name_of(const PlotPanel& panel, std::size_t number) {
 
 void check_values(const std::vector<double>& values, const PlotAxis& axis, const std::string& where) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(std::abs(values[i]) <= largest))
+    if (!(std::abs(values[i]) <= largest_extent))
       refuse(where,
              "value " + std::to_string(i) + " along " + excerpt(axis.label) + " is not a number that can be drawn");
-    if (axis.logarithmic && !(values[i] >= 1 / largest))
+    if (axis.logarithmic && !(values[i] >= 1 / largest_extent))
       refuse(where, "value " + std::to_string(i) + " along " + excerpt(axis.label) +
                         " is not > 0, so a logarithmic axis cannot show it");
   }
@@ -92,7 +92,7 @@ Row row_of(const Plot& plot, const std::vector<PlotPanel>& panels) {
 std::string svg_text(const Plot& plot) {
   check_plot(plot);
   std::vector<Row> rows;
-  double height = margin + (plot.title.empty() ? 0 : title_height);
+  double height = margin + (plot.title.empty() ? 0 : heading_height);
   for (const auto& panels : plot.rows) {
     rows.push_back(row_of(plot, panels));
     height += rows.back().height + gap;
@@ -100,12 +100,12 @@ std::string svg_text(const Plot& plot) {
   SvgCanvas canvas(plot.width, height - gap + margin, plot.title);
   double y = margin;
   if (!plot.title.empty()) {
-    canvas.text({{plot.width / 2, y + title_size},
-                 svg_fitted(plot.title, title_size * svg_bold, plot.width - 2 * margin),
-                 title_size,
+    canvas.text({{plot.width / 2, y + heading_size},
+                 svg_fitted(plot.title, heading_size * svg_bold, plot.width - 2 * margin),
+                 heading_size,
                  SvgAnchor::middle,
                  true});
-    y += title_height;
+    y += heading_height;
   }
   int number = 0;
   for (Row& row : rows) {

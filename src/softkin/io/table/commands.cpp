@@ -15,7 +15,6 @@ namespace softkin {
 
 namespace {
 
-constexpr const char* time_column = "t_s";
 constexpr Index time_target = -1;
 
 /// The end of a column's name that holds inputs of an actuator's curve: "kPa" of air_kPa; empty: it holds none.

@@ -9,6 +9,9 @@
 
 namespace softkin {
 
+/// The column of times [s] in every table that has them.
+inline constexpr const char* time_column = "t_s";
+
 /// A table of finite numbers under a header; lines that begin with # and blank lines are skipped.
 struct CsvTable {
   std::vector<std::string> columns;

@@ -12,8 +12,6 @@ namespace softkin {
 
 namespace {
 
-constexpr const char* time_column = "t_s";
-
 /// What a column holds; no marker: the time.
 struct Column {
   std::optional<Index> marker;

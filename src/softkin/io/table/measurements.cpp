@@ -25,9 +25,9 @@ struct Quantity {
   }
 };
 
-class Table : public CsvTable {
+class MeasurementTable : public CsvTable {
  public:
-  Table(const std::filesystem::path& path, const std::vector<Quantity>& quantities)
+  MeasurementTable(const std::filesystem::path& path, const std::vector<Quantity>& quantities)
       : CsvTable(read_csv(path)), quantities_(quantities), places_(quantities.size(), -1) {
     for (std::size_t c = 0; c < columns.size(); ++c) place(columns[c], static_cast<int>(c));
     for (std::size_t q = 0; q < quantities.size(); ++q)
@@ -98,7 +98,7 @@ class Table : public CsvTable {
 
 /// The strains of a tensile test, without unit.
 struct Strains {
-  const Table& table;
+  const MeasurementTable& table;
   bool percent;
 
   [[nodiscard]] std::string name() const { return percent ? "strain_percent" : "strain"; }
@@ -147,12 +147,12 @@ PressureScale scale_of(const RunTable& table, const std::string& column, std::op
 }  // namespace
 
 std::vector<StretchedSpecimen> read_stretched_specimens(const std::filesystem::path& path) {
-  const Table table(path, {{"l", "mm", "", true},
-                           {"l1", "mm", "", true},
-                           {"dl", "mm", "", true},
-                           {"dl1", "mm", "", true},
-                           {"force", "n", "N", false},
-                           {"area", "mm2", "", false}});
+  const MeasurementTable table(path, {{"l", "mm", "", true},
+                                      {"l1", "mm", "", true},
+                                      {"dl", "mm", "", true},
+                                      {"dl1", "mm", "", true},
+                                      {"force", "n", "N", false},
+                                      {"area", "mm2", "", false}});
   std::vector<StretchedSpecimen> specimens;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     StretchedSpecimen& s = specimens.emplace_back();
@@ -168,7 +168,7 @@ std::vector<StretchedSpecimen> read_stretched_specimens(const std::filesystem::p
 }
 
 std::vector<TwistedSpecimen> read_twisted_specimens(const std::filesystem::path& path) {
-  const Table table(
+  const MeasurementTable table(
       path,
       {{"l", "mm", "", true}, {"l1", "mm", "", true}, {"twist", "deg", "", true}, {"interface", "deg", "", false}});
   std::vector<TwistedSpecimen> specimens;
@@ -185,8 +185,8 @@ std::vector<TwistedSpecimen> read_twisted_specimens(const std::filesystem::path&
 }
 
 TensileCurve read_tensile_curve(const std::filesystem::path& path) {
-  const Table table(path,
-                    {{"strain_percent", "", "", false}, {"strain", "", "", false}, {"stress", "mpa", "MPa", true}});
+  const MeasurementTable table(
+      path, {{"strain_percent", "", "", false}, {"strain", "", "", false}, {"stress", "mpa", "MPa", true}});
   const bool percent = table.value(0, "strain_percent").has_value();
   if (percent == table.value(0, "strain").has_value())
     table.fail_header(percent ? "two columns are the strain: leave one of 'strain' and 'strain_percent'"

@@ -1,8 +1,7 @@
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/kinematics/maps/fit.hpp>
 
 namespace softkin::maps {
@@ -83,7 +82,7 @@ Polynomials fit(const Terms& terms, const std::vector<Observation>& observations
     row += known;
   }
   left.bottomRows(count) = weights_of(terms, decay, of_fits).asDiagonal();
-  return {terms, left.householderQr().solve(right)};
+  return {terms, least_squares_of_full_rank(left, right)};
 }
 
 Eigen::VectorXd decay_of(const Polynomials& polynomials) {
@@ -117,7 +116,7 @@ RowMatrix worst_known(const Terms& terms, const Eigen::VectorXd& decay, const Ro
     const RowMatrix rows = Rows(terms, known.row(i)).rows;
     normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(normal.selfadjointView<Eigen::Lower>());
+  const CholeskyFactor factor(normal);
   // what is not known of each candidate's values, in an orthonormal basis of the terms
   Eigen::MatrixXd values(terms.rows(), points.rows());
   Eigen::VectorXd of_point;
@@ -125,7 +124,7 @@ RowMatrix worst_known(const Terms& terms, const Eigen::VectorXd& decay, const Ro
     evaluate_terms(terms, points.row(i), of_point, nullptr);
     values.col(i) = of_point;
   }
-  factor.matrixL().solveInPlace(values);
+  factor.solve_lower(values);
   Eigen::VectorXd unknown = values.colwise().squaredNorm();
   RowMatrix chosen(count, terms.cols());
   Eigen::MatrixXd made(terms.rows(), 0);  // inverse = I - made made^T
@@ -133,7 +132,8 @@ RowMatrix worst_known(const Terms& terms, const Eigen::VectorXd& decay, const Ro
     Index worst = 0;
     unknown.maxCoeff(&worst);
     chosen.row(i) = points.row(worst);
-    const Eigen::MatrixXd rows = factor.matrixL().solve(Rows(terms, points.row(worst)).rows.transpose());
+    Eigen::MatrixXd rows = Rows(terms, points.row(worst)).rows.transpose();
+    factor.solve_lower(rows);
     for (Index j = 0; j < 1 + terms.cols(); ++j) {
       const Eigen::VectorXd row = rows.col(j);
       Eigen::VectorXd change = row - made * (made.transpose() * row);

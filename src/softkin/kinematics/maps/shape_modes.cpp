@@ -1,5 +1,5 @@
-#include <Eigen/Eigenvalues>
 #include <random>
+#include <softkin/core/dense.hpp>
 #include <softkin/kinematics/maps/shape_modes.hpp>
 
 namespace softkin::maps {
@@ -29,9 +29,9 @@ MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_
   Eigen::MatrixXf modes(left.rows(), 0);  // orthonormal
   left.colwise() -= shape.mean;
   const Eigen::MatrixXd gram = (left.transpose() * left).cast<double>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+  const SymmetricEigen eigen = symmetric_eigen(gram);
   for (Index m = count; m-- > 0 && largest_vertex(left) > accuracy_mm;) {
-    Eigen::VectorXf mode = left * solver.eigenvectors().col(m).cast<float>();
+    Eigen::VectorXf mode = left * eigen.vectors.col(m).cast<float>();
     mode -= modes * (modes.transpose() * mode);
     if (!(mode.norm() > 0)) break;
     mode.normalize();

@@ -239,18 +239,26 @@ template <int Panels, class Number>
   }
 }
 
+/// Columns [low, high) of some panels of rows.
 template <int Panels, class Number>
-void update_strip(const FrontBlock<Number>& block, Index panel) {
+void update_columns(const FrontBlock<Number>& block, Index panel, Index low, Index high) {
   using T = Tile<Number>;
   constexpr Index apart = block_width * T::rows;
-  const Index rest = block.rest(), end = (panel + Panels) * T::rows, last = end < rest ? end : rest;
-  for (Index c = 0; c < last; c += T::columns) {
+  for (Index c = low; c < high; c += T::columns) {
     Sums<Panels, Number> sums = {};
     multiply<Panels>(panel_at(block.scaled, panel), apart, panel_at(block.plain, c / T::rows) + c % T::rows, T::rows,
                      block.width, sums);
-    subtract<Panels>(block.at(block.first() + panel * T::rows, block.first() + c), block.stride, rest - c,
+    subtract<Panels>(block.at(block.first() + panel * T::rows, block.first() + c), block.stride, block.rest() - c,
                      block.begin == 0 ? block.pivots - block.first() - c : T::columns, sums);
   }
+}
+
+/// Columns from `low` to the diagonal, each for the panels that reach it.
+template <int Panels, class Number>
+void update_strip(const FrontBlock<Number>& block, Index panel, Index low) {
+  const Index end = (panel + 1) * Tile<Number>::rows, rest = block.rest();
+  update_columns<Panels>(block, panel, low, end < rest ? end : rest);
+  if constexpr (Panels > 1) update_strip<Panels - 1>(block, panel + 1, end);
 }
 
 }  // namespace
@@ -264,7 +272,7 @@ void solve_strips(const FrontBlock<Number>& block, Index low, Index high) {
 template <class Number>
 void update_strips(const FrontBlock<Number>& block, Index low, Index high) {
   each_strip<Number>(panels_of(block, low), panels_of(block, high),
-                     [&]<int Panels>(Index panel) { update_strip<Panels>(block, panel); });
+                     [&]<int Panels>(Index panel) { update_strip<Panels>(block, panel, 0); });
 }
 
 template Index factor_corner(const FrontBlock<double>&, double, double*);

@@ -50,8 +50,12 @@ void add_run_columns(const FrontSum<Number>& sum, const RowRun* run, Index low, 
     Number* to = sum.to + static_cast<std::ptrdiff_t>(run->to + c) * sum.to_stride;
     const Number* from = sum.from + static_cast<std::ptrdiff_t>(run->from + c) * sum.from_stride;
     add_run(to + run->to + c, from + run->from + c, run->length - c);
-    for (const RowRun* below = run + 1; below < sum.last; ++below)
+    for (const RowRun* below = run + 1; below < sum.last; ++below) {
+      // no processor foresees where the next columns' short runs stand
+      __builtin_prefetch(to + 2 * sum.to_stride + below->to, 1);
+      __builtin_prefetch(from + 2 * sum.from_stride + below->from);
       add_run(to + below->to, from + below->from, below->length);
+    }
   }
 }
 

@@ -178,7 +178,7 @@ TetrahedronWeights Embedder::quadratic_weights(Index element, const Vec3& point,
       return weights;
     }
     const Eigen::Matrix<double, 3, 4> along = nodes.transpose() * slope;
-    const Vec3 step = (along.rightCols<3>().colwise() - along.col(0)).eval().partialPivLu().solve(missing);
+    const Vec3 step = (along.rightCols<3>().colwise() - along.col(0)).eval().inverse() * missing;
     coordinates += Barycentric(-step.sum(), step[0], step[1], step[2]);
   }
   throw InvalidInput("the nearest element is too strongly curved to carry the point");

@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -146,9 +145,7 @@ Motions free_motions(const Model& model, const std::vector<Index>& vertices, con
     }
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(6, static_cast<Eigen::Index>(rows.size())), 6);
   for (std::size_t i = 0; i < rows.size(); ++i) held.row(static_cast<Eigen::Index>(i)) = rows[i];
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(held);
-  const Eigen::MatrixXd triangle = qr.matrixQR().topRows(6).triangularView<Eigen::Upper>();
-  const SingularValues singular = singular_values(triangle);
+  const SingularValues singular = singular_values(triangle_of(held));
   const Eigen::Index rank = (singular.values.array() > rank_tolerance * std::max(singular.values[0], 1.0)).count();
   return singular.right.rightCols(6 - rank);
 }

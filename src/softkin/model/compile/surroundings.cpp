@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/primitive_surfaces.hpp>
@@ -189,7 +190,7 @@ void add_obstacle(Compilation& c, const ObstacleSpec& spec, double area) {
 EmbeddedPoint mean_at(const Points& points, Index first, const Vec3& mean) {
   const Vec3 middle = points.colwise().mean().transpose();
   const Points arms = points.rowwise() - middle.transpose();
-  const Vec3 slope = (arms.transpose() * arms).ldlt().solve(mean - middle);
+  const Vec3 slope = solve_symmetric(arms.transpose() * arms, mean - middle);
   EmbeddedPoint point;
   for (Index i = 0; i < points.rows(); ++i) {
     point.vertices.push_back(first + i);

@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <softkin/core/dense.hpp>
 #include <softkin/statics/electric_layer.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/load_block.hpp>
@@ -330,9 +330,7 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
             if (const Mat3 here = lane_of(points[q], l); von_mises(here) > von_mises(most)) most = here;
           const Index e = set.elements[lanes * b + l];
           out.von_mises[e] = von_mises(most);
-          const Vec3 values =
-              Eigen::SelfAdjointEigenSolver<Mat3>(0.5 * (most + most.transpose()), Eigen::EigenvaluesOnly)
-                  .eigenvalues();
+          const Vec3 values = principal_values(0.5 * (most + most.transpose()));
           out.principal[e] = {values[2], values[1], values[0]};
         }
       }

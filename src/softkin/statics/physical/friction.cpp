@@ -1,3 +1,4 @@
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <softkin/statics/physical/friction.hpp>
@@ -82,7 +83,7 @@ namespace {
 Vec3 shifted(const contact::FourPoints& x, const Vec3& weights, const Vec3& way) {
   Eigen::Matrix<double, 3, 2> sides;
   sides << x.col(2) - x.col(1), x.col(3) - x.col(1);
-  const Eigen::Vector2d change = (sides.transpose() * sides).ldlt().solve(sides.transpose() * way);
+  const Eigen::Vector2d change = (sides.transpose() * sides).inverse() * (sides.transpose() * way);
   return change.allFinite() ? Vec3(weights + Vec3(-change.sum(), change[0], change[1])) : weights;
 }
 

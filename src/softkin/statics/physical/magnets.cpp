@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/energy/elastic.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 
@@ -75,8 +75,8 @@ Matrix6 made_positive(Matrix6 second, double length_mm) {
   Eigen::Matrix<double, 6, 1> scale;
   scale << length_mm, length_mm, length_mm, 1, 1, 1;
   second = (scale.asDiagonal() * second * scale.asDiagonal()).eval();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(second);
-  second = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).asDiagonal() * solver.eigenvectors().transpose();
+  const SymmetricEigen eigen = symmetric_eigen(second);
+  second = eigen.vectors * eigen.values.cwiseMax(0).asDiagonal() * eigen.vectors.transpose();
   return scale.cwiseInverse().asDiagonal() * second * scale.cwiseInverse().asDiagonal();
 }
 

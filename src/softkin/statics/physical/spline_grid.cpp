@@ -1,6 +1,6 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/spline_grid.hpp>
 
 namespace softkin::physical {
@@ -30,7 +30,7 @@ Eigen::MatrixXd coefficients_of(Index count) {
     equations(i, i) = 4.0 / 6;
     values(i, i - 1) = 1;
   }
-  return equations.partialPivLu().solve(values);
+  return inverse_of(equations) * values;
 }
 
 /// Values along one axis replaced by coefficients.

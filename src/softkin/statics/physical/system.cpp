@@ -269,8 +269,7 @@ void System::close(Workspace& work) const {
   work.scale.resize(count);
   for (Index i = 0; i < count; ++i) work.scale[i] = schur(i, i) != 0 ? 1 / std::sqrt(std::abs(schur(i, i))) : 1;
   schur = work.scale.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * work.scale.asDiagonal();
-  work.schur.setThreshold(dependent);
-  work.schur.compute(schur);
+  work.schur = MinimumNorm(schur, dependent);
   work.unstable -= static_cast<int>((symmetric_eigenvalues(schur).array() < -dependent).count());
 }
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <functional>
+#include <softkin/core/dense.hpp>
 #include <softkin/linear/mixed_ldlt.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
@@ -69,15 +68,14 @@ class System {
     Eigen::MatrixXd responses;               // K^-1 G, a column per active constraint, in the order of `active`
     Eigen::MatrixXd constraint_slopes;       // G: sign_a times the gradient of measure_a
     Eigen::VectorXd scale;                   // S: makes the diagonal of the next 1
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> schur;  // S G^T K^-1 G S; singular where constraints depend
-                                                                    // on each other
-    std::vector<Index> active;                                      // constraints of the factorisation
-    double stiffest = 0;      // the largest of the diagonal [N/mm] of the last factorisation
-    double mean = 0;          // and their mean
-    bool exact = false;       // the last factorisation: the stiffness neither made positive nor shifted
-    int negative = 0;         // its negative eigenvalues,
-    int unstable = 0;         // and those that the constraints leave
-    Points factorised;        // its shape
+    MinimumNorm schur;                       // S G^T K^-1 G S; singular where constraints depend on each other
+    std::vector<Index> active;               // constraints of the factorisation
+    double stiffest = 0;                     // the largest of the diagonal [N/mm] of the last factorisation
+    double mean = 0;                         // and their mean
+    bool exact = false;                      // the last factorisation: the stiffness neither made positive nor shifted
+    int negative = 0;                        // its negative eigenvalues,
+    int unstable = 0;                        // and those that the constraints leave
+    Points factorised;                       // its shape
     Eigen::VectorXd softest;  // nearly its softest change that the constraints leave, of length 1; empty: not asked for
     double softness = 0;      // its curvature along that
     Points home;              // equilibrium at which the last solve ended, and near which it factorised

@@ -1,6 +1,6 @@
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <softkin/core/dense.hpp>
 #include <softkin/energy/rotation.hpp>
 #include <softkin/statics/supports/global_step.hpp>
 
@@ -147,7 +147,7 @@ void GlobalStep::move_poses(const Handles& asked, std::vector<Pose>& poses) cons
       }
     for (Index i = 0; i < unknowns; ++i)
       if (normal(i, i) == 0) normal(i, i) = 1;  // held: its row, column and right side are zero
-    const Eigen::VectorXd move = normal.ldlt().solve(right);
+    const Eigen::VectorXd move = solve_symmetric(normal, right);
     bool better = false;
     double scale = 1;
     for (; scale > 1e-3 && !better; scale /= 2) {

@@ -10,7 +10,7 @@ using namespace energy;
 namespace {
 
 /// What rounding may add to a solution with the factor of K itself: more, and K is singular.
-constexpr double singular = 1e-6, unlimited = std::numeric_limits<double>::infinity();
+constexpr double singular = 1e-6, unbounded = std::numeric_limits<double>::infinity();
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with one that is never exact.
 constexpr int symmetric_rounds = 8, most_rounds = 60;
 
@@ -54,13 +54,13 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   const auto solve = [&](int rounds, double apart) {
     return tangent.solve_exactly(local, at.positions, rights, rounds, accuracy, apart, team, steps);
   };
-  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, unlimited);
+  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, unbounded);
   if (!result.regular) {
     SolveReport report;
     workspace->home.resize(0, 3);
     if (tangent.factorise(local, at.positions, false, team, report)) {
       const bool exact = tangent.symmetric() && report.projections == 0;
-      result.regular = solve(most_rounds, exact ? singular : unlimited);
+      result.regular = solve(most_rounds, exact ? singular : unbounded);
     }
     if (result.regular) workspace->home = at.positions;
   }

@@ -1,6 +1,6 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/energy/target_shape_stiffness.hpp>
 #include <softkin/linear/krylov.hpp>
 #include <softkin/statics/target_shape/element_sets.hpp>
@@ -203,7 +203,7 @@ void Tangent::update_coupling(const System::Scratch& local, const Points& positi
   }
   factor_.solve(sources_, team);
   const Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(count, count) + targets_.transpose() * sources_;
-  capacitance_ = Eigen::FullPivLU<Eigen::MatrixXd>(inverse).inverse();
+  capacitance_ = inverse_of(inverse);
   if (!capacitance_.allFinite()) capacitance_.setZero();  // GMRES does without the coupling
 }
 
