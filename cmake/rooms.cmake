@@ -15,6 +15,7 @@ else()
   add_compile_options(-fsanitize=${SOFTKIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${SOFTKIN_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID MATCHES Clang AND SOFTKIN_SANITIZE MATCHES undefined)
+    add_compile_options(-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/not_sanitized.txt)
     # Eigen's blocks of empty matrices are places past a null pointer, which nothing reads
     add_compile_options(-fno-sanitize=pointer-overflow)
   endif()
@@ -57,7 +58,10 @@ endfunction()
 
 # What has inner loops, the folder `kernels` of a room, is compiled for each of these; the best that the machine has is
 # chosen when the program starts (src/softkin/core/target.hpp). All else is compiled for any processor.
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+if(SOFTKIN_PLAIN)
+  set(softkin_targets plain)
+  add_compile_definitions(SOFTKIN_PLAIN)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(softkin_targets sse4 avx2 avx512)
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
   set(softkin_targets neon)

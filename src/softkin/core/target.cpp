@@ -47,7 +47,7 @@ const char* name_of(Target target) {
 }
 
 std::vector<Target> targets_here() {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(SOFTKIN_PLAIN)
   std::vector<Target> here;
   const auto has_fma = [] { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); };
   if (has_fma() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
@@ -56,7 +56,7 @@ std::vector<Target> targets_here() {
   if (has_fma()) here.push_back(Target::avx2);
   if (__builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt")) here.push_back(Target::sse4);
   return here;
-#elif defined(__aarch64__)
+#elif defined(__aarch64__) && !defined(SOFTKIN_PLAIN)
   return {Target::neon};
 #else
   return {Target::plain};

@@ -12,7 +12,7 @@ enum class Target {
   avx2,    // AVX2, FMA
   avx512,  // AVX-512 F, BW, DQ, VL
   neon,    // Advanced SIMD of aarch64
-  plain    // whatever any processor of an architecture without a name above has
+  plain    // what any processor of an architecture has, where there is none of the above or SOFTKIN_PLAIN is set
 };
 
 /// "avx2"
@@ -32,7 +32,7 @@ enum class Target {
 
 // SOFTKIN_KERNELS(declarations) declares them in the namespace of each target that this architecture knows, and
 // SOFTKIN_RUN_KERNEL(f(x)) returns what f of the running target does.
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(SOFTKIN_PLAIN)
 #define SOFTKIN_KERNELS(...) \
   namespace sse4 {           \
   __VA_ARGS__                \
@@ -52,7 +52,7 @@ enum class Target {
     default:                      \
       return sse4::__VA_ARGS__;   \
   }
-#elif defined(__aarch64__)
+#elif defined(__aarch64__) && !defined(SOFTKIN_PLAIN)
 #define SOFTKIN_KERNELS(...) \
   namespace neon {           \
   __VA_ARGS__                \

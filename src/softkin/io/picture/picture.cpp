@@ -25,7 +25,7 @@ using Place = Canvas::Place;
 
 constexpr Rgb ink{0.13, 0.13, 0.15}, grey{0.45, 0.45, 0.48};
 constexpr std::array<Rgb, 3> axis_colors{{{0.80, 0.20, 0.15}, {0.15, 0.52, 0.22}, {0.13, 0.35, 0.75}}};
-constexpr int ticks = 5;  // of the colour bar
+constexpr int bar_ticks = 5;  // of the colour bar
 // of the legend, in cells of the font
 constexpr double margin = 10, title_cell = 1.25, title_height = 24, footer_height = 46;
 constexpr double bar_width = 9, tick_gap = 5, tick_length = 2.5, label_gap = 8, cap = 7;
@@ -183,8 +183,8 @@ class Legend {
   [[nodiscard]] std::vector<std::string> tick_texts() const {
     const auto& [low, high] = values_;
     std::vector<std::string> texts;
-    for (int i = 0; i < (low < high ? ticks : 1); ++i) {
-      const double share = double(i) / (ticks - 1);
+    for (int i = 0; i < (low < high ? bar_ticks : 1); ++i) {
+      const double share = double(i) / (bar_ticks - 1);
       texts.push_back(tick_text((1 - share) * low + share * high, low, high));
     }
     return texts;
@@ -212,7 +212,7 @@ class Legend {
     for (const std::string& text : tick_texts()) {
       canvas.strokes({{{right, y}, {right + tick_length * cell_, y}}}, thin, ink);
       canvas.text({right + tick_gap * cell_, y}, text, cell_, ink);
-      y -= (bottom - top) / (ticks - 1);
+      y -= (bottom - top) / (bar_ticks - 1);
     }
     const std::string label = Canvas::fitted(options_.value_label, cell_, bottom - top);
     canvas.text({options_.width - (margin + cap / 2) * cell_, (top + bottom) / 2}, label, cell_, ink,

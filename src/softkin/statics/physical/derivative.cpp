@@ -10,7 +10,7 @@ namespace softkin::physical {
 namespace {
 
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with that.
-constexpr int most_rounds = 8, exact_rounds = 3;
+constexpr int inexact_rounds = 8, exact_rounds = 3;
 /// With friction, of which no factor holds all.
 constexpr int friction_rounds = 40;
 /// Of the accuracy, in what the factor makes of what is left: it may make a third too little of it.
@@ -64,7 +64,7 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
   Bordered equations(system_, work_, team_);
   equations.set(at);
   const bool symmetric = !system_.friction();
-  const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : most_rounds;
+  const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : inexact_rounds;
   // those of the last derivative, of a shape nearby; what they leave would not tell of the factor's own rounding
   const System::Slopes& last = work_.tangents;
   const bool like_last = !exact_factor && last.at.rows() == at.positions.rows() && last.held == held_;

@@ -50,11 +50,24 @@ Local<Second> composed(const Local<Second>& a, double f, double f1, double f2) {
   return of;
 }
 
+/// 1 / sqrt(a)^n of a > 0, for all n that are asked for with one division and one root.
 template <bool Second>
-Local<Second> power(const Local<Second>& a, double exponent) {
-  const double f = std::pow(a.value, exponent);
-  return composed(a, f, exponent * f / a.value, exponent * (exponent - 1) * f / (a.value * a.value));
-}
+class InversePowers {
+ public:
+  explicit InversePowers(const Local<Second>& a) : a_(a), inverse_(1 / a.value), root_(std::sqrt(inverse_)) {}
+
+  template <int N>
+  [[nodiscard]] Local<Second> power() const {
+    double f = N % 2 == 0 ? 1 : root_;
+    for (int i = 0; i < N / 2; ++i) f *= inverse_;
+    const double f1 = -0.5 * N * f * inverse_;
+    return composed(a_, f, f1, (-0.5 * N - 1) * f1 * inverse_);
+  }
+
+ private:
+  const Local<Second>& a_;
+  double inverse_, root_;
+};
 
 /// Along a direction, from a point.
 template <bool Second>
@@ -97,23 +110,31 @@ struct LoopIntegrals {
   }
 
  private:
-  void by_series(double t) {
-    constexpr int terms = 32;  // of a quarter's powers, below rounding
-    double h = 0, of_h = 2 * std::numbers::pi, of_g = 1.5 * std::numbers::pi;
-    std::array<double, terms> c{};
-    double power = 1;
-    for (int n = 0; n < terms; ++n) {
-      h += of_h * power;
-      c[n] = of_g;
-      of_h *= (0.25 + n) * (0.75 + n) / ((1.0 + n) * (1.0 + n));
-      of_g *= (1.25 + n) * (1.75 + n) / ((2.0 + n) * (1.0 + n));
-      power *= t;
+  struct Series {
+    static constexpr int terms = 32;  // of a quarter's powers, below rounding
+    std::array<double, terms> h{}, g{};
+    constexpr Series() {
+      double of_h = 2 * std::numbers::pi, of_g = 1.5 * std::numbers::pi;
+      for (std::size_t n = 0; n < terms; ++n) {
+        const auto i = static_cast<double>(n);
+        h[n] = of_h;
+        g[n] = of_g;
+        of_h *= (0.25 + i) * (0.75 + i) / ((1.0 + i) * (1.0 + i));
+        of_g *= (1.25 + i) * (1.75 + i) / ((2.0 + i) * (1.0 + i));
+      }
     }
+  };
+
+  void by_series(double t) {
+    static constexpr Series series;
+    const int terms = t < 0.02 ? 12 : t < 0.08 ? 18 : Series::terms;  // likewise of these powers
+    double h = 0;
     g = g1 = g2 = 0;
     for (int n = terms - 1; n >= 0; --n) {  // Horner's scheme, with the derivatives
       g2 = g2 * t + 2 * g1;
       g1 = g1 * t + g;
-      g = g * t + c[n];
+      g = g * t + series.g[static_cast<std::size_t>(n)];
+      h = h * t + series.h[static_cast<std::size_t>(n)];
     }
     f = h + t * g;
   }
@@ -144,13 +165,15 @@ bool add_loop(const CoilLoop& loop, double current, const Vec3& place, Flux& out
   const Local<Second> square = square_of<Second>(from_center);
   const Local<Second> size = square + Local<Second>(a * a);
   const Local<Second> across = square + -1.0 * (z * z);  // rho^2
-  const Local<Second> t = 4 * a * a * (across * power(size, -2));
+  const InversePowers<Second> over(size);
+  const Local<Second> t = 4 * a * a * (across * over.template power<4>());
   if (!(t.value < 1)) return false;
   const LoopIntegrals of(std::max(0.0, t.value));
   const Local<Second> f = composed(t, of.f, of.f1, of.f2), g = composed(t, of.g, of.g1, of.g2);
   const double scale = loop_constant * current * loop.turns * a;
-  const Local<Second> axial = scale * (power(size, -1.5) * (a * f + -2 * a * (across * power(size, -1) * g)));
-  const Local<Second> radial = 2 * a * scale * (z * power(size, -2.5) * g);  // over rho
+  const Local<Second> axial =
+      scale * (over.template power<3>() * (a * f + -2 * a * (across * over.template power<2>() * g)));
+  const Local<Second> radial = 2 * a * scale * (z * over.template power<5>() * g);  // over rho
   add_component(axial + -1.0 * (radial * z), loop.axis, out);
   for (int i = 0; i < 3; ++i) {
     const Vec3 unit = Vec3::Unit(i);
@@ -164,8 +187,9 @@ bool add_dipole(const Vec3& position, const Vec3& moment, const Vec3& place, Flu
   const Vec3 from = place - position;
   if (!(from.squaredNorm() > 0)) return false;
   const Local<Second> square = square_of<Second>(from);
-  const Local<Second> toward = 3 * dipole_constant * (along<Second>(from, moment) * power(square, -2.5));
-  add_component(-dipole_constant * power(square, -1.5), moment, out);
+  const InversePowers<Second> over(square);
+  const Local<Second> toward = 3 * dipole_constant * (along<Second>(from, moment) * over.template power<5>());
+  add_component(-dipole_constant * over.template power<3>(), moment, out);
   for (int i = 0; i < 3; ++i) {
     const Vec3 unit = Vec3::Unit(i);
     add_component(toward * along<Second>(from, unit), unit, out);
