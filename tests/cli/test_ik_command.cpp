@@ -308,7 +308,7 @@ TEST(IkCommand, TellsWhereTheJacobianIsOneSided) {
                                          "--tolerance", "0.3"};
   const ProgramResult text = run_ik(scene, options);
   ASSERT_EQ(text.exit_code, 0) << text.errors;
-  EXPECT_NE(text.output.find(" % of it slips\n"), std::string::npos) << text.output;
+  EXPECT_NE(text.output.find("it slips\n"), std::string::npos) << text.output;  // or a share of it
   EXPECT_NE(text.output.find("the Jacobian is one-sided: that for sliding on, of robot on floor\n"), std::string::npos)
       << text.output;
   std::vector<std::string> as_json = options;

@@ -143,7 +143,7 @@ TEST(Stability, APressedBarBuckles) {
   const Model model = compile(pressed_bar(15));
   const Statics statics(model);
   const Equilibrium straight = statics.solve({}, statics.rest()), bent = statics.solve({}, statics.rest(), stable());
-  ASSERT_EQ(straight.report.status, Status::converged);
+  ASSERT_EQ(straight.report.status, Status::converged) << straight.report.remark;
   EXPECT_EQ(straight.report.unstable_modes, (Equations(model, straight.state).eigenvalues().array() < 0).count());
   EXPECT_GT(straight.report.unstable_modes, 0);
   EXPECT_EQ(straight.report.buckled, 0);

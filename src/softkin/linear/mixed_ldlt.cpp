@@ -27,6 +27,11 @@ void MixedLdlt::forget() {
   patience_ = 1;
 }
 
+void MixedLdlt::distrust() {
+  wait_ = patience_;
+  patience_ = std::min(2 * patience_, most_patience);
+}
+
 /// Solves with the factor in single precision; found_ becomes the solutions, with one more. False where they are not to
 /// be trusted.
 bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy, const Eigen::MatrixXd& right_sides,
@@ -61,8 +66,7 @@ Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Pre
       return pivots;
     }
     in_double_ = true;
-    wait_ = patience_;
-    patience_ = std::min(2 * patience_, most_patience);
+    distrust();
   }
   if (!twice_) {
     require_memory(*tree_, sizeof(double));

@@ -24,6 +24,10 @@ class MixedLdlt {
   /// As if nothing had been factorised before: results are then those of a new object.
   void forget();
 
+  /// Single precision was not enough, though it seemed so: the next factors are in double, as many as after a factor
+  /// that is not trusted.
+  void distrust();
+
   /// What solutions are to be, as factorise() and solve() say. sign: as enough, and a
   /// guess where the matrix seems not to be positive definite.
   enum class Precision { sign, enough, good, twice };

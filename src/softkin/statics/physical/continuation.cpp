@@ -33,8 +33,6 @@ constexpr double most_correction = 0.5, least_snap = 0.01;
 /// Where ratios and supports change alone a step jumps if this share of that distance is no bend of the way; one of
 /// this share of the way that jumps is taken, and told.
 constexpr double least_jump = 0.9, finest = 0.02;
-/// Where a step so short fails under one load that changes it is gone on with along what the load does.
-constexpr double climb_below = 0.2;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
@@ -76,10 +74,12 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     return move.has_value();
   };
   if (!prediction()) return Newton::Outcome::blocked;
-  auto outcome = settle(there, Newton::Policy::descend, trial, whole && factorised_nearby(trial.positions));
+  const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
+  const auto policy = follows ? Newton::Policy::follow : Newton::Policy::descend;
+  auto outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));
   if (outcome == Newton::Outcome::converged && !led && whole)
     work_.trail.note_tangent(here, there, largest_move(begun_, trial.positions));
-  if (outcome == Newton::Outcome::stuck && length < follow_below && prepare(here, at) >= 0) {
+  if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
     if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);
   }
@@ -106,12 +106,7 @@ bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate
 Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   active_.resize(static_cast<std::size_t>(system_.actuators()));
   for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
-  way_ = {.from = from, .to = to, .here = from};
-  way_.loads_change = change_loads(from, to);
-  for (Index a = 0; a < system_.actuators(); ++a)
-    way_.releases = way_.releases || (system_.holds(a) && from.actuation[a] != to.actuation[a]);
-  way_.load = only_load(from, to);
-  way_.marked_iterations = report_.iterations;
+  set_out(from, to);
   (void)release(to, at, false);
   from_ = at.positions;
   (void)system_.renew_friction(from_, at, work_, team_);
@@ -123,9 +118,39 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
     if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
     if (outcome == Newton::Outcome::converged) return arrive(to, at);
   }
-  while (way_.done < 1)
+  while (way_.done < 1) {
     if (const std::optional<Status> end = go_on(at)) return *end;
+    if (way_.done == 1 && way_.then) set_out(way_.here, Demand(*way_.then));
+  }
   return arrive(to, at);
+}
+
+/// Another way, from where the last one ended.
+void Continuation::set_out(const Demand& from, const Demand& to) {
+  way_ = {.from = from, .to = to, .here = from, .before = way_.before};
+  way_.loads_change = change_loads(from, to);
+  for (Index a = 0; a < system_.actuators(); ++a)
+    way_.releases = way_.releases || (system_.holds(a) && from.actuation[a] != to.actuation[a]);
+  way_.load = only_load(from, to);
+  way_.marked_iterations = report_.iterations;
+}
+
+/// Share of all that was asked.
+double Continuation::whole(double done) const {
+  return way_.then ? way_.before : way_.before + (1 - way_.before) * done;
+}
+
+/// Where one load changes beside weights and supports: these first, so that the load alone is left and can be climbed.
+bool Continuation::load_at_last() {
+  if (way_.load >= 0 || way_.then || way_.from.share == way_.to.share) return false;
+  Demand rest = way_.to;
+  rest.actuation = way_.here.actuation;
+  if (only_load(rest, way_.to) < 0) return false;
+  const Demand to = way_.to;
+  way_.before = way_.done;
+  set_out(way_.here, rest);
+  way_.then = to;
+  return true;
 }
 
 /// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
@@ -142,7 +167,9 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   work_.left_field = false;
   auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
-  if (way_.loads_change && snapped(move_mm_, largest_move(begun_, trial.positions))) outcome = Newton::Outcome::stuck;
+  if (outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::blocked && way_.loads_change &&
+      snapped(move_mm_, largest_move(begun_, trial.positions)) && jumped(way_.here, there, at, trial))
+    outcome = Newton::Outcome::stuck;
   const bool blocked = outcome == Newton::Outcome::blocked;
   if (blocked) outcome = Newton::Outcome::stuck;
   const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
@@ -163,12 +190,11 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     active_ = active;
     way_.advance = std::max(longest, 0.4 * length);
   } else {
-    if (snap) tell_snap(jump_mm_, way_.done);
+    if (snap) tell_snap(jump_mm_, whole(way_.done));
     take(at, std::move(trial));
     if (!come_to(there, next, unstable, at)) return Status::interrupted;
     const int used = (report_.iterations - before) / rounds_;  // those for new normal forces are as many each
-    const int more = system_.contact() ? 5 : 0;                // something begins to touch in most steps
-    way_.advance *= used <= 5 + more ? 2 : used <= 9 + more ? 1.4 : 0.8;
+    way_.advance *= lengthened(used);
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
     if (leads_beyond(at)) {
       take_beyond(at);
@@ -177,6 +203,13 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     }
   }
   return end ? end : out_of_patience(at);
+}
+
+/// The next step over one that took so many iterations. Where things touch they hardly depend on its length, as
+/// something begins to touch in most steps.
+double Continuation::lengthened(int iterations) const {
+  if (system_.contact()) return iterations <= 15 ? 3 : iterations <= 30 ? 2 : 1;
+  return iterations <= 5 ? 2 : iterations <= 9 ? 1.4 : 0.8;
 }
 
 /// Does the way lead from here to where a longer step came out, without a jump? Where something begins to touch in
@@ -204,16 +237,17 @@ void Continuation::take_beyond(Iterate& at) {
 /// After a step of this length that led to no equilibrium.
 std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   const std::vector<bool> active = active_;
+  if (load_at_last()) return std::nullopt;
   way_.advance = 0.4 * length;
-  if (way_.load >= 0 && length < climb_below) {
+  if (way_.load >= 0) {  // along what the load does
     const Climb end = climb(std::exchange(way_.load, -1), way_.from, way_.here, way_.to, at);
     if (end == Climb::interrupted) return Status::interrupted;
     if (end == Climb::arrived) return arrive(way_.to, at);
-    if (end == Climb::summit) return limit(report_.reached, report_.remark, at);
+    if (end == Climb::summit) return limit(way_.done, report_.remark, at);
     active_ = active;
   }
   if (way_.beyond && way_.advance < finest) {
-    tell_snap(way_.beyond->jump_mm, way_.done);
+    tell_snap(way_.beyond->jump_mm, whole(way_.done));
     take_beyond(at);
     way_.advance = follow_below;
     return std::nullopt;
@@ -237,7 +271,7 @@ bool Continuation::come_to(const Demand& there, double next, bool unstable, Iter
     if (!buckle(there, at)) return false;
     way_.factorised = false;
   } else if (unstable && next < 1 && report_.unstable_from == 0 && prepare(there, at) > 0) {
-    report_.unstable_from = next;  // in the shape itself: the last factorisation was of one close to it
+    report_.unstable_from = whole(next);  // in the shape itself: the last factorisation was of one close to it
   }
   if (way_.beyond && next >= way_.beyond->done) way_.beyond.reset();
   pass(there, next);
@@ -246,7 +280,8 @@ bool Continuation::come_to(const Demand& there, double next, bool unstable, Iter
 
 void Continuation::pass(const Demand& demand, double done) {
   way_.here = demand;
-  way_.done = report_.reached = done;
+  way_.done = done;
+  report_.reached = whole(done);
   ++report_.continuation_steps;
 }
 
@@ -324,7 +359,7 @@ void Continuation::tell_balance() {
 /// at: the last equilibrium
 Status Continuation::limit(double done, const std::string& why, const Iterate& at) {
   tell_balance();
-  report_.reached = done;
+  report_.reached = whole(done);
   report_.remark = why + pull_in_text(system_.model(), way_.from, between(way_.from, way_.to, done), at.positions);
   const double slipping = system_.slipping_share(at, work_, team_);
   if (slipping >= worth_telling)

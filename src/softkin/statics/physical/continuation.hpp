@@ -17,6 +17,12 @@ class Continuation {
   /// Follows the equilibrium from `from` to `to`; at is the last good one.
   Status follow(const Demand& from, const Demand& to, Iterate& at);
 
+  /// What the last good one is an equilibrium of.
+  [[nodiscard]] const Demand& here() const { return way_.here; }
+
+  /// Did the way end where its load has its maximum?
+  [[nodiscard]] bool at_summit() const { return at_summit_; }
+
  private:
   /// Friction and the normal forces that it leads to agree where it changes by less than this share.
   static constexpr double frictions_agree = 1e-4;
@@ -50,6 +56,7 @@ class Continuation {
     double load = 0;     // that it takes [N, kPa]
     Iterate at;
     Judgement last{};
+    double gain = 0;  // of the load that was asked for, by the measure on its way
   };
   enum class Climb { lost, arrived, summit, interrupted };
 
@@ -62,20 +69,27 @@ class Continuation {
     bool releases = false;    // a body, which hardly moves until it is nearly free
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
-    double marked = 0;  // the last share at which it was getting on
+    std::optional<Demand> then{};  // where the next way leads
+    double before = 0;             // share of all that was asked, gone on ways before
+    double marked = 0;             // the last share at which it was getting on
     int marked_iterations = 0;
   };
 
+  void set_out(const Demand& from, const Demand& to);
+  [[nodiscard]] double whole(double done) const;
   [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
-  std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from);
+  bool load_at_last();
+  std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from, bool prepared);
   Climb climb(Index a, const Demand& from, const Demand& here, const Demand& to, Iterate& at);
-  bool refine(Index a, double up, const Demand& load, Measured& low, Measured& middle, Measured& high);
+  double slope_at(Index a, const Demand& load, const Measured& point);
   Climb arrive_at(const Demand& to, const Measured& near, Iterate& at);
   Climb stop_at(Index a, double way, double begin, const Demand& from, const Demand& to, const Measured& summit,
                 Iterate& at);
+  void tell_summit(Index a, const Demand& from, const Demand& to, const Measured& summit);
   [[nodiscard]] Judgement judged() const;
   [[nodiscard]] bool factor_holds_active() const;
   [[nodiscard]] bool snapped(double predicted_mm, double correction_mm) const;
+  [[nodiscard]] double lengthened(int iterations) const;
   [[nodiscard]] double longest_step(bool snap, bool unstable) const;
   [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
   [[nodiscard]] std::string instead_of_loads() const;
@@ -121,7 +135,7 @@ class Continuation {
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
   Judgement last_;                    // of the last good shape
   int rounds_ = 1;                    // of normal forces, for the last equilibrium
-  bool interrupted_ = false;
+  bool interrupted_ = false, at_summit_ = false;
 };
 
 }  // namespace softkin::physical

@@ -112,13 +112,12 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   // a start whose supports are elsewhere may have no way there
   const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
                      comes_to(start.positions, at.positions, lease.work(), team);
-  if (clear)
-    report.status = Continuation(system_, lease.work(), team, options, progress, report).follow(from, to, at);
-  else
-    report.status = Status::limit;
+  Continuation continuation(system_, lease.work(), team, options, progress, report);
+  report.status = clear ? continuation.follow(from, to, at) : Status::limit;
   // what rubs remembers the way to its equilibrium, and from rest comes to another one
   const bool remembers = system_.friction() && start.knows(system_.actuators());
-  if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest && !remembers)
+  if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest && !remembers &&
+      !continuation.at_summit())
     begin_again(to, options, progress, team, lease.work(), at, report);
   if (report.status == Status::converged) lease.work().home = at.positions;
   report.estimated_error_mm = report.step_mm;
@@ -126,8 +125,8 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   result.state.anchors = std::move(at.anchors);
   result.state.actuation = actuation;
   if (report.status != Status::converged && report.reached < 1) {
-    result.state.actuation = from.actuation + report.reached * (actuation - from.actuation);
-    result.state.share = from.share + report.reached * (to.share - from.share);
+    result.state.actuation = clear ? continuation.here().actuation : from.actuation;
+    result.state.share = clear ? continuation.here().share : from.share;
   }
   if (system_.viscous()) {
     result.state.history = options.history;

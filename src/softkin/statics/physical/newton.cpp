@@ -12,6 +12,8 @@ namespace {
 constexpr double least_damping = 1e-3;
 /// Of the merit function's slope, that a step must bring.
 constexpr double worthwhile_descent = 1e-4;
+/// Of the steepest slope, that one must have to be followed for its own sake where nothing touches.
+constexpr double worthwhile_slope = 1e-4;
 /// By which it may rise, over its value.
 constexpr double most_rise = 1e-8;
 /// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
@@ -66,6 +68,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
     if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
     ++report_.factorisations;
     secants_.clear();
+    rounding_looked_at_ = false;
     const InPrecision scope(work_, precision);
     negative = system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
     report_.factorisations_in_double += work_.factor.in_double();
@@ -156,13 +159,15 @@ double Newton::refine(const System::Balance& balance, const Iterate& at, Step& s
   return remainder.apart;
 }
 
-/// Where rounding of the factor may be why step_ leads no farther, refines it; and so all that follow, if that is why.
+/// Where rounding of the factor may be why step_ leads no farther, refines it; and so all that follow with this factor,
+/// if that is why, and the next factors are in double precision.
 bool Newton::refine_first(const Iterate& at) {
   constexpr double slow = 0.25, much = 0.15;
   if (rounding_looked_at_ || work_.factor.in_double() || system_.contact()) return false;
   if (next_.size.mean < slow * step_.size.mean) return false;
   rounding_looked_at_ = true;
   refines_ = refine(balance_, at, step_) > much;
+  if (refines_) work_.factor.distrust();
   return refines_;
 }
 
@@ -186,13 +191,15 @@ bool Newton::accept(double moved_mm, Iterate& at) {
 }
 
 /// Where contacts cut step after step, a way with less to go is shorter; where what slides has nothing to stop it, step
-/// after whole step is as long as the last.
+/// after whole step is as long as the last; where there is no equilibrium a stiffness that was made positive leads
+/// down, but nowhere.
 bool Newton::labours(double damping) {
   constexpr double poor = 0.2, same = 0.9;
-  constexpr int most_poor = 8, most_same = 12;  // in a row
+  constexpr int most_poor = 8, most_same = 12, most_downhill = 5;  // in a row
   poor_ = damping < poor ? poor_ + 1 : 0;
   same_ = damping == 1 && next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
-  return system_.contact() && (poor_ >= most_poor || (system_.friction() && same_ >= most_same));
+  if (!system_.contact()) return downhill_ >= most_downhill;
+  return poor_ >= most_poor || (system_.friction() && same_ >= most_same);
 }
 
 /// Where hardly anything is unstable, a stiffness that was made positive element by element is far too stiff along it:
@@ -215,8 +222,12 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   // forces that follow their normal forces have none
-  const bool potential = system_.contact() && !work_.friction_follows;
-  const double slope = potential ? weigh_constraints(at) : 0, before = slope < 0 ? merit(balance_) : 0;
+  // a stiffness that was made positive leads down, if not straight; where little is left it leads to no unstable shape
+  const bool potential = (system_.contact() || !work_.exact) && !work_.friction_follows;
+  double slope = potential ? weigh_constraints(at) : 0;
+  steepest_ = std::min(steepest_, slope);
+  if (!system_.contact() && slope > worthwhile_slope * steepest_) slope = 0;
+  const double before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
@@ -224,13 +235,13 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       find(trial_balance_, trial_, next_);
       if (refine_first(at)) continue;
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
-      if (rise < worthwhile_descent * damping * slope) break;
+      // near a singular stiffness the next step may be long although little is left
+      const bool nearer =
+          next_.size.mean < step_.size.mean || trial_balance_.force.norm() < 0.5 * balance_.force.norm();
+      const bool lower = rise < worthwhile_descent * damping * slope;
+      downhill_ = nearer ? 0 : downhill_ + lower;
       // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
-      if (!(rise > most_rise * std::abs(before))) {
-        if (next_.size.mean < step_.size.mean) break;
-        // near a singular stiffness the next step may be long although little is left
-        if (trial_balance_.force.norm() < 0.5 * balance_.force.norm()) break;
-      }
+      if (lower || (nearer && !(system_.contact() && rise > most_rise * std::abs(before)))) break;
       if (!system_.contact() &&
           std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
         const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
@@ -374,7 +385,8 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   Advance advance = Advance::made;
   double damping = 1;
   secants_.clear();
-  poor_ = same_ = 0;
+  poor_ = same_ = downhill_ = 0;
+  steepest_ = 0;
   slow_ = refines_ = rounding_looked_at_ = false;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {

@@ -97,9 +97,11 @@ class Newton {
   std::vector<Secant> secants_;         // of the factor at hand
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
   Iterate start_, trial_;
-  int poor_ = 0;       // steps in a row that were much shorter than Newton's
-  int same_ = 0;       // steps in a row that left as much to go
-  bool slow_ = false;  // are steps of a stiffness that was made positive element by element
+  int poor_ = 0;         // steps in a row that were much shorter than Newton's
+  int same_ = 0;         // steps in a row that left as much to go
+  double steepest_ = 0;  // slope of the merit function so far
+  int downhill_ = 0;     // steps in a row that lead down and no nearer
+  bool slow_ = false;    // are steps of a stiffness that was made positive element by element
   double last_shift_ = 0;
   bool doubtful_ = false;  // is there a doubt about negative_
   bool rounding_looked_at_ = false;

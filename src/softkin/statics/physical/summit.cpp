@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <softkin/core/text.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 
@@ -7,23 +8,18 @@ namespace softkin::physical {
 
 namespace {
 
-/// First step over the measure at hand, how it grows, its bounds, and how many there may be.
-constexpr double first_step = 0.02, growth = 1.6, most_growth = 0.3, shortest_step = 1e-5;
+/// First step over the measure at hand, how steps grow, their bounds, and how many there may be.
+constexpr double first_step = 0.02, growth = 1.6, most_growth = 0.5, shortest_step = 1e-5;
 constexpr int most_steps = 200;
-/// A maximum is looked for until it gains less than this share.
-constexpr double precise = 1e-6;
-constexpr int most_refinements = 8;
+/// The load is at its maximum where its relative change is this share of its measure's.
+constexpr double flat = 0.01;
+/// Of two points with a maximum between them, that it is at least away from either.
+constexpr double margin = 0.05;
+/// Slopes fall less and less: the maximum is looked for so many times as far as the last two tell.
+constexpr double ahead = 1.5;
 /// The shape that is kept stands so far before the maximum, over the way from where the search began: at it the
 /// stiffness is singular.
 constexpr double before_summit = 0.01;
-
-/// Where the parabola through three points has its vertex, within the outer two.
-double vertex_of(double x0, double y0, double x1, double y1, double x2, double y2) {
-  const double a = (x1 - x0) * (y1 - y2), b = (x1 - x2) * (y1 - y0);
-  const double vertex = a != b ? x1 - 0.5 * ((x1 - x0) * a - (x1 - x2) * b) / (a - b) : x1;
-  const double low = std::min(x0, x2), high = std::max(x0, x2), margin = 0.05 * (high - low);
-  return std::clamp(vertex, low + margin, high - margin);
-}
 
 }  // namespace
 
@@ -44,15 +40,17 @@ Index Continuation::only_load(const Demand& from, const Demand& to) const {
 
 /// The equilibrium at which the load's actuator has so large a measure, over that at rest; none where there is none, or
 /// an unstable one.
+///
+/// prepared  the workspace is as slope_at(from) left it
 std::optional<Continuation::Measured> Continuation::at_measure(Index a, double measure, const Demand& load,
-                                                               const Measured& from) {
+                                                               const Measured& from, bool prepared) {
   Demand here = load, there = load;
   here.actuation[a] = from.measure;
   there.actuation[a] = measure;
   active_[a] = true;
   from_ = from.at.positions;
   std::optional<Measured> found;
-  if (prepare(here, from.at) >= 0) {
+  if (prepared || prepare(here, from.at) >= 0) {
     Iterate trial = from.at;
     const bool clear = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_).has_value();
     const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
@@ -66,55 +64,74 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
   return found;
 }
 
+/// Change of the load by the measure; NaN where it is not known.
+double Continuation::slope_at(Index a, const Demand& load, const Measured& point) {
+  Demand here = load, there = load;
+  here.actuation[a] = point.measure;
+  there.actuation[a] = (1 + first_step) * point.measure;
+  active_[a] = true;
+  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
+  double slope = std::numeric_limits<double>::quiet_NaN();
+  if (prepare(here, point.at) >= 0) {
+    Iterate beside = point.at;
+    (void)predict(system_, here, there, active_, work_, team_, beside);
+    slope = (beside.multipliers[a] - point.at.multipliers[a]) / system_.unit(a) / (first_step * point.measure);
+  }
+  active_[a] = false;
+  return slope;
+}
+
 /// Riks' idea with the load's own measure as the parameter: a maximum of the load is no end of the way along the volume
-/// or the length.
+/// or the length. Where the load's slope by the measure is zero it is at its maximum.
 Continuation::Climb Continuation::climb(Index a, const Demand& from, const Demand& here, const Demand& to,
                                         Iterate& at) {
   const double up = to.actuation[a] > here.actuation[a] ? 1 : -1;  // a chamber grows with its pressure, a cable
   const double way = -up * system_.sign(a);                        // shortens with its tension
   const double begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
-  const auto beyond = [&](const Measured& point) { return up * (point.load - to.actuation[a]) >= 0; };
-  Measured last{begin, here.actuation[a], at, last_};
-  std::optional<Measured> before;
+  Measured low{begin, here.actuation[a], at, last_};
+  low.at.multipliers[a] = system_.unit(a) * low.load;
+  const auto gain = [&](const Measured& point) { return up * way * slope_at(a, here, point); };
+  const auto at_maximum = [&](const Measured& point) {
+    return std::abs(point.gain) * point.measure < flat * std::abs(point.load);
+  };
+  low.gain = gain(low);
+  if (!std::isfinite(low.gain)) return Climb::lost;
+  const bool may_stand_there = at_maximum(low);
+  if (low.gain < 0 && !may_stand_there) return Climb::lost;
+  std::optional<Measured> high;
   double length = first_step * begin;
+  if (!may_stand_there) length = std::clamp(up * (to.actuation[a] - low.load) / low.gain, length, most_growth * begin);
+  bool prepared = true;
   for (int i = 0; i < most_steps && length > shortest_step * begin; ++i) {
     if (report_.iterations >= max_iterations_) return Climb::lost;
-    std::optional<Measured> next = at_measure(a, last.measure + way * length, here, last);
+    std::optional<Measured> next = at_measure(a, low.measure + way * length, here, low, prepared);
     if (interrupted_) return Climb::interrupted;
-    const bool falls = next && up * (next->load - last.load) <= 0;
-    if (!next || (falls && !before)) {
+    prepared = false;
+    if (!next) {
       length *= 0.4;
       continue;
     }
-    if (falls) {
-      if (!refine(a, up, here, *before, last, *next)) return Climb::interrupted;
-      if (!beyond(last)) return stop_at(a, way, begin, from, to, last, at);
+    if (up * (next->load - to.actuation[a]) >= 0) return arrive_at(to, *next, at);
+    next->gain = gain(*next);
+    if (!std::isfinite(next->gain)) return Climb::lost;
+    if (may_stand_there && i == 0 && next->gain < 0) return stop_at(a, way, begin, from, to, low, at);
+    if (at_maximum(*next) && !(may_stand_there && next->gain > low.gain))
+      return stop_at(a, way, begin, from, to, *next, at);
+    // where the slope would be zero if it went on as between the two
+    const double went = way * (next->measure - low.measure), fell = low.gain - next->gain;
+    double summit = fell > 0 ? went * low.gain / fell : std::numeric_limits<double>::infinity();  // from low on
+    if (next->gain < 0) {
+      high = std::move(next);
+      length = std::clamp(summit, margin * went, (1 - margin) * went);
+      continue;
     }
-    if (falls || beyond(*next)) return arrive_at(to, falls ? last : *next, at);
-    before = std::exchange(last, std::move(*next));
-    length = std::min(growth * length, most_growth * last.measure);
+    summit -= went;
+    low = std::move(*next);
+    prepared = true;
+    length = std::min({growth * went, most_growth * low.measure, ahead * summit});
+    if (high) length = std::min(length, (1 - margin) * way * (high->measure - low.measure));
   }
-  return interrupted_ ? Climb::interrupted : Climb::lost;
-}
-
-/// Narrows a maximum of the load between two points, the best of which is in the middle. False: interrupted.
-bool Continuation::refine(Index a, double up, const Demand& load, Measured& low, Measured& middle, Measured& high) {
-  for (int i = 0; i < most_refinements; ++i) {
-    const double measure =
-        vertex_of(low.measure, up * low.load, middle.measure, up * middle.load, high.measure, up * high.load);
-    std::optional<Measured> found = at_measure(a, measure, load, middle);
-    if (interrupted_) return false;
-    if (!found) return true;
-    const double gain = up * (found->load - middle.load);
-    const bool past = (measure - middle.measure) * (high.measure - middle.measure) > 0;
-    if (gain > 0) {
-      (past ? low : high) = std::exchange(middle, std::move(*found));
-    } else {
-      (past ? high : low) = std::move(*found);
-    }
-    if (std::abs(gain) < precise * std::abs(middle.load)) return true;
-  }
-  return true;
+  return Climb::lost;
 }
 
 Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& near, Iterate& at) {
@@ -127,21 +144,29 @@ Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& ne
   take(at, std::move(trial));
   last_ = judged();
   ++report_.continuation_steps;
+  way_.here = to;
   report_.reached = 1;
   return Climb::arrived;
 }
 
 Continuation::Climb Continuation::stop_at(Index a, double way, double begin, const Demand& from, const Demand& to,
                                           const Measured& summit, Iterate& at) {
-  Demand load = from;
+  tell_summit(a, from, to, summit);
+  at_summit_ = true;
+  if (summit.measure == begin) return Climb::summit;
   const std::optional<Measured> kept =
-      at_measure(a, summit.measure - way * before_summit * std::abs(summit.measure - begin), load, summit);
+      at_measure(a, summit.measure - way * before_summit * std::abs(summit.measure - begin), from, summit, false);
   if (interrupted_) return Climb::interrupted;
   if (!kept) return Climb::lost;
   at = kept->at;
   last_ = kept->last;
   ++report_.continuation_steps;
-  report_.reached = (kept->load - from.actuation[a]) / (to.actuation[a] - from.actuation[a]);
+  way_.here.actuation[a] = kept->load;
+  way_.done = (kept->load - from.actuation[a]) / (to.actuation[a] - from.actuation[a]);
+  return Climb::summit;
+}
+
+void Continuation::tell_summit(Index a, const Demand& from, const Demand& to, const Measured& summit) {
   const Actuator& actuator = system_.model().actuators[a];
   const bool cable = actuator.kind == ActuatorKind::cable;
   report_.remark = std::string(cable ? "the tension of cable '" : "the pressure of chamber '") + actuator.name +
@@ -149,7 +174,6 @@ Continuation::Climb Continuation::stop_at(Index a, double way, double begin, con
                    number(summit.load, 5) + (cable ? " N at " : " kPa at ") + number(summit.measure, 4) +
                    (cable ? " of its length" : " times its volume") + "; command its " +
                    (cable ? "length (control: length)" : "volume (control: volume)") + " to go on beyond it";
-  return Climb::summit;
 }
 
 }  // namespace softkin::physical

@@ -18,6 +18,9 @@ constexpr double within = 0.95;
 
 /// Moves shorter than this share of the robot's diagonal turn nothing that matters.
 constexpr double least_turning = 1e-4;
+/// What turns add to moves grows with their square; where something touches, no more than so many times that over the
+/// diagonal is believed.
+constexpr double most_turning = 30;
 
 }  // namespace
 
@@ -393,12 +396,16 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
 
 void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {
   freedoms_->expand(scale * step, positions, work.moves);
-  if (work.moves.cwiseAbs().maxCoeff() < least_turning * model_.diagonal_mm)
-    return freedoms_->move(step, scale, positions);
+  const double length = work.moves.cwiseAbs().maxCoeff();
+  if (length < least_turning * model_.diagonal_mm) return freedoms_->move(step, scale, positions);
   elastic_.turning(positions, work.moves, work.elastic, work.lacking, team);
   freedoms_->move(step, scale, positions);
+  const Points straight = contacts_ ? positions : Points();
   std::vector<supports::Pose> poses = turning_->poses(positions);
   turning_->step(work.lacking, positions, poses, team);
+  // what holds a body by contact alone is not in the way of its turns
+  if (contacts_ && largest_move(straight, positions) > most_turning * length * length / model_.diagonal_mm)
+    positions = straight;
 }
 
 void System::hold(const Demand& demand, Points& positions) const {

@@ -1,0 +1,128 @@
+#include <cmath>
+
+#include "statics/contact_scenes.hpp"
+#include "statics/physical_samples.hpp"
+
+/// Ways to equilibria that were far too long: how many iterations they take, and that they end where others do.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// The bending finger of soft rubber on a sheet of paper, 20,000 times as stiff and 0.3 mm thick.
+RobotSpec paper_finger(double poisson_ratio) {
+  RobotSpec spec = bending_finger();
+  Mesh& mesh = spec.mesh;
+  for (Index v = 0; v < mesh.vertices.rows(); ++v)
+    if (mesh.vertices(v, 2) < 5 && mesh.vertices(v, 2) > 1) mesh.vertices(v, 2) = 0.3;
+  add_volume_region(mesh, "paper", [](const Vec3& p) { return p.z() < 0.3; });
+  spec.quadratic = true;
+  spec.materials[0].elastic = elastic(Law::neo_hookean, 0.1, poisson_ratio);
+  MaterialSpec paper = spec.materials[0];
+  paper.region = "paper";
+  paper.elastic = elastic(Law::neo_hookean, 2000, 0.3);
+  spec.materials.push_back(paper);
+  return spec;
+}
+
+Equilibrium pressed(const RobotSpec& by_volume, double pressure) {
+  RobotSpec spec = by_volume;
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  return statics.solve(values({pressure}), statics.rest());
+}
+
+}  // namespace
+
+/// However nearly incompressible the rubber is, and to the shape that the volume leads to.
+TEST(PhysicalWays, StiffLayerAndNearlyIncompressibleRubber) {
+  int least = 1000, most = 0;
+  for (const double poisson_ratio : {0.45, 0.49, 0.499, 0.4999}) {
+    const RobotSpec spec = paper_finger(poisson_ratio);
+    const Equilibrium found = pressed(spec, 3);
+    ASSERT_EQ(found.report.status, Status::converged) << poisson_ratio << ": " << found.report.remark;
+    least = std::min(least, found.report.iterations);
+    most = std::max(most, found.report.iterations);
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const double ratio = achieved_ratio(model, model.actuators[0], found.state.positions);
+    const Equilibrium same = settled(statics, values({ratio}));
+    EXPECT_NEAR(same.state.multipliers[0], 3, 1e-3) << poisson_ratio;
+    EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-3) << poisson_ratio;
+  }
+  EXPECT_LE(most, 20);
+  EXPECT_LE(most, std::ceil(1.5 * least) + 3);
+}
+
+/// What was asked beyond a maximum, along a path: told once more, from where it was told first.
+TEST(PhysicalWays, PathBeyondAMaximum) {
+  RobotSpec spec = paper_finger(0.49);
+  spec.materials[0].density = 1000;
+  spec.gravity = {0, 0, -9.81};
+  const Model by_volume = compile(spec);
+  const Statics volumes(by_volume);
+  double most = 0;
+  State state = volumes.rest();
+  for (const double ratio : {2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0}) {
+    state = volumes.solve(values({ratio}), state).state;
+    most = std::max(most, state.multipliers[0]);
+  }
+  ASSERT_GT(most, 1.02 * state.multipliers[0]);
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const std::string told = "the pressure of chamber 'chamber' has its maximum there, ";
+  const auto check = [&](const Equilibrium& found) {
+    EXPECT_EQ(found.report.status, Status::limit);
+    ASSERT_EQ(found.report.remark.find(told), 0u) << found.report.remark;
+    const double summit = std::stod(found.report.remark.substr(told.size()));
+    EXPECT_GT(summit, 0.9999 * most);
+    EXPECT_LT(summit, 1.01 * most);
+    EXPECT_NEAR(found.state.actuation[0], summit, 1e-3 * summit);
+  };
+  // from rest, where weight and pressure come at once
+  const Equilibrium at_once = statics.solve(values({3 * most}), statics.rest());
+  check(at_once);
+  EXPECT_LT(at_once.report.iterations, 250);
+  EXPECT_NEAR(at_once.report.reached, at_once.state.actuation[0] / (3 * most), 1e-9);
+  const Equilibrium below = settled(statics, values({0.5 * most}));
+  const Equilibrium first = statics.solve(values({1.2 * most}), below.state);
+  check(first);
+  const Equilibrium second = statics.solve(values({2 * most}), first.state);
+  check(second);
+  EXPECT_LE(second.report.iterations, 10);
+  EXPECT_EQ(distance(second.state.positions, first.state.positions), 0);
+}
+
+/// A heavy strip on a smooth floor, one end lifted: it leaves the floor over the length a of a beam without moment at
+/// either end, 24 E I h = q a^4, and q a / 2 holds its end.
+TEST(PhysicalWays, HeavyStripLiftedFromAFloor) {
+  constexpr double gap = 0.01, distance = 0.005, lift = 2, width = 10, height = 2, modulus = 1;
+  RobotSpec spec = physical_robot(block_mesh({60, 1, 1}, {120, width, height}));
+  spec.quadratic = true;
+  spec.materials[0].elastic = elastic(Law::neo_hookean, modulus, 0);
+  spec.materials[0].density = 1000;
+  spec.gravity = {0, 0, -9.81};
+  const Points& at = spec.mesh.vertices;
+  VertexList edge;
+  for (Index v = 0; v < at.rows(); ++v)
+    if (at(v, 0) > 120 - 1e-9 && at(v, 2) == 0) edge.vertices.push_back(v);
+  const FixedSpec end{{std::move(edge), {}}, {false, false, true}, {0, 0, lift}};
+  FixedSpec back = plane_support(at, 0, 0);
+  back.axes = {true, true, false};
+  spec.fixed = {back, end};
+  spec.contact = contact_below(distance);
+  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -gap}, {0, 0, 1}}, std::nullopt, {}});
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, {});
+  EXPECT_LE(found.report.iterations, 80);
+  const double q = 1000e-9 * 9.81 * width * height, bending = modulus * width * std::pow(height, 3) / 12;
+  const double force = 0.5 * q * std::pow(24 * bending * (lift + gap - 0.5 * distance) / q, 0.25);
+  EXPECT_NEAR(reaction_of(model, statics, found, 1).z(), force, 0.02 * force);
+}
+
+}  // namespace softkin
