@@ -77,11 +77,13 @@ RobotSpec by_pressure(RobotSpec spec) {
 }
 
 /// The finger's chamber becomes a hollow; its material is magnetic along x.
-RobotSpec by_field(RobotSpec spec, const std::shared_ptr<const FieldSource>& source, FieldCommand command) {
+RobotSpec by_field(RobotSpec spec, const std::shared_ptr<const FieldSource>& source, FieldCommand command,
+                   Magnetisation magnetisation) {
   const std::string chamber = *spec.actuators[0].region;
   spec.voids.push_back(RegionRef{chamber, {}});
   auto remanence = std::make_shared<RemanenceSpec>();
   remanence->uniform = {100, 0, 0};
+  remanence->magnetisation = magnetisation;
   for (MaterialSpec& material : spec.materials) material.remanence = remanence;
   ActuatorSpec field;
   field.name = "field";
@@ -101,14 +103,17 @@ void compare(double size, FingerKind kind, const Options& options) {
   const auto uniform = std::make_shared<const FieldSource>(FieldSource{"field", UniformField{{0, 0, 1}}});
   const auto coil =
       std::make_shared<const FieldSource>(FieldSource{"coil", CoilField{{{{60, 0, -80}, {0, 0, 1}, 60, 500}}}});
-  std::vector<std::pair<const char*, std::unique_ptr<Tracked>>> all;
+  std::vector<std::pair<std::string, std::unique_ptr<Tracked>>> all;
   all.emplace_back("volume", std::make_unique<Tracked>(finger, 1, 1.3, options));
   all.emplace_back("volume, viscous", std::make_unique<Tracked>(viscous(finger), 1, 1.3, options));
   all.emplace_back("pressure", std::make_unique<Tracked>(by_pressure(finger), 0, 20, options));
-  all.emplace_back("uniform field",
-                   std::make_unique<Tracked>(by_field(finger, uniform, FieldCommand::flux_density), 0, 40, options));
-  all.emplace_back("coil", std::make_unique<Tracked>(by_field(finger, coil, FieldCommand::current), 0, 10, options));
-  const auto asked = [&](const char* what) { return options.only.empty() || options.only == what; };
+  for (const auto& [name, source, command, most] : {std::tuple("uniform", uniform, FieldCommand::flux_density, 40.0),
+                                                    std::tuple("coil", coil, FieldCommand::current, 10.0)})
+    for (const auto& [form, magnetisation] :
+         {std::pair("", Magnetisation::turns), std::pair(", stretches", Magnetisation::stretches)})
+      all.emplace_back(std::string(name) + form,
+                       std::make_unique<Tracked>(by_field(finger, source, command, magnetisation), 0, most, options));
+  const auto asked = [&](const std::string& what) { return options.only.empty() || options.only == what; };
   for (int step = 0; step <= options.steps; ++step)
     for (auto& [what, robot] : all)
       if (asked(what)) robot->step(step);
@@ -119,18 +124,18 @@ void compare(double size, FingerKind kind, const Options& options) {
     if (!asked(all[i].first)) continue;
     const Tracked& robot = *all[i].second;
     const double typical = median(robot.seconds);
-    std::printf("%9lld  %-9s %-16s %10.1f %11.2f %8.2f %10.1f %10.2f%s\n",
-                static_cast<long long>(body_tetrahedra(cell)), kind == FingerKind::physical ? "linear" : "quadratic",
-                all[i].first, robot.moved_mm(), 1e3 * typical, compared ? typical / (i < 2 ? elastic : pressed) : 1,
-                static_cast<double>(robot.iterations) / options.steps,
-                static_cast<double>(robot.factorisations) / options.steps, robot.complete ? "" : "  not all converged");
+    std::printf(
+        "%9lld  %-9s %-20s %10.1f %11.2f %8.2f %10.1f %10.2f%s\n", static_cast<long long>(body_tetrahedra(cell)),
+        kind == FingerKind::physical ? "linear" : "quadratic", all[i].first.c_str(), robot.moved_mm(), 1e3 * typical,
+        compared ? typical / (i < 2 ? elastic : pressed) : 1, static_cast<double>(robot.iterations) / options.steps,
+        static_cast<double>(robot.factorisations) / options.steps, robot.complete ? "" : "  not all converged");
     std::fflush(stdout);
   }
 }
 
 int run(const Options& options) {
   print_machine();
-  std::printf("%9s  %-9s %-16s %10s %11s %8s %10s %10s\n", "body tets", "elements", "moved by", "far [mm]",
+  std::printf("%9s  %-9s %-20s %10s %11s %8s %10s %10s\n", "body tets", "elements", "moved by", "far [mm]",
               "median [ms]", "ratio", "iterations", "factorisat.");
   for (const double size : options.sizes) compare(size, FingerKind::physical, options);
   for (const double size : options.quadratic_sizes) compare(size, FingerKind::physical_quadratic, options);

@@ -120,6 +120,24 @@ TEST(SceneMagnetism, Remanence) {
   EXPECT_EQ(spec.materials[1].remanence, nullptr);
 }
 
+TEST(SceneMagnetism, MagnetisationTurnsOrStretches) {
+  const std::string head = "materials:\n  - {youngs_modulus: 1, poisson_ratio: 0.4";
+  const auto read = [&](const std::string& keys) {
+    return magnetic_scene(head + keys + "}\n").materials[0].remanence->magnetisation;
+  };
+  EXPECT_EQ(read(", remanence: [1, 0, 0]"), Magnetisation::turns);
+  EXPECT_EQ(read(", remanence: [1, 0, 0], magnetisation: turns"), Magnetisation::turns);
+  EXPECT_EQ(read(", remanence: [1, 0, 0], magnetisation: stretches"), Magnetisation::stretches);
+  EXPECT_EQ(read(", magnetisation: stretches, remanence: {places: [[0, 0, 0]], samples: [[1, 0, 0]]}"),
+            Magnetisation::stretches);
+  for (const auto& [keys, fragment] : {std::pair(", remanence: [1, 0, 0], magnetisation: bends", "'turns', 'stretches'"),
+                                       std::pair(", magnetisation: turns", "there is none")}) {
+    const std::string message = refused(head + keys + "}\n");
+    EXPECT_NE(message.find(fragment), std::string::npos) << message;
+    EXPECT_EQ(message.substr(0, 9), "s.yaml:6:") << message;
+  }
+}
+
 TEST(SceneMagnetism, RemanenceOfSamplesInTheScene) {
   const std::string head =
       "materials:\n  - {youngs_modulus: 1, poisson_ratio: 0.4, remanence: {places: [[0, 0, 0], [1, 2, 3]], ";

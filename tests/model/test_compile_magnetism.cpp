@@ -44,6 +44,7 @@ CommonSpec named_whole() {
 RemanenceSpec programmed() {
   RemanenceSpec spec;
   spec.file = "pattern.csv";
+  spec.magnetisation = Magnetisation::stretches;
   spec.places.resize(4, 3);
   spec.samples.resize(4, 3);
   for (int i = 0; i < 4; ++i) {
@@ -69,6 +70,7 @@ TEST(CompileMagnetism, RemanenceByMaterialAndBySamples) {
     for (const Index v : model.tetrahedra[e]) x += 0.25 * model.rest(v, 0);
     const Vec3 expected = x < 20 ? Vec3(100, 0, 0) : Vec3(0, std::floor(x / 10) + 1, 0);
     EXPECT_EQ(model.magnetism->remanence[e], expected) << x;
+    EXPECT_EQ(model.magnetism->magnetisation[e], x < 20 ? Magnetisation::turns : Magnetisation::stretches) << x;
   }
   const auto& field = std::get<UniformField>(model.magnetism->sources.at(0).field);
   EXPECT_EQ(field.direction, Vec3(0, 0, 1));
@@ -109,6 +111,10 @@ TEST(CompileMagnetism, TheFingerprintKnowsThem) {
   std::set<std::string> prints{fingerprint_of(compile(spec))};
   RobotSpec other = spec;
   set_remanence(other.materials[0], {{100, 0, 1}});
+  EXPECT_TRUE(prints.insert(fingerprint_of(compile(other))).second);
+  RemanenceSpec stretching = *spec.materials[0].remanence;
+  stretching.magnetisation = Magnetisation::stretches;
+  set_remanence(other.materials[0], stretching);
   EXPECT_TRUE(prints.insert(fingerprint_of(compile(other))).second);
   other = spec;
   other.actuators[0] = field_command("field", {"field", UniformField{{0, 1, 5}}});
@@ -194,6 +200,7 @@ TEST(CompileMagnetism, RobotsAmongSeveral) {
   const Model model = compile(all);
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
     EXPECT_LT(model.magnetism->remanence[e].x(), -0.9);  // along y at rest
+  EXPECT_EQ(model.magnetism->magnetisation.back(), Magnetisation::stretches);
   one.actuators = {field_command("own", {"own", UniformField{}})};
   EXPECT_THROW((void)joined({{"left", one, place, line(3)}}, named_whole()), InvalidInput);
 }

@@ -262,9 +262,14 @@ void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
   const auto add = [&](std::size_t element, const Index* nodes, int count) {
     const Vec3& remanence = model.magnetism->remanence[element];
     if (remanence.isZero(0)) return;
-    const auto pulls = magnetic_pulls_of(nodes_at(model.rest, nodes, count),
-                                         nodes_at(found.state.positions, nodes, count), remanence.cast<Real>(), flux);
-    for (int i = 0; i < count; ++i) forces.add(nodes[i], pulls[static_cast<std::size_t>(i)], 0);
+    const bool turns = model.magnetism->magnetisation[element] == Magnetisation::turns;
+    const ElementPulls pulls =
+        magnetic_pulls_of(nodes_at(model.rest, nodes, count), nodes_at(found.state.positions, nodes, count),
+                          remanence.cast<Real>(), turns, flux);
+    for (int i = 0; i < count; ++i) {
+      forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
+      forces.stiffness[nodes[i]] += pulls.stiffness[i];
+    }
   };
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
     std::array<Index, 10> nodes;

@@ -7,11 +7,12 @@ namespace softkin::random_robots {
 namespace {
 
 /// Draws of its own, so that robots of the same seed are otherwise what they were without magnets.
-constexpr std::uint64_t own_draws = 0x6D61676E6574;
+constexpr std::uint64_t own_draws = 0x6D61676E6574, draws_of_form = 0x7475726E73;
 
 void magnetise_all(Making& m, Draw& draw, double remanence) {
   RemanenceSpec spec;
   spec.uniform = remanence * draw.offset();
+  if (Draw(m.made.seed ^ draws_of_form).chance(0.4)) spec.magnetisation = Magnetisation::stretches;
   for (MaterialSpec& material : m.made.spec.materials) material.remanence = std::make_shared<const RemanenceSpec>(spec);
 }
 

@@ -118,11 +118,34 @@ RealMat3 slope_of(const RealMat3& gradient, const Energy& energy) {
   return p;
 }
 
+/// F = U diag(s) V^T with U V^T, the nearest rotation, proper.
+struct SignedValues {
+  RealMat3 left, right;
+  RealVec3 values;
+
+  explicit SignedValues(const RealMat3& f) {
+    const Eigen::JacobiSVD<RealMat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Real sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    left = svd.matrixU() * RealVec3(1, 1, sign).asDiagonal();
+    right = svd.matrixV();
+    values = svd.singularValues().cwiseProduct(RealVec3(1, 1, sign));
+  }
+  [[nodiscard]] RealMat3 rotation() const { return left * right.transpose(); }
+  /// Of the rotation, by F.
+  [[nodiscard]] RealMat3 rate(const RealMat3& change) const {
+    const RealMat3 seen = left.transpose() * change * right;
+    RealMat3 turn;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) turn(i, j) = i == j ? 0 : (seen(i, j) - seen(j, i)) / (values[i] + values[j]);
+    return left * turn * right.transpose();
+  }
+  /// Of the three ways to turn, the stiffness of the softest [-].
+  [[nodiscard]] Real least() const { return values[1] + values[2]; }
+};
+
 /// 2 mu (F - R) + lambda tr(R^T F - I) R, R the rotation nearest to F.
 RealMat3 corotational_stress(const ElasticLaw& law, const RealMat3& f) {
-  const Eigen::JacobiSVD<RealMat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  RealVec3 signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-  const RealMat3 r = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  const RealMat3 r = SignedValues(f).rotation();
   const Real swelling = (r.transpose() * f).trace() - 3;
   return 2 * static_cast<Real>(law.mu) * (f - r) + static_cast<Real>(law.lambda) * swelling * r;
 }
@@ -297,27 +320,47 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
   return out;
 }
 
-std::vector<RealVec3> magnetic_pulls_of(const RealPoints& rest, const RealPoints& current, const RealVec3& remanence,
-                                        const std::function<RealFlux(const RealVec3&)>& flux) {
+ElementPulls magnetic_pulls_of(const RealPoints& rest, const RealPoints& current, const RealVec3& remanence, bool turns,
+                               const std::function<RealFlux(const RealVec3&)>& flux) {
   constexpr Real permeability = 4e-7L * 3.14159265358979323846L;  // [T m / A]; 1 mT^2 is 1e-6 T^2, 1 MPa 1e6 Pa
+  constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
-  std::vector<RealVec3> pulls(static_cast<std::size_t>(count), RealVec3::Zero());
+  const auto nodes = static_cast<std::size_t>(count);
+  ElementPulls out{std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0),
+                   std::vector<Real>(nodes, 0)};
+  const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
   for (const ParentPoint& point : points_of(count)) {
     const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
     const Real scale = point.weight * jacobian.determinant() * 1e-12L / permeability;
     const RealPoints slope = point.slope * jacobian.inverse();
     const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
+    const SignedValues values(gradient);
     RealVec3 at = RealVec3::Zero();
     for (Eigen::Index a = 0; a < count; ++a)
       at += point.shape[static_cast<std::size_t>(a)] * current.row(a).transpose();
     const RealFlux field = flux(at);
-    const RealVec3 pull = field.slope.transpose() * (gradient * remanence);
+    const RealVec3 pull = field.slope.transpose() * ((turns ? values.rotation() : gradient) * remanence);
+    RealMat3 by_gradient = field.value * remanence.transpose();
+    if (turns)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          RealMat3 change = RealMat3::Zero();
+          change(i, j) = 1;
+          by_gradient(i, j) = field.value.dot(values.rate(change) * remanence);
+        }
+    // how it turns changes by the same, over how hard it is to turn
+    const Real all = slope.rowwise().norm().sum();
+    const Real stiffness = turns ? 2 * remanence.norm() * field.value.norm() / (values.least() * values.least()) : 0;
+    const Real blurred = stiffness * ulp * (1 + all * (current_size + gradient.norm() * rest_size));
     for (Eigen::Index a = 0; a < count; ++a) {
       const auto i = static_cast<std::size_t>(a);
-      pulls[i] -= scale * (slope.row(a).dot(remanence) * field.value + point.shape[i] * pull);
+      const Real own = scale * slope.row(a).norm();
+      out.force[i] -= scale * (by_gradient * slope.row(a).transpose() + point.shape[i] * pull);
+      out.stiffness[i] += own * stiffness * all;
+      out.rounding[i] += own * blurred;
     }
   }
-  return pulls;
+  return out;
 }
 
 }  // namespace softkin::random_robots

@@ -53,9 +53,10 @@ struct RealFlux {
   RealMat3 slope = RealMat3::Zero();
 };
 
-/// Derivative of -(1 / mu_0) (F b_r) . b by each node's position [N]; remanence: b_r [mT].
-[[nodiscard]] std::vector<RealVec3> magnetic_pulls_of(const RealPoints& rest, const RealPoints& current,
-                                                      const RealVec3& remanence,
-                                                      const std::function<RealFlux(const RealVec3&)>& flux);
+/// Derivative of -(1 / mu_0) (F b_r) . b, or where it turns of -(1 / mu_0) (R b_r) . b, by each node's position;
+/// remanence: b_r [mT].
+[[nodiscard]] ElementPulls magnetic_pulls_of(const RealPoints& rest, const RealPoints& current,
+                                             const RealVec3& remanence, bool turns,
+                                             const std::function<RealFlux(const RealVec3&)>& flux);
 
 }  // namespace softkin::random_robots

@@ -7,9 +7,12 @@
 
 namespace softkin::testing {
 
-inline void magnetise(RobotSpec& spec, const Vec3& remanence) {
+constexpr std::array<Magnetisation, 2> both_magnetisations{Magnetisation::turns, Magnetisation::stretches};
+
+inline void magnetise(RobotSpec& spec, const Vec3& remanence, Magnetisation magnetisation = Magnetisation::turns) {
   RemanenceSpec of;
   of.uniform = remanence;
+  of.magnetisation = magnetisation;
   spec.materials[0].remanence = std::make_shared<const RemanenceSpec>(of);
 }
 

@@ -8,12 +8,19 @@ namespace softkin {
 /// 1 / mu_0, of two flux densities an energy per volume [MPa / mT^2].
 constexpr double inverse_permeability = 7.957747155e-7;
 
+/// What becomes of a remanent flux density b_r where the material is deformed by F = R U.
+enum class Magnetisation {
+  turns,     // R b_r: stiff particles are carried along
+  stretches  // F b_r
+};
+
 /// What a material's remanent flux density is, in the frame of the robot at rest [mT]: one for all of it, or samples in
 /// space, of which every element takes the one nearest to its centroid.
 struct RemanenceSpec {
   Vec3 uniform{0, 0, 0};
   Points places{}, samples{};  // #samples by 3 [mm], [mT]; no rows: uniform
   std::string file{};          // of the samples, for messages
+  Magnetisation magnetisation = Magnetisation::turns;
 };
 
 /// What one command of a source sets: flux density along a direction or an axis [mT], current [A], and of a dipole
@@ -81,7 +88,8 @@ struct FieldSpec {
 /// What is magnetic in a compiled robot, and the fields that act on it. The `other` of an Actuator of kind magnetic is
 /// a place among the sources, its `axis` a FieldCommand.
 struct Magnetism {
-  std::vector<Vec3> remanence;  // of every tetrahedron, then prism, of the model [mT]
+  std::vector<Vec3> remanence;               // of every tetrahedron, then prism, of the model [mT]
+  std::vector<Magnetisation> magnetisation;  // the same
   std::vector<FieldSource> sources;
 };
 

@@ -202,7 +202,11 @@ std::string fingerprint_of(const Model& model) {
            model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
            model.fixed, model.held, model.dead_load);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
-  if (model.magnetism) hash.add(model.magnetism->remanence, model.magnetism->sources);
+  if (model.magnetism) {
+    hash.add(model.magnetism->remanence, model.magnetism->sources);
+    const std::vector<Magnetisation>& all = model.magnetism->magnetisation;
+    if (std::find(all.begin(), all.end(), Magnetisation::turns) != all.end()) hash.add(all);
+  }
   return hash.text();
 }
 

@@ -197,8 +197,16 @@ void read_samples(const Context& context, const Map& map, RemanenceSpec& remanen
 
 }  // namespace
 
-std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Node& node) {
+std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Map& material) {
+  const Node *given = material.find("remanence"), *magnetisation = material.find("magnetisation");
+  if (!given) {
+    if (magnetisation) fail(*magnetisation, magnetisation->name + " says what becomes of a 'remanence': there is none");
+    return nullptr;
+  }
+  const Node& node = *given;
   RemanenceSpec remanence;
+  if (magnetisation)
+    remanence.magnetisation = static_cast<Magnetisation>(choice(*magnetisation, {"turns", "stretches"}));
   if (node.kind == Node::Kind::map) {
     const Map map(node, {"file", "places", "samples"});
     if (map.find("file") == nullptr) {

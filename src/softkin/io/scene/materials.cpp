@@ -125,7 +125,8 @@ double read_density(const Node& node) {
 }
 
 MaterialSpec read_material(const Context& context, const Node& node) {
-  Keys known{"region", "shape_ratio", "weight", "linear_range", "density", "viscosity", "permittivity", "remanence"};
+  Keys known{"region",    "shape_ratio",  "weight",    "linear_range", "density",
+             "viscosity", "permittivity", "remanence", "magnetisation"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;
@@ -142,7 +143,7 @@ MaterialSpec read_material(const Context& context, const Node& node) {
   if (const Node* density = map.find("density")) material.density = read_density(*density);
   if (const Node* viscosity = map.find("viscosity")) material.viscosity = read_viscosity(*viscosity);
   if (const Node* value = map.find("permittivity")) material.permittivity = read_permittivity(*value);
-  if (const Node* remanence = map.find("remanence")) material.remanence = read_remanence(context, *remanence);
+  material.remanence = read_remanence(context, map);
   if (const Node* range = map.find("linear_range")) material.linear_range = positive(*range);
   return material;
 }

@@ -159,6 +159,8 @@ bool magnetise(const Compilation& c, Magnetism& magnetism) {
     for (const ElementRole& role : roles) {
       const auto& remanence = of_material[static_cast<std::size_t>(role.material)];
       magnetism.remanence.push_back(remanence ? remanence->of(model, magnetism.remanence.size()) : Vec3(0, 0, 0));
+      const RemanenceSpec* spec = c.spec.materials[static_cast<std::size_t>(role.material)].remanence.get();
+      magnetism.magnetisation.push_back(spec ? spec->magnetisation : Magnetisation::turns);
       any = any || !magnetism.remanence.back().isZero(0);
     }
   };

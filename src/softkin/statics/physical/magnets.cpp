@@ -4,6 +4,7 @@
 #include <cmath>
 #include <softkin/core/dense.hpp>
 #include <softkin/energy/elastic.hpp>
+#include <softkin/statics/physical/element_shapes.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 
 namespace softkin::physical {
@@ -11,36 +12,6 @@ namespace softkin::physical {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-/// Shape functions at the quadrature points of energy::elastic_rest.
-std::array<std::array<double, 4>, 1> linear_shapes() {
-  return {{{0.25, 0.25, 0.25, 0.25}}};
-}
-
-std::array<std::array<double, 10>, 4> quadratic_shapes() {
-  constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
-  const double near = (5 + 3 * std::sqrt(5.0)) / 20, far = (5 - std::sqrt(5.0)) / 20;
-  std::array<std::array<double, 10>, 4> shapes{};
-  for (int q = 0; q < 4; ++q) {
-    std::array<double, 4> l{far, far, far, far};
-    l[q] = near;
-    for (int i = 0; i < 4; ++i) shapes[q][i] = l[i] * (2 * l[i] - 1);
-    for (int e = 0; e < 6; ++e) shapes[q][4 + e] = 4 * l[edges[e][0]] * l[edges[e][1]];
-  }
-  return shapes;
-}
-
-std::array<std::array<double, 6>, 6> prism_shapes() {
-  constexpr std::array<std::array<double, 2>, 3> in_plane{{{1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
-  std::array<std::array<double, 6>, 6> shapes{};
-  for (int q = 0; q < 6; ++q) {
-    const auto& [x, y] = in_plane[q % 3];
-    const double z = (q < 3 ? -1 : 1) / std::sqrt(3.0);
-    const std::array<double, 3> l{1 - x - y, x, y};
-    for (int i = 0; i < 6; ++i) shapes[q][i] = l[i % 3] * (i < 3 ? 1 - z : 1 + z) / 2;
-  }
-  return shapes;
-}
 
 /// Where a quadrature point is, and its moment: (volume / mu_0) F b_r [N mm / mT].
 struct Point {
@@ -100,14 +71,14 @@ void Magnets::add(Set<K, Q>& set, const Model& model, const Nodes& nodes, const 
 }
 
 Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
-    : fields_(model), vertices_(static_cast<Index>(model.rest.rows())) {
-  linear_.shapes = linear_shapes();
-  quadratic_.shapes = quadratic_shapes();
-  prisms_.shapes = prism_shapes();
+    : fields_(model), vertices_(static_cast<Index>(model.rest.rows())), turning_(model, slots) {
+  set_shapes(linear_.shapes);
+  set_shapes(quadratic_.shapes);
+  set_shapes(prisms_.shapes);
   const std::vector<Vec3>& remanence = model.magnetism->remanence;
   const std::size_t tetrahedra = model.tetrahedra.size();
   for (std::size_t e = 0; e < remanence.size(); ++e) {
-    if (remanence[e].isZero(0)) continue;
+    if (remanence[e].isZero(0) || model.magnetism->magnetisation[e] != Magnetisation::stretches) continue;
     if (e >= tetrahedra) {
       add(prisms_, model, model.prisms[e - tetrahedra], remanence[e], slots[e]);
     } else if (model.edge_nodes.empty()) {
@@ -131,7 +102,9 @@ Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
 
 std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, const Points& positions, Points& gradient,
                                             Team& team) const {
-  double energy = 0;
+  const std::optional<double> turning = turning_.add_gradient(fields_, setting, positions, gradient, team);
+  if (!turning) return std::nullopt;
+  double energy = *turning;
   if (!setting.uniform.isZero(0)) {
     const Eigen::RowVector3d flux = setting.uniform.transpose();
     for (const auto& [vertex, pole] : poles_) {
@@ -173,6 +146,7 @@ std::optional<double> Magnets::add_gradient(const Demand& demand, const Points& 
 void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,
                             Team& team) const {
   const Fields::Setting setting = fields_.setting(demand);
+  turning_.add_stiffness(fields_, setting, positions, projected, slots, team);
   if (!setting.in_space()) return;
   each([&]<int K, int Q>(const Set<K, Q>& set) {
     const auto of_element = [&](Index e, int q, double* slot) {
@@ -217,6 +191,7 @@ MagneticLoad Magnets::load(const Demand& demand, const Points& positions, Team& 
         volume += set.volumes[e][q];
       }
   });
+  turning_.add_places(positions, volume, load.center);
   load.center /= volume;
   Points gradient = Points::Zero(positions.rows(), 3);
   (void)add_gradient(demand, positions, gradient, team);

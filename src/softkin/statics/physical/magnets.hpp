@@ -4,15 +4,18 @@
 #include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
 #include <softkin/statics/deformation.hpp>
-#include <softkin/statics/physical/fields.hpp>
+#include <softkin/statics/physical/element_shapes.hpp>
+#include <softkin/statics/physical/turning_magnets.hpp>
 
 namespace softkin::physical {
 
-/// A hard-magnetic body in applied fields. Per rest volume its energy is -(1 / mu_0) (F b_r) . b(x), with the remanent
-/// flux density b_r of the body at rest and the applied one, b, at the place x where the material is now: linear in F.
+/// A hard-magnetic body in applied fields. Per rest volume its energy is -(1 / mu_0) (R b_r) . b(x) where it turns
+/// (TurningMagnets), and -(1 / mu_0) (F b_r) . b(x) where it stretches too, with the remanent flux density b_r of the
+/// body at rest and the applied one, b, at the place x where the material is now.
 ///
-/// A uniform field pulls at every vertex with a number of its own times the flux density, whatever the shape: dead
-/// forces, and no stiffness. A field that changes in space has stiffness too, in the elements' own slots.
+/// The second is linear in F. A uniform field pulls at every vertex with a number of its own times the flux density,
+/// whatever the shape: dead forces, and no stiffness. A field that changes in space has stiffness too, in the elements'
+/// own slots.
 ///
 /// source  Zhao, Kim, Cheng, Liu, Zhao, J. Mech. Phys. Solids 124, 2019; docs/magnetism.md
 class Magnets {
@@ -25,8 +28,8 @@ class Magnets {
   [[nodiscard]] std::optional<double> add_gradient(const Demand& demand, const Points& positions, Points& gradient,
                                                    Team& team) const;
 
-  /// Adds second derivatives to what is in the elements' slots [N/mm]. projected: with those by (F b_r, x) of every
-  /// quadrature point replaced by the nearest positive semidefinite matrix
+  /// Adds second derivatives to what is in the elements' slots [N/mm]. projected: made positive semidefinite at every
+  /// quadrature point, of what stretches by the nearest such matrix in (F b_r, x)
   void add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,
                      Team& team) const;
 
@@ -38,14 +41,14 @@ class Magnets {
   [[nodiscard]] bool any_dipole() const { return fields_.any_dipole(); }
 
  private:
-  /// Magnetic elements of K nodes and Q quadrature points.
+  /// Elements of K nodes and Q quadrature points whose magnets stretch.
   template <int K, int Q>
   struct Set {
     std::vector<std::array<Index, K>> nodes;
     std::vector<std::int64_t> slots;
     std::vector<std::array<std::array<double, K>, Q>> poles;  // volume / mu_0 b_r . slope_a [N / mT]
     std::vector<std::array<double, Q>> volumes;               // at rest [mm^3]
-    std::array<std::array<double, K>, Q> shapes;              // functions at the points
+    ElementShapes<K, Q> shapes;
   };
   template <int K, int Q, class Nodes>
   void add(Set<K, Q>& set, const Model& model, const Nodes& nodes, const Vec3& remanence, std::int64_t slot);
@@ -61,6 +64,7 @@ class Magnets {
 
   Fields fields_;
   Index vertices_;
+  TurningMagnets turning_;
   std::vector<std::pair<Index, double>> poles_;  // of a uniform field: vertex, force over flux density [N / mT]
   Set<4, 1> linear_;
   Set<10, 4> quadratic_;
