@@ -143,6 +143,20 @@ std::optional<double> Magnets::add_gradient(const Demand& demand, const Points& 
   return add_gradient(fields_.setting(demand), positions, gradient, team);
 }
 
+void Magnets::add_change(const Demand& from, const Demand& to, const Points& positions, Points& force,
+                         Team& team) const {
+  Fields::Setting before = fields_.setting(from), after = fields_.setting(to);
+  if (!before.in_space() && !after.in_space()) {  // in which the gradient is linear
+    after.uniform -= before.uniform;
+    (void)add_gradient(after, positions, force, team);
+    return;
+  }
+  Points gradient = Points::Zero(force.rows(), 3);  // in what a dipole does its commands are not linear
+  (void)add_gradient(before, positions, gradient, team);
+  force -= gradient;
+  (void)add_gradient(after, positions, force, team);
+}
+
 void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,
                             Team& team) const {
   const Fields::Setting setting = fields_.setting(demand);

@@ -28,6 +28,9 @@ class Magnets {
   [[nodiscard]] std::optional<double> add_gradient(const Demand& demand, const Points& positions, Points& gradient,
                                                    Team& team) const;
 
+  /// Adds how the gradient changes from one demand to another [N].
+  void add_change(const Demand& from, const Demand& to, const Points& positions, Points& force, Team& team) const;
+
   /// Adds second derivatives to what is in the elements' slots [N/mm]. projected: made positive semidefinite at every
   /// quadrature point, of what stretches by the nearest such matrix in (F b_r, x)
   void add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,

@@ -350,12 +350,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   }
   if (any_dead_load_) force -= (to.share - from.share) * model_.dead_load;
   if (to.fading != from.fading) force -= (to.fading - from.fading) * work.unbalanced;
-  if (fields) {  // the whole change: in what a dipole does its commands are not linear
-    Points before = Points::Zero(force.rows(), 3), after = before;
-    (void)magnets_->add_gradient(from, at.positions, before, team);
-    (void)magnets_->add_gradient(to, at.positions, after, team);
-    force += after - before;
-  }
+  if (fields) magnets_->add_change(from, to, at.positions, force, team);
   if (layers) {  // the stretch of layers: central difference of the elastic force
     Demand low = from, high = from;
     constexpr double reach = 1e-4;

@@ -21,13 +21,21 @@ void put(energy::Pack33& matrix, int lane, const Mat3& value) {
   for (int r = 0; r < 3; ++r) put(matrix.row[r], lane, value.row(r).transpose());
 }
 
-/// Flux density where the first `count` elements of a block are. False where it is not known for one of them.
+/// Flux density of a field that is the same everywhere.
+template <int Q>
+energy::FluxBlock<Q> uniform_flux(const Fields::Setting& setting) {
+  energy::FluxBlock<Q> flux;
+  flux.in_space = setting.in_space();
+  for (int q = 0; q < Q; ++q)
+    for (int l = 0; l < lanes; ++l) put(flux.value[q], l, setting.uniform);
+  return flux;
+}
+
+/// Flux density of one that is not, where the first `count` elements of a block are. False where it is not known for one
+/// of them.
 template <int K, int Q>
 bool set_flux(const Fields& fields, const Fields::Setting& setting, const energy::MagnetBlock<K, Q>& block,
               const energy::Shape<K>& shape, Index count, bool second, energy::FluxBlock<Q>& out) {
-  for (int q = 0; q < Q; ++q)
-    for (int l = 0; l < lanes; ++l) put(out.value[q], l, setting.uniform);
-  out.in_space = setting.in_space();
   if (!out.in_space) return true;
   bool known = true;
   for (int q = 0; q < Q; ++q) {
@@ -114,7 +122,7 @@ std::optional<double> TurningMagnets::add_gradient(const Fields& fields, const F
     LargeVector<Pull> pulls(set.blocks.size());
     team.pieces(count, [&](Index begin, Index end) {
       energy::Shape<K> shape;
-      energy::FluxBlock<Q> flux;
+      energy::FluxBlock<Q> flux = uniform_flux<Q>(setting);
       for (Index b = begin; b < end; ++b) {
         const Index elements = std::min<Index>(lanes, set.count - lanes * b);
         load<K>(positions, set.nodes[b], shape);
@@ -145,7 +153,7 @@ void TurningMagnets::add_stiffness(const Fields& fields, const Fields::Setting& 
     constexpr int matrices = K * (K + 1) / 2;
     team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
       energy::Shape<K> shape;
-      energy::FluxBlock<Q> flux;
+      energy::FluxBlock<Q> flux = uniform_flux<Q>(setting);
       energy::ElasticStiffness<K> out;
       for (Index b = begin; b < end; ++b) {
         const Index elements = std::min<Index>(lanes, set.count - lanes * b);
