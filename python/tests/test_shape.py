@@ -101,7 +101,8 @@ def test_what_touches(shape: softkin.Shape) -> None:
     assert pressed.report["steps"][0]["contacts"][0]["pressure_kPa"] == contact.pressure_kPa
 
 
-def test_magnets() -> None:
+@pytest.mark.parametrize("magnetisation", ["turns", "stretches"])
+def test_magnets(magnetisation: str) -> None:
     vertices, tetrahedra = block((6, 2, 1), (24, 4, 2))
     middle = vertices[tetrahedra].mean(axis=1)
     robot = softkin.Robot(
@@ -113,6 +114,7 @@ def test_magnets() -> None:
                 "youngs_modulus": 1,
                 "poisson_ratio": 0.4,
                 "remanence": {"places": middle, "samples": np.tile([100.0, 0, 0], (len(middle), 1))},
+                "magnetisation": magnetisation,
             }
         ],
         fixed=[{"region": "base"}],

@@ -110,8 +110,9 @@ class Example : public ::testing::TestWithParam<std::tuple<fs::path, std::string
   static void expect_plausible(const json& step, bool physical) {
     EXPECT_LT(step["strain"]["greatest"], 5);
     const double rest = is_magnetic(scene()) ? 0 : 1;
-    const bool asked =
-        std::any_of(step["actuation"].begin(), step["actuation"].end(), [rest](double m) { return m != rest; });
+    bool asked = false;
+    for (const auto& [name, value] : step["actuation"].items())
+      asked = asked || (value != rest && name != "field_x");  // a field along magnets at rest turns nothing
     EXPECT_TRUE(!asked || step["largest_displacement_mm"] > 1e-3);
     const bool closes = !physical && scene().stem() == "three_tendon_finger";
     EXPECT_TRUE(closes || step["self_overlap"]["points"] == 0) << step["self_overlap"];
