@@ -130,8 +130,9 @@ TEST(SceneMagnetism, MagnetisationTurnsOrStretches) {
   EXPECT_EQ(read(", remanence: [1, 0, 0], magnetisation: stretches"), Magnetisation::stretches);
   EXPECT_EQ(read(", magnetisation: stretches, remanence: {places: [[0, 0, 0]], samples: [[1, 0, 0]]}"),
             Magnetisation::stretches);
-  for (const auto& [keys, fragment] : {std::pair(", remanence: [1, 0, 0], magnetisation: bends", "'turns', 'stretches'"),
-                                       std::pair(", magnetisation: turns", "there is none")}) {
+  for (const auto& [keys, fragment] :
+       {std::pair(", remanence: [1, 0, 0], magnetisation: bends", "'turns', 'stretches'"),
+        std::pair(", magnetisation: turns", "there is none")}) {
     const std::string message = refused(head + keys + "}\n");
     EXPECT_NE(message.find(fragment), std::string::npos) << message;
     EXPECT_EQ(message.substr(0, 9), "s.yaml:6:") << message;

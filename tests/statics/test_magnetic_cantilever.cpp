@@ -33,11 +33,11 @@ struct Tip {
 };
 
 /// E I theta'' = -(A b_r B / mu_0) s sin(apart), apart = opening - theta, theta(0) = 0, theta'(L) = 0 by shooting: the
-/// angle between remanence and field at the tip by bisection, from there back to the clamp by Runge and Kutta's method of
-/// fourth order; all over the length.
+/// angle between remanence and field at the tip by bisection, from there back to the clamp by Runge and Kutta's method
+/// of fourth order; all over the length.
 ///
 /// load     12 b_r B L^2 / (mu_0 E t^2)
-/// strain   b_r B / (mu_0 E), which the field stretches what lies along it by: s = 1 + strain cos(apart); 0: inextensible
+/// strain   b_r B / (mu_0 E), by which the field stretches what lies along it: s = 1 + strain cos(apart)
 /// opening  from the remanence at rest to the field
 Tip elastica(double load, double strain, double opening = M_PI / 2) {
   constexpr int steps = 2000;

@@ -38,8 +38,8 @@ Pack33 symmetric(const Pack33& a) {
 
 /// polar(), in half its time where no lane is inverted or nearly flat.
 ///
-/// source  Newton's iteration X <- (X + X^-T) / 2 from F, which converges quadratically to R; Higham 1986, "Computing the
-///         polar decomposition, with applications"
+/// source  Newton's iteration X <- (X + X^-T) / 2 from F, which converges quadratically to R; Higham 1986, "Computing
+///         the polar decomposition, with applications"
 Polar quick_polar(const Pack33& gradient) {
   constexpr int most = 8;
   constexpr double flat = 0.01, arrived = 1e-15;  // the square of a step, which leaves half of it
@@ -149,9 +149,10 @@ class ExactMagnet {
   Pack33 turned_[K], right_[K], placed_[K];
 };
 
-/// The second derivative is w^T A w + 2 w . v, with A = by_turn() - sym([h] G) and v = sum_a s_a x (h x x_a'), and where
-/// the field changes in space 2 w . C x' + x' . D x' more. With v measured by |h| the 6 x 6 matrix of (w, v) splits by
-/// the eigenvectors of A; 2 w . C x' is less than the square of w + C x' in any unit of length; D is projected.
+/// The second derivative is w^T A w + 2 w . v, with A = by_turn() - sym([h] G) and v = sum_a s_a x (h x x_a'), and
+/// where the field changes in space 2 w . C x' + x' . D x' more. With v measured by |h| the 6 x 6 matrix of (w, v)
+/// splits by the eigenvectors of A; 2 w . C x' is less than the square of w + C x' in any unit of length; D is
+/// projected.
 template <int K>
 class PositiveMagnet {
  public:

@@ -70,8 +70,8 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] double read_density(const Node& node);
 /// Target-shape keys, elastic constants, or both.
 [[nodiscard]] MaterialSpec read_material(const Context& context, const Node& node);
-/// Keys `remanence`, three components [mT] or a map with samples, and `magnetisation` of a material; none where the first
-/// is not there.
+/// Keys `remanence`, three components [mT] or a map with samples, and `magnetisation` of a material; none where the
+/// first is not there.
 [[nodiscard]] std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Map& material);
 /// Keys that an actuator of kind magnetic alone has.
 [[nodiscard]] const Keys& field_keys();

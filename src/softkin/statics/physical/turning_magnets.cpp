@@ -31,8 +31,8 @@ energy::FluxBlock<Q> uniform_flux(const Fields::Setting& setting) {
   return flux;
 }
 
-/// Flux density of one that is not, where the first `count` elements of a block are. False where it is not known for one
-/// of them.
+/// Flux density of one that is not, where the first `count` elements of a block are. False where it is not known for
+/// one of them.
 template <int K, int Q>
 bool set_flux(const Fields& fields, const Fields::Setting& setting, const energy::MagnetBlock<K, Q>& block,
               const energy::Shape<K>& shape, Index count, bool second, energy::FluxBlock<Q>& out) {
