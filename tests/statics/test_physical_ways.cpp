@@ -125,4 +125,20 @@ TEST(PhysicalWays, HeavyStripLiftedFromAFloor) {
   EXPECT_NEAR(reaction_of(model, statics, found, 1).z(), force, 0.02 * force);
 }
 
+/// Where what is held or hangs leads nowhere alone, loads and it come together again, each by the same share.
+TEST(PhysicalWays, WhatLeadsNowhereAloneComesTogetherWithLoads) {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].elastic = elastic(Law::yeoh, 1, 0.45);
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  spec.fixed.push_back({{std::string("x_high"), {}}, {true, true, true}, {-61, 0, 0}});  // of 60 mm
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve(values({20}), statics.rest());
+  EXPECT_EQ(found.report.status, Status::limit);
+  EXPECT_GT(found.report.reached, 0.1) << found.report.remark;
+  EXPECT_LT(found.report.reached, 1);
+  EXPECT_NEAR(found.state.share, found.report.reached, 1e-12);
+  EXPECT_NEAR(found.state.actuation[0], 20 * found.report.reached, 1e-12);
+}
+
 }  // namespace softkin

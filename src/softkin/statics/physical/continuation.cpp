@@ -119,8 +119,13 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
     if (outcome == Newton::Outcome::converged) return arrive(to, at);
   }
   while (way_.done < 1) {
-    if (const std::optional<Status> end = go_on(at)) return *end;
-    if (way_.done == 1 && way_.then) set_out(way_.here, Demand(*way_.then));
+    const std::optional<Status> end = go_on(at);
+    if (end == Status::limit && together_ && way_.then)
+      go_together(at);
+    else if (end)
+      return *end;
+    else if (way_.done == 1 && way_.then)
+      set_out(way_.here, Demand(*way_.then));
   }
   return arrive(to, at);
 }
@@ -140,17 +145,33 @@ double Continuation::whole(double done) const {
   return way_.then ? way_.before : way_.before + (1 - way_.before) * done;
 }
 
-/// Where one load changes beside weights and supports: these first, so that the load alone is left and can be climbed.
-bool Continuation::load_at_last() {
-  if (way_.load >= 0 || way_.then || way_.from.share == way_.to.share) return false;
+/// Where loads change beside weights, prestretch and supports: these first, so that the loads alone are left, of which
+/// one can be climbed.
+bool Continuation::loads_at_last(const Iterate& at) {
+  if (way_.load >= 0 || together_ || way_.from.share == way_.to.share) return false;
   Demand rest = way_.to;
   rest.actuation = way_.here.actuation;
-  if (only_load(rest, way_.to) < 0) return false;
+  if (!change_loads(rest, way_.to)) return false;
+  together_ = Together{way_, at, active_, last_};
   const Demand to = way_.to;
   way_.before = way_.done;
   set_out(way_.here, rest);
   way_.then = to;
   return true;
+}
+
+/// Weights alone lead nowhere: loads may carry them.
+void Continuation::go_together(Iterate& at) {
+  Together& before = *together_;
+  way_ = std::move(before.way);
+  at = std::move(before.at);
+  active_ = std::move(before.active);
+  last_ = before.last;
+  from_ = at.positions;
+  way_.advance *= 0.4;
+  way_.factorised = false;
+  way_.marked_iterations = report_.iterations;
+  report_.remark.clear();
 }
 
 /// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
@@ -237,7 +258,7 @@ void Continuation::take_beyond(Iterate& at) {
 /// After a step of this length that led to no equilibrium.
 std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   const std::vector<bool> active = active_;
-  if (load_at_last()) return std::nullopt;
+  if (loads_at_last(at)) return std::nullopt;
   way_.advance = 0.4 * length;
   if (way_.load >= 0) {  // along what the load does
     const Climb end = climb(std::exchange(way_.load, -1), way_.from, way_.here, way_.to, at);

@@ -75,10 +75,19 @@ class Continuation {
     int marked_iterations = 0;
   };
 
+  /// Where weights and loads were told apart.
+  struct Together {
+    Way way;
+    Iterate at;
+    std::vector<bool> active;
+    Judgement last;
+  };
+
   void set_out(const Demand& from, const Demand& to);
   [[nodiscard]] double whole(double done) const;
   [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
-  bool load_at_last();
+  bool loads_at_last(const Iterate& at);
+  void go_together(Iterate& at);
   std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from, bool prepared);
   Climb climb(Index a, const Demand& from, const Demand& here, const Demand& to, Iterate& at);
   double slope_at(Index a, const Demand& load, const Measured& point);
@@ -135,6 +144,7 @@ class Continuation {
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
   Judgement last_;                    // of the last good shape
   int rounds_ = 1;                    // of normal forces, for the last equilibrium
+  std::optional<Together> together_;
   bool interrupted_ = false, at_summit_ = false;
 };
 
