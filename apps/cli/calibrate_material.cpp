@@ -226,7 +226,7 @@ int calibrate_specimens(const MaterialOptions& options) {
       calibration::evaluate(task, std::move(specimens), std::move(twists),
                             [&](const std::string& what, double share) { line.show(share, what); });
   line.clear();
-  if (results.interrupted) return tell_stopped(log.size(), all, "simulated test", journal, !journal.empty());
+  if (results.interrupted) return tell_stopped({log.size(), all, "simulated test", journal, !journal.empty()});
   const std::string failure = calibration::failure(task, results);
   if (failure.empty())
     write(options, specimens_fragment(task, results), specimens_plot(task, results), residual_table(results));

@@ -25,8 +25,8 @@ namespace {
 
 /// What the user asks of `softkin fk`. An empty file name: not given.
 struct FkOptions : SolveOptions, RunOptions, MapUse {
-  std::string path;
-  std::string output, report;
+  std::string path, start;
+  std::string output, report, trace;
   ShowOptions show;
   std::vector<std::string> settings;  // ACTUATOR=VALUE
 
@@ -35,8 +35,11 @@ struct FkOptions : SolveOptions, RunOptions, MapUse {
   [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const {
     std::vector<Output> outputs = asked_outputs({{"--output", output}});
     if (series()) outputs.back().shapes = steps;
-    for (Output& each :
-         asked_outputs({{"--report", report}, {"--image", show.image}, {"--plot", show.plot}, {"--html", page}}))
+    for (Output& each : asked_outputs({{"--report", report},
+                                       {"--trace", trace},
+                                       {"--image", show.image},
+                                       {"--plot", show.plot},
+                                       {"--html", page}}))
       outputs.push_back(std::move(each));
     return outputs;
   }
@@ -51,6 +54,8 @@ void add_options(CLI::App& command, FkOptions& options) {
   add_value(command, "-o,--output", options.output, "F",
             "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...");
   add_value(command, "--report", options.report, "F.json", "All numbers of all steps, with their strain histograms");
+  add_value(command, "--trace", options.trace, "F.csv",
+            "Each step of the way to each shape as it was tried: what it cost,\nand why it was not taken; physical");
   add_value(command, "--image", options.show.image, "F.png", "Picture of the last shape");
   add_value(command, "--plot", options.show.plot, "F.svg",
             "With --path: commands, markers, pressures and tensions over\nthe steps, and the markers' ways");
@@ -58,6 +63,8 @@ void add_options(CLI::App& command, FkOptions& options) {
                "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
                "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
                "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest");
+  add_value(command, "--start", options.start, "F.vtu",
+            "Begin at a shape that softkin wrote instead of at rest, such as\none that was stopped on its way");
   add_map_use(command, options);
   add_force(command, options);
   add_view(command, options.show);
@@ -68,6 +75,8 @@ void add_options(CLI::App& command, FkOptions& options) {
 
 void check_usage(const FkOptions& options) {
   check_extension("--output", options.output, {{".vtu", "the last shape"}, {".pvd", "every step"}});
+  check_extension("--start", options.start, {{".vtu", "a shape of softkin's"}});
+  check_extension("--trace", options.trace, {{".csv", ""}});
   check_extension("--image", options.show.image, {{".png", ""}});
   check_extension("--plot", options.show.plot, {{".svg", ""}});
   if (!options.show.plot.empty() && options.path.empty())
@@ -81,11 +90,11 @@ void check_usage(const FkOptions& options) {
 class FkRun {
  public:
   FkRun(const Model& model, const runs::Answers& answers, const FkOptions& options,
-        const std::vector<ActuationStep>& steps)
+        const std::vector<ActuationStep>& steps, State start)
       : model_(model),
         answers_(answers),
         options_(options),
-        job_(model, answers.statics(), steps, options.path, options.statics()),
+        job_(model, answers.statics(), steps, options.path, solving(options), std::move(start)),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
              runs::report_head(model, options.scene, options.statics(), answers.map()), {}),
         page_(options.page, model, runs::kept_command()),
@@ -101,7 +110,11 @@ class FkRun {
     const runs::Advance end = advance_run(
         run_, table_, "step", options_.json,
         [&](RunProgress& line, const Progress& p) { line.show(EquilibriumProgress::text(p), share.share(p)); },
-        [&] { return runs::row_of(model_, run_.done() - 1, run_.last()); });
+        [&] {
+          traces_.push_back(run_.last().trace);
+          return runs::row_of(model_, run_.done() - 1, run_.last());
+        });
+    if (run_.stopped()) traces_.push_back(run_.stopped()->record.trace);
     finish();
     if (end != runs::Advance::made) return stopped();
     if (run_.done() > first) say_findings();
@@ -109,23 +122,29 @@ class FkRun {
   }
 
  private:
+  static StaticsOptions solving(const FkOptions& options) {
+    StaticsOptions statics = options.statics();
+    statics.trace = !options.trace.empty();
+    return statics;
+  }
+
   void say(const std::string& line) const {
     if (!options_.json) print(line + "\n");
   }
 
-  /// The files that show the last finished step, and the report.
+  /// The files that show the last step, finished or stopped on its way, and the report.
   void finish() {
     run_.finish();
+    const auto* stopped = run_.stopped();
+    if (stopped)
+      show(stopped->record, stopped->state, stopped->deformation);
+    else if (run_.done() > 0)
+      show(run_.last(), run_.last_state(), run_.last_deformation());
     if (run_.done() > 0) {
-      const bool converged = run_.last().status == Status::converged;
-      const Points& positions = run_.last_positions();
-      if (!options_.output.empty() && !options_.series())
-        runs::write_shape(options_.output, model_, positions, run_.last_deformation(), converged);
-      if (!options_.show.image.empty())
-        runs::write_image(options_.show.image, model_, positions, options_.show.view, image_title());
       if (!options_.show.plot.empty()) write_plot();
       page_.write();
     }
+    if (!options_.trace.empty()) write_file(options_.trace, runs::table_of_traces(traces_).csv());
     if (options_.json) show_report(run_);
   }
 
@@ -141,16 +160,23 @@ class FkRun {
     write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
   }
 
-  [[nodiscard]] std::string image_title() const {
+  void show(const StepRecord& step, const State& state, const ElementDeformation& deformation) const {
+    if (!options_.output.empty() && !options_.series())
+      runs::write_shape(options_.output, model_, state, deformation, step.status == Status::converged);
+    if (!options_.show.image.empty())
+      runs::write_image(options_.show.image, model_, state.positions, options_.show.view, image_title(step));
+  }
+
+  [[nodiscard]] std::string image_title(const StepRecord& step) const {
     std::string title;
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
       const Actuator& actuator = model_.actuators[a];
       title += (title.empty() ? "" : ", ") + actuator.name + " = " +
-               command_text(actuator, run_.last().actuation[static_cast<Index>(a)], 4) +
+               command_text(actuator, step.actuation[static_cast<Index>(a)], 4) +
                (actuator.control == Control::ratio ? " [-]" : "");
     }
-    const std::string status = name_of(run_.last().status);
-    if (run_.last().status == Status::converged) return title;
+    const std::string status = name_of(step.status);
+    if (step.status == Status::converged) return title;
     return title + (title.empty() ? status : ": " + status);
   }
 
@@ -160,13 +186,18 @@ class FkRun {
     if (!options_.show.image.empty()) say("picture: " + options_.show.image);
     if (!options_.show.plot.empty()) say("plot: " + options_.show.plot);
     if (!options_.report.empty()) say("report: " + options_.report);
+    if (!options_.trace.empty()) say("trace: " + options_.trace);
     if (!options_.page.empty()) say(page_.told());
   }
 
   [[nodiscard]] int stopped() const {
     const bool files = !options_.outputs(run_.size()).empty();
     const bool resumable = options_.series() && !options_.report.empty() && !options_.path.empty();
-    return tell_stopped(run_.done(), run_.size(), "step", files ? "the files that were asked for" : "", resumable);
+    Stopped told{run_.done(), run_.size(), "step", files ? "the files that were asked for" : "", resumable};
+    if (run_.stopped()) told.record = &run_.stopped()->record;
+    if (run_.stopped() && !options_.output.empty())
+      told.shape = options_.series() ? runs::stopped_file(options_.output).string() : options_.output;
+    return tell_stopped(told);
   }
 
   [[nodiscard]] int judge() {
@@ -207,6 +238,7 @@ class FkRun {
   runs::Run<StepRecord> run_;
   runs::RunPage page_;
   Table table_;
+  std::vector<std::vector<TracedStep>> traces_;  // of the steps that this run made
 };
 
 std::vector<ActuationStep> asked_steps(const Model& model, const FkOptions& options) {
@@ -219,6 +251,7 @@ int run_fk(const FkOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.scene};
   if (!options.path.empty()) inputs.emplace_back(options.path);
+  if (!options.start.empty()) inputs.emplace_back(options.start);
   check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
@@ -227,13 +260,18 @@ int run_fk(const FkOptions& options) {
   if (steps.front().time) check_times(model, options.path, options, options);
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs);
+  if (steps.front().time && !options.start.empty())
+    throw InvalidInput(
+        "--start: a path with times, t_s, begins where the robot has rested for long: leave one of the two out");
+  State start{model.rest};
+  if (!options.start.empty()) start = runs::read_state(options.start, model);
   line.show(-1, "assembling");
+  catch_interrupt();
   const runs::Answers answers(model, options.map, options.polish);
   line.clear();
-  catch_interrupt();
   const OutputFolders folders(outputs);
   if (!options.json) print(head_text(model, options, answers) + curve_remarks(model, options.settings));
-  return FkRun(model, answers, options, steps).run();
+  return FkRun(model, answers, options, steps, std::move(start)).run();
 }
 
 }  // namespace

@@ -110,7 +110,8 @@ class ShownTrajectory {
     follow_.finish();
     page_.write();
     if (options_.json) show_report(run_);
-    if (end != runs::Advance::made) return tell_stopped(run_.done(), run_.size(), "waypoint", options_.folder, true);
+    if (end != runs::Advance::made)
+      return tell_stopped(stopped_of(run_, "waypoint", options_.folder, options_.files().run().shapes));
     return tell(follow_.records());
   }
 

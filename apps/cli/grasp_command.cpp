@@ -72,10 +72,13 @@ class GraspRun {
     const Grasp grasp = close_around(model_, statics_, closing, body_, options_.statics(), shown());
     line_.clear();
     if (!grasp.held) {
-      std::fprintf(stderr, "softkin: %s\n", grasp.remark.c_str());
+      std::string text = grasp.last.report.stopped ? why_stopped() + ": " + grasp.remark : grasp.remark;
+      if (!options_.output.empty()) text += "; the last good shape is in " + options_.output;
+      write(grasp.last);
+      std::fprintf(stderr, "softkin: %s\n", text.c_str());
       return not_converged;
     }
-    write(grasp.last.state);
+    write(grasp.last);
     return pull(grasp.last.state, directions);
   }
 
@@ -87,12 +90,14 @@ class GraspRun {
     };
   }
 
-  void write(const State& grasp) const {
+  void write(const Equilibrium& grasp) const {
     const std::string& name = model_.bodies[static_cast<std::size_t>(body_)].name;
+    const bool held = grasp.report.status == Status::converged;
     if (!options_.output.empty())
-      runs::write_shape(options_.output, model_, grasp.positions, statics_.measured(grasp), true);
+      runs::write_shape(options_.output, model_, grasp.state, statics_.measured(grasp.state), held);
     if (!options_.show.image.empty())
-      runs::write_image(options_.show.image, model_, grasp.positions, options_.show.view, "'" + name + "', grasped");
+      runs::write_image(options_.show.image, model_, grasp.state.positions, options_.show.view,
+                        "'" + name + (held ? "', grasped" : "', not grasped"));
   }
 
   int pull(const State& grasp, const std::vector<PullDirection>& directions) {
@@ -103,19 +108,21 @@ class GraspRun {
       const Pull found =
           largest_pull(model_, statics_, grasp, body_, direction, options_.most_N, options_.statics(), shown());
       line_.clear();
-      stopped = found.status == Status::interrupted;
-      if (stopped) break;
+      stopped = found.last.report.stopped;
       lost = lost || found.status == Status::not_converged;
       table.rows.push_back(runs::row_of(found));
       if (!options_.json) print(table.line(table.rows.back()) + "\n");
+      if (!options_.table.empty()) write_file(options_.table, table.csv());
+      if (stopped) break;
     }
     finish(table);
-    if (stopped) std::fprintf(stderr, "softkin: interrupted after %zu pulls\n", table.rows.size());
+    if (stopped)
+      std::fprintf(stderr, "softkin: %s after %zu of %zu pulls\n", why_stopped().c_str(), table.rows.size() - 1,
+                   directions.size());
     return stopped || lost ? not_converged : done;
   }
 
   void finish(const Table& table) const {
-    if (!options_.table.empty()) write_file(options_.table, table.csv());
     if (options_.json) return print(table.json() + "\n");
     for (const Output& output : options_.outputs()) print(output.option.substr(2) + ": " + output.file.string() + "\n");
   }

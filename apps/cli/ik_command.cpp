@@ -31,22 +31,35 @@ struct Search {
   std::vector<runs::NamedGoal> asked;
   std::vector<Goal> goals;
   Actuation start;
+  std::optional<State> shape{};  // at the start; none: not known
   InverseOptions inverse;
 };
+
+/// The shape in a file.
+State shape_of(const Model& model, const std::string& file) {
+  State shape = runs::read_state(file, model);
+  if (!shape.knows(static_cast<Index>(model.actuators.size())))
+    throw InvalidInput({file}, "the shape is of no equilibrium that is known: a search cannot begin there");
+  check_actuation(model, shape.actuation);
+  return shape;
+}
 
 Search asked_search(const Model& model, const IkOptions& options) {
   Search search;
   search.asked = asked_goals(model, options);
   for (const runs::NamedGoal& goal : search.asked) search.goals.push_back(goal.goal);
-  const Settings start = read_settings(model, "--start", options.start);
+  const bool from_file = !options.start_file().empty();
+  if (from_file) search.shape = shape_of(model, options.start_file());
+  const Settings start = from_file ? Settings(model.actuators.size()) : read_settings(model, "--start", options.start);
   const Settings prefer = read_settings(model, "--prefer", options.prefer);
   const Settings fix = read_settings(model, "--fix", options.fix);
   for (std::size_t a = 0; a < fix.size(); ++a)
     if (fix[a] && (start[a] || prefer[a]))
       throw InvalidInput("--fix " + model.actuators[a].name + ": this actuator does not change, so it takes no --" +
                          (start[a] ? "start" : "prefer"));
-  search.start = options.workspace.empty() ? model.rest_actuation()
-                                           : runs::nearest_actuation(model, options.workspace, search.goals);
+  search.start = search.shape                ? search.shape->actuation
+                 : options.workspace.empty() ? model.rest_actuation()
+                                             : runs::nearest_actuation(model, options.workspace, search.goals);
   search.start = with_settings(with_settings(search.start, start), fix);
   search.inverse = options.inverse();
   search.inverse.preferred = with_settings(search.start, prefer);
@@ -69,7 +82,9 @@ class IkRun {
       line.show(-1, text);
       return !interrupted();
     };
-    found_ = answers_.inverse(search_.goals, search_.start, search_.inverse, show);
+    found_ = search_.shape
+                 ? solve_inverse(model_, answers_.statics(), search_.goals, *search_.shape, search_.inverse, show)
+                 : answers_.inverse(search_.goals, search_.start, search_.inverse, show);
     line.clear();
     if (found_.errors_mm.size() == 0) return no_start();
     write();
@@ -90,7 +105,9 @@ class IkRun {
     const runs::InverseRecord record = runs::inverse_record(model_, found_, deformation);
     const std::string title = fs::path(options_.scene).filename().string() + ": " + name_of(found_.status) + ", " +
                               number(record.error_mm, 2) + " mm off";
-    if (!options_.output.empty()) runs::write_shape(options_.output, model_, positions, deformation, true);
+    if (!options_.output.empty())
+      runs::write_shape(options_.output, model_, found_.equilibrium.state, deformation,
+                        found_.equilibrium.report.status == Status::converged);
     if (!options_.show.image.empty())
       runs::write_image(options_.show.image, model_, positions, options_.show.view, title, search_.goals);
     if (!options_.show.plot.empty())
@@ -131,6 +148,7 @@ int run_ik(const IkOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.scene};
   if (!options.workspace.empty()) inputs.emplace_back(options.workspace);
+  if (!options.start_file().empty()) inputs.emplace_back(options.start_file());
   check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
@@ -138,15 +156,17 @@ int run_ik(const IkOptions& options) {
   const Search search = asked_search(model, options);
   check_outputs(options.outputs(), inputs);
   line.show(-1, "assembling");
+  catch_interrupt();
   const runs::Answers answers(model, options.map, options.polish);
   line.clear();
-  catch_interrupt();
   const OutputFolders folders(options.outputs());
   for (const std::string& doubt : doubts_about(model, search.goals))
     std::fprintf(stderr, "softkin: warning: %s\n", doubt.c_str());
   if (!options.json) {
     print(head_text(model, options, answers));
-    for (const auto* settings : {&options.start, &options.prefer, &options.fix}) print(curve_remarks(model, *settings));
+    const std::vector<std::string> none;
+    for (const auto* settings : {search.shape ? &none : &options.start, &options.prefer, &options.fix})
+      print(curve_remarks(model, *settings));
   }
   return IkRun(model, answers, options, search).run();
 }

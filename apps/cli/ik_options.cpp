@@ -35,7 +35,8 @@ void add_goals(CLI::App& command, IkOptions& options) {
 
 void add_start(CLI::App& command, IkOptions& options) {
   add_repeated(command, "--start", options.start, "A=V",
-               "ACTUATOR=VALUE: where the search begins (default: rest);\nrepeatable, as the two below");
+               "ACTUATOR=VALUE: where the search begins (default: rest);\nrepeatable, as the two below; or F.vtu, a "
+               "shape that softkin\nwrote");
   add_repeated(command, "--prefer", options.prefer, "A=V",
                "ACTUATOR=VALUE: where several actuations reach the goals, the one\nnearest to this (default: to the "
                "start)");
@@ -196,6 +197,12 @@ std::vector<Output> IkOptions::outputs() const {
   return asked_outputs({{"--output", output}, {"--report", report}, {"--image", show.image}, {"--plot", show.plot}});
 }
 
+std::string IkOptions::start_file() const {
+  for (const std::string& each : start)
+    if (each.find('=') == std::string::npos && lower_extension(each) == ".vtu") return each;
+  return "";
+}
+
 InverseOptions IkOptions::inverse() const {
   InverseOptions result = by_method();
   result.max_equilibria = max_equilibria;
@@ -221,6 +228,16 @@ void check_usage(const IkOptions& options) {
     throw InvalidInput("nothing to reach: ik needs a --target MARKER=X,Y,Z, a --plane or a --direction");
   if (!options.workspace.empty() && !options.start.empty())
     throw InvalidInput("--workspace chooses the start: it does not go with --start");
+  if (!options.start_file().empty()) {
+    if (options.start.size() > 1)
+      throw InvalidInput("--start " + options.start_file() +
+                         " is a shape with all its commands: it goes with no other --start");
+    if (!options.fix.empty())
+      throw InvalidInput("--fix sets a command at the start, and --start " + options.start_file() +
+                         " has it already: leave one out");
+    if (!options.map.empty())
+      throw InvalidInput("--start " + options.start_file() + " is for the solver: it does not go with --map");
+  }
   check_method(options);
   if (options.lever_mm && options.directions.empty())
     throw InvalidInput("--lever is the lever of a direction: it needs --direction");

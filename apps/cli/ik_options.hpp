@@ -28,6 +28,8 @@ struct IkOptions : SolveOptions, MethodOptions, MapUse {
   bool json = false;
 
   [[nodiscard]] std::vector<Output> outputs() const;
+  /// The file that the search begins at; empty: none.
+  [[nodiscard]] std::string start_file() const;
   /// But for what needs the robot: preferred and free.
   [[nodiscard]] InverseOptions inverse() const;
 };

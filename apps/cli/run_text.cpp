@@ -160,14 +160,16 @@ std::string resumed_text(std::size_t done, std::size_t all, const std::string& w
          (done < all ? " were done before: going on" : " were done before: nothing is left");
 }
 
-int tell_stopped(std::size_t done, std::size_t all, const std::string& what, const std::string& where, bool goes_on) {
-  std::string text = "interrupted";
-  if (done == 0) {
-    text += "; nothing was finished";
-  } else {
-    text += " after " + std::to_string(done) + " of " + counted(all, what);
-    if (!where.empty()) text += "; they are in " + where;
-    if (goes_on) text += ", the same command with --resume goes on";
+int tell_stopped(const Stopped& stopped) {
+  std::string text = why_stopped();
+  if (stopped.all > 1) text += " after " + std::to_string(stopped.done) + " of " + counted(stopped.all, stopped.what);
+  if (stopped.done > 0 && !stopped.where.empty()) text += "; they are in " + stopped.where;
+  if (stopped.done > 0 && stopped.resumes) text += ", the same command with --resume goes on";
+  if (stopped.record) {
+    const StepRecord& record = *stopped.record;
+    const std::string where = stopped.all > 1 ? " of the way to the next" : " of the way";
+    if (record.reached_share) text += "; at " + percent(*record.reached_share) + where;
+    if (!stopped.shape.empty()) text += "; the last good shape is in " + stopped.shape + ", --start goes on from it";
   }
   std::fprintf(stderr, "softkin: %s\n", text.c_str());
   return not_converged;

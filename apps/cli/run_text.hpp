@@ -15,9 +15,28 @@ namespace softkin::cli {
 /// What a run that goes record by record says of itself. what: "step", "waypoint" or "sample".
 [[nodiscard]] std::string resumed_text(std::size_t done, std::size_t all, const std::string& what);
 
-/// On stderr; returns the exit code. where: what is finished is kept ("they are in out/"); goes_on: by --resume
-[[nodiscard]] int tell_stopped(std::size_t done, std::size_t all, const std::string& what, const std::string& where,
-                               bool goes_on);
+/// How far a run came that was stopped, and what is there of it.
+struct Stopped {
+  std::size_t done = 0, all = 0;
+  std::string what;                          // "step"
+  std::string where{};                       // what is finished is kept
+  bool resumes = false;                      // by --resume
+  const runs::StepRecord* record = nullptr;  // on the way to the next; null: none
+  std::string shape{};                       // its file; empty: not written
+};
+/// On stderr; returns the exit code.
+[[nodiscard]] int tell_stopped(const Stopped& stopped);
+
+/// Of a run that --resume goes on with. series: of its shapes
+template <class Record>
+Stopped stopped_of(const runs::Run<Record>& run, const std::string& what, const std::string& where,
+                   const std::filesystem::path& series) {
+  Stopped stopped{run.done(), run.size(), what, where, true};
+  if (!run.stopped()) return stopped;
+  stopped.record = &run.stopped()->record;
+  stopped.shape = runs::stopped_file(series).string();
+  return stopped;
+}
 
 /// Takes over what is on disk, and says so; what a killed run left half written beside its outputs is removed.
 template <class Record>
@@ -88,7 +107,8 @@ runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std:
       tell(line, progress);
       return !interrupted();
     };
-    const runs::Advance end = interrupted() ? runs::Advance::interrupted : run.advance(go_on);
+    const bool over = interrupted() && run.done() > 0;  // else there is a shape to begin with
+    const runs::Advance end = over ? runs::Advance::interrupted : run.advance(go_on);
     if (end != runs::Advance::made) return end;
     line.clear();
     if (!quiet) print(fits ? table.line(row()) + "\n" : joined(table.turned(row()), "") + "\n");

@@ -7,6 +7,8 @@
 #include <softkin/runs/page.hpp>
 #include <thread>
 
+#include "terminal.hpp"
+
 namespace softkin::cli {
 
 namespace {
@@ -38,22 +40,30 @@ CLI::Validator finite_number(bool negative_too) {
   return CLI::Validator(check, "");
 }
 
-CLI::Validator positive_length() {
-  const auto check = [](const std::string& text) -> std::string {
+namespace {
+
+/// what: "a length > 0 in mm"
+CLI::Validator positive(const std::string& what) {
+  const auto check = [what](const std::string& text) -> std::string {
     double value = 0;
     if (parse_real(text, value) && value > 0) return "";
-    return "must be a length > 0 in mm, not " + text;
+    return "must be " + what + ", not " + text;
   };
   return CLI::Validator(check, "");
 }
 
+}  // namespace
+
+CLI::Validator positive_length() {
+  return positive("a length > 0 in mm");
+}
+
 CLI::Validator positive_force() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (parse_real(text, value) && value > 0) return "";
-    return "must be a force > 0 in N, not " + text;
-  };
-  return CLI::Validator(check, "");
+  return positive("a force > 0 in N");
+}
+
+CLI::Validator positive_time() {
+  return positive("a time > 0 in s");
 }
 
 CLI::Validator one_of(const std::vector<std::string>& names) {
@@ -73,6 +83,7 @@ StaticsOptions SolveOptions::statics() const {
   result.threads = threads;
   result.stable = stable;
   if (instant) result.elapsed_s = 0;
+  result.deadline = deadline;
   return result;
 }
 
@@ -117,6 +128,12 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
       "--instant", options.instant,
       "Physical: shapes before a viscous material relaxes (default:\nrelaxed; of a path with times, t_s, at "
       "those)");
+  command
+      .add_option_function<double>(
+          "--budget", [&options](double seconds) { stop_at(options.deadline = Deadline(seconds)); },
+          "Stop after so long, with the last good shape [s]; counts from the\nstart of the command (default: never)")
+      ->type_name("S")
+      ->check(positive_time());
   add_value(command, "--threads", options.threads, "N", threads, integer_from(0, most_threads));
 }
 

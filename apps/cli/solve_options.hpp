@@ -26,6 +26,7 @@ struct SolveOptions : AskedScene {
   int threads = StaticsOptions().threads;
   bool stable = false;
   bool instant = false;
+  Deadline deadline{};
 
   [[nodiscard]] Solver solver() const;
   [[nodiscard]] StaticsOptions statics() const;
@@ -79,6 +80,7 @@ void check_solver(const SolveOptions& options);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);
 [[nodiscard]] CLI::Validator positive_length();
 [[nodiscard]] CLI::Validator positive_force();
+[[nodiscard]] CLI::Validator positive_time();
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& names);
 
 /// By which method inverse kinematics is solved, and how far off it may end.

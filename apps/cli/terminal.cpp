@@ -16,6 +16,7 @@ namespace softkin::cli {
 namespace {
 
 volatile sig_atomic_t interrupt_count = 0;
+Deadline the_deadline;
 
 void on_interrupt(int signal_number) {
   interrupt_count = interrupt_count + 1;
@@ -46,19 +47,32 @@ void catch_interrupt() {
 }
 
 bool interrupted() {
-  return interrupt_count > 0;
+  return interrupt_count > 0 || the_deadline.passed();
 }
 
-ProgressLine::ProgressLine() : terminal_(::isatty(STDERR_FILENO) == 1) {}
+void stop_at(const Deadline& deadline) {
+  the_deadline = deadline;
+}
+
+std::string why_stopped() {
+  return interrupt_count > 0 ? "interrupted" : the_deadline.spent();
+}
+
+ProgressLine::ProgressLine() : terminal_(::isatty(STDERR_FILENO) == 1), last_(terminal_ ? 0 : seconds_now()) {}
 
 ProgressLine::~ProgressLine() {
   clear();
 }
 
 void ProgressLine::show(double share, const std::string& text) {
+  constexpr double between = 0.1, between_lines = 10;  // [s]
   const double now = seconds_now();
-  if (!terminal_ || now - last_ < 0.1) return;
+  if (now - last_ < (terminal_ ? between : between_lines)) return;
   last_ = now;
+  if (!terminal_) {
+    std::fprintf(stderr, "softkin: %s%s\n", share >= 0 ? (decimal(100 * share, 1) + " %: ").c_str() : "", text.c_str());
+    return;
+  }
   shown_ = true;
   std::string line = text;
   if (share >= 0) {

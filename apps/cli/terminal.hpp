@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <softkin/core/progress.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/core/types.hpp>
 #include <softkin/io/table/table.hpp>
@@ -16,8 +17,12 @@ namespace softkin::cli {
 /// From here on Ctrl-C only raises a flag; a second one ends the program at once.
 void catch_interrupt();
 [[nodiscard]] bool interrupted();
+/// The same from a deadline on.
+void stop_at(const Deadline& deadline);
+/// Why it is to stop: "interrupted" or "the budget of 5 s was spent".
+[[nodiscard]] std::string why_stopped();
 
-/// One line on stderr that is rewritten in place; nothing where stderr is not a terminal.
+/// One line on stderr that is rewritten in place; where stderr is not a terminal a new one every ten seconds.
 class ProgressLine {
  public:
   ProgressLine();

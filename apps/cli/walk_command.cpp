@@ -101,7 +101,8 @@ class ShownWalk {
     walk_.finish();
     page_.write();
     if (options_.json) show_report(run_);
-    if (end == runs::Advance::interrupted) return tell_stopped(run_.done(), run_.size(), "step", options_.folder, true);
+    if (end == runs::Advance::interrupted)
+      return tell_stopped(stopped_of(run_, "step", options_.folder, options_.files().run().shapes));
     if (end == runs::Advance::lost) return lost();
     if (!options_.json) tell();
     return done;

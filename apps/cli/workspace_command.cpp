@@ -147,7 +147,7 @@ class WorkspaceRun {
     solve();
     if (!ranks_.leads()) return done;
     if (!file_->complete())
-      return tell_stopped(static_cast<std::size_t>(file_->done()), samples(), "sample", options_.output, true);
+      return tell_stopped({static_cast<std::size_t>(file_->done()), samples(), "sample", options_.output, true});
     const runs::Reach reach = runs::reach_of(asked_.model, file_->finish(), options_.marker, !options_.hull.empty());
     if (!reach.samples.empty()) write(reach);
     tell(reach, seconds_now() - start);

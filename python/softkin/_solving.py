@@ -57,6 +57,10 @@ def _options(
     return _core.SolveOptions(solver, tolerance_mm or 0.0, max_iterations, anderson, threads, stable, elapsed_s)
 
 
+def _within(options: _core.SolveOptions, budget_s: float | None) -> _core.SolveOptions:
+    return options if budget_s is None else options.within(budget_s)
+
+
 def _telling(progress: ProgressFunction) -> Callable[[int, float, float, float], bool]:
     def told(iteration: int, step_mm: float, tolerance_mm: float, share: float) -> bool:
         return progress(Progress(iteration, step_mm, tolerance_mm, share)) is not False
@@ -121,26 +125,28 @@ class Solving:
     def _solve(
         self,
         asked: Floats,
-        start: Shape | ArrayLike | None,
+        start: Shape | ArrayLike | str | os.PathLike[str] | None,
         by: _core.Session | None,
         options: _core.SolveOptions,
         progress: ProgressFunction | None,
     ) -> Shape:
         robot = self._owner
-        begin = positions = None
+        begin = positions = file = None
         if isinstance(start, Shape):
             begin = start._core
+        elif isinstance(start, (str, os.PathLike)):
+            file = os.fspath(start)
         elif start is not None:
             positions = floats("start", start, (len(robot.rest), 3))
         tell = None if progress is None else _telling(progress)
-        return Shape(robot, _core.solve(robot._core, by, asked, begin, positions, options, tell))
+        return Shape(robot, _core.solve(robot._core, by, asked, begin, positions, file, options, tell))
 
     def solve(
         self,
         actuation: Commands | None = None,
         /,
         *,
-        start: Shape | ArrayLike | None = None,
+        start: Shape | ArrayLike | str | os.PathLike[str] | None = None,
         map: KinematicMap | None = None,
         polish: bool = False,
         solver: str = "newton",
@@ -150,6 +156,7 @@ class Solving:
         threads: int = 0,
         stable: bool = False,
         elapsed_s: float | None = None,
+        budget_s: float | None = None,
         progress: ProgressFunction | None = None,
         **commands: Command,
     ) -> Shape:
@@ -157,7 +164,8 @@ class Solving:
 
         actuation       (m,) in the order of `robot.actuators`, or commands by name
         commands        by the actuator's name: a number in its unit, or a text with one: air="50 kPa"
-        start           shape where the search begins, or (n, 3) positions [mm]; None: rest
+        start           shape where the search begins, a .vtu file that softkin wrote, or (n, 3) positions [mm]; None:
+                        rest
         map             of this robot: answers in the solver's place; outside of it the status is 'limit'
         polish          the solver goes on from the map's answer
         solver          'newton', or for target shapes 'local-global': Algorithm 1 of the paper
@@ -168,10 +176,13 @@ class Solving:
         stable          physical: leave an unstable equilibrium along its lowest mode for a stable one
         elapsed_s       viscous: time since the shape `start`, which the material remembers, without one since a long
                         rest [s]; 0: the instant answer; None: the relaxed one, whatever was before
+        budget_s        ends after so long, 'not converged', with the last good shape on the way [s]; None: never
         progress        called with a Progress at most 20 times a second; False stops the solve
         returns         not converging is its status
         """
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
+        options = _within(
+            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s), budget_s
+        )
         by = self._by(map, polish, options)
         return self._solve(self._actuation(actuation, commands), start, by, options, progress)
 
@@ -285,6 +296,7 @@ class Solving:
         threads: int = 0,
         stable: bool = False,
         elapsed_s: float | None = None,
+        budget_s: float | None = None,
         progress: ProgressFunction | None = None,
         **markers: Target,
     ) -> Answer:
@@ -307,10 +319,13 @@ class Solving:
         descents        gradient: iterations
         other_starts    newton: from where it is tried again before goals are called out of reach
         solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s  as solve's
+        budget_s        of the whole search; it ends 'not converged', with the best so far [s]; None: never
         progress        as solve's
         """
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
-        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
+        statics = _within(
+            _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s), budget_s
+        )
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         start = _chosen_start(goals, start, workspace)
         return self._solve_inverse(goals, start, None, prefer, fix, self._by(map, polish, statics), options, progress)

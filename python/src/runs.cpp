@@ -58,7 +58,8 @@ class Runner {
     if (lost_ || run().is_complete()) return nullptr;
     const runs::Advance end =
         watched(std::nullopt, [&](const ProgressCallback& callback) { return run().advance(callback); });
-    lost_ = end == runs::Advance::lost;
+    lost_ = end != runs::Advance::made;
+    if (const auto* stopped = run().stopped()) return shape_of(stopped->record, stopped->state.positions);
     return shape_of(run().last(), run().last_positions());
   }
   virtual void finish() { run().finish(); }

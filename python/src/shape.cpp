@@ -185,7 +185,7 @@ void bind_shape(nb::module_& module) {
           "save_vtu",
           [](const Shape& s, const std::string& path) {
             const nb::gil_scoped_release released;
-            runs::write_shape(path, s.model(), s.positions(), s.deformation(),
+            runs::write_shape(path, s.model(), s.found().state, s.deformation(),
                               s.found().report.status == Status::converged);
           },
           nb::arg("path"))

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <softkin/kinematics/jacobian.hpp>
+#include <softkin/runs/shape_files.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -24,9 +25,13 @@ StaticsOptions remembering(const Statics& statics, const State& start, StaticsOp
 namespace {
 
 ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn& actuation, const ShapePtr& start,
-               const std::optional<PointsIn>& positions, StaticsOptions options, const Tell& progress) {
+               const std::optional<PointsIn>& positions, const std::optional<std::string>& file, StaticsOptions options,
+               const Tell& progress) {
   if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
-  State from = positions ? State{points_of(*positions)} : start ? State() : robot->statics().rest();
+  State from = file        ? runs::read_state(*file, robot->model())
+               : positions ? State{points_of(*positions)}
+               : start     ? State()
+                           : robot->statics().rest();
   options.reuse_factor = keeps(session.get());
   const auto work = [robot, session, start, options, from = std::move(from),
                      asked = vector_of(actuation)](const ProgressCallback& callback) {
@@ -38,6 +43,7 @@ ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn&
   options.history = found.state.history;
   // what the report tells of options is what the user can set
   options.reuse_factor = true;
+  options.deadline = {};
   return std::make_shared<Shape>(robot, std::move(found), options);
 }
 
@@ -77,6 +83,13 @@ void bind_solve(nb::module_& module) {
           },
           nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations"), nb::arg("anderson"),
           nb::arg("threads"), nb::arg("stable"), nb::arg("elapsed_s").none())
+      .def(
+          "within",
+          [](StaticsOptions options, double budget_s) {
+            options.deadline = Deadline(budget_s);
+            return options;
+          },
+          nb::arg("budget_s"), "The same, to end so many seconds from now.")
       .def_prop_ro(
           "for_the_solver",
           [](const StaticsOptions& options) {
@@ -87,7 +100,8 @@ void bind_solve(nb::module_& module) {
           },
           "Is something asked that only the solver can do?");
   module.def("solve", &solve, nb::arg("robot"), nb::arg("session").none(), nb::arg("actuation"),
-             nb::arg("start").none(), nb::arg("positions").none(), nb::arg("options"), nb::arg("progress").none());
+             nb::arg("start").none(), nb::arg("positions").none(), nb::arg("file").none(), nb::arg("options"),
+             nb::arg("progress").none());
   module.def("jacobian", &jacobian_of, nb::arg("shape"), nb::arg("session").none(), nb::arg("markers"),
              "3p x m [mm per unit of command].");
 }

@@ -343,19 +343,97 @@ TEST(FkResume, NeedsAllFilesOfTheRun) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(FkInterrupt, OfASingleSolveLeavesNothing) {
+TEST(FkInterrupt, OfASingleSolveLeavesItsLastShape) {
   const TemporaryFolder folder;
   folder.write("block.msh", Block(40).mesh.text());
   const std::string scene = folder.write("block.yaml", block_scene());
+  const std::string shape = folder / "new/shape.vtu", report = folder / "new/report.json";
   StartedProgram program(
       folder, {"fk", scene, "--set", "air=1.9", "--solver-tolerance", "1e-300", "--max-iterations", "1000000000", "-o",
-               folder / "new/shape.vtu", "--threads", "1", "--solver", "local-global"});
+               shape, "--report", report, "--threads", "1", "--solver", "local-global"});
   ASSERT_TRUE(program.wait_until([&] { return read_text(folder / "stdout.txt").find("status") != std::string::npos; }));
   program.send(SIGINT);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.errors, "softkin: interrupted; nothing was finished\n");
-  EXPECT_FALSE(fs::exists(folder / "new"));
+  EXPECT_EQ(result.errors, "softkin: interrupted; the last good shape is in " + shape + ", --start goes on from it\n");
+  const json told = json::parse(read_text(report));
+  EXPECT_TRUE(told["steps"].empty());
+  EXPECT_EQ(told["stopped"]["status"], "interrupted");
+  const ProgramResult on = run_program({"fk", scene, "--set", "air=1.9", "--start", shape, "-o", folder / "on.vtu"});
+  EXPECT_EQ(on.exit_code, 0) << on.errors;
+}
+
+/// From the shape of another command, as from its own path.
+TEST(FkStart, GoesOnFromAShape) {
+  const BlockFolder folder(physical_scene());
+  const std::string half = folder / "half.vtu", path = folder.write("path.csv", "air\n1.1\n1.2\n");
+  ASSERT_EQ(run_fk(folder.scene, {"--set", "air=1.1", "-o", half}).exit_code, 0);
+  const auto reported = [&](const std::vector<std::string>& options, const std::string& name) {
+    std::vector<std::string> all = options;
+    all.insert(all.end(), {"--report", folder / name});
+    EXPECT_EQ(run_fk(folder.scene, all).exit_code, 0);
+    return json::parse(read_text(folder / name))["steps"].back();
+  };
+  const json on = reported({"--set", "air=1.2", "--start", half}, "on.json");
+  const json whole = reported({"--path", path}, "whole.json");
+  EXPECT_EQ(on["iterations"], whole["iterations"]);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(on["markers"]["corner"][axis], whole["markers"]["corner"][axis], 1e-9);
+}
+
+TEST(FkStart, RefusesWhatIsNoShapeOfTheRobot) {
+  const BlockFolder folder(physical_scene());
+  const std::string shape = folder / "a.vtu";
+  ASSERT_EQ(run_fk(folder.scene, {"--set", "air=1.1", "-o", shape}).exit_code, 0);
+  const auto refused = [&](const std::vector<std::string>& options, const std::string& why) {
+    const ProgramResult result = run_fk(folder.scene, options);
+    EXPECT_EQ(result.exit_code, 2) << why;
+    EXPECT_NE(result.errors.find(why), std::string::npos) << result.errors;
+  };
+  refused({"--start", folder / "none.vtu"}, "none.vtu");
+  refused({"--start", folder.scene}, "must end in .vtu");
+  refused({"--start", shape, "-o", shape}, "a.vtu");
+  refused({"--start", shape, "--path", folder.write("times.csv", "t_s,air\n0,1\n1,1.1\n")},
+          "--start: a path with times");
+  folder.write("block.yaml", replaced(physical_scene(), "name: air", "name: gas"));
+  refused({"--start", shape}, "it has no actuator 'gas'");
+  folder.write("block.yaml", replaced(physical_scene(), "block.msh", "block.msh, order: 2"));
+  refused({"--start", shape}, "vertices, the robot");
+}
+
+TEST(FkBudget, StopsInTimeAndSaysHowFarItCame) {
+  const TemporaryFolder folder;
+  folder.write("block.msh", Block(40).mesh.text());
+  const std::string scene = folder.write("block.yaml", block_scene());
+  const auto begin = std::chrono::steady_clock::now();
+  const ProgramResult result =
+      run_program({"fk", scene, "--set", "air=1.9", "--solver-tolerance", "1e-300", "--max-iterations", "1000000000",
+                   "--solver", "local-global", "--budget", "1.5", "--report", folder / "r.json"});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));  // of a busy machine
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.errors, "softkin: the budget of 1.5 s was spent\n");
+  const json told = json::parse(read_text(folder / "r.json"));
+  EXPECT_EQ(told["stopped"]["status"], "not converged");
+  EXPECT_EQ(told["stopped"]["remark"], "the budget of 1.5 s was spent");
+  EXPECT_EQ(run_program({"fk", scene, "--budget", "0"}).exit_code, 2);
+}
+
+TEST(FkTrace, IsATableOfSteps) {
+  const BlockFolder folder(physical_scene());
+  const std::string file = folder / "trace.csv", path = folder.write("path.csv", "air\n1.1\n1.2\n");
+  const ProgramResult result = run_fk(folder.scene, {"--path", path, "--trace", file, "--report", folder / "r.json"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  std::istringstream lines(read_text(file));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line,
+            "shape,along,from,to,length,predicted_mm,corrected_mm,iterations,factorisations,in_double,projections,"
+            "shifts,taken,why");
+  std::size_t rows = 0, taken = 0;
+  for (; std::getline(lines, line); ++rows) EXPECT_TRUE(line.rfind("0,", 0) == 0 || line.rfind("1,", 0) == 0) << line;
+  const json told = json::parse(read_text(folder / "r.json"));
+  for (const json& step : told["steps"]) taken += step["continuation_steps"].get<std::size_t>();
+  EXPECT_EQ(rows, taken);
 }
 
 TEST(FkInterrupt, OfAPathWritesTheLastShape) {
@@ -369,7 +447,7 @@ TEST(FkInterrupt, OfAPathWritesTheLastShape) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.errors.rfind("softkin: interrupted after ", 0), 0u) << result.errors;
   EXPECT_EQ(result.output, read_text(report));
-  const json last = json::parse(result.output)["steps"].back();
+  const json told = json::parse(result.output), last = told.value("stopped", told["steps"].back());
   const softkin::Points points = softkin::read_vtu_points(shape);
   const int corner = 5 + 10 * (3 + 4 * 3);  // (20, 12, 12)
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(points(corner, axis), last["markers"]["corner"][axis], 1e-9);

@@ -50,6 +50,37 @@ void expect_told(const SettledBeam& beam, const InverseResult& result) {
   EXPECT_LT(distance(result.equilibrium.state.positions, beam.start.state.positions), 1e-5);
 }
 
+/// Whoever stops it, and wherever: an equilibrium that is no farther away than the start.
+TEST(InverseStart, StoppedItKeepsTheBest) {
+  const SettledBeam beam;
+  const Vec3 target = beam.tip() + Vec3(-2, 4, 3);
+  const double at_start = (target - beam.tip()).norm();
+  double least = at_start;
+  for (int looks = 0;; looks += 5) {
+    const auto stop = [looks](const Progress&) mutable { return looks-- > 0; };
+    const InverseResult found =
+        solve_inverse(beam.model, beam.statics, beam.tip_at(target), beam.start, InverseOptions(), stop);
+    if (!found.stopped) break;
+    ASSERT_EQ(found.status, InverseStatus::interrupted) << looks;
+    EXPECT_LE(found.errors_mm[0], at_start + 1e-9);
+    least = std::min(least, found.errors_mm[0]);
+    const Equilibrium& best = found.equilibrium;
+    const Equilibrium same = beam.statics.solve(best.state.actuation, best.state);
+    EXPECT_LT(distance(same.state.positions, best.state.positions), 1e-4) << looks;
+  }
+  EXPECT_LT(least, at_start) << "nothing was stopped on its way";
+  InverseOptions options;
+  options.statics.deadline = Deadline(1e-9);
+  const InverseResult late = solve_inverse(beam.model, beam.statics, beam.tip_at(target), beam.start, options);
+  EXPECT_EQ(late.status, InverseStatus::not_converged);
+  EXPECT_EQ(late.remark, "the budget of 1e-09 s was spent");
+  EXPECT_TRUE(late.stopped);
+  const InverseResult none =
+      solve_inverse_from(beam.model, beam.statics, beam.tip_at(target), beam.start.actuation, options);
+  EXPECT_EQ(none.status, InverseStatus::not_converged);
+  EXPECT_EQ(none.errors_mm.size(), 1);
+}
+
 TEST(InverseStart, ThatStaysBestIsMeasured) {
   const SettledBeam beam;
   const InverseResult reached = solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip()), beam.start.state);

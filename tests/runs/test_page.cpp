@@ -140,7 +140,7 @@ TEST(Page, StepsHaveTheShapeOfTheVtu) {
     ASSERT_EQ(page.at("steps").size(), 2u);
     const PageJson& step = page.at("steps").at(1);
     const TemporaryFolder folder;
-    write_shape(folder / "a.vtu", model, positions, deformation_of(model, positions), true);
+    write_shape(folder / "a.vtu", model, {positions}, deformation_of(model, positions), true);
     const Points written = read_vtu_points(folder / "a.vtu"), shown = points_of(step.at("positions"));
     ASSERT_EQ(static_cast<std::size_t>(shown.rows()), document.vertices().size());
     const double rounding = std::sqrt(3) * 14 / 65535 / 2;  // the block reaches 13.44 mm along x, less across it

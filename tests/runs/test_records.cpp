@@ -123,7 +123,7 @@ class Steps : public ::testing::Test {
   template <class Record>
   static std::vector<Record> made(Job<Record>& job) {
     std::vector<Record> records;
-    for (std::size_t i = 0; i < job.size(); ++i) records.push_back(job.make(i, {}).value().record);
+    for (std::size_t i = 0; i < job.size(); ++i) records.push_back(job.make(i, {}).record);
     return records;
   }
 };
@@ -253,7 +253,7 @@ TEST_F(Steps, ThatDidNotConvergeKeepWhatIsNotKnown) {
   const Statics statics(model);
   const auto steps = testing::steps_of(model, 1);
   PathJob job(model, statics, steps, "path.csv", testing::one_thread());
-  StepRecord record = job.make(0, {}).value().record;
+  StepRecord record = job.make(0, {}).record;
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   record.status = Status::not_converged;
   record.reached_share.reset();
@@ -270,7 +270,7 @@ TEST_F(Steps, LongHistoriesAreWrittenEverSparser) {
   const Statics statics(model);
   const auto steps = testing::steps_of(model, 1);
   PathJob job(model, statics, steps, "path.csv", testing::one_thread());
-  StepRecord record = job.make(0, {}).value().record;
+  StepRecord record = job.make(0, {}).record;
   record.history.assign(10000, {1.23456789, 2, 3});
   const StepRecord read = read_back(job.codec(), record);
   EXPECT_LT(read.history.size(), 400u);

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
+#include <softkin/io/mesh/vtk.hpp>
 #include <softkin/runs/reports.hpp>
+#include <softkin/runs/shape_files.hpp>
 
 #include "small_runs.hpp"
 
@@ -102,7 +106,7 @@ struct WalkerAndJob : Job<WalkRecord> {
   [[nodiscard]] std::string mismatch(std::size_t number, const WalkRecord& record) const override {
     return job.mismatch(number, record);
   }
-  [[nodiscard]] std::optional<Made> make(std::size_t number, const ProgressCallback& progress) override {
+  [[nodiscard]] Made make(std::size_t number, const ProgressCallback& progress) override {
     return job.make(number, progress);
   }
   [[nodiscard]] bool keeps(const WalkRecord& record) const override { return job.keeps(record); }
@@ -132,6 +136,15 @@ class PathRun : public ::testing::Test {
     runs::Run<StepRecord> run = path_run(job, head);
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(run.advance({}), Advance::made);
     if (finish) run.finish();
+  }
+  /// Goes on with what is there, to its end.
+  void make_rest() {
+    PathJob job = path_job();
+    runs::Run<StepRecord> run = path_run(job);
+    std::string remark;
+    run.resume(remark);
+    while (!run.is_complete()) ASSERT_EQ(run.advance({}), Advance::made);
+    run.finish();
   }
   [[nodiscard]] PathJob path_job() const { return {model_, statics_, steps_, "path.csv", testing::one_thread()}; }
   [[nodiscard]] runs::Run<StepRecord> path_run(PathJob& job, const std::string& head = "") const {
@@ -221,6 +234,29 @@ TEST_F(PathRun, InterruptedWhileItRepeatsKeepsWhatIsThere) {
   EXPECT_EQ(run.done(), 3u);
   EXPECT_EQ(run.advance({}), Advance::made);
   EXPECT_EQ(run.done(), 4u);
+}
+
+/// The shape on the way to the next record is beside the series, and what is finished is as if it had not been.
+TEST_F(PathRun, StoppedLeavesTheLastShapeOnItsWay) {
+  PathJob job = path_job();
+  runs::Run<StepRecord> run = path_run(job);
+  ASSERT_EQ(run.advance({}), Advance::made);
+  ASSERT_EQ(run.advance([](const Progress&) { return false; }), Advance::interrupted);
+  ASSERT_NE(run.stopped(), nullptr);
+  run.finish();
+  EXPECT_EQ(run.done(), 1u);
+  const nlohmann::json report = nlohmann::json::parse(softkin::testing::read_text(folder_ / "r.json"));
+  EXPECT_EQ(report["steps"].size(), 1u);
+  EXPECT_EQ(report["stopped"]["status"], "interrupted");
+  EXPECT_EQ(report["stopped"]["reached"], 0);
+  const std::string shape = folder_ / "s_stopped.vtu";
+  EXPECT_EQ(report["stopped"]["shape"], "s_stopped.vtu");
+  const State state = read_state(shape, model_);
+  EXPECT_EQ(state.positions, read_vtu_points(folder_ / "s_0000.vtu"));
+  EXPECT_EQ(state.actuation, steps_[0].actuation);
+  make_rest();
+  EXPECT_FALSE(std::filesystem::exists(shape));
+  EXPECT_FALSE(nlohmann::json::parse(softkin::testing::read_text(folder_ / "r.json")).contains("stopped"));
 }
 
 }  // namespace

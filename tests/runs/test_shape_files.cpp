@@ -29,7 +29,7 @@ const char* const floor_and_box =
 
 std::string written(const TemporaryFolder& folder, const std::string& name, const Model& model) {
   const std::string path = folder / name;
-  write_shape(path, model, model.rest, deformation_of(model, model.rest), true);
+  write_shape(path, model, {model.rest}, deformation_of(model, model.rest), true);
   return path;
 }
 
@@ -50,6 +50,42 @@ TEST(ShapeFiles, ObstaclesAreTrianglesOfTheirName) {
     EXPECT_NEAR(enclosed_volume(mesh.vertices, mesh.triangles), 1000, 1e-9);
     for (const Region& region : mesh.regions) EXPECT_NE(region.name, "floor");
   }
+}
+
+/// Bit by bit, with what rubs and what the material remembers.
+TEST(ShapeFiles, AStateIsReadAsItWasWritten) {
+  const Model model = block_model(surrounded_scene("", 1));
+  const TemporaryFolder folder;
+  State state{model.rest};
+  state.positions(3, 1) += 1.0 / 3;
+  state.actuation = state.multipliers = Eigen::VectorXd::Constant(static_cast<Index>(model.actuators.size()), 0.1);
+  state.share = 1.0 / 7;
+  state.anchors = {{4, 1, 2, Vec3(0.2, 0.3, 0.5), 1e-3}, {5, 0, 7, Vec3(1, 0, 0), 0}};
+  state.history = std::make_shared<const ViscousHistory>(ViscousHistory{{1, 1.1, 0.9, 0.01, 0, 1.0 / 3}});
+  state.elapsed_s = 0.25;
+  write_shape(folder / "a.vtu", model, state, deformation_of(model, state.positions), true);
+  const State read = read_state(folder / "a.vtu", model);
+  EXPECT_EQ(read.positions, state.positions);
+  EXPECT_EQ(read.actuation, state.actuation);
+  EXPECT_EQ(read.multipliers, state.multipliers);
+  EXPECT_EQ(read.share, state.share);
+  EXPECT_EQ(read.elapsed_s, state.elapsed_s);
+  EXPECT_EQ(read.history->strains, state.history->strains);
+  ASSERT_EQ(read.anchors.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read.anchors[i].vertex, state.anchors[i].vertex);
+    EXPECT_EQ(read.anchors[i].part, state.anchors[i].part);
+    EXPECT_EQ(read.anchors[i].triangle, state.anchors[i].triangle);
+    EXPECT_EQ(read.anchors[i].weights, state.anchors[i].weights);
+    EXPECT_EQ(read.anchors[i].slipped_mm, state.anchors[i].slipped_mm);
+  }
+  EXPECT_EQ(read_vtu(folder / "a.vtu").tetrahedra.size(), model.tetrahedra.size());
+  state.share = -1;  // of nothing known
+  write_shape(folder / "b.vtu", model, state, deformation_of(model, state.positions), false);
+  EXPECT_LT(read_state(folder / "b.vtu", model).share, 0);
+  Model other = model;
+  other.rest(2, 0) += 0.1;
+  EXPECT_THROW((void)read_state(folder / "a.vtu", other), InvalidInput);
 }
 
 double area_of(const PictureLayer& layer) {

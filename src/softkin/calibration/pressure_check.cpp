@@ -69,7 +69,7 @@ std::vector<std::optional<double>> predicted_pressures(const Model& model, Index
     const bool converged = found.report.status == Status::converged;
     pressures.push_back(converged ? std::optional(found.state.multipliers[actuator]) : std::nullopt);
     if (converged) state = found.state;
-    if (found.report.status == Status::interrupted) break;
+    if (found.report.stopped) break;
   }
   pressures.resize(ratios.size());
   return pressures;

@@ -1,7 +1,22 @@
 #include <algorithm>
+#include <cmath>
+#include <softkin/core/error.hpp>
 #include <softkin/core/progress.hpp>
+#include <softkin/core/text.hpp>
 
 namespace softkin {
+
+Deadline::Deadline(double budget_s) : budget_s_(budget_s) {
+  if (!(budget_s > 0)) throw InvalidInput("a budget must be more than 0 s, not " + number(budget_s) + " s");
+  constexpr double longest_s = 1e9;  // which a clock can tell
+  if (budget_s > longest_s) return;
+  end_ = std::chrono::steady_clock::now() +
+         std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(budget_s));
+}
+
+std::string Deadline::spent() const {
+  return "the budget of " + number(budget_s_) + " s was spent";
+}
 
 std::optional<double> TimeLeft::at(double seconds, double share) {
   constexpr double least_share = 0.02, least_window = 5, window_share = 0.25;

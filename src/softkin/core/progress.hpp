@@ -1,8 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace softkin {
@@ -17,6 +20,24 @@ struct Progress {
 
 /// Called now and then; returning false stops the computation, which then reports status interrupted.
 using ProgressCallback = std::function<bool(const Progress&)>;
+
+/// When work has to come to an end, with what it has by then.
+class Deadline {
+ public:
+  Deadline() = default;  // never
+  /// So many seconds from now, > 0. Throws InvalidInput on another number; infinity: never
+  explicit Deadline(double budget_s);
+
+  [[nodiscard]] bool passed() const { return std::chrono::steady_clock::now() >= end_; }
+  [[nodiscard]] bool any() const { return end_ != std::chrono::steady_clock::time_point::max(); }
+  [[nodiscard]] double budget_s() const { return budget_s_; }
+  /// "the budget of 5 s was spent"
+  [[nodiscard]] std::string spent() const;
+
+ private:
+  std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::time_point::max();
+  double budget_s_ = std::numeric_limits<double>::infinity();
+};
 
 /// Time left at the pace of late: work that slows down says so, instead of promising what its beginning did.
 class TimeLeft {

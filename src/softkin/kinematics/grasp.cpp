@@ -36,8 +36,8 @@ class Closing {
     Equilibrium& last = grasp_.last;
     last = statics_.solve(actuation, last.state, options_, told(progress_, doing));
     if (last.report.status == Status::converged) return true;
-    const bool stopped = last.report.status == Status::interrupted;
-    grasp_.remark = stopped ? "interrupted" : failure + ": " + last.report.remark;
+    const bool interrupted = last.report.status == Status::interrupted;
+    grasp_.remark = (interrupted ? "interrupted while " + doing : failure + ": " + last.report.remark);
     return false;
   }
 

@@ -277,6 +277,14 @@ class Inverse {
   InverseResult result_;
 };
 
+/// Of a search that was stopped: by whom.
+void tell_stop(InverseResult& result, const Deadline& deadline) {
+  result.stopped = result.stopped || result.status == InverseStatus::interrupted;
+  if (!result.stopped || !deadline.passed()) return;
+  result.status = InverseStatus::not_converged;
+  result.remark = deadline.spent();
+}
+
 }  // namespace
 
 const char* name_of(InverseMethod method) {
@@ -316,6 +324,7 @@ InverseResult solve_inverse(const Model& model, const Statics& statics, const st
   check_options(model, start.state, options);
   const bool known = start.report.status == Status::converged;
   InverseResult result = Inverse(model, statics, goals, options, progress).solve(start, known);
+  tell_stop(result, options.statics.deadline);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
@@ -333,10 +342,12 @@ InverseResult solve_inverse_from(const Model& model, const Statics& statics, con
                                     [&](const Progress&) { return !progress || progress(nothing_yet); });
   InverseResult result;
   if (first.report.status != Status::converged) {
-    const bool stopped = first.report.status == Status::interrupted;
-    result.status = stopped ? InverseStatus::interrupted : InverseStatus::not_converged;
+    result.stopped = first.report.stopped;
+    result.status = result.stopped ? InverseStatus::interrupted : InverseStatus::not_converged;
     result.remark =
-        stopped ? "interrupted; nothing was finished" : "the start has no equilibrium: " + first.report.remark;
+        result.stopped ? "interrupted on the way to its start" : "the start has no equilibrium: " + first.report.remark;
+    if (result.stopped) result.errors_mm = goal_errors(model, goals, first.state.positions);
+    tell_stop(result, options.statics.deadline);
     result.active.assign(model.actuators.size(), 0);
     result.equilibria = 1;
     result.equilibrium = std::move(first);

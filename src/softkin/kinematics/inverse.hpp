@@ -22,7 +22,7 @@ struct InverseOptions {
   std::vector<bool> free{};           // m: actuators that may change; empty: all
   const Sensitivity* start_sensitivity = nullptr;  // of the start, an equilibrium, such as the last
                                                    // result's; null: is computed
-  StaticsOptions statics{};
+  StaticsOptions statics{};                        // at their deadline the search ends, not converged, with its best
 };
 
 /// All as it is by default with this method, whose tolerance is its own: 0.2 mm with gradient, the paper's lambda.
@@ -43,6 +43,7 @@ struct InverseTrial {
 
 struct InverseResult {
   InverseStatus status = InverseStatus::not_converged;
+  bool stopped = false;       // by progress or the deadline: the best so far
   Equilibrium equilibrium;    // at the best actuation found, inside every range
   Eigen::VectorXd errors_mm;  // per goal
   std::vector<int> active;    // m: -1 at the low end of its range and pushed there, +1 at the high end, else 0
@@ -79,7 +80,8 @@ struct InverseResult {
                                           const ProgressCallback& progress = {});
 
 /// The same from an actuation, whose equilibrium is found first, from rest; it is the first of the history. Where it
-/// has none, errors_mm is empty and the remark tells why.
+/// has none, errors_mm is empty and the remark tells why; where it was stopped on the way there they are of the last
+/// good shape.
 [[nodiscard]] InverseResult solve_inverse_from(const Model& model, const Statics& statics,
                                                const std::vector<Goal>& goals, const Actuation& start,
                                                const InverseOptions& options = {},

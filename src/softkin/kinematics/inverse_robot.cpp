@@ -101,7 +101,7 @@ bool RobotResponse::solve(const Actuation& actuation, const State& from, Equilib
   found = statics_.solve(actuation, from, options_.statics, go_on);
   const bool converged = found.report.status == Status::converged;
   const double error = converged ? goal_errors(model_, goals_, found.state.positions).maxCoeff() : none;
-  interrupted_ = interrupted_ || found.report.status == Status::interrupted;
+  interrupted_ = interrupted_ || found.report.stopped;
   history_.push_back({actuation, found.report.status, error, found.report.iterations});
   least_error_ = std::min(least_error_, error);
   return converged;

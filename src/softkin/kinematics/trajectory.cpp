@@ -145,7 +145,10 @@ bool PathFollower::first(InverseResult& spent, const ProgressCallback& progress)
   Equilibrium found = statics_.solve(options_.start, state_, options_.inverse.statics, told(progress));
   ++spent.equilibria;
   spent.seconds += found.report.seconds;
-  if (found.report.status == Status::interrupted) return false;
+  if (found.report.stopped) {
+    spent.equilibrium = std::move(found);
+    return false;
+  }
   if (found.report.status == Status::converged) state_ = std::move(found.state);
   return true;
 }
@@ -156,14 +159,23 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
   clock_.set(waypoint.time, options_.inverse.statics);
   InverseResult spent;
   spent.status = InverseStatus::interrupted;
-  if (next_ == 0 && options_.start.size() > 0 && !first(spent, progress)) return spent;
+  spent.stopped = true;
+  const auto stopped = [&] {
+    spent.errors_mm = goal_errors(model_, goals, spent.equilibrium.state.positions);
+    spent.active.assign(model_.actuators.size(), 0);
+    return spent;
+  };
+  if (next_ == 0 && options_.start.size() > 0 && !first(spent, progress)) return stopped();
   Equilibrium from{state_, {}, {}};
   bool moved = false;
   if (const std::optional<Actuation> guess = predicted(goals)) {
     Equilibrium there = statics_.solve(*guess, state_, options_.inverse.statics, told(progress));
     ++spent.equilibria;
     spent.seconds += there.report.seconds;
-    if (there.report.status == Status::interrupted) return spent;
+    if (there.report.stopped) {
+      spent.equilibrium = std::move(there);
+      return stopped();
+    }
     moved = there.report.status == Status::converged;
     if (moved) from = std::move(there);
   }
@@ -174,7 +186,7 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
   InverseResult found = solve_inverse(model_, statics_, goals, from, inverse, progress);
   found.equilibria += spent.equilibria;
   found.seconds += spent.seconds;
-  if (found.status == InverseStatus::interrupted) return found;
+  if (found.stopped) return found;
   learn(goals, found);
   lost_mJ_.reset();
   if (found.equilibrium.report.status == Status::converged) lost_mJ_ = clock_.pass(waypoint.time, state_);
@@ -218,7 +230,7 @@ std::vector<InverseResult> follow_path(const Model& model, const Statics& static
   std::vector<InverseResult> waypoints;
   while (!follower.done()) {
     InverseResult found = follower.advance(progress);
-    if (found.status == InverseStatus::interrupted) break;
+    if (found.stopped) break;
     waypoints.push_back(std::move(found));
   }
   return waypoints;

@@ -45,7 +45,7 @@ class Group {
       found = statics_.solve(actuation, statics_.rest(), options_, progress_);
       found.report.iterations += before;
     }
-    if (found.report.status == Status::interrupted) return std::nullopt;
+    if (found.report.stopped) return std::nullopt;
     WorkspaceSample sample = sample_of(found, number);
     if (!around_ && found.report.status == Status::converged) {
       around_.emplace(statics_, found.state);
@@ -56,7 +56,7 @@ class Group {
 
  private:
   [[nodiscard]] static bool failed(const Equilibrium& found) {
-    return found.report.status != Status::converged && found.report.status != Status::interrupted;
+    return found.report.status != Status::converged && !found.report.stopped;
   }
 
   [[nodiscard]] Equilibrium from_middle(const Actuation& actuation) {
@@ -66,7 +66,7 @@ class Group {
     const double move = largest_move(middle_.positions, predicted.positions);
     const bool snapped = model_.formulation == Formulation::physical && correction > most_correction * move &&
                          correction > least_snap * model_.diagonal_mm;
-    if (found.report.status == Status::interrupted || !(failed(found) || snapped)) return found;
+    if (found.report.stopped || !(failed(found) || snapped)) return found;
     const int before = found.report.iterations;
     found = statics_.solve(actuation, middle_, options_, progress_);
     found.report.iterations += before;

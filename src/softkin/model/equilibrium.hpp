@@ -55,8 +55,21 @@ struct IterationRecord {
   double gradient_norm = 0;  // Euclidean norm of what is not in balance before the step
 };
 
+/// A step of the way to an equilibrium, as it was tried.
+struct TracedStep {
+  double from = 0, to = 0;  // share of the way that was asked for [-]
+  double length = 0;        // of the way at hand, which weights may go before loads [-]
+  std::string along{};      // "": of the way; else the chamber or cable along whose volume or length it goes
+  double predicted_mm = 0;  // largest move of a vertex to the predicted shape
+  double corrected_mm = 0;  // and from there to the equilibrium; 0: there was none
+  int iterations = 0, factorisations = 0, factorisations_in_double = 0, projections = 0, shifts = 0;
+  bool taken = false;
+  std::string why{};  // it was not taken; or what the equilibrium is
+};
+
 struct SolveReport {
   Status status = Status::not_converged;
+  bool stopped = false;  // before it had ended by itself: by its progress callback or its deadline
   std::string solver;
   int iterations = 0;
   int factorisations = 0;            // of the stiffness; newton
@@ -81,6 +94,7 @@ struct SolveReport {
   double unstable_from = 0;    // physical: the first share of the way at which an equilibrium passed was unstable [-]
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
+  std::vector<TracedStep> trace;  // with StaticsOptions::trace
   double seconds = 0;
 
   /// A map gave the equilibrium: there is nothing to tell of an iteration.

@@ -31,14 +31,14 @@ Codec<Record> codec_of(std::function<Json(const Record&)> write, Read read) {
 }  // namespace
 
 PathJob::PathJob(const Model& model, const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
-                 const StaticsOptions& options)
+                 const StaticsOptions& options, std::optional<State> start)
     : model_(model),
       statics_(statics),
       steps_(steps),
       file_(std::move(file)),
       options_(options),
       clock_(statics),
-      state_(statics.rest()),
+      state_(start ? std::move(*start) : statics.rest()),
       overlap_(model) {}
 
 Codec<StepRecord> PathJob::codec() const {
@@ -62,17 +62,18 @@ std::string PathJob::mismatch(std::size_t number, const StepRecord& record) cons
   return "";
 }
 
-std::optional<PathJob::Made> PathJob::make(std::size_t number, const ProgressCallback& progress) {
+PathJob::Made PathJob::make(std::size_t number, const ProgressCallback& progress) {
   clock_.set(steps_[number].time, options_);
   Equilibrium found = statics_.solve(steps_[number].actuation, state_, options_, progress);
-  if (found.report.status == Status::interrupted) return std::nullopt;
+  const bool stopped = found.report.stopped;
   ElementDeformation deformation = statics_.measured(found.state);
   StepRecord record = step_record(model_, found, deformation);
   record.self_overlap = overlap_.in(found.state.positions);
   record.time_s = steps_[number].time;
+  if (stopped) return Made{std::move(record), std::move(found.state), std::move(deformation)};
   if (record.status == Status::converged) record.viscous_loss_mJ = clock_.pass(record.time_s, found.state);
   state_ = std::move(found.state);
-  return Made{std::move(record), state_.positions, std::move(deformation)};
+  return Made{std::move(record), state_, std::move(deformation)};
 }
 
 void PathJob::recall(const StepRecord& record, const Points& positions) {
@@ -109,15 +110,15 @@ std::string FollowJob::mismatch(std::size_t number, const WaypointRecord& record
   return "waypoint " + std::to_string(number) + " is another one than in " + file_ + "; the path has changed";
 }
 
-std::optional<FollowJob::Made> FollowJob::make(std::size_t number, const ProgressCallback& progress) {
+FollowJob::Made FollowJob::make(std::size_t number, const ProgressCallback& progress) {
   const InverseResult found = follower_.advance(progress);
-  if (found.status == InverseStatus::interrupted) return std::nullopt;
-  const Points& positions = found.equilibrium.state.positions;
-  ElementDeformation deformation = statics_.measured(found.equilibrium.state);
+  const State& state = found.equilibrium.state;
+  ElementDeformation deformation = statics_.measured(state);
   WaypointRecord record = waypoint_record(model_, path_.waypoints[number], found, deformation);
-  record.self_overlap = overlap_.in(positions);
-  record.viscous_loss_mJ = follower_.lost_mJ();
-  return Made{std::move(record), positions, std::move(deformation)};
+  record.self_overlap = overlap_.in(state.positions);
+  record.stopped = found.stopped;
+  if (!found.stopped) record.viscous_loss_mJ = follower_.lost_mJ();
+  return Made{std::move(record), state, std::move(deformation)};
 }
 
 void FollowJob::recall(const WaypointRecord& record, const Points& positions) {
@@ -176,15 +177,14 @@ std::string WalkJob::mismatch(std::size_t number, const WalkRecord& record) cons
   return step + " is another one than in " + file_ + "; the gait has changed";
 }
 
-std::optional<WalkJob::Made> WalkJob::make(std::size_t number, const ProgressCallback& progress) {
+WalkJob::Made WalkJob::make(std::size_t number, const ProgressCallback& progress) {
   const WalkStep found = walker_.advance(steps_[number].asked.actuation, progress);
-  if (found.equilibrium.report.status == Status::interrupted) return std::nullopt;
-  const Points& positions = found.equilibrium.state.positions;
-  ElementDeformation deformation = deformation_of(model_, positions);
+  const State& state = found.equilibrium.state;
+  ElementDeformation deformation = deformation_of(model_, state.positions);
   WalkRecord record = walk_record(model_, steps_[number].cycle, found, deformation);
-  record.self_overlap = overlap_.in(positions);
+  record.self_overlap = overlap_.in(state.positions);
   record.time_s = steps_[number].asked.time;
-  return Made{std::move(record), positions, std::move(deformation)};
+  return Made{std::move(record), state, std::move(deformation)};
 }
 
 void WalkJob::go_on(std::size_t, const WalkRecord& before, Points positions) {

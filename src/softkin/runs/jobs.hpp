@@ -18,8 +18,8 @@ template <class Record>
 class Job {
  public:
   struct Made {
-    Record record;
-    Points positions;  // #V by 3 [mm]
+    Record record;  // stopped: not what was asked for, but the last good shape on the way there
+    State state;
     ElementDeformation deformation;
   };
 
@@ -30,8 +30,8 @@ class Job {
   /// Why a record is not what is asked for as that number; empty: it is.
   [[nodiscard]] virtual std::string mismatch(std::size_t number, const Record& record) const = 0;
 
-  /// The record of that number, after the one before was made or go_on() was called; none where progress stopped it.
-  [[nodiscard]] virtual std::optional<Made> make(std::size_t number, const ProgressCallback& progress) = 0;
+  /// The record of that number, after the one before was made or go_on() was called.
+  [[nodiscard]] virtual Made make(std::size_t number, const ProgressCallback& progress) = 0;
 
   /// Is it one to go on from? Else the run ends before it.
   [[nodiscard]] virtual bool keeps(const Record&) const { return true; }
@@ -52,19 +52,23 @@ enum class Advance { made, interrupted, lost };
 template <class Record>
 class Run {
  public:
+  using Made = typename Job<Record>::Made;
   static constexpr std::size_t fresh_every = 32;  // records; a fresh start costs about one factorisation
 
   Run(const Model& model, Job<Record>& job, RunFiles files, std::string head, std::vector<std::string> same)
-      : job_(job), files_(files), log_(model, files, std::move(head), std::move(same), job.codec()) {}
+      : model_(model), job_(job), files_(files), log_(model, files, std::move(head), std::move(same), job.codec()) {}
 
   [[nodiscard]] std::size_t size() const { return job_.size(); }
   [[nodiscard]] std::size_t done() const { return log_.size(); }
   [[nodiscard]] bool is_complete() const { return done() >= size(); }
   /// What was made last, kept or not.
   [[nodiscard]] const Record& last() const { return last_; }
-  [[nodiscard]] const Points& last_positions() const { return positions_; }
+  [[nodiscard]] const Points& last_positions() const { return state_.positions; }
   /// None before anything was made.
   [[nodiscard]] const ElementDeformation& last_deformation() const { return deformation_; }
+  [[nodiscard]] const State& last_state() const { return state_; }
+  /// The record that advance() was stopped in; null where it was not.
+  [[nodiscard]] const Made* stopped() const { return stopped_ ? &*stopped_ : nullptr; }
   [[nodiscard]] TypedLog<Record>& log() { return log_; }
 
   /// Of a record and its shape; of one that was made: with its deformation.
@@ -81,7 +85,7 @@ class Run {
         watcher_(record, log_.shape_of(number, record).value(), nullptr);
       });
     last_ = log_.at(done() - 1);
-    positions_ = log_.shape_of(done() - 1, last_).value();
+    state_ = state_of(model_, last_, log_.shape_of(done() - 1, last_).value());
     resumed_ = true;
   }
 
@@ -93,20 +97,25 @@ class Run {
     }
     log_.begin();
     const std::size_t number = done();
-    if (number > 0 && number % fresh_every == 0) job_.go_on(number, last_, positions_);
+    if (number > 0 && number % fresh_every == 0) job_.go_on(number, last_, state_.positions);
     auto made = job_.make(number, progress);
-    if (!made) return Advance::interrupted;
-    const bool keeps = job_.keeps(made->record);
-    if (keeps) log_.add(made->record, made->positions, made->deformation);
-    last_ = std::move(made->record);
-    positions_ = std::move(made->positions);
-    deformation_ = std::move(made->deformation);
-    if (keeps && watcher_) watcher_(last_, positions_, &deformation_);
+    if (made.record.stopped) {
+      stopped_ = std::move(made);
+      return Advance::interrupted;
+    }
+    const bool keeps = job_.keeps(made.record);
+    if (keeps) log_.add(made.record, made.state, made.deformation);
+    last_ = std::move(made.record);
+    state_ = std::move(made.state);
+    deformation_ = std::move(made.deformation);
+    if (keeps && watcher_) watcher_(last_, state_.positions, &deformation_);
     return keeps ? Advance::made : Advance::lost;
   }
 
-  /// The report and the series' collection, of what is done.
+  /// The report and the series' collection, of what is done; where it was stopped, the shape on the way to the next
+  /// record beside them.
   void finish() {
+    if (stopped_) log_.add_stopped(stopped_->record, stopped_->state, stopped_->deformation);
     if (done() > 0 && !files_.shapes.empty()) {
       std::vector<PvdEntry> entries;
       log_.each([&](std::size_t number, const Record& record) {
@@ -132,35 +141,37 @@ class Run {
     }
     for (std::size_t number = begin; number < end; ++number) {
       const auto made = job_.make(number, progress);
-      if (!made) return false;
+      if (made.record.stopped) return false;
       if (number + 1 < end) continue;
       // another machine, or another number of threads, ends a rounding away: what is on disk counts
-      if (fingerprint_of(made->positions) != last_.shape_fingerprint) job_.go_on(end, last_, positions_);
+      if (fingerprint_of(made.state.positions) != last_.shape_fingerprint) job_.go_on(end, last_, state_.positions);
     }
     return true;
   }
 
+  const Model& model_;
   Job<Record>& job_;
   RunFiles files_;
   TypedLog<Record> log_;
   Watcher watcher_{};
   Record last_;
-  Points positions_;
+  State state_;
   ElementDeformation deformation_{};
+  std::optional<Made> stopped_;
   bool resumed_ = false;
 };
 
 /// Equilibria along a path of actuations, each from the last.
 class PathJob : public Job<StepRecord> {
  public:
-  /// All must outlive the job. file: of the steps, for messages
+  /// All must outlive the job. file: of the steps, for messages; start: of the first step, none: rest
   PathJob(const Model& model, const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
-          const StaticsOptions& options);
+          const StaticsOptions& options, std::optional<State> start = {});
 
   [[nodiscard]] std::size_t size() const override { return steps_.size(); }
   [[nodiscard]] Codec<StepRecord> codec() const override;
   [[nodiscard]] std::string mismatch(std::size_t number, const StepRecord& record) const override;
-  [[nodiscard]] std::optional<Made> make(std::size_t number, const ProgressCallback& progress) override;
+  [[nodiscard]] Made make(std::size_t number, const ProgressCallback& progress) override;
   [[nodiscard]] bool recalls() const override { return clock_.counts(steps_.front().time); }
   void recall(const StepRecord& record, const Points& positions) override;
   void go_on(std::size_t number, const StepRecord& before, Points positions) override;
@@ -186,7 +197,7 @@ class FollowJob : public Job<WaypointRecord> {
   [[nodiscard]] std::size_t size() const override { return path_.waypoints.size(); }
   [[nodiscard]] Codec<WaypointRecord> codec() const override;
   [[nodiscard]] std::string mismatch(std::size_t number, const WaypointRecord& record) const override;
-  [[nodiscard]] std::optional<Made> make(std::size_t number, const ProgressCallback& progress) override;
+  [[nodiscard]] Made make(std::size_t number, const ProgressCallback& progress) override;
   [[nodiscard]] bool recalls() const override { return statics_.viscous() && path_.waypoints.front().time; }
   void recall(const WaypointRecord& record, const Points& positions) override;
   void go_on(std::size_t number, const WaypointRecord& before, Points positions) override;
@@ -219,7 +230,7 @@ class WalkJob : public Job<WalkRecord> {
   [[nodiscard]] std::size_t size() const override { return steps_.size(); }
   [[nodiscard]] Codec<WalkRecord> codec() const override;
   [[nodiscard]] std::string mismatch(std::size_t number, const WalkRecord& record) const override;
-  [[nodiscard]] std::optional<Made> make(std::size_t number, const ProgressCallback& progress) override;
+  [[nodiscard]] Made make(std::size_t number, const ProgressCallback& progress) override;
   [[nodiscard]] bool keeps(const WalkRecord& record) const override { return record.status == Status::converged; }
   void go_on(std::size_t number, const WalkRecord& before, Points positions) override;
 

@@ -14,6 +14,10 @@ namespace softkin::runs {
 
 namespace fs = std::filesystem;
 
+fs::path stopped_file(const fs::path& series) {
+  return series.parent_path() / (series.stem().string() + "_stopped.vtu");
+}
+
 struct RecordLog::Parts {
   const Model& model;
   RunFiles files;
@@ -22,6 +26,12 @@ struct RecordLog::Parts {
   std::optional<Store> store;
   double seconds = 0;
 
+  void write(const fs::path& file, StepRecord& record, const State& state,
+             const ElementDeformation& deformation) const {
+    write_shape(file, model, state, deformation, record.status == Status::converged);
+    record.shape = file.filename().string();
+    record.shape_fingerprint = fingerprint_of(state.positions);
+  }
   [[nodiscard]] fs::path journal() const {
     return files.report.empty() ? fs::path() : fs::path(files.report.string() + ".run");
   }
@@ -109,12 +119,17 @@ std::size_t RecordLog::size() const {
   return parts_->store ? parts_->store->size() : 0;
 }
 
-void RecordLog::add_shape(StepRecord& record, const Points& positions, const ElementDeformation& deformation) const {
-  if (parts_->files.shapes.empty()) return;
-  const fs::path file = series_file(parts_->files.shapes, size());
-  write_shape(file, parts_->model, positions, deformation, record.status == Status::converged);
-  record.shape = file.filename().string();
-  record.shape_fingerprint = fingerprint_of(positions);
+void RecordLog::add_shape(StepRecord& record, const State& state, const ElementDeformation& deformation) const {
+  if (!parts_->files.shapes.empty())
+    parts_->write(series_file(parts_->files.shapes, size()), record, state, deformation);
+}
+
+void RecordLog::add_stopped_shape(StepRecord& record, const State& state, const ElementDeformation& deformation) const {
+  if (!parts_->files.shapes.empty()) parts_->write(stopped_file(parts_->files.shapes), record, state, deformation);
+}
+
+void RecordLog::note_stopped(std::string_view line) {
+  parts_->head["stopped"] = parse_json(line);
 }
 
 void RecordLog::begin() {
@@ -157,8 +172,10 @@ void RecordLog::report(const std::function<void(std::string_view)>& write) const
 }
 
 void RecordLog::finish() {
+  const bool stopped = parts_->head.contains("stopped");
+  if (!stopped && !parts_->files.shapes.empty()) fs::remove(stopped_file(parts_->files.shapes));
   if (!parts_->store) return;
-  if (!parts_->files.report.empty() && size() > 0)
+  if (!parts_->files.report.empty() && (size() > 0 || stopped))
     write_file(parts_->files.report, [this](std::ostream& stream) {
       report([&](std::string_view piece) { stream.write(piece.data(), static_cast<std::streamsize>(piece.size())); });
     });

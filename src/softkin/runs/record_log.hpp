@@ -19,6 +19,9 @@ struct RunFiles {
   std::filesystem::path shapes{};  // .pvd of a series, its shapes beside it; empty: none
 };
 
+/// The shape that a series was stopped at: F_stopped.vtu of F.pvd.
+[[nodiscard]] std::filesystem::path stopped_file(const std::filesystem::path& series);
+
 /// A record that names other actuators than the model has.
 struct OtherActuators : InvalidInput {
   OtherActuators() : InvalidInput("the record has other actuators") {}
@@ -57,7 +60,11 @@ class RecordLog {
   void begin();
 
   /// Writes the shape into the series and the record, with its shape, behind the others.
-  void add_shape(StepRecord& record, const Points& positions, const ElementDeformation& deformation) const;
+  void add_shape(StepRecord& record, const State& state, const ElementDeformation& deformation) const;
+  /// The same of a record that was stopped on its way, which is none of the others: beside the series, and by
+  /// note_stopped() in the report.
+  void add_stopped_shape(StepRecord& record, const State& state, const ElementDeformation& deformation) const;
+  void note_stopped(std::string_view line);
   void add(std::string_view line, double seconds);
   /// The shape of a record as it was written; none where it is not there.
   [[nodiscard]] std::optional<Points> shape_of(std::size_t number, const StepRecord& record) const;
@@ -99,9 +106,13 @@ class TypedLog : public RecordLog {
         },
         remark);
   }
-  void add(Record& record, const Points& positions, const ElementDeformation& deformation) {
-    add_shape(record, positions, deformation);
+  void add(Record& record, const State& state, const ElementDeformation& deformation) {
+    add_shape(record, state, deformation);
     RecordLog::add(codec_.write(record), record.seconds);
+  }
+  void add_stopped(Record& record, const State& state, const ElementDeformation& deformation) {
+    add_stopped_shape(record, state, deformation);
+    note_stopped(codec_.write(record));
   }
   void each(const std::function<void(std::size_t number, const Record&)>& visit) const {
     RecordLog::each([&](std::size_t number, std::string_view line) {

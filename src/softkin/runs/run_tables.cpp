@@ -257,6 +257,21 @@ Row row_of(const Model& model, const WalkRecord& record) {
   return row;
 }
 
+Table table_of_traces(const std::vector<std::vector<TracedStep>>& ways) {
+  Table table;
+  table.columns = {{.key = "shape"},          {.key = "along"},        {.key = "from"},         {.key = "to"},
+                   {.key = "length"},         {.key = "predicted_mm"}, {.key = "corrected_mm"}, {.key = "iterations"},
+                   {.key = "factorisations"}, {.key = "in_double"},    {.key = "projections"},  {.key = "shifts"},
+                   {.key = "taken"},          {.key = "why"}};
+  for (std::size_t shape = 0; shape < ways.size(); ++shape)
+    for (const TracedStep& step : ways[shape])
+      table.rows.push_back({std::int64_t(shape), step.along, step.from, step.to, step.length, step.predicted_mm,
+                            step.corrected_mm, std::int64_t(step.iterations), std::int64_t(step.factorisations),
+                            std::int64_t(step.factorisations_in_double), std::int64_t(step.projections),
+                            std::int64_t(step.shifts), std::int64_t(step.taken), step.why});
+  return table;
+}
+
 Table table_of_pulls() {
   Table table;
   table.columns = {{.key = "direction", .title = "pull along", .width = 18, .left = true},

@@ -30,6 +30,9 @@ namespace softkin::runs {
 [[nodiscard]] Table table_of_walk(const Model& model);
 [[nodiscard]] Row row_of(const Model& model, const WalkRecord& record);
 
+/// Of the way to each of some shapes, from 0.
+[[nodiscard]] Table table_of_traces(const std::vector<std::vector<TracedStep>>& ways);
+
 [[nodiscard]] Table table_of_pulls();
 [[nodiscard]] Row row_of(const Pull& pull);
 

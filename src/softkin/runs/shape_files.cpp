@@ -1,9 +1,13 @@
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
 #include <softkin/runs/body_surface.hpp>
 #include <softkin/runs/obstacle_picture.hpp>
 #include <softkin/runs/shape_files.hpp>
 #include <utility>
 
+#include <softkin/core/error.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/picture/picture.hpp>
 #include <softkin/model/names.hpp>
@@ -104,11 +108,41 @@ void add_surroundings(const Model& model, VtuContent& content) {
                         field.name == "actuator" ? -1 : 0);
 }
 
+// What read_state() reads.
+constexpr const char *state_share = "state_share", *state_elapsed = "state_elapsed_s", *state_anchors = "state_anchors",
+                     *state_history = "state_history";
+const std::string state_command = "state_command_", state_multiplier = "state_multiplier_";
+constexpr int anchor_values = 7;
+constexpr double same_mesh = 1e-9;  // of the diagonal
+
+void add_state(const Model& model, const State& state, VtuContent& content) {
+  const auto actuators = static_cast<Index>(model.actuators.size());
+  const bool known = state.knows(actuators) && state.multipliers.size() == actuators && state.actuation.allFinite() &&
+                     state.multipliers.allFinite() && std::isfinite(state.share);
+  content.constants.emplace_back(state_share, known ? state.share : -1);
+  if (!known) return;
+  for (Index a = 0; a < actuators; ++a) {
+    const std::string& name = model.actuators[static_cast<std::size_t>(a)].name;
+    content.constants.emplace_back(state_command + name, state.actuation[a]);
+    content.constants.emplace_back(state_multiplier + name, state.multipliers[a]);
+  }
+  if (std::isfinite(state.elapsed_s)) content.constants.emplace_back(state_elapsed, state.elapsed_s);
+  if (state.history) content.arrays.push_back({state_history, 6, state.history->strains});
+  if (state.anchors.empty()) return;
+  Field anchors{state_anchors, anchor_values, {}};
+  for (const Anchor& anchor : state.anchors)
+    anchors.values.insert(anchors.values.end(), {static_cast<double>(anchor.vertex), static_cast<double>(anchor.part),
+                                                 static_cast<double>(anchor.triangle), anchor.weights[0],
+                                                 anchor.weights[1], anchor.weights[2], anchor.slipped_mm});
+  content.arrays.push_back(std::move(anchors));
+}
+
 }  // namespace
 
-void write_shape(const fs::path& path, const Model& model, const Points& positions,
-                 const ElementDeformation& deformation, bool converged) {
+void write_shape(const fs::path& path, const Model& model, const State& state, const ElementDeformation& deformation,
+                 bool converged) {
   VtuContent content;
+  const Points& positions = state.positions;
   content.points = positions;
   content.tetrahedra = model.tetrahedra;
   content.edge_nodes = model.edge_nodes;
@@ -130,7 +164,50 @@ void write_shape(const fs::path& path, const Model& model, const Points& positio
   content.region_names = model.region_names;
   add_forces(model, deformation, content);
   add_surroundings(model, content);
+  add_state(model, state, content);
   write_vtu(path, content);
+}
+
+State read_state(const fs::path& path, const Model& model) {
+  State state;
+  state.positions = read_vtu_points(path);
+  if (state.positions.rows() != model.rest.rows())
+    throw InvalidInput({path.string()}, "the shape has " + std::to_string(state.positions.rows()) +
+                                            " vertices, the robot " + std::to_string(model.rest.rows()));
+  const Points rest = state.positions - read_vtu_point_vectors(path, "displacement_mm");
+  if (largest_move(rest, model.rest) > same_mesh * model.diagonal_mm)
+    throw InvalidInput({path.string()}, "the shape is of another mesh: its vertices rest elsewhere");
+  const std::map<std::string, std::vector<double>> arrays = read_vtu_arrays(path);
+  const auto number_of = [&](const std::string& name) -> std::optional<double> {
+    const auto found = arrays.find(name);
+    return found != arrays.end() && found->second.size() == 1 ? std::optional(found->second[0]) : std::nullopt;
+  };
+  const std::optional<double> share = number_of(state_share);
+  if (!share)
+    throw InvalidInput({path.string()}, "it does not tell of what it is an equilibrium: no array '" +
+                                            std::string(state_share) + "', which softkin writes");
+  state.share = *share;
+  if (state.share < 0) return state;
+  const auto actuators = static_cast<Index>(model.actuators.size());
+  state.actuation = state.multipliers = Eigen::VectorXd::Zero(actuators);
+  for (Index a = 0; a < actuators; ++a) {
+    const std::string& name = model.actuators[static_cast<std::size_t>(a)].name;
+    const std::optional<double> command = number_of(state_command + name),
+                                multiplier = number_of(state_multiplier + name);
+    if (!command || !multiplier) throw InvalidInput({path.string()}, "it has no actuator '" + name + "'");
+    state.actuation[a] = *command;
+    state.multipliers[a] = *multiplier;
+  }
+  state.elapsed_s = number_of(state_elapsed).value_or(state.elapsed_s);
+  if (const auto history = arrays.find(state_history); history != arrays.end())
+    state.history = std::make_shared<const ViscousHistory>(ViscousHistory{history->second});
+  if (const auto anchors = arrays.find(state_anchors); anchors != arrays.end())
+    for (std::size_t i = 0; i + anchor_values <= anchors->second.size(); i += anchor_values) {
+      const double* v = &anchors->second[i];
+      state.anchors.push_back(
+          {static_cast<Index>(v[0]), static_cast<Index>(v[1]), static_cast<Index>(v[2]), Vec3(v[3], v[4], v[5]), v[6]});
+    }
+  return state;
 }
 
 namespace {

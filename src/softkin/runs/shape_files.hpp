@@ -11,9 +11,14 @@
 namespace softkin::runs {
 
 /// The shape with displacement [mm], volume ratio and principal strains [-], region, actuator, and whether the solve
-/// converged (1) or not (0). deformation: of positions.
-void write_shape(const std::filesystem::path& path, const Model& model, const Points& positions,
+/// converged (1) or not (0); and what read_state() wants. deformation: of the state.
+void write_shape(const std::filesystem::path& path, const Model& model, const State& state,
                  const ElementDeformation& deformation, bool converged);
+
+/// The state that write_shape() wrote, from which a solve goes on.
+///
+/// throws  InvalidInput naming the file: it is none of softkin's, of another mesh, or of other actuators
+[[nodiscard]] State read_state(const std::filesystem::path& path, const Model& model);
 
 /// The body coloured by displacement before a ghost of its rest shape, with obstacles near by (obstacle_picture.hpp),
 /// cables, markers, and crosses where goals want markers to be. view: three numbers, not all zero, from the robot to

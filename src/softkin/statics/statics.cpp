@@ -133,7 +133,7 @@ struct Statics::Parts {
   }
   [[nodiscard]] physical::Equilibria::Options physical_options(const StaticsOptions& options) const {
     const double longest = tolerance(options), blur = 1e-6 * std::max(1.0, longest / paper_tolerance());
-    return {longest, options.max_iterations, options.keep_history, options.reuse_factor, options.stable,
+    return {longest, options.max_iterations, options.keep_history, options.trace, options.reuse_factor, options.stable,
             blur,    options.history,        options.elapsed_s};
   }
 
@@ -205,8 +205,14 @@ State Statics::rest() const {
 }
 
 Equilibrium Statics::solve(const Actuation& actuation, const State& start, const StaticsOptions& options,
-                           const ProgressCallback& progress) const {
+                           const ProgressCallback& asked_progress) const {
   const auto begin = std::chrono::steady_clock::now();
+  bool late = false;
+  const ProgressCallback until_deadline = [&](const Progress& p) {
+    late = options.deadline.passed();
+    return !late && (!asked_progress || asked_progress(p));
+  };
+  const ProgressCallback& progress = options.deadline.any() ? until_deadline : asked_progress;
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
@@ -243,6 +249,11 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
   }
   SolveReport& report = result.report;
+  report.stopped = report.status == Status::interrupted;
+  if (report.stopped && late) {
+    report.status = Status::not_converged;
+    report.remark = options.deadline.spent();
+  }
   report.seconds = seconds_since(begin);
   return result;
 }

@@ -26,6 +26,8 @@ struct StaticsOptions {
   int anderson = 6;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
   int threads = 0;             // 0: as many as the machine has and the robot is worth; the result is the same
   bool keep_history = true;    // SolveReport::history
+  bool trace = false;          // SolveReport::trace; physical
+  Deadline deadline{};         // solve() ends there, not converged, with its last good shape
   bool stable = false;         // physical: leave an unstable equilibrium along its lowest mode for a stable one
   /// The factor of an earlier solve that ended at the start, where no other thread has taken it by then: the same
   /// result within the tolerance. false: bit for bit that of a new object.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <softkin/model/mesh/mesh.hpp>
 #include <string>
 #include <utility>
@@ -52,6 +53,7 @@ struct VtuContent {
   std::vector<Index> cell_regions;  // per cell, index into region_names or -1; empty: none
   std::vector<std::string> region_names;
   std::vector<std::pair<std::string, double>> constants{};  // numbers of the whole, by name
+  std::vector<Field> arrays{};                              // of the whole: any number of values
 };
 
 /// Writes a .vtu that ParaView and read_vtu read: appended raw data, zlib-compressed, fields as Float64. Regions are
@@ -59,8 +61,13 @@ struct VtuContent {
 ///
 /// throws  InvalidInput naming the field, cell or region: no points, a value that is not finite, a length other than
 ///         count * components, a vertex or region outside its range, tetrahedra of two orders or of order 2 beside
-///         prisms, names that are empty, repeated or not printable; constants are field arrays of one value
+///         prisms, names that are empty, repeated or not printable; constants and arrays are field arrays
 void write_vtu(const std::filesystem::path& path, const VtuContent& content);
+
+/// The field arrays of a .vtu that hold real numbers, by name. Throws as read_vtu.
+[[nodiscard]] std::map<std::string, std::vector<double>> read_vtu_arrays(const std::filesystem::path& path);
+/// A point array of three components by its name. Throws as read_vtu, and where there is no such array
+[[nodiscard]] Points read_vtu_point_vectors(const std::filesystem::path& path, const std::string& array);
 
 /// Collection of .vtu files over a parameter; `file` is relative to the .pvd's folder.
 struct PvdEntry {

@@ -399,6 +399,29 @@ Points read_vtu_points(const std::filesystem::path& path) {
   return points_of(document, only_piece(document));
 }
 
+std::map<std::string, std::vector<double>> read_vtu_arrays(const std::filesystem::path& path) {
+  const VtuDocument document(path);
+  std::map<std::string, std::vector<double>> arrays;
+  for (const pugi::xml_node array : document.grid().child("FieldData").children("DataArray")) {
+    const std::optional<NumberType> type = document.type(array);
+    if (!type || is_integer(*type)) continue;
+    const auto count = static_cast<std::uint64_t>(document.integer(array, "NumberOfTuples", 0, kMost));
+    arrays[document.text(array, "Name")] =
+        document.reals(array, count * static_cast<std::uint64_t>(document.components(array)));
+  }
+  return arrays;
+}
+
+Points read_vtu_point_vectors(const std::filesystem::path& path, const std::string& name) {
+  const VtuDocument document(path);
+  const pugi::xml_node piece = only_piece(document);
+  const auto count = static_cast<Index>(document.integer(piece, "NumberOfPoints", 1, kMost));
+  const pugi::xml_node array = document.array(document.child(piece, "PointData"), name);
+  if (document.components(array) != 3) document.fail(array, "array '" + name + "' must have three components");
+  const std::vector<double> values = document.reals(array, 3 * static_cast<std::uint64_t>(count));
+  return Eigen::Map<const Points>(values.data(), count, 3);
+}
+
 namespace {
 
 /// Points and cells, without labels.

@@ -130,6 +130,13 @@ class VtuWriter {
     std::set<std::string> names;
     if (!content_.cell_regions.empty())
       for (const std::string& name : content_.region_names) names.insert("region_" + name);
+    for (const Field& array : content_.arrays) {
+      const std::string subject = "array '" + array.name + "'";
+      if (!is_printable(array.name)) fail(subject + " has an empty or unprintable name");
+      if (!names.insert(array.name).second) fail(subject + " stands twice");
+      if (!std::all_of(array.values.begin(), array.values.end(), [](double v) { return std::isfinite(v); }))
+        fail(subject + " has a value that is not finite");
+    }
     for (const auto& [name, value] : content_.constants) {
       if (!is_printable(name)) fail("constant '" + name + "' has an empty or unprintable name");
       if (!names.insert(name).second) fail("constant '" + name + "' stands twice");
@@ -149,7 +156,7 @@ class VtuWriter {
   /// Numbers only: other readers refuse arrays of strings.
   void write_field_data() {
     const std::size_t regions = content_.cell_regions.empty() ? 0 : content_.region_names.size();
-    if (content_.cell_regions.empty() && content_.constants.empty()) return;
+    if (content_.cell_regions.empty() && content_.constants.empty() && content_.arrays.empty()) return;
     xml_ += "<FieldData>\n";
     for (const auto& [name, value] : content_.constants)
       xml_ += "<DataArray type=\"Float64\" Name=\"" + xml_escaped(name) + "\" NumberOfTuples=\"1\" format=\"ascii\">" +
@@ -157,6 +164,10 @@ class VtuWriter {
     for (std::size_t i = 0; i < regions; ++i)
       xml_ += "<DataArray type=\"Int32\" Name=\"region_" + xml_escaped(content_.region_names[i]) +
               "\" NumberOfTuples=\"1\" format=\"ascii\">" + std::to_string(i) + "</DataArray>\n";
+    for (const Field& array : content_.arrays)
+      write_array(array.name, array.components, array.values.data(), array.values.size(),
+                  " NumberOfTuples=\"" +
+                      std::to_string(array.values.size() / static_cast<std::size_t>(array.components)) + "\"");
     xml_ += "</FieldData>\n";
   }
 
@@ -205,10 +216,11 @@ class VtuWriter {
   }
 
   template <class T>
-  void write_array(const std::string& name, int components, const T* values, std::size_t count) {
+  void write_array(const std::string& name, int components, const T* values, std::size_t count,
+                   const std::string& attributes = "") {
     xml_ += std::string("<DataArray type=\"") + type_name<T>() + "\" Name=\"" + xml_escaped(name) +
-            "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"appended\" offset=\"" +
-            std::to_string(appended_.size()) + "\"/>\n";
+            "\" NumberOfComponents=\"" + std::to_string(components) + "\"" + attributes +
+            " format=\"appended\" offset=\"" + std::to_string(appended_.size()) + "\"/>\n";
     std::string bytes;
     bytes.reserve(count * sizeof(T));
     for (std::size_t i = 0; i < count; ++i) append_little_endian(bytes, values[i]);

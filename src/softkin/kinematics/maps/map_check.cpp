@@ -49,7 +49,7 @@ class Checker {
       actuation[data_.inputs[static_cast<std::size_t>(i)].actuator] = commands[i];
     Equilibrium found = statics_.solve(actuation, place ? start_(*place, commands) : statics_.rest(),
                                        one_of_many(options_.statics), crew_.patience());
-    if (found.report.status == Status::interrupted) return std::nullopt;
+    if (found.report.stopped) return std::nullopt;
     if (found.report.status != Status::converged) return sample;
     sample.values = outputs_of(model_, data_, found.state);
     sample.state = std::move(found.state);

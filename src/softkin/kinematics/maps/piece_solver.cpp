@@ -114,7 +114,7 @@ std::optional<Sample> PieceSolver::solve(const Eigen::VectorXd& commands, const 
   Actuation actuation = model_.rest_actuation();
   for (std::size_t j = 0; j < actuators_.size(); ++j) actuation[actuators_[j]] = commands[static_cast<Index>(j)];
   Equilibrium found = statics_.solve(actuation, nearest ? nearest->state : statics_.rest(), own, progress);
-  if (found.report.status == Status::interrupted) return std::nullopt;
+  if (found.report.stopped) return std::nullopt;
   // beyond a snap shapes are others than those from where they were reached
   if (found.report.status != Status::converged || found.report.snapped_mm > 0) return sample;
   sample.state = std::move(found.state);

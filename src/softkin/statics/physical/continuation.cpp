@@ -23,6 +23,8 @@ constexpr double least_contact_move = 1e-4;
 /// A way on which so many iterations bring less than this share of it leads nowhere either.
 constexpr int patience = 500;
 constexpr double least_progress = 0.01;
+/// Share of a step that is not worth another one at the end of a way.
+constexpr double least_left = 0.1;
 /// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
 constexpr double nearby = 1e-3;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
@@ -51,7 +53,8 @@ Continuation::Continuation(const System& system, System::Workspace& work, Team& 
       tolerance_mm_(options.tolerance_mm),
       max_iterations_(options.max_iterations),
       stable_(options.stable),
-      report_(report) {}
+      report_(report),
+      tracer_(options.trace, report) {}
 
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
@@ -176,7 +179,9 @@ void Continuation::go_together(Iterate& at) {
 
 /// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
 std::optional<Status> Continuation::go_on(Iterate& at) {
-  const double next = std::min(1.0, way_.done + way_.advance), length = next - way_.done;
+  // a step that leaves hardly anything is as long as what is left
+  const double ahead = way_.done + way_.advance;
+  const double next = ahead + least_left * way_.advance < 1 ? ahead : 1, length = next - way_.done;
   const Demand there = between(way_.from, way_.to, next);
   Iterate trial = at;
   if (release(there, at, false)) way_.factorised = false;
@@ -186,31 +191,45 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const int before = report_.iterations;
   const std::vector<bool> active = active_;
   work_.left_field = false;
+  tracer_.begin(whole(way_.done), whole(next), length);
   auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
+  std::string why = outcome == Newton::Outcome::stuck     ? newton_.why_stuck()
+                    : outcome == Newton::Outcome::blocked ? "something is in the way"
+                    : outcome == Newton::Outcome::unmet   ? "what actuators command contradicts each other"
+                                                          : "";
+  const auto reject = [&](const char* because) {
+    outcome = Newton::Outcome::stuck;
+    why = because;
+  };
   if (outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::blocked && way_.loads_change &&
       snapped(move_mm_, largest_move(begun_, trial.positions)) && jumped(way_.here, there, at, trial))
-    outcome = Newton::Outcome::stuck;
+    reject("the equilibrium lies beyond a jump");
   const bool blocked = outcome == Newton::Outcome::blocked;
   if (blocked) outcome = Newton::Outcome::stuck;
   const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
   const bool unstable = outcome == Newton::Outcome::unstable;
-  if (newton_.inverted() && !last_.inverted && length > most_inverting) outcome = Newton::Outcome::stuck;
+  if (newton_.inverted() && !last_.inverted && length > most_inverting) reject("an element is inverted");
   // a body that nothing holds has no stiffness, and so no step
-  if (system_.any_body() && !newton_.balanced()) outcome = Newton::Outcome::stuck;
+  if (system_.any_body() && !newton_.balanced()) reject("a body is out of balance");
 
   std::optional<Status> end;
   const double longest = longest_step(snap, unstable);
+  const double corrected_mm = outcome == Newton::Outcome::stuck ? 0 : largest_move(begun_, trial.positions);
+  const auto trace = [&](bool taken, const std::string& told) { tracer_.end(taken, told, move_mm_, corrected_mm); };
   if (outcome == Newton::Outcome::stuck) {
+    trace(false, why);
     way_.factorised = blocked;
     active_ = active;
     end = shorten(length, at);
   } else if (length > 1.001 * longest) {
+    trace(false, snap ? "it jumps: shorter ones may not" : "it is unstable: a shorter one shows where it becomes so");
     if (snap) way_.beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
     way_.factorised = false;
     active_ = active;
     way_.advance = std::max(longest, 0.4 * length);
   } else {
+    trace(true, snap ? "it jumps" : unstable ? "unstable" : why);
     if (snap) tell_snap(jump_mm_, whole(way_.done));
     take(at, std::move(trial));
     if (!come_to(there, next, unstable, at)) return Status::interrupted;

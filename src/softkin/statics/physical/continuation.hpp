@@ -3,6 +3,7 @@
 #include <optional>
 #include <softkin/statics/physical/equilibria.hpp>
 #include <softkin/statics/physical/stability.hpp>
+#include <softkin/statics/physical/step_tracer.hpp>
 
 namespace softkin::physical {
 
@@ -94,6 +95,7 @@ class Continuation {
   Climb arrive_at(const Demand& to, const Measured& near, Iterate& at);
   Climb stop_at(Index a, double way, double begin, const Demand& from, const Demand& to, const Measured& summit,
                 Iterate& at);
+  void keep(Index a, const Demand& from, const Demand& to, const Measured& kept, Iterate& at);
   void tell_summit(Index a, const Demand& from, const Demand& to, const Measured& summit);
   [[nodiscard]] Judgement judged() const;
   [[nodiscard]] bool factor_holds_active() const;
@@ -137,6 +139,7 @@ class Continuation {
   int max_iterations_;
   bool stable_;
   SolveReport& report_;
+  StepTracer tracer_;
   Way way_;
   std::vector<bool> active_;
   Points from_;                       // the last good shape

@@ -20,6 +20,7 @@ class Equilibria {
     double tolerance_mm = 0;
     int max_iterations = 0;  // of all Newton steps together
     bool keep_history = true;
+    bool trace = false;
     bool reuse_factor = true;
     bool stable = false;        // leave unstable equilibria
     double force_share = 1e-6;  // of the elements' largest pull that may be out of balance

@@ -218,7 +218,10 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   system_.first_step(balance_, work_, step_.move, step_.change);
   step_.size = system_.size_of(step_.move, at.positions);
   if (refines_ && !work_.factor.in_double()) (void)refine(balance_, at, step_);
-  if (!std::isfinite(step_.size.mean)) return Advance::none;
+  if (!std::isfinite(step_.size.mean)) {
+    why_ = "the stiffness is singular";
+    return Advance::none;
+  }
   damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   // forces that follow their normal forces have none
@@ -249,10 +252,16 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       }
     }
     damping *= factor;
-    if (!(damping >= least_damping)) return Advance::none;
+    if (!(damping >= least_damping)) {
+      why_ = "no length of a step comes nearer";
+      return Advance::none;
+    }
   }
   note_pace(damping);
-  if (labours(damping)) return Advance::none;
+  if (labours(damping)) {
+    why_ = "step after step hardly comes nearer";
+    return Advance::none;
+  }
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
 
@@ -381,7 +390,9 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
 
 Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
+  why_ = "the law has no energy at its begin";
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
+  why_ = "its iterations were not enough";
   Advance advance = Advance::made;
   double damping = 1;
   secants_.clear();
@@ -396,7 +407,10 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
     } else {
       const Advance ready = factorise(at, policy);
       if (ready == Advance::interrupted) return Outcome::interrupted;
-      if (ready == Advance::none) return Outcome::stuck;
+      if (ready == Advance::none) {
+        why_ = "no shift makes the stiffness positive";
+        return Outcome::stuck;
+      }
       advance = steps_from_here(at, damping);
     }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {

@@ -43,6 +43,9 @@ class Newton {
   [[nodiscard]] bool balanced() const;
   [[nodiscard]] const System::Imbalance& imbalance() const { return imbalance_; }
 
+  /// Why the last solve got stuck.
+  [[nodiscard]] const char* why_stuck() const { return why_; }
+
   /// Is an element of the last shape inverted?
   [[nodiscard]] bool inverted() const { return balance_.inverted; }
 
@@ -97,6 +100,7 @@ class Newton {
   std::vector<Secant> secants_;         // of the factor at hand
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
   Iterate start_, trial_;
+  const char* why_ = "";
   int poor_ = 0;         // steps in a row that were much shorter than Newton's
   int same_ = 0;         // steps in a row that left as much to go
   double steepest_ = 0;  // slope of the merit function so far

@@ -52,13 +52,23 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
   std::optional<Measured> found;
   if (prepared || prepare(here, from.at) >= 0) {
     Iterate trial = from.at;
+    tracer_.begin(from.measure, measure, std::abs(measure - from.measure), system_.model().actuators[a].name);
     const bool clear = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_).has_value();
+    const Points begun = trial.positions;
     const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
     interrupted_ = outcome == Newton::Outcome::interrupted;
     if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted)) {
       system_.slide_friction(trial, work_, team_);
       found = Measured{measure, trial.multipliers[a] / system_.unit(a), std::move(trial), judged()};
     }
+    const Points& end = found ? found->at.positions : begun;
+    tracer_.end(found.has_value(),
+                found                                   ? ""
+                : !clear                                ? "something is in the way"
+                : outcome == Newton::Outcome::unstable  ? "it is unstable"
+                : outcome == Newton::Outcome::converged ? "an element is inverted"
+                                                        : newton_.why_stuck(),
+                largest_move(from.at.positions, predicted_), largest_move(begun, end));
   }
   active_[a] = false;
   return found;
@@ -105,7 +115,10 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
   for (int i = 0; i < most_steps && length > shortest_step * begin; ++i) {
     if (report_.iterations >= max_iterations_) return Climb::lost;
     std::optional<Measured> next = at_measure(a, low.measure + way * length, here, low, prepared);
-    if (interrupted_) return Climb::interrupted;
+    if (interrupted_) {
+      keep(a, from, to, low, at);
+      return Climb::interrupted;
+    }
     prepared = false;
     if (!next) {
       length *= 0.4;
@@ -156,14 +169,23 @@ Continuation::Climb Continuation::stop_at(Index a, double way, double begin, con
   if (summit.measure == begin) return Climb::summit;
   const std::optional<Measured> kept =
       at_measure(a, summit.measure - way * before_summit * std::abs(summit.measure - begin), from, summit, false);
-  if (interrupted_) return Climb::interrupted;
+  if (interrupted_) {
+    keep(a, from, to, summit, at);
+    return Climb::interrupted;
+  }
   if (!kept) return Climb::lost;
-  at = kept->at;
-  last_ = kept->last;
-  ++report_.continuation_steps;
-  way_.here.actuation[a] = kept->load;
-  way_.done = (kept->load - from.actuation[a]) / (to.actuation[a] - from.actuation[a]);
+  keep(a, from, to, *kept, at);
   return Climb::summit;
+}
+
+/// The equilibrium at a measure is that under its load.
+void Continuation::keep(Index a, const Demand& from, const Demand& to, const Measured& kept, Iterate& at) {
+  at = kept.at;
+  last_ = kept.last;
+  ++report_.continuation_steps;
+  way_.here.actuation[a] = kept.load;
+  way_.done = (kept.load - from.actuation[a]) / (to.actuation[a] - from.actuation[a]);
+  report_.reached = whole(way_.done);
 }
 
 void Continuation::tell_summit(Index a, const Demand& from, const Demand& to, const Measured& summit) {

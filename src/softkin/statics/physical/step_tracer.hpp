@@ -1,0 +1,50 @@
+#pragma once
+
+#include <softkin/model/equilibrium.hpp>
+#include <string>
+#include <utility>
+
+namespace softkin::physical {
+
+/// Notes what each step of a continuation costs and why it is taken or not, in SolveReport::trace.
+class StepTracer {
+ public:
+  /// report must outlive the object
+  StepTracer(bool on, SolveReport& report) : on_(on), report_(report) {}
+
+  void begin(double from, double to, double length, const std::string& along = "") {
+    if (!on_) return;
+    step_ = {.from = from, .to = to, .length = length, .along = along};
+    before_ = counts();
+  }
+  void end(bool taken, const std::string& why, double predicted_mm, double corrected_mm) {
+    if (!on_) return;
+    const Counts now = counts();
+    step_.iterations = now.iterations - before_.iterations;
+    step_.factorisations = now.factorisations - before_.factorisations;
+    step_.factorisations_in_double = now.in_double - before_.in_double;
+    step_.projections = now.projections - before_.projections;
+    step_.shifts = now.shifts - before_.shifts;
+    step_.predicted_mm = predicted_mm;
+    step_.corrected_mm = corrected_mm;
+    step_.taken = taken;
+    step_.why = why;
+    report_.trace.push_back(std::move(step_));
+  }
+
+ private:
+  struct Counts {
+    int iterations = 0, factorisations = 0, in_double = 0, projections = 0, shifts = 0;
+  };
+  [[nodiscard]] Counts counts() const {
+    return {report_.iterations, report_.factorisations, report_.factorisations_in_double, report_.projections,
+            report_.shifts};
+  }
+
+  bool on_;
+  SolveReport& report_;
+  TracedStep step_;
+  Counts before_;
+};
+
+}  // namespace softkin::physical

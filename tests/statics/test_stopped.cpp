@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "statics/physical_samples.hpp"
+
+/// A solve that is stopped, at any instant, gives the last equilibrium on its way, from which another one goes on.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+StaticsOptions traced() {
+  StaticsOptions options = tight(1e-8);
+  options.trace = true;
+  return options;
+}
+
+/// Stops after so many looks at the progress.
+Equilibrium stopped_after(const Statics& statics, const Actuation& asked, int looks) {
+  statics.forget();
+  return statics.solve(asked, statics.rest(), tight(1e-8), [looks](const Progress&) mutable { return looks-- > 0; });
+}
+
+/// At every instant: what is there is an equilibrium of what it says, and the way on leads where the whole one led.
+void expect_stoppable(const RobotSpec& spec, const Actuation& asked, double within_mm) {
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium whole = statics.solve(asked, statics.rest(), traced());
+  ASSERT_EQ(whole.report.status, Status::converged) << whole.report.remark;
+  int between = 0;  // of the stopped ones, with a part of the way done
+  for (int looks = 0;; ++looks) {
+    const Equilibrium part = stopped_after(statics, asked, looks);
+    if (!part.report.stopped) {
+      EXPECT_GT(looks, 3);
+      break;
+    }
+    ASSERT_EQ(part.report.status, Status::interrupted) << looks;
+    ASSERT_TRUE(part.state.knows(asked.size())) << looks;
+    EXPECT_TRUE(part.state.positions.allFinite());
+    between += part.report.reached > 0 && part.report.reached < 1;
+    statics.forget();
+    const Equilibrium on = statics.solve(asked, part.state, tight(1e-8));
+    ASSERT_EQ(on.report.status, Status::converged) << looks << ": " << on.report.remark;
+    EXPECT_LT(distance(on.state.positions, whole.state.positions), within_mm) << looks;
+    if (part.state.share < 1) continue;  // else it can be asked for itself
+    const Equilibrium same = statics.solve(part.state.actuation, part.state, tight(1e-8));
+    EXPECT_LT(distance(same.state.positions, part.state.positions), within_mm) << looks;
+  }
+  EXPECT_GT(between, 0) << "nothing was stopped on its way";
+}
+
+TEST(Stopped, AtAnyInstantOfALength) {
+  expect_stoppable(cable_beam(), values({0.6, 1.5}), 1e-5);
+}
+
+/// On the way along the volume to the maximum of its pressure, too.
+TEST(Stopped, AtAnyInstantOfTheSearchForAMaximum) {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].elastic = elastic(Law::neo_hookean, 0.1, 0.45);
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Actuation asked = values({1000});
+  double most = 0;
+  for (int looks = 0;; looks += 11) {
+    const Equilibrium part = stopped_after(statics, asked, looks);
+    if (!part.report.stopped) break;
+    ASSERT_TRUE(part.state.knows(1)) << looks;
+    EXPECT_GE(part.state.actuation[0], most) << "what was found is lost";
+    most = part.state.actuation[0];
+    EXPECT_NEAR(part.report.reached, most / 1000, 1e-12);
+    statics.forget();
+    const Equilibrium same = statics.solve(part.state.actuation, part.state, tight(1e-8));
+    ASSERT_EQ(same.report.status, Status::converged) << looks;
+    EXPECT_LT(distance(same.state.positions, part.state.positions), 1e-5) << looks;
+  }
+  EXPECT_GT(most, 0);
+}
+
+TEST(Stopped, ByItsDeadlineItIsNotConvergedAndSaysSo) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  StaticsOptions options;
+  options.deadline = Deadline(1e-9);
+  const Equilibrium found = statics.solve(values({2}), statics.rest(), options);
+  EXPECT_EQ(found.report.status, Status::not_converged);
+  EXPECT_TRUE(found.report.stopped);
+  EXPECT_EQ(found.report.remark, "the budget of 1e-09 s was spent");
+  EXPECT_EQ(found.state.positions, model.rest);
+  options.deadline = Deadline(1e5);
+  EXPECT_EQ(statics.solve(values({2}), statics.rest(), options).report.status, Status::converged);
+  for (const double wrong : {0.0, -1.0, std::nan("")}) EXPECT_THROW((void)Deadline(wrong), InvalidInput) << wrong;
+  EXPECT_FALSE(Deadline(HUGE_VAL).any());
+}
+
+TEST(Stopped, ATargetShapeToo) {
+  RobotSpec spec = bending_finger();
+  spec.formulation = Formulation::target_shape;
+  spec.materials[0].shape_ratio = 1;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  for (const Solver solver : {Solver::newton, Solver::local_global}) {
+    StaticsOptions options;
+    options.solver = solver;
+    options.deadline = Deadline(1e-9);
+    const Equilibrium found = statics.solve(values({1.5}), statics.rest(), options);
+    EXPECT_EQ(found.report.status, Status::not_converged);
+    EXPECT_TRUE(found.report.stopped);
+    EXPECT_TRUE(found.state.positions.allFinite());
+  }
+}
+
+/// Every iteration and factorisation of the steps is in the trace once, and what was taken leads from rest to the end.
+TEST(Trace, HasEveryStepOfTheWay) {
+  const Model model = compile(cable_beam());
+  const Statics statics(model);
+  const Equilibrium found = statics.solve(values({0.6, 1.5}), statics.rest(), traced());
+  ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
+  double at = 0;
+  int iterations = 0, taken = 0;
+  for (const TracedStep& step : found.report.trace) {
+    EXPECT_EQ(step.from, at);
+    EXPECT_GT(step.to, step.from);
+    EXPECT_EQ(step.taken ? "" : step.why, step.why);
+    iterations += step.iterations;
+    if (!step.taken) continue;
+    at = step.to;
+    ++taken;
+    EXPECT_GT(step.predicted_mm, 0);
+    EXPECT_GT(step.corrected_mm, 0);
+  }
+  EXPECT_EQ(at, 1);
+  EXPECT_EQ(iterations, found.report.iterations);
+  EXPECT_EQ(taken, found.report.continuation_steps);
+  EXPECT_GT(found.report.trace.size(), static_cast<std::size_t>(taken)) << "nothing was rejected";
+  EXPECT_TRUE(settled(statics, values({0.6, 1.5})).report.trace.empty());
+}
+
+/// Along the volume to the maximum of a pressure.
+TEST(Trace, NamesTheChamberThatItGoesAlong) {
+  RobotSpec spec = bending_finger();
+  spec.materials[0].elastic = elastic(Law::neo_hookean, 0.1, 0.45);
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = statics.solve(values({1000}), statics.rest(), traced());
+  ASSERT_EQ(found.report.status, Status::limit);
+  int along = 0, rejected = 0;
+  for (const TracedStep& step : found.report.trace) {
+    along += step.along == "chamber" && step.taken;
+    rejected += !step.taken;
+    EXPECT_EQ(step.taken, step.why.empty()) << step.why;
+  }
+  EXPECT_GT(along, 2);
+  EXPECT_GT(rejected, 0);
+}
+
+}  // namespace
+
+}  // namespace softkin
