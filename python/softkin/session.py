@@ -18,6 +18,7 @@ from ._solving import (
     Target,
     _chosen_start,
     _options,
+    _within,
 )
 from .inverse import Answer
 from .shape import Shape
@@ -55,7 +56,7 @@ class Session(Solving):
         actuation: Commands | None = None,
         /,
         *,
-        start: Shape | ArrayLike | None = None,
+        start: Shape | ArrayLike | str | os.PathLike[str] | None = None,
         map: KinematicMap | None = None,
         polish: bool = False,
         solver: str = "newton",
@@ -65,11 +66,14 @@ class Session(Solving):
         threads: int = 0,
         stable: bool = False,
         elapsed_s: float | None = None,
+        budget_s: float | None = None,
         progress: ProgressFunction | None = None,
         **commands: Command,
     ) -> Shape:
         """As Robot.solve, from the last equilibrium where no start is given."""
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
+        options = _within(
+            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s), budget_s
+        )
         by = self._by(map, polish, options)
         found = self._solve(
             self._actuation(actuation, commands), self._last if start is None else start, by, options, progress
@@ -105,12 +109,15 @@ class Session(Solving):
         threads: int = 0,
         stable: bool = False,
         elapsed_s: float | None = None,
+        budget_s: float | None = None,
         progress: ProgressFunction | None = None,
         **markers: Target,
     ) -> Answer:
         """As Robot.inverse, from the last equilibrium, with its derivatives, where no start is given."""
         goals = self._goals({**(targets or {}), **markers}, planes, directions, lever_mm, weights)
-        statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s)
+        statics = _within(
+            _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s), budget_s
+        )
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
         start = _chosen_start(goals, start, workspace)
         last = self._answer if start is None else None

@@ -252,6 +252,25 @@ def test_progress(robot: softkin.Robot) -> None:
     assert big.solve(air1=1.01).converged
 
 
+def test_budget_and_start_from_a_file(robot: softkin.Robot, shape: softkin.Shape, tmp_path: Path) -> None:
+    late = robot.solve(air1=1.3, budget_s=1e-9)
+    assert late.status == "not converged" and late.remark == "the budget of 1e-09 s was spent"
+    np.testing.assert_array_equal(late.positions, robot.rest)
+    late.save(tmp_path / "late.vtu")
+    on = robot.solve(air1=1.3, start=tmp_path / "late.vtu", budget_s=1000)
+    assert on.converged and on.fingerprint == shape.fingerprint
+    shape.save(tmp_path / "shape.vtu")
+    there = robot.solve(air1=1.31, start=str(tmp_path / "shape.vtu"))
+    assert there.fingerprint == robot.solve(air1=1.31, start=shape).fingerprint
+    answer = robot.inverse(tip=shape["tip"], budget_s=1e-9)
+    assert answer.status == "not converged" and answer.reason == "the budget of 1e-09 s was spent"
+    for wrong in (0, -1, float("nan")):
+        with pytest.raises(softkin.InvalidInput, match="a budget must be more than 0 s"):
+            robot.solve(budget_s=wrong)
+    with pytest.raises(softkin.InvalidInput, match="no such file"):
+        robot.solve(start=str(tmp_path / "none.vtu"))
+
+
 def test_bodies_and_motions() -> None:
     floor = {"name": "floor", "halfspace": {"point": [0, 0, -20.06], "normal": [0, 0, 1]}, "motion": ["z"]}
     cube = {"name": "cube", "box": [[0, 40, -20], [20, 60, 0]], "density": 1000}
