@@ -78,6 +78,7 @@ actuators:
     control: length
     range: [0.5, 1.0]
     weight: 7
+    spacing: 0.004
   - {name: skin, kind: dea, region: membrane, control: area, range: [0.7, 1.4], prestretch: 1.2}
   - {name: bag, kind: pneumatic, surface: cavity.stl, range: [1, 2]}
 markers:

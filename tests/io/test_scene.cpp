@@ -139,6 +139,7 @@ TEST(Scene, WholeSceneCableAndMarkers) {
   const ActuatorSpec& tendon = spec.actuators.at(1);
   EXPECT_EQ(tendon.kind, ActuatorKind::cable);
   EXPECT_EQ(tendon.weight, 7);
+  EXPECT_DOUBLE_EQ(tendon.spacing, 4);
   EXPECT_EQ(tendon.origin.line, 28u);
   ASSERT_EQ(tendon.points.size(), 3u);
   expect_near(position(tendon.points[1]), 60, 12, 22);

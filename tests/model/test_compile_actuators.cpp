@@ -146,6 +146,25 @@ TEST(Cable, IsOneGapPerSegmentInAContinuousBody) {
   }
 }
 
+TEST(Cable, IsGuidedInsideTheBodyAsOftenAsItsSpacingSays) {
+  RobotSpec spec = notched();
+  spec.actuators.push_back(cable({at(0, 5, 15), at(30, 5, 15)}, 0.7, 1));
+  spec.actuators[0].spacing = 2.5;
+  const Model model = compile(spec);
+  const Actuator& tendon = model.actuators[0];
+  // 13 places 2.5 mm apart, of which three lie in the notch
+  ASSERT_EQ(tendon.points.size(), 10u);
+  double before = -2.5;
+  for (const EmbeddedPoint& point : tendon.points) {
+    const Vec3 place = point.at(model.rest);
+    EXPECT_LT((place - Vec3(before == 10 ? 20 : before + 2.5, 5, 15)).norm(), 1e-9);
+    before = place[0];
+  }
+  ASSERT_EQ(tendon.gaps.size(), 1u) << "the notch alone";
+  EXPECT_EQ(tendon.gaps[0].segment, 4);
+  EXPECT_NEAR(tendon.rest_measure, 30, 1e-12);
+}
+
 TEST(Cable, TakesMeansOfRegionsAndGivenApexes) {
   RobotSpec spec = notched();
   add_vertex_region(spec.mesh, "eyelet", {2 + 8, 2 + 8 + 4});  // (20, 0, 10) and (20, 10, 10)
@@ -191,6 +210,8 @@ TEST(Cable, Refusals) {
                  "points[3] of actuator 'tendon' is 30 mm from the mesh"},
                 {"far apex", change([](ActuatorSpec& a) { a.apexes = {at(15, 5, -15)}; }),
                  "apexes[0] of actuator 'tendon' is 15 mm from the mesh"},
+                {"close guides", change([](ActuatorSpec& a) { a.spacing = 1e-4; }),
+                 "actuator 'tendon' would be guided at 100000 places by its spacing of 0.0001 mm: the most are 10000"},
                 {"region", change([](ActuatorSpec& a) { a.region = "body"; }), "it takes points, no region"},
                 {"rest", change([](ActuatorSpec& a) { a.rest = 0.9; }), "only a dea has a prestretch"},
                 {"through the centroid",

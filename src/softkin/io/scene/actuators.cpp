@@ -17,7 +17,7 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region", "surface", "points", "apexes", "prestretch", "curve", "voltage_share"};
+const Keys kind_keys{"region", "surface", "points", "apexes", "spacing", "prestretch", "curve", "voltage_share"};
 
 Keys all_kind_keys() {
   Keys all = kind_keys;
@@ -28,7 +28,7 @@ Keys all_kind_keys() {
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface", "curve"}},
-      {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes"}},
+      {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes", "spacing"}},
       {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}},
       {ActuatorKind::magnetic, "magnetic", {}, field_keys()}};
   return all;
@@ -110,6 +110,7 @@ void read_cable(const Context& context, const Map& map, ActuatorSpec& actuator) 
   const Node& points = map.at("points");
   for (const auto& item : list(points)) actuator.points.push_back(read_point(context, *item));
   if (actuator.points.size() < 2) fail(points, points.name + " must hold at least 2 points");
+  if (const Node* spacing = map.find("spacing")) actuator.spacing = read_positive_length(context, *spacing);
   const Node* apexes = map.find("apexes");
   if (!apexes) return;
   for (const auto& item : list(*apexes)) actuator.apexes.push_back(read_point(context, *item));

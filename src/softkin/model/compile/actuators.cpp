@@ -85,6 +85,9 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
 void check_members(const ActuatorSpec& spec, Formulation formulation) {
   const bool cable = spec.kind == ActuatorKind::cable;
   if (!cable && !(spec.points.empty() && spec.apexes.empty())) refuse(spec, "takes no points: only a cable does");
+  if (!cable && spec.spacing != 0) refuse(spec, "takes no spacing: only a cable does");
+  if (!(spec.spacing >= 0 && std::isfinite(spec.spacing)))
+    refuse(spec, "needs a spacing of 0 or more, not " + number(spec.spacing));
   if (cable && (spec.region || spec.surface || spec.wall))
     refuse(spec, "is a cable: it takes points, no region and no surface");
   if (spec.kind == ActuatorKind::magnetic && (spec.region || spec.surface || spec.wall))

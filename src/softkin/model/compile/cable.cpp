@@ -8,23 +8,42 @@ namespace softkin {
 namespace {
 
 constexpr double least_segment_mm = 1e-6;
+constexpr double most_guides = 10'000;
 constexpr double least_height = 1e-3;  // of a gap's triangle, over the length of its segment
 
 std::string segment_text(std::size_t segment) {
   return "between points[" + std::to_string(segment) + "] and points[" + std::to_string(segment + 1) + "]";
 }
 
-/// The cable's points at rest.
+/// Where the cable is guided on the straight way to `end` [mm]: at most `spacing` apart, but nowhere outside the body.
+void add_guides(const Compilation& c, const ActuatorSpec& spec, const Vec3& end, Actuator& cable) {
+  const Vec3 start = cable.points.back().at(c.model.rest);
+  const double pieces = std::ceil((end - start).norm() / spec.spacing * (1 - 1e-12));
+  if (pieces > most_guides)
+    refuse(spec, "would be guided at " + number(pieces) + " places by its spacing of " + number(spec.spacing) +
+                     " mm: the most are " + number(most_guides));
+  for (double i = 1; i < pieces; ++i) {
+    EmbeddedPoint guide = body_of(c, spec.robot).embedder.embed(start + i / pieces * (end - start));
+    if (guide.distance_mm <= 1e-9 * c.model.diagonal_mm) cable.points.push_back(std::move(guide));
+  }
+}
+
+/// The cable's points at rest, those by which its spacing guides it between the given ones among them.
 std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
   if (spec.points.size() < 2) refuse(spec, "is a cable and needs at least two points");
-  std::vector<Vec3> points;
   for (std::size_t i = 0; i < spec.points.size(); ++i) {
-    cable.points.push_back(
-        embed_point(c, spec.points[i], "points[" + std::to_string(i) + "] of actuator '" + spec.name + "'"));
-    points.push_back(cable.points.back().at(c.model.rest));
-    if (i > 0 && (points[i] - points[i - 1]).norm() < least_segment_mm)
-      refuse(spec, "has no length " + segment_text(i - 1));
+    EmbeddedPoint point =
+        embed_point(c, spec.points[i], "points[" + std::to_string(i) + "] of actuator '" + spec.name + "'");
+    if (i > 0) {
+      const Vec3 end = point.at(c.model.rest);
+      if ((end - cable.points.back().at(c.model.rest)).norm() < least_segment_mm)
+        refuse(spec, "has no length " + segment_text(i - 1));
+      if (spec.spacing > 0) add_guides(c, spec, end, cable);
+    }
+    cable.points.push_back(std::move(point));
   }
+  std::vector<Vec3> points;
+  for (const EmbeddedPoint& point : cable.points) points.push_back(point.at(c.model.rest));
   return points;
 }
 
