@@ -24,6 +24,16 @@ struct MeshOptions {
   bool json = false, ascii = false;
 };
 
+std::string curved_text(const CurvedInfo& curved, const MeshMeasures& straight) {
+  std::string text = "volume " + number(curved.measures.volume) + " mm^3 (" +
+                     number(100 * (curved.measures.volume / straight.volume - 1), 3) + " % more than by the corners)" +
+                     ", boundary area " + number(curved.measures.boundary) + " mm^2";
+  if (curved.of == CurvedInfo::Of::mesh) return text;
+  text += "; " + counted(curved.done.moved, "node") + " moved by up to " + number(curved.done.farthest_mm, 3) + " mm";
+  if (curved.done.held_back > 0) text += ", " + std::to_string(curved.done.held_back) + " of them held back";
+  return text;
+}
+
 Row region_row(const RegionMeasures& region) {
   Row row{printable(region.name), std::to_string(region.dimension) + "D", "",
           counted(region.vertices, "vertex", "vertices"), ""};
@@ -45,7 +55,7 @@ std::string text_of(const std::vector<EmptySpace>& spaces) {
 std::string text_of(const MeshInfo& info) {
   const MeshMeasures& m = info.measures;
   const Vec3 size = m.high - m.low;
-  const Table table{
+  Table table{
       {left, left},
       {{"file", info.file + (is_scene(info.file) ? " (the mesh of the scene)"
                                                  : " (" + mesh_form(info.file) + ", lengths in " + info.unit + ")")},
@@ -62,6 +72,10 @@ std::string text_of(const MeshInfo& info) {
        {"edge lengths", "min " + number(m.edge_length[0], 4) + ", median " + number(m.edge_length[1], 4) + ", max " +
                             number(m.edge_length[2], 4) + " mm"},
        {"regions", std::to_string(m.regions.size())}}};
+  constexpr const char* curved_names[] = {"curved edges", "with 'curve'", "'curve: true'"};
+  if (info.curved)
+    table.rows.insert(table.rows.end() - 1,
+                      {curved_names[static_cast<std::size_t>(info.curved->of)], curved_text(*info.curved, m)});
   Table regions{{left, left, right, right, right}};
   for (const RegionMeasures& region : m.regions) regions.rows.push_back(region_row(region));
   const std::string none = m.regions.empty() ? "  none: the file names no part of the mesh; a scene can define some by "

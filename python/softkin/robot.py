@@ -130,6 +130,7 @@ class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
         formulation: str | None = None,
         units: str = "mm",
         order: int | None = None,
+        curve: bool | Mapping[str, Any] | Sequence[Any] | None = None,
         accept_errors: bool = False,
         name: str = "robot",
     ) -> None:
@@ -144,6 +145,8 @@ class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
         formulation  'physical' or 'target-shape'; None: physical where a material has elastic constants
         units        of every length given here: mm, cm, m, um or in
         order        2: tetrahedra of order 1 get nodes on their edges
+        curve        of order 2: True moves the nodes on the surface's edges onto a smooth surface through the vertices;
+                     {"cylinder": ...}, {"sphere": ...}, {"file": ...}, {"crease": degrees}, or a list of these
         raises       InvalidInput naming the entry: "actuators[0].range: ..."; ValueError naming an array
         """
         mesh, sizes = _mesh(vertices, tetrahedra, prisms)
@@ -156,7 +159,7 @@ class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
         description = {
             "softkin": 1,
             "units": {"length": units},
-            "mesh": {"order": order, "accept_errors": accept_errors},
+            "mesh": {"order": order, "curve": curve, "accept_errors": accept_errors},
             "formulation": formulation,
             "regions": [shape for shape in shapes if shape is not None],
             "materials": materials,

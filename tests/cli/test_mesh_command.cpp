@@ -3,9 +3,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/model/mesh/curved_edges.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <utility>
 
 #include "mesh_samples.hpp"
+#include "model/round_mesh.hpp"
 
 namespace {
 
@@ -54,6 +57,40 @@ TEST(MeshInfo, MeasuresCube) {
   // 3 inradius / circumradius; inradius = 3 volume / area, circumradius = half the cube's diagonal
   const double quality = 3 * (0.5 / (1 + std::sqrt(2))) / (std::sqrt(3) / 2);
   for (const char* key : {"min", "percentile_1", "median"}) EXPECT_NEAR(info["quality"][key], quality, 1e-12);
+}
+
+/// Of a rod of twelve corners and 10 mm radius: what `curve` would give, what a scene's gives, and a mesh's own edges.
+TEST(MeshInfo, MeasuresWithCurvedEdges) {
+  const TemporaryFolder folder;
+  const Mesh rod = rod_mesh(12, 1, 5, 10, 40);
+  const double round = std::numbers::pi * 100 * 40, polygon = 12 * 50 * std::sin(std::numbers::pi / 6) * 40;
+  write_mesh(folder / "rod.msh", rod);
+  const json info = run_json({"mesh", "info", folder / "rod.msh"});
+  EXPECT_NEAR(info["volume_mm3"], polygon, 1e-9 * polygon);
+  EXPECT_EQ(info["curved"]["of"], "smooth");
+  EXPECT_NEAR(info["curved"]["volume_mm3"], round, 2e-3 * round);
+  EXPECT_GT(info["curved"]["nodes_moved"], 100);
+  EXPECT_EQ(info["curved"]["nodes_held_back"], 0);
+  EXPECT_NEAR(info["regions"][0]["curved_volume_mm3"], info["curved"]["volume_mm3"], 1e-6);
+  expect_contains(run_program({"mesh", "info", folder / "rod.msh"}).output, "'curve: true'");
+
+  const std::string scene = folder.write("rod.yaml",
+                                         "softkin: 1\nmesh: {file: rod.msh, order: 2, curve: {cylinder: {start: [0, 0, "
+                                         "0], end: [40, 0, 0], radius: 10}}}\n");
+  const json given = run_json({"mesh", "info", scene})["curved"];
+  EXPECT_EQ(given["of"], "scene");
+  EXPECT_NEAR(given["volume_mm3"], round, 5e-4 * round);
+
+  Mesh own = elevated(rod);
+  CurveSpec curve;
+  curve.smooth = true;
+  curve_edges(own, labels_of(own, own.regions), curve);
+  write_mesh(folder / "own.msh", own);
+  const json read = run_json({"mesh", "info", folder / "own.msh"})["curved"];
+  EXPECT_EQ(read["of"], "mesh");
+  EXPECT_NEAR(read["volume_mm3"], info["curved"]["volume_mm3"], 1e-6);
+  EXPECT_FALSE(read.contains("nodes_moved"));
+  EXPECT_TRUE(run_json({"mesh", "info", folder.write("cube.msh", cube().text())})["curved"].is_null());
 }
 
 TEST(MeshInfo, ListsRegions) {

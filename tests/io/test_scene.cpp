@@ -258,6 +258,25 @@ TEST(Scene, KeysOfThePhysicalFormulationAreAllowedInTheOther) {
   EXPECT_EQ(spec.forces.size(), 1u);
 }
 
+TEST(Scene, CurvedEdges) {
+  const auto curve = [](const std::string& text) {
+    return parse("softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh, order: 2, curve: " + text + "}\n").curve;
+  };
+  EXPECT_FALSE(curve("false"));
+  ASSERT_TRUE(curve("true"));
+  EXPECT_TRUE(curve("true")->smooth);
+  EXPECT_EQ(curve("true")->crease_degrees, 40);
+  EXPECT_EQ(curve("{crease: 65}")->crease_degrees, 65);
+  const auto several =
+      curve("[{sphere: {center: [1, 2, 3], radius: 4}}, {cylinder: {start: [0, 0, 0], end: [1, 0, 0], radius: 2}}]");
+  EXPECT_FALSE(several->smooth);
+  ASSERT_EQ(several->surfaces.size(), 2u);
+  EXPECT_EQ(std::get<Sphere>(several->surfaces[0].shape).center, Vec3(10, 20, 30));
+  EXPECT_EQ(std::get<Cylinder>(several->surfaces[1].shape).radius, 20);
+  EXPECT_EQ(several->surfaces[1].origin.line, 3u);
+  EXPECT_TRUE(curve("[{sphere: {center: [1, 2, 3], radius: 4}}, true]")->smooth);
+}
+
 TEST(Scene, EveryUnitOfLength) {
   const std::pair<const char*, double> units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"um", 1e-3}, {"in", 25.4}};
   for (const auto& [unit, mm] : units) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <softkin/core/text.hpp>
+#include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/joined.hpp>
 #include <softkin/model/magnetic_field.hpp>
@@ -91,6 +92,7 @@ class Joiner {
                            static_cast<Index>(mesh.tetrahedra.size()), static_cast<Index>(mesh.prisms.size()),
                            robot_.mesh_origin, robot_.accept_mesh_errors});
     all_.quadratic = all_.quadratic || robot_.quadratic;
+    all_.curved = all_.curved || robot_.curve || robot_.curved;
     add_regions();
     add_supports();
     add_actuators();
@@ -203,6 +205,9 @@ class Joiner {
 
   void add_mesh() {
     Mesh& mesh = robot_.mesh;
+    std::vector<std::string> notes = robot_.notes;
+    if (robot_.curve && order_of(mesh) == 2) curve_mesh(robot_, mesh, notes);
+    for (const std::string& note : notes) all_.notes.push_back("Robot '" + placed_.name + "': " + note);
     place(mesh.vertices);
     std::erase_if(mesh.regions, [](const Region& region) { return region.name == "all"; });
     for (Region& region : mesh.regions) region.name = full(region.name);

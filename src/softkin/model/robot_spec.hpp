@@ -6,6 +6,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/model/actuator_curve.hpp>
 #include <softkin/model/contact_spec.hpp>
+#include <softkin/model/mesh/curve_spec.hpp>
 #include <softkin/model/mesh/mesh.hpp>
 #include <softkin/model/shapes.hpp>
 #include <variant>
@@ -171,6 +172,9 @@ struct RobotSpec {
   Origin mesh_origin;               // of the entry that names it
   bool accept_mesh_errors = false;  // take doubled or overlapping elements, with a note
   bool quadratic = false;           // physical: elevate a mesh of order 1 to order 2
+  std::optional<CurveSpec> curve;   // physical, order 2: how the edges are curved; none: as the mesh has them
+  bool curved = false;              // of several robots: one was, by a `curve` of its own
+  std::vector<std::string> notes;   // of what was done before compile()
   Vec3 gravity{0, 0, 0};            // [m/s^2]; physical
   Origin gravity_origin;            // no file: none is given
   std::vector<ForceSpec> forces;    // physical

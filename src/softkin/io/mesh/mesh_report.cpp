@@ -8,6 +8,7 @@
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/scene.hpp>
+#include <softkin/model/compile/curving.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/model.hpp>
 
@@ -98,6 +99,32 @@ void review_surface(const Mesh& mesh, MeshConversion& result) {
   for (const Region& region : mesh.regions) result.not_kept.push_back(loss_of(region, {}));
 }
 
+std::optional<CurvedInfo> curved_info(RobotSpec& spec) {
+  Mesh& mesh = spec.mesh;
+  if (mesh.tetrahedra.empty() || !mesh.prisms.empty()) return std::nullopt;
+  const bool quadratic = !mesh.edge_nodes.empty();
+  if (quadratic && !has_straight_edges(mesh)) return CurvedInfo{CurvedInfo::Of::mesh, {}, measure_curved(mesh)};
+  const auto of = spec.curve ? CurvedInfo::Of::scene : CurvedInfo::Of::smooth;
+  if (!spec.curve) spec.curve.emplace().smooth = true;
+  Mesh curved = elevated(quadratic ? lowered(mesh) : mesh);
+  std::vector<std::string> notes;
+  const CurvedEdges done = curve_mesh(spec, curved, notes);
+  if (done.moved == 0) return std::nullopt;
+  return CurvedInfo{of, done, measure_curved(curved)};
+}
+
+Json curved_json(const CurvedInfo& info) {
+  constexpr const char* names[] = {"mesh", "scene", "smooth"};
+  Json json{{"of", names[static_cast<std::size_t>(info.of)]},
+            {"volume_mm3", info.measures.volume},
+            {"boundary_area_mm2", info.measures.boundary}};
+  if (info.of == CurvedInfo::Of::mesh) return json;
+  json["nodes_moved"] = info.done.moved;
+  json["nodes_held_back"] = info.done.held_back;
+  json["farthest_mm"] = info.done.farthest_mm;
+  return json;
+}
+
 Json region_json(const RegionMeasures& region) {
   Json json{{"name", region.name}, {"dimension", region.dimension}, {"vertices", region.vertices}};
   if (region.dimension < 2) return json;
@@ -138,9 +165,16 @@ bool is_scene(const std::string& path) {
 }
 
 MeshInfo mesh_info(const std::string& file, const std::string& unit) {
-  const Mesh mesh = is_scene(file) ? read_scene(file).mesh : read_mesh_in_mm(file, unit);
-  return {file, unit, measure_mesh(mesh, check_mesh(mesh)),
-          empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms)};
+  RobotSpec spec;
+  if (is_scene(file))
+    spec = read_scene(file);
+  else
+    spec.mesh = read_mesh_in_mm(file, unit);
+  const Mesh& mesh = spec.mesh;
+  MeshInfo info{file, unit, measure_mesh(mesh, check_mesh(mesh)),
+                empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms)};
+  info.curved = curved_info(spec);
+  return info;
 }
 
 bool MeshVerdict::usable() const {
@@ -194,7 +228,11 @@ const char* name_of(MeshSeverity severity) {
 std::string to_json(const MeshInfo& info) {
   const MeshMeasures& m = info.measures;
   Json regions = Json::array();
-  for (const RegionMeasures& region : m.regions) regions.push_back(region_json(region));
+  for (std::size_t r = 0; r < m.regions.size(); ++r) {
+    Json& region = regions.emplace_back(region_json(m.regions[r]));
+    if (info.curved && info.curved->measures.regions[r] > 0)
+      region[m.regions[r].dimension == 3 ? "curved_volume_mm3" : "curved_area_mm2"] = info.curved->measures.regions[r];
+  }
   return json_text(
       {{"file", info.file},
        {"form", is_scene(info.file) ? "scene" : mesh_form(info.file)},
@@ -209,6 +247,7 @@ std::string to_json(const MeshInfo& info) {
        {"size_mm", json_of(Vec3(m.high - m.low))},
        {"volume_mm3", m.volume},
        {"boundary_area_mm2", m.boundary},
+       {"curved", info.curved ? curved_json(*info.curved) : Json(nullptr)},
        {"quality", {{"min", m.quality[0]}, {"percentile_1", m.quality[1]}, {"median", m.quality[2]}}},
        {"edge_lengths_mm", {{"min", m.edge_length[0]}, {"median", m.edge_length[1]}, {"max", m.edge_length[2]}}},
        {"empty_spaces", spaces_json(info.empty_spaces)},

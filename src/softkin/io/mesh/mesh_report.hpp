@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <softkin/model/mesh/curved_edges.hpp>
 #include <softkin/model/mesh/mesh_review.hpp>
 #include <softkin/model/mesh/shells.hpp>
 #include <string>
@@ -11,11 +12,20 @@ namespace softkin {
 /// Is the path that of a scene (.yaml, .yml)?
 [[nodiscard]] bool is_scene(const std::string& path);
 
+/// A mesh's sizes with curved edges: with those that it brings, or with those that `curve` would give it.
+struct CurvedInfo {
+  enum class Of { mesh, scene, smooth };
+  Of of = Of::mesh;  // the mesh's own edges, those of the scene's `curve`, those of `curve: true`
+  CurvedEdges done;  // but for the mesh's own
+  CurvedMeasures measures;
+};
+
 /// A mesh's file and what it holds.
 struct MeshInfo {
   std::string file, unit;  // of the file's lengths: "mm"
   MeshMeasures measures;
   std::vector<EmptySpace> empty_spaces;  // that the elements enclose
+  std::optional<CurvedInfo> curved{};    // none: of prisms, or nothing would curve
 };
 
 /// file    a mesh, or a scene, whose mesh it is then, or its meshes as one

@@ -18,6 +18,7 @@ std::int64_t read_order(const Node& node) {
 struct MeshFile {
   Mesh mesh;
   bool quadratic = false;
+  std::optional<CurveSpec> curve = std::nullopt;
 };
 
 void rotate(const Context& context, const Node& node, Points& vertices) {
@@ -39,6 +40,11 @@ MeshFile read_file_of(const Context& context, const Map& map) {
   if (!vertices.allFinite()) fail(file, "the mesh's coordinates are too large");
   if (order && !read.quadratic && !read.mesh.edge_nodes.empty())
     fail(*order, "'order' is 1, but the tetrahedra of the mesh are of order 2");
+  if (const Node* curve = map.find("curve")) {
+    read.curve = read_curve(context, *curve);
+    if (read.curve && !read.quadratic && read.mesh.edge_nodes.empty())
+      fail(*curve, "'curve' moves the nodes of edges, which elements of order 2 have: add 'order: 2'");
+  }
   return read;
 }
 
@@ -51,10 +57,21 @@ void note_origin(const Map& map, RobotSpec& spec) {
 
 void check_joinable(const Node& node, const MeshFile& first, const MeshFile& next) {
   if (first.quadratic != next.quadratic) fail(node, "'order' must be the same in every entry of 'meshes'");
+  const auto smooth = [](const MeshFile& read) { return read.curve && read.curve->smooth; };
+  if (smooth(first) != smooth(next) || (smooth(first) && first.curve->crease_degrees != next.curve->crease_degrees))
+    fail(node, "'curve: true' or its 'crease' must be the same in every entry of 'meshes'");
   if (first.mesh.edge_nodes.empty() == next.mesh.edge_nodes.empty()) return;
   fail(node,
        "its elements are of order " + std::string(next.mesh.edge_nodes.empty() ? "1" : "2") +
            ", those of the meshes before it of the other: give files of one order, or of order 1 with 'order: 2'");
+}
+
+/// The surfaces of each are those of all.
+void add_curve(std::optional<CurveSpec>& all, std::optional<CurveSpec>& next) {
+  if (!all)
+    all = std::move(next);
+  else if (next)
+    std::move(next->surfaces.begin(), next->surfaces.end(), std::back_inserter(all->surfaces));
 }
 
 }  // namespace
@@ -72,10 +89,11 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
   const Node* several = scene.find("meshes");
   if (several == nullptr || scene.find("mesh") != nullptr) {
     if (several != nullptr) (void)scene.one_of({"mesh", "meshes"});
-    const Map map(scene.at("mesh"), {"file", "order", "accept_errors"});
+    const Map map(scene.at("mesh"), {"file", "order", "curve", "accept_errors"});
     MeshFile read = read_file_of(context, map);
     spec.mesh = std::move(read.mesh);
     spec.quadratic = read.quadratic;
+    spec.curve = std::move(read.curve);
     note_origin(map, spec);
     return;
   }
@@ -83,7 +101,7 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
   Names names;
   std::optional<MeshFile> all;
   for (const auto& item : list(*several)) {
-    const Map map(*item, {"file", "order", "accept_errors", "name", "scale", "rotate", "move"});
+    const Map map(*item, {"file", "order", "curve", "accept_errors", "name", "scale", "rotate", "move"});
     MeshFile read = read_file_of(context, map);
     note_origin(map, spec);
     if (const Node* name = map.find("name")) {
@@ -96,9 +114,11 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
     }
     check_joinable(*item, *all, read);
     append(all->mesh, read.mesh);
+    add_curve(all->curve, read.curve);
   }
   spec.mesh = std::move(all->mesh);
   spec.quadratic = all->quadratic;
+  spec.curve = std::move(all->curve);
 }
 
 }  // namespace softkin::scene

@@ -62,6 +62,8 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 /// The robots of a scene that has several, joined. Key `robots` must be there.
 [[nodiscard]] RobotSpec read_robots(const Context& context, const Map& scene, const std::string& file_name);
 
+/// Key `curve` of a mesh: true, false, one surface or a list of them; none where it is false.
+[[nodiscard]] std::optional<CurveSpec> read_curve(const Context& context, const Node& node);
 /// The mesh of a scene, or its meshes as one, in mm.
 void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] std::vector<RegionSpec> read_regions(const Context& context, const Node& node);

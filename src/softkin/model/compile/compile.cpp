@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
 
 namespace softkin {
@@ -102,9 +103,13 @@ std::optional<Mesh> in_other_order(const RobotSpec& spec, std::vector<std::strin
 }  // namespace
 
 Model compile(const RobotSpec& spec) {
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = spec.notes;
   const std::optional<Mesh> other = in_other_order(spec, notes);
-  Compilation c(spec, other ? *other : spec.mesh);
+  const Mesh& straight = other ? *other : spec.mesh;
+  std::optional<Mesh> curved;
+  if (spec.curve && order_of(straight) == 2) curved = straight;
+  Compilation c(spec, curved ? *curved : straight, straight);
+  if (curved) curve_mesh(spec, *curved, notes);
   c.model.notes = std::move(notes);
   c.model.name = spec.name;
   c.model.formulation = spec.formulation;
@@ -124,6 +129,7 @@ Model compile(const RobotSpec& spec) {
   check_hinges(c.model, c.origin);
   doubt_units(c);
   doubt_linear_tetrahedra(c);
+  doubt_straight_edges(c);
   compile_contact(c);
   return std::move(c.model);
 }

@@ -19,8 +19,9 @@ struct Body {
 
 /// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
 struct Compilation {
-  Compilation(const RobotSpec& robot, const Mesh& its_mesh)
-      : spec(robot), mesh(its_mesh), origin{.file = robot.name}, regions(robot, its_mesh) {}
+  /// straight  the mesh before its edges were curved: shapes choose among its vertices
+  Compilation(const RobotSpec& robot, const Mesh& its_mesh, const Mesh& straight)
+      : spec(robot), mesh(its_mesh), origin{.file = robot.name}, regions(robot, straight) {}
 
   const RobotSpec& spec;
   const Mesh& mesh;  // of the order that the model takes: spec.mesh, or made from it
@@ -169,6 +170,10 @@ struct StiffnessAtRest {
 
 /// Physical, tetrahedra of order 1: warns of walls of so few of them that they bend by a tenth too little or less.
 void doubt_linear_tetrahedra(Compilation& c);
+
+/// Physical, order 2: warns where edges that are straight, or less curved than the surface through the vertices, cost
+/// more than 2 % of a section.
+void doubt_straight_edges(Compilation& c);
 
 /// Warns of a size, moduli, gravity and densities that no soft robot has: of numbers in another unit than was meant.
 void doubt_units(Compilation& c);

@@ -5,6 +5,7 @@
 #include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/mesh/mesh_review.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <span>
 #include <utility>
 
@@ -238,6 +239,36 @@ MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   for (int i = 0; i < 3; ++i) measures.edge_length[i] = percentile(lengths, length_shares[i]);
   const std::vector<QuadraticTriangle> triangles = quadratic_triangles(mesh);
   for (const Region& region : mesh.regions) measures.regions.push_back(measure_region(mesh, triangles, region));
+  return measures;
+}
+
+CurvedMeasures measure_curved(const Mesh& mesh) {
+  CurvedMeasures measures;
+  const auto volume_of = [&](Index t) {
+    return std::abs(shape_integrals(nodes_of(mesh.vertices, mesh.tetrahedra[t], mesh.edge_nodes[t])).sum());
+  };
+  const auto area_of = [&](const QuadraticTriangle& face) {
+    TriangleNodes nodes;
+    for (int i = 0; i < 6; ++i) nodes.row(i) = mesh.vertices.row(face[i]);
+    return shape_integrals(nodes).sum();
+  };
+  for (Index t = 0; t < static_cast<Index>(mesh.tetrahedra.size()); ++t) measures.volume += volume_of(t);
+  const Boundary boundary = boundary_of(mesh.tetrahedra, {});
+  for (std::size_t i = 0; i < boundary.triangles.size(); ++i) {
+    const auto& [a, b, c] = boundary.triangles[i];
+    const auto owner = boundary.triangle_owners[i];
+    const auto node = [&](Index from, Index to) {
+      return edge_node(mesh.tetrahedra[owner], mesh.edge_nodes[owner], from, to);
+    };
+    measures.boundary += area_of({a, b, c, node(a, b), node(b, c), node(c, a)});
+  }
+  const std::vector<QuadraticTriangle> triangles = quadratic_triangles(mesh);
+  for (const Region& region : mesh.regions) {
+    double& measure = measures.regions.emplace_back();
+    for (const Index t : region.tetrahedra) measure += volume_of(t);
+    if (region.dimension == 2 && !triangles.empty())
+      for (const Index t : region.triangles) measure += area_of(triangles[t]);
+  }
   return measures;
 }
 

@@ -32,6 +32,17 @@ struct MeshMeasures {
 /// mesh in mm, with an element. check: of the mesh.
 [[nodiscard]] MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check);
 
+/// Sizes of a mesh of order 2 with its edges as they are curved.
+struct CurvedMeasures {
+  double volume = 0;    // [mm^3]
+  double boundary = 0;  // area [mm^2]
+  std::vector<double>
+      regions;  // dimension 3: volume [mm^3], 2: area [mm^2] where its faces are such of elements; else 0
+};
+
+/// Exact for the volume; reversed elements count as if they were not.
+[[nodiscard]] CurvedMeasures measure_curved(const Mesh& mesh);
+
 struct PartMeasures {
   std::size_t vertices = 0;
   double volume = 0;  // [mm^3]

@@ -103,6 +103,23 @@ double least_jacobian(const TetrahedronNodes& nodes) {
   return least;
 }
 
+double least_jacobian_bound(const TetrahedronNodes& nodes) {
+  Mat3 at[4];  // the derivatives are linear: these at the corners say all of them
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Matrix<double, 3, 4> along = nodes.transpose() * quadratic_slope(Barycentric::Unit(i));
+    at[i] = along.rightCols<3>().colwise() - along.col(0);
+  }
+  const auto mixed = [&](int i, int j, int k) { return at[i].col(0).dot(at[j].col(1).cross(at[k].col(2))); };
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i)
+    for (int j = i; j < 4; ++j)
+      for (int k = j; k < 4; ++k)
+        least = std::min(
+            least,
+            (mixed(i, j, k) + mixed(i, k, j) + mixed(j, i, k) + mixed(j, k, i) + mixed(k, i, j) + mixed(k, j, i)) / 6);
+  return least;
+}
+
 const std::array<TrianglePoint, 6>& triangle_rule() {
   static const std::array<TrianglePoint, 6> rule = make_triangle_rule();
   return rule;

@@ -24,11 +24,15 @@ std::vector<Bounds> triangle_bounds(const Points& vertices, const std::vector<Tr
   return bounds;
 }
 
-double squared_distance_to_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
+Vec3 nearest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
   const Vec3 edge = b - a, offset = point - a;
   const double length2 = edge.squaredNorm();
   const double t = length2 > 0 ? std::clamp(offset.dot(edge) / length2, 0.0, 1.0) : 0.0;
-  return (offset - t * edge).squaredNorm();
+  return a + t * edge;
+}
+
+double squared_distance_to_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
+  return (point - nearest_on_segment(point, a, b)).squaredNorm();
 }
 
 }  // namespace
@@ -45,6 +49,19 @@ double squared_distance_to_triangle(const Vec3& point, const Vec3& a, const Vec3
   }
   return std::min({squared_distance_to_segment(point, a, b), squared_distance_to_segment(point, b, c),
                    squared_distance_to_segment(point, c, a)});
+}
+
+Vec3 nearest_on_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a, offset = point - a, normal = u.cross(v);
+  const double area2 = normal.squaredNorm();
+  if (area2 > 0) {
+    const double wb = offset.cross(v).dot(normal), wc = u.cross(offset).dot(normal);
+    if (wb >= 0 && wc >= 0 && wb + wc <= area2) return point - offset.dot(normal) / area2 * normal;
+  }
+  Vec3 nearest = nearest_on_segment(point, a, b);
+  for (const Vec3& other : {nearest_on_segment(point, b, c), nearest_on_segment(point, c, a)})
+    if ((other - point).squaredNorm() < (nearest - point).squaredNorm()) nearest = other;
+  return nearest;
 }
 
 std::optional<LineHit> meet_plane(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b,
@@ -84,6 +101,23 @@ double SurfaceTree::distance(const Vec3& point) const {
     return nearest2;
   });
   return std::sqrt(nearest2);
+}
+
+Vec3 SurfaceTree::nearest(const Vec3& point, Index* triangle) const {
+  Vec3 found = point;
+  double least = std::numeric_limits<double>::infinity();
+  tree_.visit_near(point, [&](Index item) {
+    const Triangle& t = triangles_[item];
+    const Vec3 near =
+        nearest_on_triangle(point, vertex_at(vertices_, t[0]), vertex_at(vertices_, t[1]), vertex_at(vertices_, t[2]));
+    if (const double distance2 = (near - point).squaredNorm(); distance2 < least) {
+      least = distance2;
+      found = near;
+      if (triangle) *triangle = item;
+    }
+    return least;
+  });
+  return found;
 }
 
 std::optional<bool> SurfaceTree::crosses_oddly(const Vec3& point, const Vec3& direction) const {

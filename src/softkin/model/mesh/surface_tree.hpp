@@ -9,6 +9,9 @@ namespace softkin {
 /// Squared distance from a point to the triangle a b c [mm^2]; a triangle without area counts as its edges.
 [[nodiscard]] double squared_distance_to_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
 
+/// The point of a triangle that is nearest to another point; of one without area that of its edges.
+[[nodiscard]] Vec3 nearest_on_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Where the line origin + t direction meets the plane of a triangle: t, and the barycentric coordinates there.
 struct LineHit {
   double t = 0;
@@ -31,6 +34,10 @@ class SurfaceTree {
 
   /// From the point to the surface [mm].
   [[nodiscard]] double distance(const Vec3& point) const;
+
+  /// The point of the surface that is nearest to another one. triangle: if given, the one that it is of; the surface
+  /// must have some
+  [[nodiscard]] Vec3 nearest(const Vec3& point, Index* triangle = nullptr) const;
 
   /// Whether the point lies inside; the surface must be closed.
   [[nodiscard]] bool contains(const Vec3& point) const;

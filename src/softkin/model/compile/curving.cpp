@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/core/text.hpp>
+#include <softkin/model/compile/curving.hpp>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double least_loss = 0.02;      // of a section
+constexpr int slab_count = 10;           // across the robot's longest side
+constexpr double least_slab = 0.03;      // of the volume in a slab that counts
+constexpr double still_straight = 1e-3;  // a node's distance from the middle, over its edge's length
+
+/// The volume of all elements with their curved edges [mm^3].
+double curved_volume(const Mesh& mesh) {
+  double volume = 0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    volume += std::abs(shape_integrals(nodes_of(mesh.vertices, mesh.tetrahedra[t], mesh.edge_nodes[t])).sum());
+  return volume;
+}
+
+const char* word_of(const GivenSurface& surface) {
+  constexpr const char* kinds[] = {"sphere", "cylinder", "file"};
+  return kinds[surface.shape.index()];
+}
+
+std::string held_text(const CurvedEdges& done) {
+  if (done.held_back == 0) return ".";
+  return "; " + counted(done.held_back, "node was", "nodes were") + " held back lest elements fold, the farthest at " +
+         decimal(100 * done.least_share, 0) + " % of its way.";
+}
+
+/// The mesh's regions, and those that a scene makes of lists of elements; shapes cut a mesh in steps.
+std::vector<Region> regions_of(const RobotSpec& spec, const Mesh& mesh) {
+  std::vector<Region> regions = mesh.regions;
+  for (const RegionSpec& region : spec.regions)
+    if (const auto* list = std::get_if<ElementList>(&region.selector))
+      regions.push_back({region.name, 3, list->tetrahedra, {}, {}, {}, {}});
+  return regions;
+}
+
+struct Slab {
+  double volume = 0, gain = 0;
+};
+
+/// By what share of themselves slabs across the longest side of the body grow with other positions: that of the one
+/// that changes most.
+double largest_gain(const Model& model, const Points& positions) {
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  for (const Tetrahedron& t : model.tetrahedra)
+    for (const Index v : t) {
+      low = low.cwiseMin(vertex_at(model.rest, v));
+      high = high.cwiseMax(vertex_at(model.rest, v));
+    }
+  Index axis = 0;
+  const double length = (high - low).maxCoeff(&axis);
+  std::array<Slab, slab_count> all;
+  double whole = 0;
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    double middle = 0;
+    for (const Index v : model.tetrahedra[e]) middle += model.rest(v, axis) / 4;
+    Slab& slab = all[std::min<std::size_t>(slab_count - 1,
+                                           static_cast<std::size_t>((middle - low[axis]) / length * slab_count))];
+    const double volume = model.tetrahedron_volumes[e];
+    slab.volume += volume;
+    slab.gain += shape_integrals(nodes_of(positions, model.tetrahedra[e], model.edge_nodes[e])).sum() - volume;
+    whole += volume;
+  }
+  double largest = 0;
+  for (const Slab& slab : all)
+    if (slab.volume > least_slab * whole && std::abs(slab.gain) > std::abs(largest) * slab.volume)
+      largest = slab.gain / slab.volume;
+  return largest;
+}
+
+}  // namespace
+
+bool has_straight_edges(const Mesh& mesh) {
+  return largest_bulge(mesh) <= still_straight;
+}
+
+CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::string>& notes) {
+  const CurveSpec& curve = *spec.curve;
+  if (!has_straight_edges(mesh))
+    throw InvalidInput(curve.origin, "the mesh's edges are curved already, by up to " +
+                                         number(100 * largest_bulge(mesh), 3) +
+                                         " % of their length: leave 'curve' out");
+  const double before = curved_volume(mesh);
+  const CurvedEdges done = curve_edges(mesh, labels_of(mesh, regions_of(spec, mesh)), curve);
+  for (std::size_t g = 0; g < curve.surfaces.size(); ++g)
+    if (done.taken[g] == 0)
+      throw InvalidInput(curve.surfaces[g].origin, std::string("no edge of the mesh's surface has both ends on this ") +
+                                                       word_of(curve.surfaces[g]) +
+                                                       ", within 2 % of the edge's length: check its numbers");
+  if (done.moved == 0) {
+    notes.emplace_back("'curve' moved no node: the mesh's surface is flat between its creases.");
+    return done;
+  }
+  notes.push_back("'curve' moved " + counted(done.moved, "node") + " of edges, by up to " +
+                  number(done.farthest_mm, 3) + " mm; the volume of all elements changed by " +
+                  number(100 * (curved_volume(mesh) / before - 1), 3) + " %" + held_text(done));
+  return done;
+}
+
+void doubt_straight_edges(Compilation& c) {
+  Model& model = c.model;
+  if (model.formulation != Formulation::physical || model.edge_nodes.empty()) return;
+  if (c.spec.curve || c.spec.curved) return;
+  const Points bulges =
+      smooth_bulges(c.mesh, labels_of(c.mesh, regions_of(c.spec, c.mesh)), CurveSpec{}.crease_degrees);
+  Points positions = model.rest;
+  for (const auto& [low, high, node] : edges_with_nodes(c.mesh))
+    positions.row(node) = 0.5 * (model.rest.row(low) + model.rest.row(high)) + bulges.row(node);
+  const double gain = largest_gain(model, positions);
+  if (!(std::abs(gain) > least_loss)) return;
+  const std::string share = decimal(100 * std::abs(gain), 0) + " %";
+  model.warnings.push_back(
+      "The edges are straight where the surface through the vertices is round: sections of the body are about " +
+      share +
+      (gain > 0 ? " too small, and bend by twice that too easily" : " too large, and bend by twice that too little") +
+      "; take 'mesh: {file: F, order: 2, curve: true}', or a mesh with curved edges (Gmsh: "
+      "gmsh.model.mesh.setOrder(2)).");
+}
+
+}  // namespace softkin

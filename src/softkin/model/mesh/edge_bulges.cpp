@@ -1,0 +1,199 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <softkin/model/mesh/edge_bulges.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/quadratic_elements.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double least_quality = 0.1;    // Jacobian over that with straight edges
+constexpr double good_quality = 0.4;     // below it nodes inside go along
+constexpr double farthest_share = 0.24;  // of an edge's length; compile() refuses a node beyond a quarter
+
+}  // namespace
+
+EdgeBulges::EdgeBulges(Mesh& mesh) : mesh_(mesh), nodes_(static_cast<std::size_t>(mesh.vertices.rows())) {
+  std::vector<std::pair<Index, Index>> at;  // node and element
+  at.reserve(6 * mesh.edge_nodes.size());
+  for (std::size_t t = 0; t < mesh.edge_nodes.size(); ++t)
+    for (int e = 0; e < 6; ++e) {
+      const Index node = mesh.edge_nodes[t][e];
+      nodes_[node].low = mesh.tetrahedra[t][tetrahedron_edges[e][0]];
+      nodes_[node].high = mesh.tetrahedra[t][tetrahedron_edges[e][1]];
+      at.emplace_back(node, static_cast<Index>(t));
+    }
+  std::sort(at.begin(), at.end());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    around_.push_back(at[i].second);
+    Node& node = nodes_[at[i].first];
+    if (i == 0 || at[i].first != at[i - 1].first) node.begin = i;
+    node.end = i + 1;
+  }
+  for (Index v = 0; v < mesh.vertices.rows(); ++v)
+    if (nodes_[v].low >= 0) place(v);
+}
+
+Vec3 EdgeBulges::middle(const Node& node) const {
+  return 0.5 * (vertex_at(mesh_.vertices, node.low) + vertex_at(mesh_.vertices, node.high));
+}
+
+void EdgeBulges::place(Index node) {
+  mesh_.vertices.row(node) = (middle(nodes_[node]) + nodes_[node].share * nodes_[node].bulge).transpose();
+}
+
+/// No further than a quarter of the edge's length.
+Vec3 EdgeBulges::allowed(const Node& node, const Vec3& way) const {
+  const double most = farthest_share * (mesh_.vertices.row(node.low) - mesh_.vertices.row(node.high)).norm();
+  const Vec3 inside = way - way.dot(node.plane) * node.plane;
+  return inside.norm() > most ? Vec3(most * inside.normalized()) : inside;
+}
+
+void EdgeBulges::aim(Index node, const Vec3& bulge, const Vec3& plane) {
+  Node& aimed = nodes_[node];
+  aimed.bulge = allowed(aimed, bulge);
+  aimed.plane = plane;
+  aimed.surface = true;
+  aimed.aimed = !bulge.isZero(0);
+}
+
+bool EdgeBulges::may_give_way(const Node& node) const {
+  return !node.aimed && (!node.surface || !node.plane.isZero(0));
+}
+
+double EdgeBulges::quality(Index element) const {
+  TetrahedronNodes nodes = nodes_of(mesh_.vertices, mesh_.tetrahedra[element], mesh_.edge_nodes[element]);
+  double straight = 6 * signed_volume(mesh_.vertices, mesh_.tetrahedra[element]);
+  if (straight < 0) {  // reversed: seen in a mirror
+    nodes.col(0) *= -1;
+    straight = -straight;
+  }
+  return straight > 0 ? least_jacobian_bound(nodes) / straight : 1;  // one without volume is refused elsewhere
+}
+
+/// What its elements lack in quality, summed up.
+double EdgeBulges::deficit_around(Index node) const {
+  double deficit = 0;
+  for (std::size_t i = nodes_[node].begin; i < nodes_[node].end; ++i)
+    deficit += std::max(0.0, least_quality - quality(around_[i]));
+  return deficit;
+}
+
+std::vector<Index> EdgeBulges::elements_below(double least) const {
+  std::vector<Index> bad;
+  for (std::size_t t = 0; t < mesh_.tetrahedra.size(); ++t) {
+    const EdgeNodes& nodes = mesh_.edge_nodes[t];
+    const bool straight = std::all_of(nodes.begin(), nodes.end(),
+                                      [&](Index n) { return nodes_[n].share == 0 || nodes_[n].bulge.isZero(0); });
+    if (!straight && quality(static_cast<Index>(t)) < least) bad.push_back(static_cast<Index>(t));
+  }
+  return bad;
+}
+
+/// Of the nodes on the other edges of the faces that it is on.
+Vec3 EdgeBulges::mean_bulge(Index node) const {
+  const Node& own = nodes_[node];
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (std::size_t i = own.begin; i < own.end; ++i)
+    for (const Index other : mesh_.edge_nodes[around_[i]]) {
+      const Node& near = nodes_[other];
+      const bool touches = near.low == own.low || near.low == own.high || near.high == own.low || near.high == own.high;
+      if (other == node || !touches) continue;
+      sum += near.share * near.bulge;
+      ++count;
+    }
+  return count > 0 ? Vec3(sum / count) : sum;
+}
+
+/// Nodes inside bad elements go along with the sheets on both sides of them, all at once.
+void EdgeBulges::go_along(const std::vector<Index>& bad, const SmoothSurface& surface) {
+  for (const Index element : bad)
+    for (const Index v : mesh_.edge_nodes[element]) {
+      Node& node = nodes_[v];
+      if (!may_give_way(node) || !node.bulge.isZero(0)) continue;
+      node.bulge = allowed(node, surface.inner_bulge(node.low, node.high));
+      place(v);
+    }
+}
+
+void EdgeBulges::make_room(Index node, const SmoothSurface& surface) {
+  Node& own = nodes_[node];
+  if (!may_give_way(own)) return;
+  const Vec3 mean = mean_bulge(node), inner = surface.inner_bulge(own.low, own.high);
+  Vec3 best = own.bulge;
+  double least = deficit_around(node);
+  for (const Vec3& way : {inner, mean, Vec3(2 * mean), Vec3(0.5 * (inner + mean)), Vec3(0.5 * mean), Vec3(0 * mean)}) {
+    if (!(least > 0)) break;
+    own.bulge = allowed(own, way);
+    place(node);
+    if (const double left = deficit_around(node); left < least) {
+      least = left;
+      best = own.bulge;
+    }
+  }
+  own.bulge = best;
+  place(node);
+}
+
+/// Draws an element's nodes back until it is good.
+///
+/// wholly  to the middles: to come to an end where neighbours undo each other
+void EdgeBulges::hold_back(Index element, bool wholly) {
+  const EdgeNodes& nodes = mesh_.edge_nodes[element];
+  std::array<double, 6> shares;
+  for (int e = 0; e < 6; ++e) shares[e] = nodes_[nodes[e]].share;
+  const auto draw = [&](double left) {
+    for (int e = 0; e < 6; ++e) {
+      nodes_[nodes[e]].share = left * shares[e];
+      place(nodes[e]);
+    }
+  };
+  constexpr int steps = 20;
+  for (int step = wholly ? steps : 1; step <= steps; ++step) {
+    draw(1 - static_cast<double>(step) / steps);
+    if (step == steps || quality(element) >= least_quality) break;
+  }
+  for (const Index node : nodes)  // what never was to move is not held back
+    if (nodes_[node].bulge.isZero(0)) nodes_[node].share = 1;
+}
+
+void EdgeBulges::go(const SmoothSurface& surface) {
+  constexpr int sweeps = 4, rounds = 100;
+  for (Index v = 0; v < mesh_.vertices.rows(); ++v)
+    if (nodes_[v].surface) place(v);
+  std::vector<Index> bad = elements_below(good_quality);
+  for (int sweep = 0; sweep < sweeps && !bad.empty(); ++sweep) {
+    go_along(bad, surface);
+    bad = elements_below(good_quality);
+  }
+  bad = elements_below(least_quality);
+  for (int sweep = 0; sweep < sweeps && !bad.empty(); ++sweep) {
+    for (const Index element : bad)
+      for (const Index node : mesh_.edge_nodes[element]) make_room(node, surface);
+    bad = elements_below(least_quality);
+  }
+  for (int round = 0; !bad.empty(); ++round) {
+    for (const Index element : bad)
+      if (round >= rounds || quality(element) < least_quality) hold_back(element, round >= rounds);
+    bad = elements_below(least_quality);
+  }
+}
+
+void EdgeBulges::tell(CurvedEdges& result) const {
+  constexpr double held = 1 - 1e-9;
+  for (const Node& node : nodes_) {
+    if (node.low < 0 || node.bulge.isZero(0)) continue;
+    result.farthest_mm = std::max(result.farthest_mm, node.share * node.bulge.norm());
+    if (!node.aimed) {
+      ++result.inside;
+      continue;
+    }
+    ++result.moved;
+    if (node.share < held) ++result.held_back;
+    result.least_share = std::min(result.least_share, node.share);
+  }
+}
+
+}  // namespace softkin

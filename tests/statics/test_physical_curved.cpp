@@ -1,0 +1,152 @@
+#include <cmath>
+#include <numbers>
+
+#include "model/round_mesh.hpp"
+#include "statics/physical_samples.hpp"
+
+/// Round bodies of few elements with straight and with curved edges, against beams and Lame's solutions.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+constexpr double pi = std::numbers::pi;
+constexpr double modulus = 1;
+
+/// Linear in the load: small loads, St Venant and Kirchhoff's law.
+RobotSpec round_robot(Mesh mesh, double poisson_ratio, bool curved) {
+  RobotSpec spec = physical_robot(std::move(mesh));
+  spec.fixed.clear();
+  spec.quadratic = true;
+  spec.materials[0].elastic = elastic(Law::st_venant_kirchhoff, modulus, poisson_ratio);
+  if (curved) spec.curve.emplace().smooth = true;
+  return spec;
+}
+
+Model compiled(const RobotSpec& spec) {
+  const Model model = compile(spec);
+  const bool warns = std::any_of(model.warnings.begin(), model.warnings.end(), [](const std::string& warning) {
+    return warning.find("The edges are straight") != std::string::npos;
+  });
+  EXPECT_EQ(warns, !spec.curve) << "of straight edges alone there is a warning";
+  return model;
+}
+
+/// Deflection of a cantilever of 100 mm length and 5 mm radius under a force at its end, over that of Timoshenko's beam,
+/// P L^3 / (3 E I) + P L / (0.9 G A); nu = 0.
+double cantilever(int corners, int layers, bool curved) {
+  constexpr double length = 100, radius = 5, force = 1e-5;
+  RobotSpec spec = round_robot(rod_mesh(corners, 1, layers, radius, length), 0, curved);
+  spec.fixed.push_back({{Halfspace{{1e-6, 0, 0}, {-1, 0, 0}}, {}}});
+  Region end;
+  end.name = "end";
+  end.dimension = 2;
+  for (const Triangle& t : boundary_of(spec.mesh.tetrahedra, {}).triangles)
+    if (std::all_of(t.begin(), t.end(), [&](Index v) { return spec.mesh.vertices(v, 0) == length; })) {
+      end.triangles.push_back(static_cast<Index>(spec.mesh.triangles.size()));
+      spec.mesh.triangles.push_back(t);
+    }
+  spec.mesh.regions.push_back(end);
+  spec.forces.push_back({"load", {std::string("end"), {}}, {0, 0, -force}});
+  spec.markers.push_back({"tip", {std::string("end"), {}}});
+  const Model model = compiled(spec);
+  const Statics statics(model);
+  const double area = pi * radius * radius, inertia = area * radius * radius / 4;
+  const double expected =
+      force * std::pow(length, 3) / (3 * modulus * inertia) + force * length / (0.9 * modulus / 2 * area);
+  return -marker_at(model, settled(statics, {}, tight(1e-11)))[2] / expected;
+}
+
+constexpr double pressure_MPa = 1e-5, inner = 7, outer = 10, nu = 0.3;
+
+ActuatorSpec pressure() {
+  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0, 1, true);
+  air.control = Control::load;
+  air.rest = 0;
+  return air;
+}
+
+void hold(RobotSpec& spec, Index vertex, const std::array<bool, 3>& axes) {
+  spec.fixed.push_back({{VertexList{{vertex}}, {}}, axes});
+}
+
+/// By how much a chamber grows, over what Lame says [mm^3].
+double growth(const RobotSpec& spec, double expected) {
+  const Model model = compiled(spec);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, values({1e3 * pressure_MPa}), tight(1e-11));
+  const Actuator& chamber = model.actuators[0];
+  return (achieved_ratio(model, chamber, found.state.positions) - 1) * chamber.rest_measure / expected;
+}
+
+/// A tube in plane strain around a chamber of elements; nothing but rigid motions is held.
+double tube(int corners, bool curved) {
+  constexpr double length = 8;
+  Mesh mesh = rod_mesh(corners, 2, 2, outer, length);
+  mesh.regions.assign(2, {});
+  mesh.regions[0].name = "wall";
+  mesh.regions[1].name = "chamber";
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const Tetrahedron& all = mesh.tetrahedra[t];
+    const bool inside = std::all_of(all.begin(), all.end(),
+                                    [&](Index v) { return mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer; });
+    mesh.regions[inside ? 1 : 0].tetrahedra.push_back(static_cast<Index>(t));
+  }
+  for (Index v = 0; v < mesh.vertices.rows(); ++v)
+    if (mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer) mesh.vertices.row(v).tail<2>() *= 2 * inner / outer;
+  RobotSpec spec = round_robot(std::move(mesh), nu, curved);
+  spec.actuators = {pressure()};
+  spec.actuators[0].region = "chamber";
+  spec.fixed.push_back({{std::string("wall"), {}}, {true, false, false}});
+  hold(spec, 1, {false, true, true});
+  hold(spec, 1 + corners / 2, {false, false, true});
+  const double ratio2 = outer * outer / (inner * inner);
+  const double widened = (1 + nu) * pressure_MPa * inner / modulus / (ratio2 - 1) * (1 - 2 * nu + ratio2);
+  return growth(spec, 2 * pi * inner * length * widened);
+}
+
+/// A ball around a hollow, its only empty space.
+double ball(int cuts, int layers, bool curved) {
+  RobotSpec spec = round_robot(shell_mesh(cuts, layers, inner, outer), nu, curved);
+  spec.actuators = {pressure()};
+  hold(spec, 0, {true, true, true});
+  hold(spec, 1, {false, true, true});
+  hold(spec, 2, {false, false, true});
+  const double ratio3 = std::pow(outer / inner, 3);
+  const double widened = pressure_MPa * inner / modulus / (ratio3 - 1) * (1 - 2 * nu + (1 + nu) * ratio3 / 2);
+  return growth(spec, 4 * pi * inner * inner * widened);
+}
+
+}  // namespace
+
+TEST(PhysicalCurved, ARodBendsAsABeam) {
+  for (const int corners : {10, 12, 14}) {
+    const double straight = cantilever(corners, 12, false), curved = cantilever(corners, 12, true);
+    EXPECT_NEAR(curved, 1, 0.01) << corners;
+    EXPECT_GT(straight, 1.05) << corners;
+    RecordProperty("rod_" + std::to_string(corners), std::to_string(straight) + " " + std::to_string(curved));
+  }
+}
+
+TEST(PhysicalCurved, ATubeWidensAsLameSays) {
+  for (const int corners : {10, 12, 14}) {
+    const double straight = tube(corners, false), curved = tube(corners, true);
+    EXPECT_NEAR(curved, 1, 0.01) << corners;
+    EXPECT_GT(std::abs(straight - 1), 0.05) << corners;
+    RecordProperty("tube_" + std::to_string(corners), std::to_string(straight) + " " + std::to_string(curved));
+  }
+}
+
+TEST(PhysicalCurved, ABallWidensAsLameSays) {
+  for (const auto& [cuts, layers] : {std::pair(1, 1), std::pair(1, 2), std::pair(2, 1)}) {
+    const double straight = ball(cuts, layers, false), curved = ball(cuts, layers, true);
+    EXPECT_NEAR(curved, 1, 0.01) << cuts << layers;
+    EXPECT_GT(std::abs(straight - 1), 0.05) << cuts << layers;
+    RecordProperty("ball_" + std::to_string(cuts) + std::to_string(layers),
+                   std::to_string(straight) + " " + std::to_string(curved));
+  }
+}
+
+}  // namespace softkin
