@@ -147,6 +147,7 @@ void add_run(CLI::App& command, RunOptions& options, const std::string& resume, 
            "All of it as a page for a browser, one file that needs no\nnetwork; with a kinematic map (softkin map) the "
            "robot bends in it");
   command.add_flag("--resume", options.resume, resume);
+  add_overwriting(command, options.may_replace);
   command.add_flag("--json", options.json, json);
 }
 
