@@ -34,7 +34,7 @@ struct PressureOptions {
   std::string chamber, tube, syringe;  // volumes with their unit
   std::optional<double> atmosphere_kPa;
   std::string output, table, plot;
-  bool predict = false, json = false;
+  bool predict = false, json = false, may_replace = false;
   int threads = 0;
 };
 
@@ -96,7 +96,7 @@ int calibrate_pressure(const PressureOptions& options) {
   }
   const std::vector<Output> outputs =
       asked_outputs({{"--output", options.output}, {"--table", options.table}, {"--plot", options.plot}});
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, inputs, options.may_replace);
   calibration::SyringeTask task{options.tests, {}, {}};
   std::string head = read_setup(options, actuator, mesh_mm3, task.setup);
   if (!options.scale.empty()) task.scale = options.scale == "absolute" ? PressureScale::absolute : PressureScale::gauge;
@@ -153,19 +153,20 @@ void add_options(CLI::App& command, PressureOptions& options) {
                    "of Young's modulus between them");
   add_value(command, "--threads", options.threads, "N", "Of --predict; 0: as many as the machine has (default)",
             CLI::Range(0, 512).description(""));
+  add_overwriting(command, options.may_replace);
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
 }
 
 struct DeaOptions : calibration::DeaTask {
   std::string output, plot;
-  bool json = false;
+  bool json = false, may_replace = false;
 };
 
 int calibrate_dea(const DeaOptions& options) {
   check_extension("--output", options.output, {{".yaml", ""}});
   check_extension("--plot", options.plot, {{".svg", ""}});
   const std::vector<Output> outputs = asked_outputs({{"--output", options.output}, {"--plot", options.plot}});
-  check_outputs(outputs, {options.tests.begin(), options.tests.end()});
+  check_outputs(outputs, {options.tests.begin(), options.tests.end()}, options.may_replace);
   const std::string name = options.output.empty() ? "of the elastomer" : options.output;
   const auto [fitted, head, computed] = calibration::evaluate(options, name);
   const OutputFolders folders(outputs);
@@ -196,6 +197,7 @@ void add_options(CLI::App& command, DeaOptions& options) {
       "KV_MM");
   add_value(command, "-o,--output", options.output, "F.yaml", "The curve, for key 'curve' of the scene's actuator");
   add_value(command, "--plot", options.plot, "F.svg", "Rows and branches");
+  add_overwriting(command, options.may_replace);
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
 }
 
@@ -211,7 +213,7 @@ void check(const DeaOptions& options) {
 
 struct RelaxationOptions : calibration::RelaxationTask {
   std::string held, output, plot, residuals;
-  bool json = false;
+  bool json = false, may_replace = false;
 };
 
 int calibrate_relaxation(const RelaxationOptions& options) {
@@ -223,7 +225,7 @@ int calibrate_relaxation(const RelaxationOptions& options) {
   inputs.insert(inputs.end(), options.creep.begin(), options.creep.end());
   const std::vector<Output> outputs =
       asked_outputs({{"--output", options.output}, {"--plot", options.plot}, {"--residuals", options.residuals}});
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, inputs, options.may_replace);
   calibration::RelaxationTask task = options;
   task.constants = calibration::read_constants("--constants", options.held);
   const calibration::RelaxationResults results = calibration::evaluate(task);
@@ -259,6 +261,7 @@ void add_options(CLI::App& command, RelaxationOptions& options) {
   add_value(command, "-o,--output", options.output, "F.yaml", "The material, to paste into a scene; printed too");
   add_value(command, "--plot", options.plot, "F.svg", "Measured and fitted");
   add_value(command, "--residuals", options.residuals, "F.csv", "Measured, fitted and their difference, a row each");
+  add_overwriting(command, options.may_replace);
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
 }
 

@@ -28,7 +28,7 @@ struct MaterialOptions {
   std::string law;                        // empty: neo-hookean, or with --tensile the one that fits
   std::string grip = "clamped";
   std::vector<std::string> regions{"A", "B"};
-  bool json = false, resume = false;
+  bool json = false, resume = false, may_replace = false;
   std::set<std::string> given;  // options that the user gave
 
   [[nodiscard]] std::vector<Output> outputs() const {
@@ -67,6 +67,7 @@ void add_outputs(CLI::App& command, MaterialOptions& options) {
             "The materials, to paste into a scene; printed in any case");
   add_value(command, "--plot", options.plot, "F.svg", "Measured and fitted");
   add_value(command, "--residuals", options.residuals, "F.csv", "Measured, fitted and their difference, a row each");
+  add_overwriting(command, options.may_replace);
   command.add_flag("--json", options.json, "Print JSON; its keys name the units");
   command.add_flag("--resume", options.resume,
                    "Go on where the same command was interrupted or killed; needs\n--output");
@@ -210,7 +211,7 @@ int calibrate_specimens(const MaterialOptions& options) {
     inputs.emplace_back(task.twist_file);
   }
   check_forces(options, specimens);
-  check_outputs(options.outputs(), inputs);
+  check_outputs(options.outputs(), inputs, options.may_replace);
   const OutputFolders folders(options.outputs());
   if (const std::string doubt = calibration::doubt_about_areas(task, specimens); !doubt.empty())
     std::fprintf(stderr, "softkin: %s\n", doubt.c_str());
@@ -241,7 +242,7 @@ int calibrate_specimens(const MaterialOptions& options) {
 int calibrate_tensile(const MaterialOptions& options) {
   const calibration::TensileTask& task = options.tensile;
   TensileCurve curve = read_tensile_curve(task.file);
-  check_outputs(options.outputs(), {task.file});
+  check_outputs(options.outputs(), {task.file}, options.may_replace);
   const calibration::TensileResults results = calibration::evaluate(task, std::move(curve));
   const OutputFolders folders(options.outputs());
   write(options, tensile_fragment(task, results), tensile_plot(task, results), residual_table(results));

@@ -30,6 +30,14 @@ inline CLI::Option* add_repeated(CLI::App& command, const std::string& name, std
   return add_value(command, name, values, type, what)->expected(1)->take_all();
 }
 
+/// --force-overwrite, of a command that writes files: else it replaces what softkin wrote, and nothing else.
+inline void add_overwriting(CLI::App& command, bool& may_replace) {
+  command.add_flag(
+      "--force-overwrite", may_replace,
+      "Replace files too that softkin did not write (default: what is to be\nwritten is refused where such a "
+      "file is); never one that is read");
+}
+
 /// A subcommand whose options are kept for the run, which is that of a command of its own where one was chosen.
 /// declare: adds them; act: returns the exit code
 template <class Options>

@@ -21,7 +21,7 @@ struct CompareOptions {
   std::string marker, plot, by, plane, output, page;
   std::vector<double> poses;    // [degrees]
   std::optional<double> start;  // [s]
-  bool align = false, json = false;
+  bool align = false, json = false, may_replace = false;
 
   /// Reports of the same steps side by side, or paths of markers?
   [[nodiscard]] bool of_paths() const {
@@ -50,7 +50,7 @@ std::string page_text(const CompareOptions& options, const runs::Comparison& com
 }
 
 int compare_steps(const CompareOptions& options) {
-  check_outputs(options.outputs(), options.inputs());
+  check_outputs(options.outputs(), options.inputs(), options.may_replace);
   const runs::ReportComparison found =
       runs::compare_reports(options.reports, options.marker, options.turn, options.poses);
   const OutputFolders folders(options.outputs());
@@ -70,7 +70,7 @@ int compare_steps(const CompareOptions& options) {
 }
 
 int compare_paths(const CompareOptions& options) {
-  check_outputs(options.outputs(), options.inputs());
+  check_outputs(options.outputs(), options.inputs(), options.may_replace);
   calibration::PathRequest request{options.reports, options.sum, options.marker, options.by, {}, options.start};
   if (!options.plane.empty()) request.plane = calibration::parse_plane(options.plane);
   const calibration::PathReport report =
@@ -158,6 +158,7 @@ void add_compare(CLI::App& app, Run& run) {
             "Turns, distances and loads over the steps, and the marker's way by each report");
   add_page(command, options->page, "The comparison as a page for a browser, one file that needs no network");
   add_path_options(command, *options);
+  add_overwriting(command, options->may_replace);
   command.add_flag("--json", options->json, "Print JSON; its keys name the units");
   command.footer(
       "Times are sums over the steps of a report, so they are those of a path that begins at rest. Exit code: 0 done, "

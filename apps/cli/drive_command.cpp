@@ -34,7 +34,7 @@ struct DriveOptions {
   std::string port;
   int baud = 115200;
   double boot_wait_s = 3;
-  bool dry_run = false, return_home = false, json = false;
+  bool dry_run = false, return_home = false, json = false, may_replace = false;
 
   /// As given, or that of the scene's name: finger.yaml has finger.hardware.yaml.
   [[nodiscard]] fs::path hardware_file() const {
@@ -67,6 +67,7 @@ void add_outputs(CLI::App& command, DriveOptions& options) {
             "Wait so long before the first line [s]: many boards boot when\ntheir port is opened (default: 3)",
             seconds());
   add_value(command, "--log", options.log, "F", "With --port: every line sent and received, with its time");
+  add_overwriting(command, options.may_replace);
 }
 
 void add_options(CLI::App& command, DriveOptions& options) {
@@ -204,6 +205,18 @@ void check_asked(const DriveOptions& options, const drive::Plan& plan) {
     throw InvalidInput("--schedule " + options.schedule + ": " + options.commands + " commands no chamber");
 }
 
+/// A schedule says nothing of softkin, as what plays it may know no comments: only the same one is replaced.
+std::vector<Output> outputs_of(const DriveOptions& options, const drive::Plan& plan) {
+  std::vector<Output> outputs =
+      asked_outputs({{"--gcode", options.gcode}, {"--schedule", options.schedule}, {"--log", options.log}});
+  for (Output& output : outputs)
+    if (output.option == "--schedule")
+      output.is_own = [text = drive::schedule_csv(plan.schedule)](const fs::path& file) {
+        return read_file(file) == text;
+      };
+  return outputs;
+}
+
 int run_drive(const DriveOptions& options) {
   check_usage(options);
   std::vector<fs::path> inputs{options.robot.scene, options.commands, options.hardware_file()};
@@ -215,9 +228,10 @@ int run_drive(const DriveOptions& options) {
   const drive::Plan plan = plan_of(options, inputs, map);
   line.clear();
   check_asked(options, plan);
-  const std::vector<Output> outputs =
-      asked_outputs({{"--gcode", options.gcode}, {"--schedule", options.schedule}, {"--log", options.log}});
-  check_outputs(outputs, inputs);
+  const std::vector<Output> outputs = outputs_of(options, plan);
+  check_outputs(outputs, inputs, options.may_replace);
+  check_extension("--gcode", options.gcode, {{".gcode", ""}, {".gco", ""}, {".g", ""}});
+  check_extension("--schedule", options.schedule, {{".csv", ""}});
   const OutputFolders folders(outputs);
   std::optional<drive::SerialPort> port;  // before anything is written
   if (!options.port.empty()) port.emplace(options.port, options.baud);

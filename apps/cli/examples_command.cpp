@@ -12,7 +12,7 @@ namespace {
 
 struct ExamplesOptions {
   std::string name, folder = ".";
-  bool json = false;
+  bool json = false, may_replace = false;
 };
 
 std::filesystem::path examples_folder() {
@@ -48,7 +48,7 @@ int run_list(const ExamplesOptions& options) {
 }
 
 int run_copy(const ExamplesOptions& options) {
-  const CopiedExample copied = copy_example(examples_folder(), options.name, options.folder);
+  const CopiedExample copied = copy_example(examples_folder(), options.name, options.folder, options.may_replace);
   if (options.json) {
     print(to_json(copied) + "\n");
     return done;
@@ -68,6 +68,7 @@ void declare_copy(CLI::App& command, ExamplesOptions& options) {
       ->type_name("")
       ->required();
   add_value(command, "FOLDER", options.folder, "", "Folder for the example's own (default: here)");
+  add_overwriting(command, options.may_replace);
   command.add_flag("--json", options.json, "Print JSON");
 }
 

@@ -76,6 +76,7 @@ void add_options(CLI::App& command, FkOptions& options) {
 void check_usage(const FkOptions& options) {
   check_extension("--output", options.output, {{".vtu", "the last shape"}, {".pvd", "every step"}});
   check_extension("--start", options.start, {{".vtu", "a shape of softkin's"}});
+  check_extension("--report", options.report, {{".json", ""}});
   check_extension("--trace", options.trace, {{".csv", ""}});
   check_extension("--image", options.show.image, {{".png", ""}});
   check_extension("--plot", options.show.plot, {{".svg", ""}});
@@ -196,7 +197,7 @@ class FkRun {
     Stopped told{run_.done(), run_.size(), "step", files ? "the files that were asked for" : "", resumable};
     if (run_.stopped()) told.record = &run_.stopped()->record;
     if (run_.stopped() && !options_.output.empty())
-      told.shape = options_.series() ? runs::stopped_file(options_.output).string() : options_.output;
+      told.shape = options_.series() ? stopped_file(options_.output).string() : options_.output;
     return tell_stopped(told);
   }
 
@@ -259,7 +260,7 @@ int run_fk(const FkOptions& options) {
   const std::vector<ActuationStep> steps = asked_steps(model, options);
   if (steps.front().time) check_times(model, options.path, options, options);
   const std::vector<Output> outputs = options.outputs(steps.size());
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, inputs, options.may_replace);
   if (steps.front().time && !options.start.empty())
     throw InvalidInput(
         "--start: a path with times, t_s, begins where the robot has rested for long: leave one of the two out");

@@ -32,7 +32,10 @@ struct FollowOptions : SolveOptions, MethodOptions, RunOptions, MapUse {
   [[nodiscard]] std::vector<Output> outputs(std::size_t waypoints) const {
     const runs::FollowFolder all = files();
     std::vector<Output> outputs;
-    for (const fs::path& file : {all.commands(), all.errors(), all.run().report}) outputs.push_back({"--output", file});
+    outputs.push_back({.option = "--output", .file = all.commands(), .is_own = [all](const fs::path&) {
+                         return all.has_written_commands();
+                       }});
+    for (const fs::path& file : {all.errors(), all.run().report}) outputs.push_back({"--output", file});
     outputs.push_back({"--output", all.run().shapes, waypoints});
     outputs.push_back({plot_file.empty() ? "--output" : "--plot", all.plot()});
     if (!page.empty()) outputs.push_back({"--html", page});
@@ -161,7 +164,7 @@ int run_follow(const FollowOptions& options) {
   const std::vector<std::string> doubts = doubts_about(model, path);
   if (options.max_step_mm > 0) path = densified(path, options.max_step_mm);
   const std::vector<Output> outputs = options.outputs(path.waypoints.size());
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, inputs, options.may_replace);
   TrajectoryOptions trajectory = options.trajectory();
   if (!options.workspace.empty())
     trajectory.start = runs::nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));

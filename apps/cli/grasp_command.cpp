@@ -22,7 +22,7 @@ struct GraspOptions : SolveOptions {
   std::vector<std::string> settings, pulls;
   std::optional<double> most_N;
   ShowOptions show;
-  bool json = false;
+  bool json = false, may_replace = false;
 
   [[nodiscard]] std::vector<Output> outputs() const {
     return asked_outputs({{"--table", table}, {"--output", output}, {"--image", show.image}});
@@ -42,6 +42,7 @@ void add_options(CLI::App& command, GraspOptions& options) {
   add_value(command, "--table", options.table, "F.csv", "The pulls as a table");
   add_value(command, "-o,--output", options.output, "F.vtu", "The grasp, before it is pulled");
   add_value(command, "--image", options.show.image, "F.png", "Picture of the grasp");
+  add_overwriting(command, options.may_replace);
   add_force(command, options);
   add_view(command, options.show);
   add_solver(command, options);
@@ -154,7 +155,7 @@ int run_grasp(const GraspOptions& options) {
   const Model model = asked_robot(options, inputs);
   const Index body = read_body(model, "--body", options.body);
   const std::vector<Actuation> closing = asked_closing(model, options);
-  check_outputs(options.outputs(), inputs);
+  check_outputs(options.outputs(), inputs, options.may_replace);
   line.show(-1, "assembling");
   const Statics statics(model);
   line.clear();

@@ -154,7 +154,7 @@ int run_ik(const IkOptions& options) {
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
   const Search search = asked_search(model, options);
-  check_outputs(options.outputs(), inputs);
+  check_outputs(options.outputs(), inputs, options.may_replace);
   line.show(-1, "assembling");
   catch_interrupt();
   const runs::Answers answers(model, options.map, options.polish);

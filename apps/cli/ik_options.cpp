@@ -66,6 +66,7 @@ void add_files(CLI::App& command, IkOptions& options) {
   add_value(command, "--image", options.show.image, "F.png", "Picture of the shape");
   add_view(command, options.show);
   add_value(command, "--plot", options.show.plot, "F.svg", "The error over the equilibria of the search");
+  add_overwriting(command, options.may_replace);
 }
 
 using Coordinates = std::array<std::optional<double>, 3>;
@@ -242,6 +243,7 @@ void check_usage(const IkOptions& options) {
   if (options.lever_mm && options.directions.empty())
     throw InvalidInput("--lever is the lever of a direction: it needs --direction");
   check_extension("--output", options.output, {{".vtu", ""}});
+  check_extension("--report", options.report, {{".json", ""}});
   check_extension("--image", options.show.image, {{".png", ""}});
   check_extension("--plot", options.show.plot, {{".svg", ""}});
   check_view(options.show);

@@ -25,7 +25,7 @@ struct IkOptions : SolveOptions, MethodOptions, MapUse {
   int other_starts = InverseOptions().other_starts;
   std::string output, report;
   ShowOptions show;
-  bool json = false;
+  bool json = false, may_replace = false;
 
   [[nodiscard]] std::vector<Output> outputs() const;
   /// The file that the search begins at; empty: none.

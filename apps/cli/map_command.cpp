@@ -38,7 +38,7 @@ class MapRun {
   MapRun(const MapAsked& asked, const Model& model, const std::vector<fs::path>& inputs)
       : asked_(asked), model_(model), options_(map_options(asked)) {
     const std::vector<Output> outputs = asked_outputs({{"--output", asked.output}, {"--html", asked.page}});
-    check_outputs(outputs, inputs);
+    check_outputs(outputs, inputs, asked.may_replace);
     folders_.emplace(outputs);
     (void)maps::outline_of(model);
     journal_.emplace(asked.output, model, options_, asked.resume);

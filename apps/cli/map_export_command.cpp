@@ -13,6 +13,7 @@ namespace {
 /// What the user asks of `softkin map export`.
 struct ExportOptions : runs::MapExport {
   std::string map;
+  bool may_replace = false;
 
   [[nodiscard]] std::vector<Output> outputs() const {
     return asked_outputs({{"--c", c}, {"--numpy", numpy}, {"--js", js}, {"--js", js_types()}});
@@ -29,6 +30,7 @@ void add_options(CLI::App& command, ExportOptions& options) {
   add_value(command, "--js", options.js, "F.mjs",
             "A module for browsers and node, and beside it F.d.mts with its\ntypes: outputs, their Jacobian, inverse "
             "kinematics, the shape");
+  add_overwriting(command, options.may_replace);
 }
 
 void check_usage(const ExportOptions& options) {
@@ -42,7 +44,7 @@ void check_usage(const ExportOptions& options) {
 
 int run_export(const ExportOptions& options) {
   check_usage(options);
-  check_outputs(options.outputs(), {options.map});
+  check_outputs(options.outputs(), {options.map}, options.may_replace);
   const std::vector<runs::ExportedFile> all = runs::exported_files(options.map, options);
   const OutputFolders folders(options.outputs());
   for (const runs::ExportedFile& each : all) {

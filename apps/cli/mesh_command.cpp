@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <softkin/io/file.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/mesh_report.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
@@ -21,7 +22,7 @@ struct MeshOptions {
   std::string input;   // a mesh; for check also a scene
   std::string output;  // convert
   std::string unit = "mm";
-  bool json = false, ascii = false;
+  bool json = false, ascii = false, may_replace = false;
 };
 
 std::string curved_text(const CurvedInfo& curved, const MeshMeasures& straight) {
@@ -169,6 +170,7 @@ int run_check(const MeshOptions& options) {
 }
 
 int run_convert(const MeshOptions& options) {
+  check_outputs({{"OUT", options.output}}, {options.input}, options.may_replace);
   show(convert_mesh(options.input, options.output, options.ascii), options);
   return done;
 }
@@ -245,8 +247,9 @@ void add_convert(CLI::App& mesh, Run& run) {
       ->type_name("")
       ->required();
   command.add_flag("--ascii", options->ascii, "Write a .msh as text");
+  add_overwriting(command, options->may_replace);
   add_json(command, *options);
-  command.footer("A file OUT that exists is replaced.\nExample:\n  softkin mesh convert finger.inp finger.msh --ascii");
+  command.footer("Example:\n  softkin mesh convert finger.inp finger.msh --ascii");
   command.callback([&run, options] {
     if (options->ascii && lower_extension(options->output) != ".msh")
       throw CLI::ValidationError("--ascii", "only a .msh can be written as text, not " + options->output);

@@ -34,7 +34,7 @@ Stopped stopped_of(const runs::Run<Record>& run, const std::string& what, const 
   Stopped stopped{run.done(), run.size(), what, where, true};
   if (!run.stopped()) return stopped;
   stopped.record = &run.stopped()->record;
-  stopped.shape = runs::stopped_file(series).string();
+  stopped.shape = stopped_file(series).string();
   return stopped;
 }
 

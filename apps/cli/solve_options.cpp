@@ -91,10 +91,24 @@ void add_scene(CLI::App& command, SolveOptions& options) {
   command.add_option("SCENE", options.scene, "Scene, YAML (docs/scene.md)")->type_name("")->required();
 }
 
+namespace {
+
+void add_changes(CLI::App& command, SolveOptions& options) {
+  add_repeated(command, "--material", options.materials, "R.K=V",
+               "REGION.KEY=VALUE: another number for the scene's material of\nthat region, such as "
+               "body.youngs_modulus=0.8; repeatable");
+  add_repeated(command, "--change", options.changes, "PATH=V",
+               "Another value for anything in the scene, by its path: keys, and\nentries of lists by name, region or "
+               "number, such as\nactuators.air.range.2=60 or gravity=[0, 0, -9.81]; repeatable");
+}
+
+}  // namespace
+
 void add_force(CLI::App& command, SolveOptions& options) {
   add_repeated(command, "--force", options.forces, "N=F",
                "NAME=FX,FY,FZ: another size and direction for the scene's\nforce of that name [N], such as a payload; "
                "physical; repeatable");
+  add_changes(command, options);
 }
 
 void add_solver(CLI::App& command, SolveOptions& options, const std::string& threads) {
@@ -147,6 +161,7 @@ void add_run(CLI::App& command, RunOptions& options, const std::string& resume, 
            "All of it as a page for a browser, one file that needs no\nnetwork; with a kinematic map (softkin map) the "
            "robot bends in it");
   command.add_flag("--resume", options.resume, resume);
+  add_overwriting(command, options.may_replace);
   command.add_flag("--json", options.json, json);
 }
 
@@ -206,7 +221,10 @@ RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::p
 }
 
 Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
-  return compile(asked_spec(options, inputs));
+  Model model = compile(asked_spec(options, inputs));
+  for (const std::string& each : options.materials) model.notes.push_back("Changed in the scene: --material " + each);
+  for (const std::string& each : options.changes) model.notes.push_back("Changed in the scene: --change " + each);
+  return model;
 }
 
 InverseOptions MethodOptions::by_method() const {

@@ -34,7 +34,7 @@ struct SolveOptions : AskedScene {
 
 /// Whether a run goes on where it was interrupted, and whether it prints its report.
 struct RunOptions {
-  bool json = false, resume = false;
+  bool json = false, resume = false, may_replace = false;
   std::string page{};
 };
 

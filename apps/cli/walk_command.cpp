@@ -144,7 +144,7 @@ int run_walk(const WalkOptions& options) {
   std::vector<runs::GaitStep> steps = runs::repeated(
       model, options.gait, read_actuation_path(model, options.gait, Settings(model.actuators.size())), options.cycles);
   const std::vector<Output> outputs = options.outputs(steps.size());
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, inputs, options.may_replace);
   line.show(-1, "assembling");
   runs::WalkRun walk(model, {options.scene, options.gait, std::move(steps), options.cycles}, options.statics(),
                      options.files());

@@ -129,7 +129,7 @@ class WorkspaceRun {
 
   /// Rank 0: before anything is written.
   void begin() {
-    check_outputs(options_.outputs(), asked_.inputs);
+    check_outputs(options_.outputs(), asked_.inputs, options_.may_replace);
     folders_.emplace(options_.outputs());
     file_.emplace(options_.output, asked_.head, columns_, asked_.plan, options_.resume);
     if (options_.resume) remove_torn_files(options_.outputs());

@@ -24,18 +24,19 @@ struct CameraOptions {
   std::vector<std::string> pictures;
   std::string board, output;
   int threads = 0;
-  bool json = false;
+  bool json = false, may_replace = false;
 };
 
 struct BoardOptions {
   std::string board, output;
   double dpi = 300;
+  bool may_replace = false;
 };
 
 int measure_board(const BoardOptions& options) {
   const BoardSpec board = parse_board(options.board);
   const std::vector<Output> outputs{{"-o", options.output}};
-  check_outputs(outputs, {});
+  check_outputs(outputs, {}, options.may_replace);
   const bool svg = lower_extension(options.output) == ".svg";
   const std::string content = svg ? board_svg(board) : encode_png(board_picture(board, options.dpi));
   const OutputFolders folders(outputs);
@@ -49,7 +50,7 @@ int measure_board(const BoardOptions& options) {
 int measure_camera(const CameraOptions& options) {
   CameraSurvey survey(parse_board(options.board));
   const std::vector<Output> outputs{{"-o", options.output}};
-  check_outputs(outputs, {options.pictures.begin(), options.pictures.end()});
+  check_outputs(outputs, {options.pictures.begin(), options.pictures.end()}, options.may_replace);
   {
     ProgressLine progress;
     for (const std::string& file : options.pictures) {
@@ -126,6 +127,7 @@ void add_photos(CLI::App& app, Run& run) {
   add_frame(app, *options);
   add_value(app, "-o,--output", options->output, "F.csv",
             "Table to write: one row a picture, or t_s,x_mm,y_mm of a film");
+  add_overwriting(app, options->may_replace);
   add_common(app, options->json, options->threads);
   app.footer(
       "mm: x to the right, y up; the origin is the lower left corner of the board, or the first point of --scale. "
@@ -152,6 +154,7 @@ void add_camera(CLI::App& app, Run& run) {
             "The board: checker,9x6,square=10mm (squares, not corners) or charuco,7x5,square=10mm,tag=7mm")
       ->required();
   add_value(command, "-o,--output", options->output, "F.yaml", "Camera to write")->required();
+  add_overwriting(command, options->may_replace);
   add_common(command, options->json, options->threads);
   command.footer("Example:\n  softkin measure camera shot*.png --board checker,9x6,square=10mm -o camera.yaml");
   command.callback([&run, options] {
@@ -172,6 +175,7 @@ void add_board(CLI::App& app, Run& run) {
   add_value(command, "-o,--output", options->output, "F", "File to write: .svg (true to scale) or .png")->required();
   add_value(command, "--dpi", options->dpi, "N", "Dots per inch of a .png (default: 300)",
             CLI::Range(10, 4800).description(""));
+  add_overwriting(command, options->may_replace);
   command.footer("Example:\n  softkin measure board 5x4,tag=30mm,gap=8mm -o board.svg");
   command.callback([&run, options] {
     const std::string extension = lower_extension(options->output);

@@ -22,7 +22,7 @@ std::vector<Output> checked_outputs(const PicturesOptions& options) {
   if (!options.output.empty()) outputs.push_back({"-o", options.output});
   std::vector<std::filesystem::path> inputs{options.pictures.begin(), options.pictures.end()};
   if (!options.camera.empty()) inputs.emplace_back(options.camera);
-  check_outputs(outputs, inputs);
+  check_outputs(outputs, inputs, options.may_replace);
   return outputs;
 }
 

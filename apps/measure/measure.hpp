@@ -12,7 +12,7 @@ struct PicturesOptions : vision::MeasureOptions {
   std::string output;
   double fps = 0;  // 0: not given
   int threads = 0;
-  bool json = false;
+  bool json = false, may_replace = false;
 };
 
 // The commands; return the exit code, throw InvalidInput.

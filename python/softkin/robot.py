@@ -60,6 +60,15 @@ def _force_texts(forces: Forces | None) -> list[str]:
     return [f"{name}=" + ",".join(repr(x) for x in vector(f"forces: {name}", force)) for name, force in forces.items()]
 
 
+def _yaml_text(value: object) -> str:
+    """A number, a word or a list of them as a scene has it."""
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_yaml_text(each) for each in value) + "]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return value if isinstance(value, str) else repr(float(value))  # type: ignore[arg-type]
+
+
 def _formulation(name: str | None) -> str:
     if name not in (None, "physical", "target-shape"):
         raise ValueError(f"formulation must be 'physical' or 'target-shape', not {name!r}")
@@ -362,15 +371,21 @@ class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
 
 
 def load(
-    scene: str | os.PathLike[str], *, formulation: str | None = None, forces: Forces | None = None
+    scene: str | os.PathLike[str],
+    *,
+    formulation: str | None = None,
+    forces: Forces | None = None,
+    changes: Mapping[str, object] | None = None,
 ) -> Robot:
     """The robot of a scene (YAML, docs/scene.md), with the files that it names.
 
     formulation  'physical' or 'target-shape'; None: the scene's
     forces       other sizes and directions for the scene's forces, by name: (x, y, z) [N]
-    raises       InvalidInput naming file and line
+    changes      other values for anything in it, by path: {"materials.body.youngs_modulus": 0.8}
+    raises       InvalidInput naming file and line, or the change
     """
-    source = _core.Source.of_scene(os.fspath(scene), _formulation(formulation), _force_texts(forces))
+    texts = [f"{path}={_yaml_text(value)}" for path, value in (changes or {}).items()]
+    source = _core.Source.of_scene(os.fspath(scene), _formulation(formulation), _force_texts(forces), texts)
     return Robot._of(_core.Robot(source, True))
 
 

@@ -5,6 +5,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/scene/changes.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -107,10 +108,13 @@ void bind_source(nb::module_& module) {
   nb::class_<Source>(module, "Source", "What a robot is made of, as plain data.")
       .def_static(
           "of_scene",
-          [](const std::string& path, const std::string& formulation, const std::vector<std::string>& forces) {
-            return Source{path, scene::parse_yaml(read_file(path), path), formulation, forces, {}, {}, {}, {}, {}, {}};
+          [](const std::string& path, const std::string& formulation, const std::vector<std::string>& forces,
+             const std::vector<std::string>& changes) {
+            auto tree = scene::parse_yaml(read_file(path), path);
+            for (const std::string& each : changes) tree = scene::changed(tree, "changes", each, "");
+            return Source{path, tree, formulation, forces, {}, {}, {}, {}, {}, {}};
           },
-          nb::arg("path"), nb::arg("formulation"), nb::arg("forces"))
+          nb::arg("path"), nb::arg("formulation"), nb::arg("forces"), nb::arg("changes"))
       .def_static(
           "of_mesh",
           [](const std::string& name, const Mesh& mesh, nb::typed<nb::dict, nb::str, nb::object> description,

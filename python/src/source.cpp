@@ -100,7 +100,10 @@ RobotSpec Source::spec(bool read) {
   const auto scene = [&](const Path& path) { return kept(scenes, path, read, read_file); };
   const auto sampled = [&](const Path& path) { return kept(samples, path, read, read_field_samples); };
   RobotSpec result = parse_scene(*tree, name, {mesh, surface, sidecar, curve, scene, sampled});
-  change(result, {name, formulation, forces}, "forces");
+  AskedScene asked;
+  asked.formulation = formulation;
+  asked.forces = forces;
+  change(result, asked, "forces");
   return result;
 }
 

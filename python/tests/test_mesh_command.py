@@ -98,6 +98,17 @@ def test_bad_usage_is_one_line_and_2(files, capsys, arguments, told):
     assert told in capsys.readouterr().err
 
 
+def test_files_of_others_stay(files, capsys):
+    (files / "finger.msh").write_text("mine")
+    assert generate("--region", "base=plane x=0") == 2
+    assert "-o finger.msh: is there already, and not by softkin" in capsys.readouterr().err
+    (files / "finger.msh").unlink()
+    (files / "finger.yaml").write_text("softkin: 1\n")
+    assert generate("--region", "base=plane x=0", "--scene", "finger.yaml") == 2
+    assert "--scene finger.yaml: is there already" in capsys.readouterr().err
+    assert (files / "finger.yaml").read_text() == "softkin: 1\n"
+
+
 def test_help_is_at_most_100_wide(capsys):
     assert main(["generate", "--help"]) == 0
     said = capsys.readouterr().out

@@ -70,11 +70,15 @@ TEST(FkCommand, RefusesFiles) {
                  "--output " + plain + "/a.vtu: its folder cannot be made: Not a directory");
   expect_refused(folder, {"-o", folder / "new/deep/a.vtu", "--report", plain + "/a/b.json"},
                  "--report " + plain + "/a/b.json: its folder cannot be made: Not a directory");
-  expect_refused(folder, {"--report", folder / "."}, "is a folder, not a file");
-  expect_refused(folder, {"--report", "/dev/null"}, "/dev/null: is no plain file and will not be replaced");
+  fs::create_directory(folder / "folder.json");
+  fs::create_symlink("/dev/null", folder / "device.json");
+  expect_refused(folder, {"--report", folder / "folder.json"}, "is a folder, not a file");
+  expect_refused(folder, {"--report", folder / "device.json"}, "device.json: is no plain file and will not be replaced");
   for (const std::string& input : {folder.scene, mesh, folder / "./block.msh"})
-    expect_refused(folder, {"--report", input}, "--report " + input + ": would replace a file that is read");
-  expect_refused(folder, {"--report", folder / "a.vtu", "-o", folder / "./a.vtu"}, "is the file of --output");
+    expect_refused(folder, {"--report", input}, "--report " + input + ": must end in .json");
+  const std::string path = folder.write("path.csv", "air\n1\n");
+  expect_refused(folder, {"--path", path, "--trace", folder / "./path.csv"},
+                 "--trace " + folder / "./path.csv" + ": would replace a file that is read");
   EXPECT_EQ(read_text(mesh), folder.block.mesh.text());
 }
 

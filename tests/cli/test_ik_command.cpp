@@ -274,7 +274,7 @@ TEST(IkCommand, RefusesBadInput) {
   also({"--max-equilibria", "0"}, "must be an integer from 1");
   also({"-o", "shape.pvd"}, "must end in .vtu");
   also({"--plot", "p.png"}, "must end in .svg");
-  also({"--report", folder.scene}, "would replace a file that is read");
+  also({"--report", folder.scene}, "must end in .json");
 }
 
 TEST(IkCommand, ReachesWhereItLeansOnABall) {

@@ -14,6 +14,7 @@ from .errors import InvalidInput, MeshWarning
 from .face_regions import choose_faces
 from .generate import check_name, from_surfaces
 from .gmsh_program import CAD, mesh_geo
+from .msh_write import MARK
 from .scene import scene_text
 from .surface import MM_PER_UNIT
 from .volume_mesh import VolumeMesh, boundary_faces
@@ -56,6 +57,8 @@ def _generate(arguments: argparse.Namespace) -> str:
         raise InvalidInput(
             f"-o {arguments.output}: meshes are written as .msh; softkin mesh convert makes other forms of it"
         )
+    if not arguments.force_overwrite:
+        _check_outputs(arguments)
     parts, regions = _pairs("part", arguments.part), _pairs("region", arguments.region)
     form = Path(arguments.body).suffix.lower()
     if form == ".geo" or (form in CAD and not arguments.chamber and not parts):
@@ -80,6 +83,18 @@ def _generate(arguments: argparse.Namespace) -> str:
             raise InvalidInput(f"{arguments.scene}: {error.strerror}") from None
     written = f"{arguments.output} and {arguments.scene}" if scene else str(arguments.output)
     return f"{mesh.summary()}\nwritten: {written}"
+
+
+def _check_outputs(arguments: argparse.Namespace) -> None:
+    """Refuses to replace what softkin did not write. A scene is there to be edited, so it is the user's."""
+    cure = "name another file, or add --force-overwrite to replace it"
+    output = Path(arguments.output)
+    if output.is_file():
+        with output.open("rb") as file:
+            if file.read(len(MARK)) not in (b"", MARK):
+                raise InvalidInput(f"-o {output}: is there already, and not by softkin: {cure}")
+    if arguments.scene and Path(arguments.scene).is_file() and Path(arguments.scene).stat().st_size > 0:
+        raise InvalidInput(f"--scene {arguments.scene}: is there already, and may have been edited: {cure}")
 
 
 def _from_geo(arguments: argparse.Namespace, parts: dict[str, str], regions: dict[str, str]) -> VolumeMesh:
@@ -194,6 +209,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     one.add_argument("-o", "--output", metavar="F.msh", required=True, help="The mesh, in mm")
     one.add_argument("--scene", metavar="F.yaml", help="A scene to start from, with comments on what to edit")
+    one.add_argument(
+        "--force-overwrite", action="store_true", help="Replace the scene, and a mesh that softkin did not write"
+    )
     one.add_argument(
         "--fixed",
         metavar="NAME",

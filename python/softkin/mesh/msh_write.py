@@ -10,6 +10,7 @@ from .arrays import Array
 from .errors import InvalidInput
 from .volume_mesh import VolumeMesh
 
+MARK = b"$Comments\nmade by softkin\n$EndComments\n"  # by which softkin knows the file again
 TRIANGLE, TETRAHEDRON = 2, 4  # types of Gmsh, by their number of dimensions
 
 
@@ -48,7 +49,7 @@ def write_msh(path: str | Path, mesh: VolumeMesh) -> None:
         ("Nodes", b"".join(nodes)),
         ("Elements", b"".join(heading + elements)),
     ]
-    content = b"".join(b"$%s\n%s\n$End%s\n" % (title.encode(), body, title.encode()) for title, body in sections)
+    content = MARK + b"".join(b"$%s\n%s\n$End%s\n" % (title.encode(), body, title.encode()) for title, body in sections)
     try:
         Path(path).write_bytes(content)
     except OSError as error:

@@ -159,7 +159,7 @@ Example find_example(const fs::path& folder, const std::string& name) {
   return read_example(folder, meant[0]);
 }
 
-CopiedExample copy_example(const fs::path& folder, const std::string& name, const fs::path& to) {
+CopiedExample copy_example(const fs::path& folder, const std::string& name, const fs::path& to, bool may_replace) {
   CopiedExample copied{find_example(folder, name), {}};
   std::vector<std::string> wanted = neighbours_of(folder, copied.example.name);
   wanted.insert(wanted.begin(), copied.example.name);
@@ -171,13 +171,17 @@ CopiedExample copy_example(const fs::path& folder, const std::string& name, cons
       if (file.filename() == readme) content = beside_copy(content);
       copied.files.push_back(copy);
       std::error_code failure;
-      if (!fs::exists(fs::symlink_status(copy, failure)))
-        missing.emplace_back(copy, std::move(content));
-      else if (read_file(copy) != content)
-        throw InvalidInput({copy.string()}, "is there already and not the example's: nothing was copied");
+      const bool exists = fs::exists(fs::symlink_status(copy, failure));
+      if (exists && read_file(copy) == content) continue;
+      if (exists && !may_replace)
+        throw InvalidInput({copy.string()},
+                           "is there already and not the example's: nothing was copied; --force-overwrite "
+                           "replaces it");
+      missing.emplace_back(copy, std::move(content));
     }
   std::vector<Output> outputs;
   for (const auto& [file, content] : missing) outputs.push_back({"examples copy", file});
+  check_outputs(outputs, {}, true);
   const OutputFolders folders(outputs);
   for (const auto& [file, content] : missing) write_file(file, content);
   for (std::string& word : copied.example.command)

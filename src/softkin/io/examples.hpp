@@ -47,9 +47,9 @@ struct CopiedExample {
 /// Copies an example into a folder of its name below `to`, with those beside it whose meshes it takes. Commands in its
 /// README lose what they have of the sources' places.
 ///
-/// throws  InvalidInput, before anything is written, where a file is there that is not the same
+/// throws  InvalidInput, before anything is written, where a file is there that is not the same and may not be replaced
 [[nodiscard]] CopiedExample copy_example(const std::filesystem::path& folder, const std::string& name,
-                                         const std::filesystem::path& to);
+                                         const std::filesystem::path& to, bool may_replace = false);
 
 [[nodiscard]] std::string to_json(const std::vector<Example>& examples);
 [[nodiscard]] std::string to_json(const CopiedExample& copied);

@@ -10,6 +10,7 @@
 #include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
+#include <softkin/io/own_file.hpp>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -18,19 +19,37 @@ namespace softkin {
 
 namespace fs = std::filesystem;
 
-std::string read_file(const fs::path& path) {
+namespace {
+
+std::ifstream opened(const fs::path& path) {
   std::error_code failure;
   if (!fs::exists(path, failure)) throw InvalidInput({path.string()}, "no such file");
   if (fs::is_directory(path, failure)) throw InvalidInput({path.string()}, "is a folder, not a file");
   if (fs::is_character_file(path, failure) || fs::is_block_file(path, failure))  // may never end
     throw InvalidInput({path.string()}, "is a device, not a file");
-  std::ifstream stream(path, std::ios::binary);
+  return std::ifstream(path, std::ios::binary);
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& path) {
+  std::ifstream stream = opened(path);
   std::ostringstream content;
+  std::error_code failure;
   if (!stream || !(content << stream.rdbuf())) {
     if (stream && fs::is_empty(path, failure)) return "";
     throw InvalidInput({path.string()}, "cannot be read");
   }
   return std::move(content).str();
+}
+
+std::string read_beginning(const fs::path& path, std::size_t most) {
+  std::ifstream stream = opened(path);
+  std::string content(most, '\0');
+  if (!stream.read(content.data(), static_cast<std::streamsize>(most)) && !stream.eof())
+    throw InvalidInput({path.string()}, "cannot be read");
+  content.resize(static_cast<std::size_t>(stream.gcount()));
+  return content;
 }
 
 void write_file(const fs::path& path, std::string_view content) {
@@ -90,6 +109,30 @@ fs::path resolved(const fs::path& file) {
   throw InvalidInput(output.option + " " + output.file.string() + ": " + why);
 }
 
+/// ours: the file, or one that is written beside it
+void check_own(const Output& output, const fs::path& ours) {
+  std::error_code failure;
+  if (!fs::exists(ours, failure)) return;
+  bool own = false;
+  try {
+    own = is_own_file(ours) || (ours == output.file && output.is_own && output.is_own(ours));
+  } catch (const InvalidInput&) {  // what cannot be read is not known
+  }
+  if (!own)
+    refuse(output,
+           (ours == output.file ? std::string() : "its " + ours.filename().string() + " ") +
+               "is there already, and not by softkin: name another file, or add --force-overwrite to replace it");
+}
+
+/// Whatever is written for this output.
+void check_all_own(const Output& output) {
+  check_own(output, output.file);
+  const std::string ending = output.file.extension().string();
+  if (ending == ".json" || ending == ".skmap" || ending == ".yaml") check_own(output, journal_of(output.file));
+  for (std::size_t i = 0; i < output.shapes; ++i) check_own(output, series_file(output.file, i));
+  if (output.shapes > 0) check_own(output, stopped_file(output.file));
+}
+
 void check_series(const Output& output, const std::vector<fs::path>& inputs) {
   std::set<fs::path> beside;
   for (const fs::path& input : inputs)
@@ -136,7 +179,15 @@ fs::path series_file(const fs::path& pvd, std::size_t step) {
   return fs::path(pvd).replace_filename(pvd.stem().string() + number);
 }
 
-void check_outputs(const std::vector<Output>& outputs, const std::vector<fs::path>& inputs) {
+fs::path stopped_file(const fs::path& pvd) {
+  return fs::path(pvd).replace_filename(pvd.stem().string() + "_stopped.vtu");
+}
+
+fs::path journal_of(const fs::path& output) {
+  return output.string() + ".run";
+}
+
+void check_outputs(const std::vector<Output>& outputs, const std::vector<fs::path>& inputs, bool may_replace) {
   std::map<fs::path, std::string> taken;
   for (const Output& output : outputs) {
     std::error_code failure;
@@ -146,9 +197,11 @@ void check_outputs(const std::vector<Output>& outputs, const std::vector<fs::pat
       refuse(output, "is no plain file and will not be replaced");
     const fs::path file = resolved(output.file);
     for (const fs::path& input : inputs)
-      if (resolved(input) == file) refuse(output, "would replace a file that is read");
+      if (resolved(input) == file || fs::equivalent(input, file, failure))
+        refuse(output, "would replace a file that is read");
     if (!taken.emplace(file, output.option).second) refuse(output, "is the file of " + taken[file]);
     check_series(output, inputs);
+    if (!may_replace) check_all_own(output);
   }
 }
 
@@ -189,7 +242,7 @@ void OutputFolders::remove_empty() const {
 void remove_torn_files(const std::vector<Output>& outputs) {
   for (const Output& output : outputs) {
     const std::string name = output.file.filename().string();
-    std::set<std::string> names{name, name + ".run"};  // a report's journal
+    std::set<std::string> names{name, journal_of(output.file).filename().string()};
     for (std::size_t i = 0; i < output.shapes; ++i) names.insert(series_file(output.file, i).filename().string());
     std::vector<fs::path> torn;
     for (const auto& entry : fs::directory_iterator(folder_of(output.file)))

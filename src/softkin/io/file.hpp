@@ -12,6 +12,8 @@ namespace softkin {
 
 /// The whole file. Throws InvalidInput when it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
+/// At most so many bytes from its beginning.
+[[nodiscard]] std::string read_beginning(const std::filesystem::path& path, std::size_t most);
 
 /// Writes beside the file and renames, so that a reader never sees half a file. Throws InvalidInput on failure.
 void write_file(const std::filesystem::path& path, std::string_view content);
@@ -22,13 +24,22 @@ struct Output {
   std::string option;  // that names it, for messages
   std::filesystem::path file;
   std::size_t shapes = 0;  // a series' .pvd: its shapes are written beside it
+  /// Is a file of that name softkin's although it does not say so? Empty: none is.
+  std::function<bool(const std::filesystem::path&)> is_own{};
 };
+
+/// The file beside an output where a run keeps what it has found until it is done.
+[[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& output);
 
 /// NAME_0007.vtu beside NAME.pvd.
 [[nodiscard]] std::filesystem::path series_file(const std::filesystem::path& pvd, std::size_t step);
+/// The shape that a series was stopped at: NAME_stopped.vtu.
+[[nodiscard]] std::filesystem::path stopped_file(const std::filesystem::path& pvd);
 
-/// Throws InvalidInput where an output would replace an input, another output, or what is no plain file.
-void check_outputs(const std::vector<Output>& outputs, const std::vector<std::filesystem::path>& inputs);
+/// Throws InvalidInput where an output, with all that is written beside it, would replace an input, another output, or
+/// what is no plain file; or, but where it may, a file that softkin did not write (own_file.hpp).
+void check_outputs(const std::vector<Output>& outputs, const std::vector<std::filesystem::path>& inputs,
+                   bool may_replace);
 
 /// Makes the folders of the outputs; at the end removes those of them that stayed empty.
 class OutputFolders {

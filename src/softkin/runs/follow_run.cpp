@@ -1,12 +1,34 @@
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
+#include <softkin/io/json_text.hpp>
 #include <softkin/runs/follow_run.hpp>
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/run_tables.hpp>
+#include <sstream>
 
 namespace softkin::runs {
+
+bool FollowFolder::has_written_commands() const {
+  try {
+    const Json report = parse_json(read_file(run().report));
+    std::istringstream lines(read_file(commands()));
+    std::string line;
+    std::getline(lines, line);  // the header
+    for (const Json& step : report.at("steps")) {
+      std::string values;
+      for (const Json& value : step.at("actuation")) values += "," + exact(value.get<double>());
+      if (!std::getline(lines, line) || !("," + line).ends_with(values)) return false;
+    }
+    return !std::getline(lines, line);
+  } catch (const InvalidInput&) {
+  } catch (const Json::exception&) {
+  }
+  return false;
+}
 
 FollowRun::FollowRun(const Model& model, const Statics& statics, FollowTask task, const TrajectoryOptions& options,
                      FollowFolder folder)

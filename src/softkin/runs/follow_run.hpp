@@ -21,6 +21,9 @@ class FollowFolder {
   [[nodiscard]] RunFiles run() const { return {in("report.json"), in("path.pvd")}; }
   [[nodiscard]] std::filesystem::path commands() const { return in("commands.csv"); }
   [[nodiscard]] std::filesystem::path errors() const { return in("errors.csv"); }
+  /// Are the commands in the folder those of the report beside them? They say nothing of softkin themselves, as any
+  /// reader of tables is to read them.
+  [[nodiscard]] bool has_written_commands() const;
   [[nodiscard]] std::filesystem::path plot() const { return plot_.empty() ? in("path.svg") : plot_; }
 
  private:

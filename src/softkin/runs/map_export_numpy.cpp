@@ -1,5 +1,6 @@
 #include <bit>
 #include <softkin/core/text.hpp>
+#include <softkin/core/version.hpp>
 #include <softkin/io/zip.hpp>
 #include <softkin/runs/map_export_parts.hpp>
 
@@ -160,6 +161,7 @@ void add_numpy_cell(const std::string& name, const MapPiece& piece, const MapCel
 
 std::string map_npz(const MapData& data) {
   NumpyArrays arrays;
+  arrays.add("softkin", std::vector<std::string>{version()});  // the first: by it softkin knows the file again
   add_named(data, arrays);
   add_cables(data, arrays);
   add_numpy_trees(flat_map(data), arrays);

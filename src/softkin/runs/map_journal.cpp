@@ -3,6 +3,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/core/version.hpp>
 #include <softkin/io/base64.hpp>
+#include <softkin/io/file.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/runs/map_journal.hpp>
 #include <sstream>
@@ -99,7 +100,7 @@ std::string journal_head(const Model& model, const MapOptions& options) {
 }  // namespace
 
 std::filesystem::path MapJournal::path_of(const std::filesystem::path& map) {
-  return map.string() + ".run";
+  return journal_of(map);
 }
 
 MapJournal::MapJournal(const std::filesystem::path& map, const Model& model, const MapOptions& options, bool resume) {

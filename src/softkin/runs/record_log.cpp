@@ -14,10 +14,6 @@ namespace softkin::runs {
 
 namespace fs = std::filesystem;
 
-fs::path stopped_file(const fs::path& series) {
-  return series.parent_path() / (series.stem().string() + "_stopped.vtu");
-}
-
 struct RecordLog::Parts {
   const Model& model;
   RunFiles files;
@@ -32,9 +28,7 @@ struct RecordLog::Parts {
     record.shape = file.filename().string();
     record.shape_fingerprint = fingerprint_of(state.positions);
   }
-  [[nodiscard]] fs::path journal() const {
-    return files.report.empty() ? fs::path() : fs::path(files.report.string() + ".run");
-  }
+  [[nodiscard]] fs::path journal() const { return files.report.empty() ? fs::path() : journal_of(files.report); }
 };
 
 RecordLog::RecordLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same)

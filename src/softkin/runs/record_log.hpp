@@ -19,9 +19,6 @@ struct RunFiles {
   std::filesystem::path shapes{};  // .pvd of a series, its shapes beside it; empty: none
 };
 
-/// The shape that a series was stopped at: F_stopped.vtu of F.pvd.
-[[nodiscard]] std::filesystem::path stopped_file(const std::filesystem::path& series);
-
 /// A record that names other actuators than the model has.
 struct OtherActuators : InvalidInput {
   OtherActuators() : InvalidInput("the record has other actuators") {}

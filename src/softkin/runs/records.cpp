@@ -214,8 +214,10 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
   const StrainHistogram& strain = record.strain;
   if (!strain.shares.empty())
     found.push_back({Finding::Kind::strain, "", {strain.least, strain.greatest, strain.percentile_95}});
+  constexpr double least_shown = 0.0005;  // what is shown as 0.0 % is nothing to tell
   for (const auto& beyond : strain.beyond)
-    found.push_back({Finding::Kind::beyond_linear_range, beyond.region, {beyond.share, beyond.linear_range}});
+    if (beyond.share >= least_shown)
+      found.push_back({Finding::Kind::beyond_linear_range, beyond.region, {beyond.share, beyond.linear_range}});
   if (record.inverted_elements > 0)
     found.push_back({Finding::Kind::inverted, "", {static_cast<double>(record.inverted_elements)}});
   for (std::size_t a = 0; a < model.actuators.size(); ++a)

@@ -7,6 +7,7 @@
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/mesh/vtk.hpp>
+#include <softkin/io/own_file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/kinematics/nearest.hpp>
@@ -60,7 +61,7 @@ std::string solver_text(const StaticsOptions& solver) {
 void check_replaceable(const fs::path& path) {
   if (!fs::exists(path)) return;
   const std::string text = read_file(path);
-  if (!text.starts_with("# softkin workspace: ")) return;
+  if (!text.starts_with(workspace_mark)) return;
   constexpr std::string_view key = "\n# samples: ";
   const std::size_t at = text.find(key);
   std::int64_t samples = 0;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/io/own_file.hpp>
 #include <softkin/vision/board_print.hpp>
 
 namespace softkin::vision {
@@ -20,8 +21,8 @@ double margin_of(const BoardSpec& board) {
 std::string board_svg(const BoardSpec& board) {
   const double margin = margin_of(board), width = board.width() + 2 * margin, height = board.height() + 2 * margin;
   const auto mm = [](double value) { return number(value, 9); };
-  std::string text = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + mm(width) + "mm\" height=\"" + mm(height) +
-                     "mm\" viewBox=\"0 0 " + mm(width) + " " + mm(height) +
+  std::string text = std::string(xml_mark) + "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + mm(width) +
+                     "mm\" height=\"" + mm(height) + "mm\" viewBox=\"0 0 " + mm(width) + " " + mm(height) +
                      "\" shape-rendering=\"crispEdges\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   for (const auto& [x, y, w, h] : board_squares(board))
     text += "<rect x=\"" + mm(margin + x) + "\" y=\"" + mm(margin + board.height() - y - h) + "\" width=\"" + mm(w) +

@@ -3,6 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/json_text.hpp>
+#include <softkin/io/own_file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/vision/measurements.hpp>
 
@@ -35,7 +36,7 @@ void add_columns(Table& table, const std::vector<std::string>& keys) {
 
 /// Comments, then the table with so many decimals of what is not whole.
 std::string file_text(const Table& table, const std::vector<std::string>& comments, int decimals) {
-  std::string text;
+  std::string text = "# " + std::string(made_by_softkin) + " measure\n";
   for (const std::string& line : comments) text += "# " + printable(line) + "\n";
   Table rounded{table.columns};
   for (const Row& row : table.rows) {

@@ -5,6 +5,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/gmsh_format.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/own_file.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 
 namespace softkin {
@@ -214,6 +215,12 @@ class Sink {
   bool binary_;
 };
 
+/// Comments, which the format allows before all else.
+void write_mark(Sink& out) {
+  out.open_section("Comments");
+  out.text(std::string(made_by_softkin) + "\n$EndComments\n");
+}
+
 void write_format(Sink& out, bool binary) {
   out.open_section("MeshFormat");
   out.text(binary ? "4.1 1 8\n" : "4.1 0 8\n");
@@ -308,6 +315,7 @@ void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary
   gmsh::Checker(path.string(), mesh).check();
   const gmsh::Layout layout(mesh);
   gmsh::Sink out(binary);
+  gmsh::write_mark(out);
   gmsh::write_format(out, binary);
   gmsh::write_names(out, mesh.regions);
   gmsh::write_entities(out, layout);

@@ -108,6 +108,13 @@ Mesh read_mesh(const fs::path& path) {
   std::string known;
   for (const Form& other : forms)
     if (other.read != nullptr) known += (known.empty() ? "" : ", ") + std::string(other.extension);
+  for (const char* surface : {".stl", ".obj", ".ply", ".step", ".stp", ".iges", ".igs", ".brep"})
+    if (lower_extension(path) == surface)
+      throw InvalidInput({path.string()},
+                         std::string("a ") + surface +
+                             " is a surface, and a robot's mesh has elements inside: make one of it by 'python -m "
+                             "softkin mesh generate --body F' (docs/python_mesh.md), or in Gmsh; known: " +
+                             known);
   refuse_extension(path, known);
 }
 

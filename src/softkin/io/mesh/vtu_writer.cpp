@@ -12,6 +12,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/vtk.hpp>
+#include <softkin/io/own_file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 #include <string>
@@ -57,9 +58,9 @@ class VtuWriter {
 
   std::string build() {
     check();
-    xml_ =
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-        "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+    xml_ = "<?xml version=\"1.0\"?>\n" + std::string(xml_mark) +
+           "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+           "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
     write_field_data();
     xml_ +=
         "<Piece NumberOfPoints=\"" + std::to_string(points_) + "\" NumberOfCells=\"" + std::to_string(cells_) + "\">\n";
@@ -258,9 +259,9 @@ void write_vtu(const std::filesystem::path& path, const VtuContent& content) {
 }
 
 void write_pvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries) {
-  std::string xml =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-      "<Collection>\n";
+  std::string xml = "<?xml version=\"1.0\"?>\n" + std::string(xml_mark) +
+                    "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+                    "<Collection>\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::string subject = "entry " + std::to_string(i);
     if (!std::isfinite(entries[i].time))

@@ -1,4 +1,5 @@
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <softkin/io/picture/rgb_image.hpp>
@@ -25,6 +26,25 @@ Rgb mapped_color(double share) {
   return mixed(knot(left), knot(left + 1), place - left);
 }
 
+namespace {
+
+void append_big_endian(std::string& bytes, std::uint32_t value) {
+  for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(value >> shift & 255);
+}
+
+/// Says which program made the picture.
+std::string software_chunk() {
+  const std::string content("tEXtSoftware\0softkin", 20);
+  std::string chunk;
+  append_big_endian(chunk, static_cast<std::uint32_t>(content.size() - 4));
+  chunk += content;
+  append_big_endian(chunk, static_cast<std::uint32_t>(::crc32(0, reinterpret_cast<const Bytef*>(content.data()),
+                                                              static_cast<uInt>(content.size()))));
+  return chunk;
+}
+
+}  // namespace
+
 std::string encode_png(const RgbImage& image) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
@@ -36,7 +56,8 @@ std::string encode_png(const RgbImage& image) {
   if (!png_image_write_to_memory(&header, content.data(), &size, 0, image.bytes.data(), 0, nullptr))
     throw std::runtime_error(std::string("PNG: ") + header.message);
   content.resize(size);
-  return content;
+  constexpr std::size_t after_header = 33;  // signature and IHDR
+  return content.insert(after_header, software_chunk());
 }
 
 }  // namespace softkin

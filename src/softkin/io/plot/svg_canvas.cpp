@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <softkin/io/own_file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/plot/svg_canvas.hpp>
 #include <utility>
@@ -63,8 +64,9 @@ bool begins_character(char c) {
 
 SvgCanvas::SvgCanvas(double width, double height, const std::string& title) {
   const std::string size = pixels(width) + " " + pixels(height);
-  text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\"" +
-          attribute("width", width) + attribute("height", height) + " viewBox=\"0 0 " + size +
+  text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + std::string(xml_mark) +
+          "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", width) + attribute("height", height) +
+          " viewBox=\"0 0 " + size +
           "\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\">\n";
   if (!title.empty()) text_ += "<title>" + svg_escaped(title) + "</title>\n";
   text_ += "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";

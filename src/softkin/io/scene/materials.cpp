@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <softkin/io/scene/parts.hpp>
+#include <softkin/io/scene/silicones.hpp>
 
 namespace softkin::scene {
 
@@ -69,6 +70,16 @@ std::optional<double> read_coefficient(const Map& map, const LawKeys& law, const
   return node ? number(*node) : 0;
 }
 
+/// Of a silicone by its name.
+ElasticSpec read_named(const Map& map, const Silicone& named) {
+  for (const std::string& key : elastic_keys)
+    if (const Node::Entry* entry = map.entry(key); entry && key != "poisson_ratio")
+      throw InvalidInput(entry->origin, "key '" + key + "' does not go with 'material', which has the constants of " +
+                                            named.name + ": 'poisson_ratio' and 'density' may stand beside it");
+  const Node* ratio = map.find("poisson_ratio");
+  return ratio ? named.elastic(read_poisson_ratio(*ratio)) : named.elastic();
+}
+
 std::optional<ElasticSpec> read_elastic(const Map& map) {
   if (std::none_of(elastic_keys.begin(), elastic_keys.end(), [&](const std::string& key) { return map.entry(key); }))
     return std::nullopt;
@@ -125,8 +136,8 @@ double read_density(const Node& node) {
 }
 
 MaterialSpec read_material(const Context& context, const Node& node) {
-  Keys known{"region",    "shape_ratio",  "weight",    "linear_range", "density",
-             "viscosity", "permittivity", "remanence", "magnetisation"};
+  Keys known{"region",    "shape_ratio",  "weight",    "linear_range",  "density",
+             "viscosity", "permittivity", "remanence", "magnetisation", "material"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;
@@ -134,11 +145,14 @@ MaterialSpec read_material(const Context& context, const Node& node) {
   const Node* region = map.find("region");
   material.region = region ? text(*region) : "all";
   material.shape_ratio = read_shape_ratio(map);
-  material.elastic = read_elastic(map);
+  const Node* name = map.find("material");
+  const Silicone* named = name ? &silicone(text(*name), name->origin) : nullptr;
+  material.elastic = named ? read_named(map, *named) : read_elastic(map);
+  if (named) material.density = named->density;
   if (!material.shape_ratio && !material.elastic)
     fail(node, node.name +
                    " needs 'shape_ratio' (target-shape) or elastic constants (physical), such as 'youngs_modulus' and "
-                   "'poisson_ratio'");
+                   "'poisson_ratio', or 'material: ecoflex-00-30'");
   if (const Node* weight = map.find("weight")) material.weight = positive(*weight);
   if (const Node* density = map.find("density")) material.density = read_density(*density);
   if (const Node* viscosity = map.find("viscosity")) material.viscosity = read_viscosity(*viscosity);

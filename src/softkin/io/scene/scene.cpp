@@ -6,6 +6,7 @@
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
+#include <softkin/io/scene/changes.hpp>
 #include <softkin/io/scene/parts.hpp>
 #include <softkin/io/scene/scene.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
@@ -161,14 +162,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-RobotSpec read_scene_and(std::vector<fs::path>& inputs, const std::string& scene) {
+RobotSpec read_scene_and(std::vector<fs::path>& inputs, const AskedScene& asked) {
   const auto noting = [&inputs](auto read) {
     return [&inputs, read](const fs::path& path) {
       inputs.push_back(path);
       return read(path);
     };
   };
-  return parse_scene(read_file(scene), scene,
+  auto root = scene::parse_yaml(read_file(asked.scene), asked.scene);
+  for (const std::string& material : asked.materials) root = scene::changed(root, "--material", material, "materials");
+  for (const std::string& each : asked.changes) root = scene::changed(root, "--change", each, "");
+  return parse_scene(*root, asked.scene,
                      {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve),
                       noting(read_file), noting(read_field_samples)});
 }
@@ -215,7 +219,7 @@ void change_forces(RobotSpec& spec, const std::vector<std::string>& forces, cons
 }  // namespace
 
 RobotSpec read_asked_scene(const AskedScene& asked, std::vector<fs::path>& inputs) {
-  RobotSpec spec = read_scene_and(inputs, asked.scene);
+  RobotSpec spec = read_scene_and(inputs, asked);
   change(spec, asked);
   return spec;
 }

@@ -13,7 +13,7 @@ namespace softkin {
 namespace {
 
 /// What a column holds; no marker: the time.
-struct PathColumn {
+struct TargetColumn {
   std::optional<Index> marker;
   int axis = 0;
 };
@@ -47,12 +47,12 @@ class PathColumns {
     for (const std::string& name : table.columns) columns_.push_back(column(name));
   }
 
-  [[nodiscard]] const std::vector<PathColumn>& columns() const { return columns_; }
+  [[nodiscard]] const std::vector<TargetColumn>& columns() const { return columns_; }
 
   /// Markers and axes in the order of their columns.
   [[nodiscard]] MarkerPath path() const {
     MarkerPath path;
-    for (const PathColumn& column : columns_) {
+    for (const TargetColumn& column : columns_) {
       if (!column.marker) continue;
       const std::size_t at = place(path, *column.marker);
       if (at == path.markers.size()) {
@@ -75,7 +75,7 @@ class PathColumns {
   }
 
  private:
-  [[nodiscard]] PathColumn column(const std::string& name) const {
+  [[nodiscard]] TargetColumn column(const std::string& name) const {
     const auto refuse = [&](const std::string& why) { table_.fail_header("column " + excerpt(name) + ": " + why); };
     if (name == time_column) return {};
     if (name == "t" || name == "time" || name.starts_with("t_") || name.starts_with("time_"))
@@ -107,10 +107,10 @@ class PathColumns {
   const CsvTable& table_;
   const std::string& default_;
   std::vector<std::string> names_;
-  std::vector<PathColumn> columns_;
+  std::vector<TargetColumn> columns_;
 };
 
-Waypoint waypoint_of(const std::vector<PathColumn>& columns, const MarkerPath& path, const std::vector<double>& row) {
+Waypoint waypoint_of(const std::vector<TargetColumn>& columns, const MarkerPath& path, const std::vector<double>& row) {
   Waypoint waypoint;
   waypoint.targets.assign(path.markers.size(), Vec3::Zero());
   for (std::size_t c = 0; c < columns.size(); ++c) {

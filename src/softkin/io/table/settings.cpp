@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/table/settings.hpp>
@@ -11,11 +14,11 @@ namespace softkin {
 
 namespace {
 
-/// Takes an end, and a blank before it, off a text that has it.
+/// Takes an end, and blanks before it, off a text that has it.
 bool take_end(std::string& text, const std::string& end) {
   if (!text.ends_with(end)) return false;
   text.resize(text.size() - end.size());
-  if (text.ends_with(' ')) text.pop_back();
+  while (text.ends_with(' ')) text.pop_back();
   return true;
 }
 
@@ -65,8 +68,10 @@ std::string curve_remarks(const Model& model, const std::vector<std::string>& se
   std::string text;
   for (const std::string& setting : settings)
     for (const Actuator& actuator : model.actuators) {
-      if (!setting.starts_with(actuator.name + "=")) continue;
-      const auto asked = parse_curve_setting(actuator, setting.substr(actuator.name.size() + 1));
+      const std::string_view whole = setting;
+      const std::size_t equals = whole.find('=');
+      if (equals == std::string_view::npos || trimmed(whole.substr(0, equals)) != actuator.name) continue;
+      const auto asked = parse_curve_setting(actuator, std::string(trimmed(whole.substr(equals + 1))));
       if (!asked) continue;
       const std::optional<double> spread = spread_by_curve(actuator, asked->input, asked->branch);
       text += actuator.name + ": " + input_text(*actuator.curve, asked->input) + ", " + branch_name(asked->branch) +
@@ -101,13 +106,55 @@ std::string curve_hint(const Actuator& actuator) {
                    std::string(actuator.curve->unloading ? " or 50kPa:unloading" : "");
 }
 
+/// A unit that users take for that of a load, and what one of it is.
+struct OtherUnit {
+  const char *unit, *own;
+  double factor;
+};
+
+// longer names before those that they end in
+constexpr OtherUnit other_units[] = {{"MPa", "kPa", 1000}, {"hPa", "kPa", 0.1},      {"mbar", "kPa", 0.1},
+                                     {"bar", "kPa", 100},  {"psi", "kPa", 6.894757}, {"Pa", "kPa", 0.001},
+                                     {"mN", "N", 0.001},   {"kN", "N", 1000},        {"V", "kV", 0.001}};
+
+bool is_kPa(const std::string& unit) {
+  return unit == "kPa";
+}
+
 /// Where to get a curve, for a pressure or voltage given to an actuator that has none; else "".
 std::string missing_curve(const Actuator& actuator, const std::string& text) {
   if (actuator.curve || actuator.control != Control::ratio) return "";
-  if (actuator.kind == ActuatorKind::pneumatic && (text.ends_with("kPa") || text.ends_with("kPa_abs")))
-    return "; a pressure needs a curve in the scene (softkin calibrate pressure)";
+  if (actuator.kind == ActuatorKind::pneumatic &&
+      (text.ends_with("kPa_abs") ||
+       std::any_of(std::begin(other_units), std::end(other_units),
+                   [&](const auto& each) { return is_kPa(each.own) && text.ends_with(each.unit); }) ||
+       text.ends_with("kPa")))
+    return "; '" + actuator.name +
+           "' is commanded by its volume: a pressure needs 'control: pressure' and a range in "
+           "kPa in the scene (physical), or a measured curve (softkin calibrate pressure)";
   if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
     return "; a voltage needs 'control: voltage', or a curve in the scene (softkin calibrate dea)";
+  return "";
+}
+
+/// What a number with another unit of the actuator's load is in its own: "; 0.5bar is 50kPa"; else "".
+std::string converted_hint(const Actuator& actuator, const std::string& text) {
+  for (const OtherUnit& other : other_units) {
+    std::string digits = text;
+    double value = 0;
+    if (command_unit(actuator) != other.own || !take_end(digits, other.unit) || !parse_real(digits, value)) continue;
+    return "; " + text + " is " + number(value * other.factor) + other.own;
+  }
+  return "";
+}
+
+/// What a number outside the range may have been meant as; else "".
+std::string meant_hint(const Actuator& actuator, double value) {
+  for (const OtherUnit& other : other_units) {
+    const double meant = value * other.factor;
+    if (command_unit(actuator) == other.own && meant != 0 && meant >= actuator.low && meant <= actuator.high)
+      return "; is it in " + std::string(other.unit) + "? That would be " + number(meant) + other.own;
+  }
   return "";
 }
 
@@ -150,16 +197,18 @@ Settings read_settings(const Model& model, const std::string& option, const std:
     };
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) refuse("expected ACTUATOR=VALUE, for example " + option + " air=1.5");
-    const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
+    const std::string name(trimmed(std::string_view(setting).substr(0, equals)));
+    const std::string text(trimmed(std::string_view(setting).substr(equals + 1)));
     const std::optional<Index> a = find_actuator(model, name);
     if (!a) refuse(unknown_actuator(model, name));
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
     double value = 0;
     if (!parse_command(actuator, text, value))
       refuse(expected_command(actuator) + ", not " + excerpt(text) + missing_curve(actuator, text) +
-             decimal_comma_hint(text) + several_hint(option, name, text));
+             converted_hint(actuator, text) + decimal_comma_hint(text) + several_hint(option, name, text));
     if (!(value >= actuator.low && value <= actuator.high))
-      refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator));
+      refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator) +
+             meant_hint(actuator, value));
     if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");
     values[static_cast<std::size_t>(*a)] = value;
   }

@@ -88,6 +88,23 @@ void doubt_moduli(Model& model) {
   }
 }
 
+/// Pressures that no elastomer takes: Pa for kPa.
+void doubt_pressures(const Compilation& c, std::vector<std::string>& warnings) {
+  constexpr double highest_kPa = 10000, in_stiffest_moduli = 20;
+  double stiffest_kPa = 0;
+  for (const Material& material : c.model.materials)
+    stiffest_kPa = std::max(stiffest_kPa, 1000 * stiffness_at_rest(material.elastic).youngs_modulus_MPa);
+  const double most = std::min(highest_kPa, in_stiffest_moduli * stiffest_kPa);
+  for (const Actuator& actuator : c.model.actuators) {
+    const double kPa = std::max(std::abs(actuator.low), std::abs(actuator.high));
+    if (actuator.kind != ActuatorKind::pneumatic || actuator.control != Control::load || kPa <= most) continue;
+    warnings.push_back("The range of chamber '" + actuator.name + "' goes to " + number(kPa) +
+                       " kPa, where the robot's stiffest material has a Young's modulus of " + number(stiffest_kPa) +
+                       " kPa" + taken_as(kPa, "kPa", {0.01, most}, {{"taken as Pa it", 1e-3}}) +
+                       " Pressures are in kPa (1 bar is 100 kPa).");
+  }
+}
+
 }  // namespace
 
 void doubt_units(Compilation& c) {
@@ -95,6 +112,7 @@ void doubt_units(Compilation& c) {
   doubt_size(model);
   if (model.formulation != Formulation::physical) return;
   doubt_moduli(model);
+  doubt_pressures(c, model.warnings);
   doubt_gravity(c.spec.gravity, model.warnings);
   if (c.spec.gravity.isZero(0)) return;
   for (const Material& material : model.materials) doubt_density(material, model.warnings);

@@ -105,6 +105,13 @@ bool is_closed(const Points& vertices, const std::vector<Triangle>& triangles) {
   return std::all_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.closed; });
 }
 
+/// "[0, 0, 1]", the opposite of a unit normal.
+std::string turned_text(const Vec3& normal) {
+  std::string text;
+  for (const double x : normal) text += (text.empty() ? "[" : ", ") + number(std::abs(x) < 1e-9 ? 0 : -x, 4);
+  return text + "]";
+}
+
 /// Vertices on the wrong side of half-spaces.
 void refuse_behind_planes(const RestingSurfaces& at) {
   const Model& model = at.model;
@@ -114,19 +121,25 @@ void refuse_behind_planes(const RestingSurfaces& at) {
     if (!part.halfspace) continue;
     const auto& [a, b, c] = at.surface.triangles[t];
     const Vec3 normal = (at.rest(b) - at.rest(a)).cross(at.rest(c) - at.rest(a)).normalized();
-    double least = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity(), most = -least;
     Vec3 lowest;
     Index deepest = -1;
     for (std::size_t i = 0; i < at.surface.vertices.size(); ++i) {
       const Index v = at.surface.vertices[i], own = at.at_vertex(static_cast<Index>(i));
       if (at.rank(own) == ContactRank::obstacle) continue;
       const double height = normal.dot(at.rest(v) - at.rest(a));
+      most = std::max(most, height);
       if (!(height < least)) continue;
       least = height;
       lowest = at.rest(v);
       deepest = at.part(own);
     }
     if (least > touching * model.diagonal_mm) continue;
+    if (most <= touching * model.diagonal_mm)
+      throw InvalidInput(part.origin, "all that may touch " + model.contact.label(plane) +
+                                          " lies behind it at rest: its normal points out of the solid, towards the "
+                                          "robot; turn it round, 'normal: " +
+                                          turned_text(normal) + "'");
     const bool deep = least < -touching * model.diagonal_mm;
     throw InvalidInput(part.origin, model.contact.label_of_solid(deepest) + " " +
                                         (deep ? "lies " + number(-least) + " mm deep in " : std::string("touches ")) +
