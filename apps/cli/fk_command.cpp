@@ -29,6 +29,7 @@ struct FkOptions : SolveOptions, RunOptions, MapUse {
   std::string output, report, trace;
   ShowOptions show;
   std::vector<std::string> settings;  // ACTUATOR=VALUE
+  std::vector<std::string> turn;      // two markers
 
   [[nodiscard]] bool series() const { return lower_extension(output) == ".pvd"; }
   /// The files to write; a path has so many steps.
@@ -58,7 +59,9 @@ void add_options(CLI::App& command, FkOptions& options) {
             "Each step of the way to each shape as it was tried: what it cost,\nand why it was not taken; physical");
   add_value(command, "--image", options.show.image, "F.png", "Picture of the last shape");
   add_value(command, "--plot", options.show.plot, "F.svg",
-            "With --path: commands, markers, pressures and tensions over\nthe steps, and the markers' ways");
+            "With --path: commands, markers, pressures and tensions (under\npressure control volumes) over the steps, "
+            "and the markers' ways");
+  add_turn(command, options.turn);
   add_repeated(command, "--set", options.settings, "A=V",
                "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
                "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
@@ -99,13 +102,16 @@ class FkRun {
         run_(model, job_, {options.report, options.series() ? options.output : ""},
              runs::report_head(model, options.scene, options.statics(), answers.map()), {}),
         page_(options.page, model, runs::kept_command()),
-        table_(runs::table_of_steps(model, steps.size())) {
+        line_(runs::read_marker_line(model, options.turn)),
+        turn_(model, line_),
+        table_(runs::table_of_steps(model, steps.size(), line_)) {
     page_.bend_by(answers.map_data());
     page_.watch(run_, &answers.statics());
   }
 
   int run() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
+    turn_.catch_up(run_);
     const std::size_t first = run_.done();
     EquilibriumProgress share;
     const runs::Advance end = advance_run(
@@ -113,7 +119,7 @@ class FkRun {
         [&](RunProgress& line, const Progress& p) { line.show(EquilibriumProgress::text(p), share.share(p)); },
         [&] {
           traces_.push_back(run_.last().trace);
-          return runs::row_of(model_, run_.done() - 1, run_.last());
+          return runs::row_of(model_, run_.done() - 1, run_.last(), turn_.next(run_.last()));
         });
     if (run_.stopped()) traces_.push_back(run_.stopped()->record.trace);
     finish();
@@ -158,7 +164,7 @@ class FkRun {
     });
     const std::string title = runs::plot_title(model_, options_.scene) + ", " +
                               (answers_.by_map_alone() ? options_.map : options_.solver_name);
-    write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title));
+    write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title, line_));
   }
 
   void show(const StepRecord& step, const State& state, const ElementDeformation& deformation) const {
@@ -238,6 +244,8 @@ class FkRun {
   runs::PathJob job_;
   runs::Run<StepRecord> run_;
   runs::RunPage page_;
+  std::optional<runs::MarkerLine> line_;
+  LineTurn turn_;
   Table table_;
   std::vector<std::vector<TracedStep>> traces_;  // of the steps that this run made
 };
@@ -259,6 +267,7 @@ int run_fk(const FkOptions& options) {
   const Model model = asked_robot(options, inputs);
   const std::vector<ActuationStep> steps = asked_steps(model, options);
   if (steps.front().time) check_times(model, options.path, options, options);
+  (void)runs::read_marker_line(model, options.turn);  // before anything is written
   const std::vector<Output> outputs = options.outputs(steps.size());
   check_outputs(outputs, inputs, options.may_replace);
   if (steps.front().time && !options.start.empty())

@@ -26,7 +26,8 @@ namespace {
 /// What the user asks of `softkin follow`. An empty file name: not given.
 struct FollowOptions : SolveOptions, MethodOptions, RunOptions, MapUse {
   std::string path, folder, marker, workspace, plot_file;
-  double max_step_mm = 0;  // 0: as given
+  std::vector<std::string> turn;  // two markers
+  double max_step_mm = 0;         // 0: as given
 
   [[nodiscard]] runs::FollowFolder files() const { return runs::FollowFolder(folder, plot_file); }
   [[nodiscard]] std::vector<Output> outputs(std::size_t waypoints) const {
@@ -75,6 +76,7 @@ void add_options(CLI::App& command, FollowOptions& options) {
   add_value(command, "--workspace", options.workspace, "F.csv",
             "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)");
   add_value(command, "--plot", options.plot_file, "F.svg", "The plot, instead of path.svg in the folder");
+  add_turn(command, options.turn);
   add_map_use(command, options);
   add_force(command, options);
   add_solver(command, options);
@@ -91,17 +93,19 @@ void check_usage(const FollowOptions& options) {
 class ShownTrajectory {
  public:
   ShownTrajectory(const Model& model, const FollowOptions& options, double reach_mm, runs::FollowRun& follow,
-                  runs::RunPage& page)
+                  runs::RunPage& page, const std::optional<runs::MarkerLine>& line)
       : model_(model),
         options_(options),
         reach_mm_(reach_mm),
         follow_(follow),
         run_(follow.run()),
         page_(page),
-        table_(runs::table_of_waypoints(model, run_.size())) {}
+        turn_(model, line),
+        table_(runs::table_of_waypoints(model, run_.size(), line)) {}
 
   int show() {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "waypoint", options_.json);
+    turn_.catch_up(run_);
     const runs::Advance end = advance_run(
         run_, table_, "waypoint", options_.json,
         [](RunProgress& line, const Progress& p) {
@@ -109,7 +113,7 @@ class ShownTrajectory {
           if (std::isfinite(p.step_mm)) text += ", " + number(p.step_mm, 2) + " mm off";
           line.show(text);
         },
-        [&] { return runs::row_of(run_.done() - 1, run_.last()); });
+        [&] { return runs::row_of(model_, run_.done() - 1, run_.last(), turn_.next(run_.last())); });
     follow_.finish();
     page_.write();
     if (options_.json) show_report(run_);
@@ -148,6 +152,7 @@ class ShownTrajectory {
   runs::FollowRun& follow_;
   runs::Run<WaypointRecord>& run_;
   runs::RunPage& page_;
+  LineTurn turn_;
   Table table_;
 };
 
@@ -162,6 +167,7 @@ int run_follow(const FollowOptions& options) {
   MarkerPath path = read_marker_path(options.path, model, options.marker);
   if (path.waypoints.front().time) check_times(model, options.path, options, options);
   const std::vector<std::string> doubts = doubts_about(model, path);
+  const std::optional<runs::MarkerLine> line_turned = runs::read_marker_line(model, options.turn);
   if (options.max_step_mm > 0) path = densified(path, options.max_step_mm);
   const std::vector<Output> outputs = options.outputs(path.waypoints.size());
   check_outputs(outputs, inputs, options.may_replace);
@@ -176,12 +182,13 @@ int run_follow(const FollowOptions& options) {
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
   if (!options.json) print(head_text(model, options, answers));
-  runs::FollowRun follow(model, answers.statics(), {options.scene, options.path, std::move(path), answers.map()},
-                         trajectory, options.files());
+  runs::FollowRun follow(model, answers.statics(),
+                         {options.scene, options.path, std::move(path), answers.map(), line_turned}, trajectory,
+                         options.files());
   runs::RunPage page(options.page, model, runs::kept_command());
   page.bend_by(answers.map_data());
   page.watch(follow.run(), &answers.statics());
-  return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow, page).show();
+  return ShownTrajectory(model, options, trajectory.inverse.tolerance_mm, follow, page, line_turned).show();
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/kinematics/grasp.hpp>
@@ -70,7 +71,8 @@ class GraspRun {
       : model_(model), statics_(statics), options_(options), body_(body) {}
 
   int run(const std::vector<Actuation>& closing, const std::vector<PullDirection>& directions) {
-    const Grasp grasp = close_around(model_, statics_, closing, body_, options_.statics(), shown());
+    const auto stage = [&](const std::string& done, const Equilibrium& shape) { tell_stage(done, shape); };
+    const Grasp grasp = close_around(model_, statics_, closing, body_, options_.statics(), shown(), stage);
     line_.clear();
     if (!grasp.held) {
       std::string text = grasp.last.report.stopped ? why_stopped() + ": " + grasp.remark : grasp.remark;
@@ -89,6 +91,17 @@ class GraspRun {
       line_.show(-1, doing + ": " + EquilibriumProgress::text(p));
       return !interrupted();
     };
+  }
+
+  /// What is there of a grasp, whatever becomes of the rest.
+  void tell_stage(const std::string& done, const Equilibrium& shape) {
+    line_.clear();
+    if (!options_.output.empty())
+      runs::write_shape(options_.output, model_, shape.state, statics_.measured(shape.state), true);
+    if (options_.json) return;
+    const double normal_N = pressed(model_, body_, statics_.measured(shape.state)).normal_N;
+    print(done + ": " + counted(static_cast<std::size_t>(shape.report.iterations), "iteration") + ", " +
+          decimal(shape.report.seconds, 2) + " s; pressed with " + number(normal_N, 4) + " N\n");
   }
 
   void write(const Equilibrium& grasp) const {

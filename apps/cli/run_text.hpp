@@ -5,6 +5,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/runs/jobs.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/turns.hpp>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,29 @@ void resume_run(runs::Run<Record>& run, const std::vector<Output>& outputs, cons
   if (!remark.empty()) print(remark + "\n");
   print(resumed_text(run.done(), run.size(), what) + "\n");
 }
+
+/// The turn of a line from record to record, for the column that --turn asks for.
+class LineTurn {
+ public:
+  LineTurn(const Model& model, const std::optional<runs::MarkerLine>& line) : line_(line) {
+    if (line) meter_.emplace(line->at_rest(model));
+  }
+
+  /// [degrees]; none: not asked for
+  std::optional<double> next(const runs::StepRecord& record) {
+    if (!line_) return std::nullopt;
+    return meter_->next(line_->in(record.markers));
+  }
+  /// Those of a run that is resumed.
+  template <class Record>
+  void catch_up(runs::Run<Record>& run) {
+    if (line_) run.log().each([&](std::size_t, const Record& record) { (void)next(record); });
+  }
+
+ private:
+  std::optional<runs::MarkerLine> line_;
+  std::optional<runs::TurnMeter> meter_;
+};
 
 /// On stdout.
 template <class Record>

@@ -111,6 +111,15 @@ void add_force(CLI::App& command, SolveOptions& options) {
   add_changes(command, options);
 }
 
+void add_turn(CLI::App& command, std::vector<std::string>& turn) {
+  command
+      .add_option("--turn", turn,
+                  "Two markers: a column, and with a plot a curve, of how far the\nline from one to the other has "
+                  "turned from rest [degrees]")
+      ->type_name("FROM TO")
+      ->expected(2);
+}
+
 void add_solver(CLI::App& command, SolveOptions& options, const std::string& threads) {
   const StaticsOptions defaults;
   add_value(command, "--formulation", options.formulation, "NAME",

@@ -50,6 +50,8 @@ void add_solver(CLI::App& command, SolveOptions& options,
                 const std::string& threads = "0: as many as the machine has (default)");
 
 void add_page(CLI::App& command, std::string& page, const std::string& what);
+/// --turn FROM TO; turn: none, or two markers
+void add_turn(CLI::App& command, std::vector<std::string>& turn);
 void add_run(CLI::App& command, RunOptions& options, const std::string& resume, const std::string& json);
 void add_view(CLI::App& command, ShowOptions& options);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/shortfall_text.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <utility>
 
 namespace softkin::view {
@@ -24,7 +25,10 @@ std::vector<std::optional<double>> loads_of(const Model& model, const State& sta
   std::vector<std::optional<double>> loads(model.actuators.size());
   if (model.formulation != Formulation::physical) return loads;
   for (std::size_t a = 0; a < loads.size() && static_cast<Index>(a) < state.multipliers.size(); ++a)
-    if (!multiplier_key(model.actuators[a]).empty()) loads[a] = state.multipliers[static_cast<Index>(a)];
+    if (shows_measure(model.actuators[a]))
+      loads[a] = achieved_ratio(model, model.actuators[a], state.positions);
+    else if (!multiplier_key(model.actuators[a]).empty())
+      loads[a] = state.multipliers[static_cast<Index>(a)];
   return loads;
 }
 

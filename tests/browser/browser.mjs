@@ -72,9 +72,8 @@ export const frames = (page, count = 2) => page.evaluate((left) => new Promise((
 /** Where the first marker is on the screen. */
 export async function tipOnScreen(page) {
   const box = await page.locator('#canvas').boundingBox();
-  const moved = await page.locator('#labels span').first().evaluate((label) => label.style.transform);
-  const [x, y] = /translate\((.*)px, (.*)px\)/.exec(moved).slice(1).map(Number);
-  return {x: box.x + x - 14, y: box.y + y - 8};
+  const [x, y] = (await page.locator('#labels span').first().getAttribute('data-at')).split(',').map(Number);
+  return {x: box.x + x, y: box.y + y};
 }
 
 export async function drag(page, from, to) {

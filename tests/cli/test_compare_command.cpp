@@ -85,9 +85,25 @@ TEST_F(Compare, TableNamesLoadsAndWhatDidNotConverge) {
   const std::string a = write("a.json", with_pressure(turning({0, 30, 60}, 1))), b = write("b.json", stopped);
   const ProgramResult result = run_program({"compare", a, b, "--turn", "begin", "end", "--poses", "55", "85"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  for (const char* part : {"1: physical, newton", "1: air [kPa]", "2: begin off by [mm]", "12.50", "converged\n",
-                           "2: limit\n", "3.00 s", "2.50 s", "not reached", "3.75 s"})
+  for (const char* part : {"1: physical, newton", "a: air [kPa]", "b: begin off by [mm]", "12.50", "converged\n",
+                           "b: limit\n", "3.00 s", "2.50 s", "not reached", "3.75 s"})
     EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
+}
+
+/// The ratio of an actuator whose pressure is commanded says more than the pressure again.
+TEST_F(Compare, ShowsVolumesUnderPressureControl) {
+  json report = with_pressure(turning({0, 30, 60}, 1));
+  report["actuators"] = {{"air", {{"kind", "pneumatic"}, {"control", "pressure"}, {"unit", "kPa"}}}};
+  for (std::size_t i = 0; i < 3; ++i) report["steps"][i]["actuators"]["air"]["achieved"] = 1.25 + 0.5 * double(i);
+  const std::string a = write("soft.json", report), b = write("stiff.json", report), plot = folder_ / "c.svg";
+  const ProgramResult result = run_program({"compare", a, b, "--plot", plot});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  for (const char* part : {"soft: air volume [-]", "stiff: air volume [-]", "1.7500", "stiff: air [kPa]"})
+    EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
+  const std::string drawn = read_text(plot);
+  for (const char* part : {">over that at rest [-]<", ">soft: air volume<", ">stiff: air volume<", ">stiff<"})
+    EXPECT_NE(drawn.find(part), std::string::npos) << part;
+  EXPECT_EQ(drawn.find(">load [kPa]<"), std::string::npos);
 }
 
 TEST_F(Compare, WritesAPage) {
@@ -178,10 +194,14 @@ TEST_F(Compare, APathIsComparedWithACameraTrackByTime) {
   EXPECT_NEAR(track["mean_mm"].get<double>(), 0.5, 1e-5);
   EXPECT_EQ(track["error_mm"].size(), 4U);
   EXPECT_EQ(read_text(folder_ / "errors.csv").rfind("track,waypoint,place", 0), 0U);
-  EXPECT_NE(read_text(folder_ / "errors.svg").find("<svg"), std::string::npos);
+  EXPECT_NE(read_text(folder_ / "errors.csv").find(",error_mm,file\n"), std::string::npos);
+  EXPECT_NE(read_text(folder_ / "errors.csv").find("," + camera + "\n"), std::string::npos);
+  for (const char* part : {"<svg", ">robot<", ">camera<"})
+    EXPECT_NE(read_text(folder_ / "errors.svg").find(part), std::string::npos) << part;
   const ProgramResult aligned = run_program({"compare", report, camera, "--align"});
   ASSERT_EQ(aligned.exit_code, 0) << aligned.errors;
-  for (const char* part : {"compared by time", "along xy", "aligned: turned by", "largest [mm]", "0.000"})
+  for (const char* part : {"compared by time", "along xy", "aligned: turned by", "largest [mm]", "0.000",
+                           "camera: off by [mm]", "\ncamera  "})
     EXPECT_NE(aligned.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << aligned.output;
 }
 

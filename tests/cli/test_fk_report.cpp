@@ -98,7 +98,8 @@ void expect_step_form(const json& step, const std::vector<std::string>& more) {
                                 "factorisations_in_double",
                                 "projections",
                                 "shifts",
-                                "continuation_steps"};
+                                "continuation_steps",
+                                "marker_turns_deg"};
   keys.insert(keys.end(), more.begin(), more.end());
   expect_keys(step, keys);
   for (const char* key : {"residual", "step_mm", "tolerance_mm", "estimated_error_mm", "seconds", "energy"})
@@ -111,6 +112,7 @@ void expect_step_form(const json& step, const std::vector<std::string>& more) {
   expect_keys(step["actuators"]["air"], {"requested", "achieved"});
   expect_keys(step["markers"], {"tip", "corner"});
   for (const json& marker : step["markers"]) EXPECT_EQ(marker.size(), 3u);
+  expect_keys(step["marker_turns_deg"], {"tip"});
   expect_keys(step["strain"],
               {"least", "greatest", "magnitude_percentile_95", "bin_edges", "volume_shares", "beyond_linear_range"});
   expect_keys(step["history"], {"iteration", "energy", "step_mm", "residual"});

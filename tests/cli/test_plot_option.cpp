@@ -41,6 +41,21 @@ TEST(PlotOption, FkDrawsWhatThePathDoes) {
   EXPECT_EQ(plot.points.front(), 3u);
 }
 
+/// A pressure against itself would be a straight line whatever the robot does.
+TEST(PlotOption, FkDrawsVolumesUnderPressureAndTurns) {
+  const BlockFolder folder(loaded_scene());
+  const std::string path = folder.write("path.csv", "air_kPa,tendon\n0,0\n40,0\n80,0\n");
+  const ProgramResult result =
+      run_fk(folder.scene, {"--path", path, "--turn", "tip", "corner", "--plot", folder / "plot.svg"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("turn tip to corner [deg]"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("tip turned [deg]"), std::string::npos) << result.output;
+  const PlotText plot(folder / "plot.svg");
+  plot.expect({"air [kPa]", "volume ratio [-]", "length ratio [-]", "turn [deg]", "tip to corner", "tip"});
+  for (const char* none : {"gauge pressure [kPa]", "tension [N]"}) EXPECT_FALSE(plot.texts.count(none)) << none;
+  expect_refused(folder, {"--path", path, "--turn", "tip", "corer"}, "--turn: there is no marker 'corer'");
+}
+
 TEST(PlotOption, FkDrawsAlongTheOnlyCommandThatChanges) {
   const BlockFolder folder;
   const std::string path = folder.write("path.csv", "air\n1\n1.1\n1.2\n");
@@ -89,8 +104,7 @@ TEST(PlotOption, CompareDrawsDifferences) {
   const ProgramResult result = run_program({"compare", a, b, "--turn", "tip", "corner", "--plot", folder / "c.svg"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   PlotText(folder / "c.svg")
-      .expect({"air [-]", "turn [degrees]", "tip off by [mm]", "load [kPa]", "load [N]", "1: air", "2: air",
-               "2: physical, newton"});
+      .expect({"air [-]", "turn [degrees]", "tip off by [mm]", "load [kPa]", "load [N]", "a: air", "b: air", "b"});
   for (const auto& [file, why] : {std::pair{a, ".svg"}, std::pair{folder / "c.png", ".svg"}}) {
     const ProgramResult refused = run_program({"compare", a, b, "--plot", file});
     EXPECT_EQ(refused.exit_code, 2);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <softkin/runs/records_json.hpp>
@@ -22,6 +23,13 @@ void expect_same(const StepRecord& a, const StepRecord& b) {
   }
   EXPECT_EQ(a.shape_load_share, b.shape_load_share);
   EXPECT_EQ(a.markers, b.markers);
+  ASSERT_EQ(a.marker_turns.size(), b.marker_turns.size());
+  for (std::size_t m = 0; m < a.marker_turns.size(); ++m) {
+    EXPECT_EQ(std::isnan(a.marker_turns[m]), std::isnan(b.marker_turns[m]));
+    if (!std::isnan(a.marker_turns[m])) {
+      EXPECT_EQ(a.marker_turns[m], b.marker_turns[m]);
+    }
+  }
   EXPECT_EQ(a.largest_displacement_mm, b.largest_displacement_mm);
   EXPECT_EQ(a.self_overlap.points, b.self_overlap.points);
   EXPECT_EQ(a.self_overlap.deepest_mm, b.self_overlap.deepest_mm);

@@ -10,6 +10,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/json_text.hpp>
 #include <softkin/io/plot/curves.hpp>
+#include <softkin/runs/file_labels.hpp>
 
 namespace softkin::calibration {
 
@@ -255,6 +256,15 @@ PathReport path_report(std::vector<Track> tracks, const std::string& by, bool al
   return report;
 }
 
+std::vector<std::string> PathReport::labels() const {
+  std::vector<std::string> files, tails;
+  for (const Track& track : tracks) {
+    files.push_back(track.name);
+    tails.push_back(track.marker.empty() ? "" : "@" + track.marker);
+  }
+  return runs::file_labels(files, tails);
+}
+
 std::vector<std::string> PathReport::heads() const {
   std::vector<std::string> lines{"1: " + tracks[0].name + ", " + counted(tracks[0].points.size(), "waypoint")};
   for (std::size_t c = 0; c < comparisons.size(); ++c) {
@@ -276,9 +286,10 @@ std::vector<std::string> PathReport::heads() const {
 
 Table PathReport::waypoints() const {
   constexpr std::size_t most = 20;
+  const std::vector<std::string> names = labels();
   Table table{{{.title = "waypoint"}, {.title = "x, y, z [mm]"}}};
   for (std::size_t c = 0; c < comparisons.size(); ++c)
-    table.columns.push_back(decimals(std::to_string(c + 2) + ": off by", "mm", length_decimals));
+    table.columns.push_back(decimals(names[c + 1] + ": off by", "mm", length_decimals));
   const std::size_t count = tracks[0].points.size();
   for (std::size_t k = 0; k < std::min(most, count); ++k) {
     const std::size_t w = count <= most ? k : k * (count - 1) / (most - 1);
@@ -290,6 +301,7 @@ Table PathReport::waypoints() const {
 }
 
 Table PathReport::summary() const {
+  const std::vector<std::string> names = labels();
   Table table{{Column{},
                decimals("largest", "mm", length_decimals),
                {.title = "at waypoint"},
@@ -297,8 +309,8 @@ Table PathReport::summary() const {
                decimals("rms", "mm", length_decimals)}};
   for (std::size_t c = 0; c < comparisons.size(); ++c) {
     const PathComparison& each = comparisons[c];
-    table.rows.push_back({count_cell(c + 2), each.largest_mm, count_cell(each.waypoints[each.worst].waypoint),
-                          each.mean_mm, each.rms_mm});
+    table.rows.push_back(
+        {names[c + 1], each.largest_mm, count_cell(each.waypoints[each.worst].waypoint), each.mean_mm, each.rms_mm});
   }
   return table;
 }
@@ -308,11 +320,13 @@ Table PathReport::errors() const {
   for (const char* of : {"reference", "other"})
     for (const char* axis : axis_names) table.columns.push_back({std::string(of) + "_" + axis + "_mm"});
   table.columns.push_back({"error_mm"});
+  table.columns.push_back({"file"});
   for (std::size_t c = 0; c < comparisons.size(); ++c)
     for (const WaypointError& each : comparisons[c].waypoints) {
       Row row{count_cell(c + 2), count_cell(each.waypoint), each.place};
       for (const Vec3& point : {each.reference, each.other}) row.insert(row.end(), point.begin(), point.end());
       row.emplace_back(each.error_mm);
+      row.emplace_back(tracks[c + 1].name);
       table.rows.push_back(std::move(row));
     }
   return table;
@@ -333,9 +347,10 @@ Plot PathReport::plot() const {
                                                        : parameter;
   PlotPanel panel = panel_of("", place, "error [mm]");
   panel.y.low = 0;
-  std::vector<SpaceCurve> ways{{"1: " + tracks[0].name, tracks[0].points, true, true}};
+  const std::vector<std::string> names = labels();
+  std::vector<SpaceCurve> ways{{names[0], tracks[0].points, true, true}};
   for (std::size_t c = 0; c < comparisons.size(); ++c) {
-    const std::string label = std::to_string(c + 2) + ": " + tracks[c + 1].name;
+    const std::string& label = names[c + 1];
     PlotSeries series{.label = label, .x = {}, .y = {}, .style = static_cast<int>(c) + 1};
     ways.push_back({label, {}, true, true});
     for (const WaypointError& each : comparisons[c].waypoints) {

@@ -67,6 +67,8 @@ struct PathReport {
   std::vector<PathComparison> comparisons;  // of each other track
   std::string parameter;                    // the column or actuator that is compared by; empty: time
 
+  /// Of tables and legends: the names of the files, with the markers that were chosen of them.
+  [[nodiscard]] std::vector<std::string> labels() const;
   /// What each track is and how it is compared, a line each.
   [[nodiscard]] std::vector<std::string> heads() const;
   /// The reference's waypoints, and how far off each track is; long tables have twenty even rows.

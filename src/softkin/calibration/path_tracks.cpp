@@ -19,14 +19,14 @@ using runs::ReportedStep;
 
 /// "F.csv@tip" as file and marker, where no file has the whole name.
 struct TrackSource {
-  std::string file, marker;
+  std::string file, marker, chosen;  // chosen: the marker, where the text names one
 
   TrackSource(const std::string& text, const std::string& default_marker) : file(text), marker(default_marker) {
     const std::size_t at = text.rfind('@');
     std::error_code ignored;
     if (at == std::string::npos || std::filesystem::exists(text, ignored)) return;
     file = text.substr(0, at);
-    marker = text.substr(at + 1);
+    marker = chosen = text.substr(at + 1);
   }
 };
 
@@ -174,10 +174,12 @@ std::vector<Track> read_tracks(const PathRequest& request) {
     if (lower_extension(source.file) != ".json") {
       tracks.push_back(read_track(source.file, source.marker, request.by_name() ? request.by : std::string()));
       if (request.plane) tracks.back() = in_plane(tracks.back(), *request.plane);
+      tracks.back().marker = source.chosen;
       continue;
     }
     const ReportedPath path = runs::read_reported_path(source.file);
     tracks.push_back(track_of(path, source.marker, request));
+    tracks.back().marker = source.chosen;
     if (!commanded) commanded = path;
   }
   if (request.start) set_clocks(tracks, *request.start);

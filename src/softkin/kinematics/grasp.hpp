@@ -19,8 +19,12 @@ struct Pressed {
 /// throws  InvalidInput on a body that the model does not have
 [[nodiscard]] Pressed pressed(const Model& model, Index body, const ElementDeformation& shape);
 
-/// Told what is being done ("closing, step 2", "releasing 'cube'", "pulling along x") and how far that is; false stops.
+/// Told what is being done ("closing, step 2", "releasing 'cube'", "pulling along x, 2.5 N held") and how far that is;
+/// false stops.
 using GraspProgress = std::function<bool(const std::string& doing, const Progress& progress)>;
+
+/// Told of each stage of a grasp when it is done ("closing, step 2", "releasing 'cube'"), with its equilibrium.
+using GraspStage = std::function<void(const std::string& done, const Equilibrium& shape)>;
 
 /// A gripper that was closed around its bodies and has let go of one.
 struct Grasp {
@@ -36,7 +40,8 @@ struct Grasp {
 /// returns  that a step has no equilibrium, or the body falls, is not held
 /// throws   InvalidInput as pulled() and Statics::solve do, and without a step
 [[nodiscard]] Grasp close_around(const Model& model, const Statics& statics, const std::vector<Actuation>& closing,
-                                 Index body, const StaticsOptions& options = {}, const GraspProgress& progress = {});
+                                 Index body, const StaticsOptions& options = {}, const GraspProgress& progress = {},
+                                 const GraspStage& stage = {});
 
 /// A direction to pull in, and what it is called.
 struct PullDirection {
@@ -68,8 +73,27 @@ struct Pull {
 [[nodiscard]] Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3& direction,
                                double force_N);
 
-/// The largest force on a body along a direction before it slips or no equilibrium is left: the pull grows fourfold
-/// from the body's weight, or from what presses on it if that is more, until an equilibrium cannot be followed.
+/// The largest load of a way along which the load has a maximum, from equilibria below it.
+class LoadMaximum {
+ public:
+  /// load: larger than the last one; way: since then, > 0, such as how far something moved
+  void add(double load, double way);
+
+  /// By the parabola of the load over the way through the last three equilibria; none: it does not bend down there.
+  [[nodiscard]] std::optional<double> estimate() const;
+
+ private:
+  struct Point {
+    double way, load;
+  };
+  std::vector<Point> points_;  // the last three
+};
+
+/// The largest force on a body along a direction before it slips or no equilibrium is left, to 1e-4 of it. The pull
+/// grows from a tenth of the body's weight, or of what presses on it if that is more: first by what holds already,
+/// then to the maximum of the force that the way of the body's vertices foretells, without crossing it, since looking
+/// for an equilibrium where none is costs more than all others. Where a pull is not met in some iterations, smaller
+/// steps go towards it.
 ///
 /// grasp    an equilibrium that solve() returned, the body free
 /// most_N   > 0: no larger force is tried; none: most_pull()

@@ -79,6 +79,7 @@ struct Track {
   std::array<bool, 3> axes{true, true, true};  // coordinates that are known
   std::vector<double> parameter;               // time [s], or what else ascends along it; empty: none
   bool robot_frame = false;                    // coordinates are those of the scene, as a prediction has them
+  std::string marker{};                        // chosen of a file that has several; empty: not chosen
 };
 
 }  // namespace softkin

@@ -32,11 +32,23 @@ bool has_measure(const Actuator& actuator) {
          actuator.kind == ActuatorKind::pneumatic;
 }
 
+const char* measure_name(const Actuator& actuator) {
+  constexpr const char* measures[] = {"length", "area", "volume"};  // in the order of ActuatorKind
+  return has_measure(actuator) ? measures[static_cast<std::size_t>(actuator.kind)] : "";
+}
+
+bool answers_with_measure(const Actuator& actuator) {
+  return has_measure(actuator) && actuator.control != Control::ratio;
+}
+
+bool shows_measure(const Actuator& actuator) {
+  return answers_with_measure(actuator) && actuator.kind != ActuatorKind::cable;
+}
+
 const char* control_name(const Actuator& actuator) {
   if (!drives(actuator)) return kind_name(actuator);
   if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).name;
-  constexpr const char* ratios[] = {"length", "area", "volume"};  // in the order of ActuatorKind
-  if (actuator.control == Control::ratio) return ratios[static_cast<std::size_t>(actuator.kind)];
+  if (actuator.control == Control::ratio) return measure_name(actuator);
   constexpr const char* loads[] = {"tension", "voltage", "pressure"};  // the same
   return loads[static_cast<std::size_t>(actuator.kind)];
 }

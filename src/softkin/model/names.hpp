@@ -15,6 +15,12 @@ namespace softkin {
 [[nodiscard]] const char* command_name(const Actuator& actuator);
 /// Has it a length, an area or a volume.
 [[nodiscard]] bool has_measure(const Actuator& actuator);
+/// What that is: "length", "area" or "volume".
+[[nodiscard]] const char* measure_name(const Actuator& actuator);
+/// Is it commanded by its load, so that what it comes to is its measure?
+[[nodiscard]] bool answers_with_measure(const Actuator& actuator);
+/// Is it, and no cable: its volume or area says more than the pressure or voltage again.
+[[nodiscard]] bool shows_measure(const Actuator& actuator);
 /// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mm", "mT", "A" or "A m^2"; as a table has it:
 /// "[-]", "[kPa]", ....
 [[nodiscard]] std::string command_unit(const Actuator& actuator);

@@ -48,7 +48,8 @@ Table FollowRun::errors() {
 }
 
 Plot FollowRun::plot() {
-  return plot_of_path(model_, task_.path, records(), tolerance_mm_, plot_title(model_, task_.scene, task_.file));
+  return plot_of_path(model_, task_.path, records(), tolerance_mm_, plot_title(model_, task_.scene, task_.file),
+                      task_.line);
 }
 
 void FollowRun::finish() {

@@ -5,6 +5,7 @@
 #include <softkin/io/table/table.hpp>
 #include <softkin/runs/jobs.hpp>
 #include <softkin/runs/reports.hpp>
+#include <softkin/runs/turns.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,7 +37,8 @@ class FollowFolder {
 struct FollowTask {
   std::string scene, file;  // as the user named them
   MarkerPath path;
-  const UsedMap* map = nullptr;  // null: none
+  const UsedMap* map = nullptr;      // null: none
+  std::optional<MarkerLine> line{};  // whose turn is drawn
 };
 
 /// A trajectory, waypoint by waypoint, and what is made of it.

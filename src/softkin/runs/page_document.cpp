@@ -64,7 +64,8 @@ Json rounded_array(const std::vector<float>& numbers, std::size_t components) {
 
 /// The unit of what a robot answers with; "" where it answers nothing.
 std::string load_unit(const Model& model, const Actuator& actuator) {
-  return model.formulation == Formulation::physical ? multiplier_unit(actuator) : "";
+  if (model.formulation != Formulation::physical) return "";
+  return shows_measure(actuator) ? "× rest" : multiplier_unit(actuator);
 }
 
 /// What one mT of its command adds to the flux density everywhere, a unit vector [mT]; none: it makes no uniform field.
@@ -100,6 +101,9 @@ Json page_markers(const Model& model) {
   Json list = Json::array();
   for (const Marker& marker : model.markers)
     list.push_back({{"name", marker.name}, {"at", json_of(marker.point.at(model.rest))}});
+  for (Json& marker : list)
+    for (const FreeBody& body : model.bodies)
+      if (marker.at("name") == body.name) marker["body"] = true;
   return list;
 }
 
@@ -208,7 +212,8 @@ void PageDocument::add(const StepRecord& record, const Points& positions, const 
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
     commands.push_back(known(record.actuation[static_cast<Index>(a)]));
     const bool answers = !load_unit(model_, model_.actuators[a]).empty();
-    loads.push_back(answers ? known(record.actuators[a].multiplier) : Json());
+    const ActuatorRecord& of = record.actuators[a];
+    loads.push_back(answers ? known(shows_measure(model_.actuators[a]) ? of.achieved : of.multiplier) : Json());
   }
   for (const Vec3& marker : record.markers) markers.push_back(json_of(marker));
   steps_.push_back(line_of({{"commands", commands},

@@ -33,11 +33,38 @@ StepAxis step_axis_of(const Records& records, const std::vector<StepCurve>& comm
   return step_axis(times, commands);
 }
 
+/// "volume ratio" and so on of the actuators that are commanded by a load: it against itself would tell nothing.
+template <class Records>
+std::vector<PlotPanel> measure_panels(const Model& model, const StepAxis& along, const Records& records) {
+  std::vector<PlotPanel> panels;
+  for (const char* measure : {"volume", "length", "area"}) {
+    std::vector<StepCurve> curves;
+    for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+      const Actuator& actuator = model.actuators[a];
+      if (!answers_with_measure(actuator) || std::string(measure_name(actuator)) != measure) continue;
+      curves.push_back({actuator.name, "-", {}});
+      for (const StepRecord& record : records) curves.back().values.push_back(record.actuators[a].achieved);
+    }
+    for (PlotPanel& panel : curve_panels(along, curves, std::string(measure) + " ratio"))
+      panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+template <class Records>
+StepCurve line_curve(const Model& model, const MarkerLine& line, const Records& records) {
+  const auto name = [&](Index m) { return model.markers[static_cast<std::size_t>(m)].name; };
+  StepCurve curve{name(line.from) + " to " + name(line.to), "deg", {}};
+  TurnMeter meter(line.at_rest(model));
+  for (const StepRecord& record : records) curve.values.push_back(meter.next(line.in(record.markers)));
+  return curve;
+}
+
 bool is_known(const StepRecord& step) {
   for (const Vec3& point : step.markers)
     if (!point.allFinite()) return false;
   for (const ActuatorRecord& actuator : step.actuators)
-    if (!std::isfinite(actuator.multiplier)) return false;
+    if (!std::isfinite(actuator.multiplier) || !std::isfinite(actuator.achieved)) return false;
   return true;
 }
 
@@ -59,8 +86,43 @@ class Steps {
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
       if (model_.formulation != Formulation::physical || multiplier_key(model_.actuators[a]) != key || steps_.empty())
         continue;
+      if (answers_with_measure(model_.actuators[a])) continue;
       curves.push_back({model_.actuators[a].name, unit, {}});
       for (const StepRecord& step : steps_) curves.back().values.push_back(step.actuators[a].multiplier);
+    }
+    return curves;
+  }
+
+  [[nodiscard]] std::vector<PlotPanel> measures() const {
+    return steps_.empty() ? std::vector<PlotPanel>() : measure_panels(model_, along_, steps_);
+  }
+
+  /// Of the first so many markers, where they have an orientation, and of the line between two.
+  [[nodiscard]] std::vector<StepCurve> turns(const std::optional<MarkerLine>& line, std::size_t markers) const {
+    std::vector<StepCurve> curves;
+    if (steps_.empty()) return curves;
+    const std::vector<bool> oriented = oriented_markers(model_);
+    for (std::size_t m = 0; m < markers; ++m) {
+      const auto knows = [m](const StepRecord& step) {
+        return m < step.marker_turns.size() && std::isfinite(step.marker_turns[m]);
+      };
+      if (!oriented[m] || !std::all_of(steps_.begin(), steps_.end(), knows)) continue;
+      curves.push_back({model_.markers[m].name, "deg", {}});
+      for (const StepRecord& step : steps_) curves.back().values.push_back(step.marker_turns[m]);
+    }
+    if (line) curves.push_back(line_curve(model_, *line, steps_));
+    return curves;
+  }
+
+  /// On each body, by what touches it.
+  [[nodiscard]] std::vector<StepCurve> contacts() const {
+    std::vector<StepCurve> curves;
+    const auto knows = [](const StepRecord& step) { return step.contacts.has_value(); };
+    if (steps_.empty() || !std::all_of(steps_.begin(), steps_.end(), knows)) return curves;
+    for (const FreeBody& body : model_.bodies) {
+      curves.push_back({"on " + body.name, "N", {}});
+      for (const StepRecord& step : steps_)
+        curves.back().values.push_back(normal_force_on(model_, body.name, *step.contacts));
     }
     return curves;
   }
@@ -173,6 +235,10 @@ class PathPlot {
   [[nodiscard]] std::vector<PlotPanel> command_panels() const {
     return curve_panels(along_, command_curves(model_, done_), "command");
   }
+  [[nodiscard]] std::vector<PlotPanel> measures() const { return measure_panels(model_, along_, done_); }
+  [[nodiscard]] std::vector<PlotPanel> turn_panels(const MarkerLine& line) const {
+    return curve_panels(along_, {line_curve(model_, line, done_)}, "turn");
+  }
 
  private:
   /// Each marker has its own colour for what was reached; what was missed is crossed.
@@ -222,7 +288,8 @@ std::string plot_title(const Model& model, const std::string& scene, const std::
   return (by.empty() ? "" : file_name(by) + " by ") + file_name(scene) + ": " + formulation_name(model.formulation);
 }
 
-Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, const std::string& title) {
+Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, const std::string& title,
+                   const std::optional<MarkerLine>& line) {
   const Steps path(model, steps);
   Plot plot;
   plot.title = title;
@@ -241,19 +308,22 @@ Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, con
     if (row.size() == 2) add(std::exchange(row, {}));
   }
   add(std::move(row));
+  add(curve_panels(path.along(), path.turns(line, ways.size()), "turn"));
+  add(path.measures());
   std::vector<PlotPanel> loads = curve_panels(path.along(), path.loads("pressure_kPa", "kPa"), "gauge pressure");
   for (PlotPanel& panel : curve_panels(path.along(), path.loads("tension_N", "N"), "tension"))
     loads.push_back(std::move(panel));
   for (PlotPanel& panel : curve_panels(path.along(), path.loads("voltage_kV", "kV"), "voltage"))
     loads.push_back(std::move(panel));
   add(std::move(loads));
+  add(curve_panels(path.along(), path.contacts(), "contact force"));
   if (!ways.empty()) add(projections(ways));
   if (plot.rows.empty()) add({PlotPanel{}});
   return plot;
 }
 
 Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<WaypointRecord>& done,
-                  double tolerance_mm, const std::string& title) {
+                  double tolerance_mm, const std::string& title, const std::optional<MarkerLine>& line) {
   const PathPlot parts(model, path, done, tolerance_mm);
   Plot plot;
   plot.title = title;
@@ -265,6 +335,8 @@ Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<
   } else {
     plot.rows = {std::move(views), {parts.error_panel()}, std::move(commands)};
   }
+  if (std::vector<PlotPanel> measures = parts.measures(); !measures.empty()) plot.rows.push_back(std::move(measures));
+  if (line) plot.rows.push_back(parts.turn_panels(*line));
   plot.panel_height = 260;
   return plot;
 }

@@ -3,6 +3,7 @@
 #include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/turns.hpp>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,18 @@ namespace softkin::runs {
 /// "gait.csv by finger.yaml: physical", with the names of the files alone. by: what was done; empty: not told
 [[nodiscard]] std::string plot_title(const Model& model, const std::string& scene, const std::string& by = "");
 
-/// Commands, markers, pressures and tensions of a path, and the markers' ways through space. Steps whose numbers are
-/// not known are left out; those that did not converge are marked.
-[[nodiscard]] Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, const std::string& title);
+/// Commands, markers and how far they turned, what the actuators answer with (pressures, tensions; volume, length and
+/// area where the load is what is commanded), forces of contact on bodies, and the markers' ways through space. Steps
+/// whose numbers are not known are left out; those that did not converge are marked. line: whose turn is drawn, too
+[[nodiscard]] Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, const std::string& title,
+                                 const std::optional<MarkerLine>& line = {});
 
 /// Targets and reached points in space, the error and the commands along the path (Fig. 13 and 14 of Fang et al. 2020).
+/// With the measures of actuators that are commanded by loads, and the turn of the line, where there are any.
 /// done: at least one.
 [[nodiscard]] Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<WaypointRecord>& done,
-                                double tolerance_mm, const std::string& title);
+                                double tolerance_mm, const std::string& title,
+                                const std::optional<MarkerLine>& line = {});
 
 /// The error of each equilibrium that a search solved for, at least one, and the least so far. scene: its file
 [[nodiscard]] Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::string& scene);

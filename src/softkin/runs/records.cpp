@@ -4,6 +4,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/turns.hpp>
 #include <utility>
 
 namespace softkin::runs {
@@ -69,6 +70,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   record.largest_displacement_mm = largest_move(model.rest, found.state.positions);
   for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
+  record.marker_turns = marker_turns(model, found.state.positions);
   record.actuators = actuator_records(model, found);
   record.strain = strain_histogram(model, deformation);
   if (model.formulation == Formulation::physical && record.status == Status::limit && !record.answered())
@@ -102,6 +104,14 @@ WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& fo
   record.walk = found;
   record.walk.equilibrium = {};
   return record;
+}
+
+double normal_force_on(const Model& model, const std::string& part, const std::vector<PairForces>& pairs) {
+  double sum = 0;
+  for (const PairForces& pair : pairs)
+    for (const Index side : {pair.a, pair.b})
+      if (model.contact.parts[static_cast<std::size_t>(side)].name == part) sum += pair.normal_N;
+  return sum;
 }
 
 State state_of(const Model& model, const StepRecord& record, Points positions) {

@@ -40,6 +40,7 @@ struct StepRecord : SolveReport {
   double largest_displacement_mm = 0;  // of a vertex from its place at rest
   SelfOverlap self_overlap;            // of the shape, set by who makes the record
   std::vector<Vec3> markers;           // [mm]
+  std::vector<double> marker_turns{};  // from rest [degrees]; not finite where a marker has no orientation (turns.hpp)
   std::vector<ActuatorRecord> actuators;
   StrainHistogram strain;
   std::optional<StressExtremes> stress{};             // physical; of a walk none
@@ -81,6 +82,9 @@ struct WalkRecord : StepRecord {
                                              const ElementDeformation& deformation);
 [[nodiscard]] WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& found,
                                      const ElementDeformation& deformation);
+
+/// The sum of all normal forces between a part of the surroundings, such as a body, and what touches it [N].
+[[nodiscard]] double normal_force_on(const Model& model, const std::string& part, const std::vector<PairForces>& pairs);
 
 /// The state that a record's shape is, as if it had just been solved.
 [[nodiscard]] State state_of(const Model& model, const StepRecord& record, Points positions);

@@ -279,6 +279,23 @@ void counts_and_measures(Record& record, const Visit& visit) {
   visit("largest_displacement_mm", record.largest_displacement_mm);
 }
 
+/// Of the markers that have an orientation.
+Json turns_json(const Model& model, const StepRecord& record) {
+  Json turns = Json::object();
+  for (std::size_t m = 0; m < record.marker_turns.size(); ++m)
+    if (std::isfinite(record.marker_turns[m])) turns[model.markers[m].name] = record.marker_turns[m];
+  return turns;
+}
+
+std::vector<double> marker_turns_of(const Model& model, const Json& step) {
+  std::vector<double> turns(model.markers.size(), std::numeric_limits<double>::quiet_NaN());
+  if (!step.contains("marker_turns_deg")) return turns;
+  const Json& json = step.at("marker_turns_deg");
+  for (std::size_t m = 0; m < turns.size(); ++m)
+    if (json.contains(model.markers[m].name)) turns[m] = json.at(model.markers[m].name).get<double>();
+  return turns;
+}
+
 /// All of a step but its shape.
 Json step_json(const Model& model, const StepRecord& record) {
   Json step = {{"actuation", by_actuator(model, record.actuation)},
@@ -292,6 +309,7 @@ Json step_json(const Model& model, const StepRecord& record) {
   if (record.shape_actuation) step["shape_actuation"] = by_actuator(model, *record.shape_actuation);
   for (std::size_t m = 0; m < model.markers.size(); ++m)
     step["markers"][model.markers[m].name] = json_of(record.markers[m]);
+  if (Json turns = turns_json(model, record); !turns.empty()) step["marker_turns_deg"] = std::move(turns);
   if (model.formulation == Formulation::physical) step.update(physical_json(model, record));
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     step["actuators"][model.actuators[a].name] = actuator_json(model, model.actuators[a], record.actuators[a]);
@@ -377,6 +395,7 @@ void from_json(const Model& model, const Json& json, StepRecord& record) {
   if (model.formulation == Formulation::physical) read_physical(model, json, record);
   counts_and_measures(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   for (const Marker& marker : model.markers) record.markers.push_back(point_of(json.at("markers").at(marker.name)));
+  record.marker_turns = marker_turns_of(model, json);
   for (const Actuator& actuator : model.actuators)
     record.actuators.push_back(actuator_of(model, actuator, json.at("actuators").at(actuator.name)));
   record.self_overlap = overlap_of(json.at("self_overlap"));

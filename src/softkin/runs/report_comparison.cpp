@@ -1,15 +1,15 @@
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/json_text.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/plot/curves.hpp>
+#include <softkin/runs/file_labels.hpp>
 #include <softkin/runs/report_comparison.hpp>
+#include <softkin/runs/turns.hpp>
 
 namespace softkin::runs {
 
@@ -25,13 +25,24 @@ std::vector<std::pair<std::string, double>> loads_of(const Json& actuators) {
   return loads;
 }
 
-ReportedStep step_of(const Json& json) {
+/// "air volume [-]": what an actuator that is commanded by a load comes to, over that at rest.
+std::vector<std::pair<std::string, double>> ratios_of(const Json& actuators,
+                                                      const std::map<std::string, std::string>& measures) {
+  std::vector<std::pair<std::string, double>> ratios;
+  for (const auto& [name, measure] : measures)
+    if (actuators.contains(name))
+      ratios.emplace_back(name + " " + measure + " [-]", actuators.at(name).at("achieved").get<double>());
+  return ratios;
+}
+
+ReportedStep step_of(const Json& json, const std::map<std::string, std::string>& measures) {
   ReportedStep step;
   for (const auto& [name, value] : json.at("actuation").items()) step.actuation.emplace_back(name, value.get<double>());
   for (const auto& [name, point] : json.at("markers").items())
     step.markers.emplace_back(name,
                               Vec3(point.at(0).get<double>(), point.at(1).get<double>(), point.at(2).get<double>()));
   step.loads = loads_of(json.at("actuators"));
+  step.ratios = ratios_of(json.at("actuators"), measures);
   if (json.contains("time_s")) step.time = json.at("time_s").get<double>();
   step.status = json.at("status").get<std::string>();
   return step;
@@ -47,15 +58,27 @@ std::map<std::string, std::string> units_of(const Json& report) {
   return units;
 }
 
+/// "volume", "length" or "area" of the actuators that are commanded by a load.
+std::map<std::string, std::string> measures_of(const Json& report) {
+  std::map<std::string, std::string> measures;
+  if (!report.contains("actuators")) return measures;
+  for (const auto& [name, actuator] : report.at("actuators").items())
+    for (const auto& [control, measure] :
+         {std::pair{"pressure", "volume"}, std::pair{"tension", "length"}, std::pair{"voltage", "area"}})
+      if (actuator.at("control").template get<std::string>() == control) measures[name] = measure;
+  return measures;
+}
+
 ReportedPath path_of(const std::string& file, const Json& json) {
   ReportedPath path{file,
                     json.at("formulation").get<std::string>() + ", " + json.at("solver").at("name").get<std::string>(),
                     {},
                     units_of(json)};
+  const std::map<std::string, std::string> measures = measures_of(json);
   double elapsed = 0;
   for (const Json& step : json.at("steps")) {
     elapsed += step.at("seconds").get<double>();
-    path.steps.push_back(step_of(step));
+    path.steps.push_back(step_of(step, measures));
     path.steps.back().elapsed = elapsed;
   }
   return path;
@@ -79,8 +102,6 @@ std::vector<Value> values_of(const ReportedPath& path, std::vector<std::pair<std
   }
   return values;
 }
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 std::string asked_text(const ReportedStep& step) {
   std::string text;
@@ -114,17 +135,9 @@ std::vector<double> turns_of(const ReportedPath& path, const std::string& from, 
   const Vec3 start = lasts[0] - firsts[0];
   if (!(start.norm() > 0))
     throw InvalidInput({path.file}, "markers '" + from + "' and '" + to + "' are at one place in the first step");
-  constexpr double rounding = 1e-9;  // below it the axis of a turn is noise
-  Vec3 axis = Vec3::Zero();
+  TurnMeter meter(start);
   std::vector<double> turns;
-  for (std::size_t i = 0; i < firsts.size(); ++i) {
-    const Vec3 line = lasts[i] - firsts[i], turned = start.cross(line);
-    if (axis.isZero() && turned.norm() > rounding * start.norm() * line.norm()) axis = turned.normalized();
-    double turn = degrees * std::atan2(axis.dot(turned), start.dot(line));
-    const double before = turns.empty() ? 0 : turns.back();
-    turn += 360 * std::round((before - turn) / 360);
-    turns.push_back(turn);
-  }
+  for (std::size_t i = 0; i < firsts.size(); ++i) turns.push_back(meter.next(lasts[i] - firsts[i]));
   return turns;
 }
 
@@ -134,12 +147,12 @@ bool same_names(const std::vector<std::pair<std::string, double>>& a,
                     [](const auto& x, const auto& y) { return x.first == y.first; });
 }
 
-/// "converged" where all did, else who did not: "2: limit".
-std::string status_of(const std::vector<ReportedPath>& paths, std::size_t step) {
+/// "converged" where all did, else who did not: "fine: limit".
+std::string status_of(const ReportComparison& of, std::size_t step) {
   std::string text;
-  for (std::size_t p = 0; p < paths.size(); ++p)
-    if (const std::string& status = paths[p].steps[step].status; status != "converged")
-      text += (text.empty() ? "" : ", ") + std::to_string(p + 1) + ": " + status;
+  for (std::size_t p = 0; p < of.paths.size(); ++p)
+    if (const std::string& status = of.paths[p].steps[step].status; status != "converged")
+      text += (text.empty() ? "" : ", ") + of.labels[p] + ": " + status;
   return text.empty() ? "converged" : text;
 }
 
@@ -157,12 +170,26 @@ StepAxis axis_of(const ReportedPath& path) {
   return step_axis(times, commands);
 }
 
-/// load: "air [kPa]"
-StepCurve load_curve(const ReportedPath& path, std::size_t l, const std::string& load, const std::string& report) {
-  const std::size_t bracket = load.rfind(" [");
-  StepCurve curve{report + load.substr(0, bracket), load.substr(bracket + 2, load.size() - bracket - 3), {}};
-  for (const ReportedStep& step : path.steps) curve.values.push_back(step.loads.at(l).second);
-  return curve;
+using NamedValues = std::vector<std::pair<std::string, double>>;
+
+/// Is "air", in its unit, what is commanded anyway?
+bool is_command(const ReportedPath& path, const std::string& name, const std::string& unit) {
+  const auto command = path.units.find(name);
+  return command != path.units.end() && command->second == unit;
+}
+
+/// The values that each step has of a kind, such as "air [kPa]", named after the report; commands are left out.
+void add_curves(const ReportedPath& path, const std::string& report, NamedValues ReportedStep::*of,
+                std::vector<StepCurve>& curves) {
+  const NamedValues& named = path.steps.front().*of;
+  for (std::size_t n = 0; n < named.size(); ++n) {
+    const std::string& title = named[n].first;
+    const std::size_t bracket = title.rfind(" [");
+    const std::string name = title.substr(0, bracket), unit = title.substr(bracket + 2, title.size() - bracket - 3);
+    if (is_command(path, name, unit)) continue;
+    curves.push_back({report + ": " + name, unit, {}});
+    for (const ReportedStep& step : path.steps) curves.back().values.push_back((step.*of).at(n).second);
+  }
 }
 
 Column fixed(const std::string& title, int decimals) {
@@ -177,7 +204,8 @@ ReportedPath read_reported_path(const std::string& file) {
     if (path.steps.empty()) throw InvalidInput({file}, "the report has no steps");
     for (std::size_t i = 1; i < path.steps.size(); ++i)
       if (!same_names(path.steps[i].actuation, path.steps[0].actuation) ||
-          !same_names(path.steps[i].loads, path.steps[0].loads))
+          !same_names(path.steps[i].loads, path.steps[0].loads) ||
+          !same_names(path.steps[i].ratios, path.steps[0].ratios))
         throw InvalidInput({file}, "step " + std::to_string(i) + " has other actuators than step 0; it is damaged: " +
                                        "make it again with softkin fk --report");
     return path;
@@ -210,6 +238,7 @@ ReportComparison compare_reports(const std::vector<std::string>& files, const st
   }
   result.marker = marker_of(result.paths.front(), marker, ", so no distance is known");
   result.poses = poses;
+  result.labels = file_labels(files);
   for (const ReportedPath& path : result.paths) {
     result.distances.push_back(distances_of(path, result.paths.front(), result.marker));
     if (!turn.empty()) result.turns.push_back(turns_of(path, turn[0], turn[1]));
@@ -228,9 +257,10 @@ Table ReportComparison::steps() const {
   const auto add = [&table](const Column& column) { table.columns.push_back(column); };
   for (const auto& [name, value] : paths.front().steps.front().actuation) add({.title = name});
   for (std::size_t p = 0; p < paths.size(); ++p) {
-    const std::string of = std::to_string(p + 1) + ": ";
+    const std::string of = labels[p] + ": ";
     if (!turns.empty()) add(fixed(of + "turn [deg]", 1));
     for (const auto& [name, load] : paths[p].steps.front().loads) add(fixed(of + name, 2));
+    for (const auto& [name, ratio] : paths[p].steps.front().ratios) add(fixed(of + name, 4));
     if (p > 0) add(fixed(of + marker + " off by [mm]", 2));
   }
   add({.title = "status"});
@@ -240,9 +270,10 @@ Table ReportComparison::steps() const {
     for (std::size_t p = 0; p < paths.size(); ++p) {
       if (!turns.empty()) row.emplace_back(turns[p][i]);
       for (const auto& [name, load] : paths[p].steps[i].loads) row.emplace_back(load);
+      for (const auto& [name, ratio] : paths[p].steps[i].ratios) row.emplace_back(ratio);
       if (p > 0) row.emplace_back(distances[p][i]);
     }
-    row.emplace_back(status_of(paths, i));
+    row.emplace_back(status_of(*this, i));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -253,7 +284,7 @@ Table ReportComparison::times() const {
   for (const double pose : poses) table.columns.push_back({.title = number(pose) + " deg"});
   table.columns.push_back({.title = "all steps"});
   for (std::size_t p = 0; p < paths.size(); ++p) {
-    Row row{std::to_string(p + 1), paths[p].method};
+    Row row{labels[p], paths[p].method};
     for (const double pose : poses) {
       const std::optional<double> time = time_to(p, pose);
       row.emplace_back(time ? decimal(*time, 2) + " s" : "not reached");
@@ -285,15 +316,14 @@ std::string ReportComparison::json() const {
 
 Plot ReportComparison::plot() const {
   const StepAxis along = axis_of(paths.front());
-  std::vector<StepCurve> turned, off, loads;
+  std::vector<StepCurve> turned, off, loads, ratios;
   std::vector<SpaceCurve> ways;
   for (std::size_t p = 0; p < paths.size(); ++p) {
-    const std::string report = std::to_string(p + 1) + ": ", name = report + paths[p].method;
-    if (!turns.empty()) turned.push_back({name, "degrees", turns[p]});
-    if (p > 0) off.push_back({name, "mm", distances[p]});
-    const auto& named = paths[p].steps.front().loads;
-    for (std::size_t l = 0; l < named.size(); ++l) loads.push_back(load_curve(paths[p], l, named[l].first, report));
-    ways.push_back({name, places_of(paths[p], marker), true, true});
+    if (!turns.empty()) turned.push_back({labels[p], "degrees", turns[p]});
+    if (p > 0) off.push_back({labels[p], "mm", distances[p]});
+    add_curves(paths[p], labels[p], &ReportedStep::loads, loads);
+    add_curves(paths[p], labels[p], &ReportedStep::ratios, ratios);
+    ways.push_back({labels[p], places_of(paths[p], marker), true, true});
   }
   Plot plot;
   plot.title = marker + ": differences from " + paths.front().file;
@@ -306,6 +336,7 @@ Plot ReportComparison::plot() const {
   for (std::size_t i = 0; i < plot.rows.back()[0].series.size(); ++i)
     plot.rows.back()[0].series[i].style = static_cast<int>(i) + 1;
   add(loads, "load");
+  add(ratios, "over that at rest");
   plot.rows.push_back(projections(ways));
   return plot;
 }

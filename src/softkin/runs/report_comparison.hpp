@@ -17,6 +17,7 @@ struct ReportedStep {
   std::vector<std::pair<std::string, double>> actuation;  // what was asked for, by actuator
   std::vector<std::pair<std::string, Vec3>> markers;      // in the order of the scene [mm]
   std::vector<std::pair<std::string, double>> loads;  // "air [kPa]", "tendon [N]"; none in the target-shape formulation
+  std::vector<std::pair<std::string, double>> ratios;  // "air volume [-]", of actuators that are commanded by a load
   std::string status;
   std::optional<double> time;  // in the path [s]
   double elapsed = 0;          // from the begin of the first step to the end of this one [s]
@@ -44,6 +45,7 @@ struct ReportedPath {
 /// Reports of the same steps side by side.
 struct ReportComparison {
   std::vector<ReportedPath> paths;             // the first is the one to compare with
+  std::vector<std::string> labels;             // of tables and legends: the names of their files
   std::string marker;                          // whose distance is told
   std::vector<std::vector<double>> distances;  // path, step [mm], from the first path
   std::vector<std::vector<double>> turns;      // path, step [degrees]; empty: not asked for

@@ -25,6 +25,8 @@ bool has_times(const MarkerPath& path) {
 constexpr std::size_t longest_name = 24, longest_command_name = 16, load_width = 12;
 constexpr int value_decimals = 4;                         // of commands, ratios and loads
 constexpr int place_decimals = 4, friction_decimals = 6;  // of a walk
+constexpr int turn_decimals = 2;                          // [degrees]
+constexpr std::size_t turn_width = 8;
 
 Column fixed(const std::string& title, int decimals, std::size_t width) {
   return {.title = title, .digits = decimals, .form = Column::Form::decimals, .width = width};
@@ -65,6 +67,16 @@ std::string load_title(const Model& model, const Actuator& actuator) {
   return model.formulation == Formulation::physical ? multiplier_title(actuator) : "";
 }
 
+/// Of what the command comes to: "achieved [-]" of a ratio, else what the load does: "volume ratio [-]".
+std::string measure_title(const Actuator& actuator) {
+  return (answers_with_measure(actuator) ? std::string(measure_name(actuator)) + " ratio" : "achieved") + " [-]";
+}
+
+Cell turn_cell(const StepRecord& record, std::size_t marker) {
+  const bool known = marker < record.marker_turns.size() && std::isfinite(record.marker_turns[marker]);
+  return known ? Cell(record.marker_turns[marker]) : Cell();
+}
+
 /// Six significant digits of the robot's size [mm].
 int length_decimals(const Model& model) {
   return std::clamp(5 - static_cast<int>(std::floor(std::log10(model.diagonal_mm))), 1, 9);
@@ -84,11 +96,28 @@ std::string point_text(const Vec3& point, int decimals, std::size_t width) {
   return text;
 }
 
+/// What is done to the surroundings is told apart from what answers: a body's force from that of its contacts.
+std::string command_title(const Actuator& actuator, const std::string& name) {
+  return (drives(actuator) ? "" : "command ") + name + " " + bracketed_unit(actuator);
+}
+
 void add_commands(const Model& model, Table& table) {
   for (const Actuator& actuator : model.actuators) {
-    const std::string name = characters(actuator.name) > longest_command_name ? "command" : actuator.name;
-    table.columns.push_back(fixed(name + " " + bracketed_unit(actuator), value_decimals, width_of(actuator)));
+    const bool named = characters(actuator.name) <= longest_command_name;
+    const std::string title = named ? command_title(actuator, actuator.name) : "command " + bracketed_unit(actuator);
+    table.columns.push_back(fixed(title, value_decimals, width_of(actuator)));
   }
+}
+
+std::string line_title(const Model& model, const MarkerLine& line) {
+  const auto name = [&](Index m) { return short_name(model.markers[static_cast<std::size_t>(m)].name); };
+  return "turn " + name(line.from) + " to " + name(line.to) + " [deg]";
+}
+
+/// The sum of the normal forces between a body and all else [N]; none: not known.
+Cell contact_cell(const Model& model, const FreeBody& body, const StepRecord& record) {
+  if (!record.contacts) return {};
+  return normal_force_on(model, body.name, *record.contacts);
 }
 
 }  // namespace
@@ -179,29 +208,36 @@ std::vector<double> strides(const std::vector<WalkRecord>& steps, std::size_t cy
   return lengths;
 }
 
-Table table_of_steps(const Model& model, std::size_t steps) {
+Table table_of_steps(const Model& model, std::size_t steps, const std::optional<MarkerLine>& line) {
   Table table{{words("step", std::to_string(steps).size())}};
   const auto add = [&table](const Column& column) { table.columns.push_back(column); };
   for (const Actuator& actuator : model.actuators) {
     const std::size_t width = drives(actuator) ? width_of(actuator) : command_width;
-    add(fixed(short_name(actuator.name) + " " + bracketed_unit(actuator), value_decimals, width));
+    add(fixed(command_title(actuator, short_name(actuator.name)), value_decimals, width));
     if (!has_measure(actuator)) continue;
-    add(fixed("achieved [-]", value_decimals, width));
+    add(fixed(measure_title(actuator), value_decimals, width));
     if (const std::string load = load_title(model, actuator); !load.empty())
       add(fixed(load, value_decimals, load_width));
     if (actuator.curve)
       add(fixed("by curve [" + std::string(unit_of_input(actuator.curve->input) + 1) + "]", value_decimals,
                 load_width));
   }
-  for (const Marker& marker : model.markers)
-    add(words(short_name(marker.name) + " x, y, z [mm]", 3 * length_width(model) + 2));
+  const std::vector<bool> oriented = oriented_markers(model);
+  for (std::size_t m = 0; m < model.markers.size(); ++m) {
+    add(words(short_name(model.markers[m].name) + " x, y, z [mm]", 3 * length_width(model) + 2));
+    if (oriented[m]) add(fixed(short_name(model.markers[m].name) + " turned [deg]", turn_decimals, turn_width));
+  }
+  if (line) add(fixed(line_title(model, *line), turn_decimals, turn_width));
+  if (model.contact.any())
+    for (const FreeBody& body : model.bodies)
+      add(fixed("contact on " + short_name(body.name) + " [N]", value_decimals, load_width));
   add(words("iterations"));
   add(fixed("time [s]", 2, 8));
   add(last("status"));
   return table;
 }
 
-Row row_of(const Model& model, std::size_t step, const StepRecord& record) {
+Row row_of(const Model& model, std::size_t step, const StepRecord& record, std::optional<double> turn) {
   Row row{static_cast<std::int64_t>(step)};
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
@@ -212,26 +248,40 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record) {
     if (!load_title(model, actuator).empty()) row.push_back(of.slack ? Cell("slack") : Cell(of.multiplier));
     if (actuator.curve) row.push_back(of.by_curve ? Cell(*of.by_curve) : Cell("outside"));
   }
-  for (const Vec3& marker : record.markers)
-    row.emplace_back(point_text(marker, length_decimals(model), length_width(model)));
+  const std::vector<bool> oriented = oriented_markers(model);
+  for (std::size_t m = 0; m < record.markers.size(); ++m) {
+    row.emplace_back(point_text(record.markers[m], length_decimals(model), length_width(model)));
+    if (oriented[m]) row.push_back(turn_cell(record, m));
+  }
+  if (turn) row.emplace_back(*turn);
+  if (model.contact.any())
+    for (const FreeBody& body : model.bodies) row.push_back(contact_cell(model, body, record));
   row.push_back(record.answered() ? Cell("-") : Cell(std::int64_t{record.iterations}));
   row.insert(row.end(), {record.seconds, name_of(record.status)});
   if (record.unstable_modes > 0) row.back() = std::string(name_of(record.status)) + ", unstable";
   return row;
 }
 
-Table table_of_waypoints(const Model& model, std::size_t waypoints) {
+Table table_of_waypoints(const Model& model, std::size_t waypoints, const std::optional<MarkerLine>& line) {
   Table table{{words("waypoint", std::to_string(waypoints).size())}};
   add_commands(model, table);
+  for (const Actuator& actuator : model.actuators)
+    if (shows_measure(actuator))
+      table.columns.push_back(
+          fixed(short_name(actuator.name) + " " + measure_title(actuator), value_decimals, command_width));
+  if (line) table.columns.push_back(fixed(line_title(model, *line), turn_decimals, turn_width));
   table.columns.insert(
       table.columns.end(),
       {{.title = "error [mm]", .digits = 2}, words("equilibria"), fixed("time [s]", 2, 8), last("status")});
   return table;
 }
 
-Row row_of(std::size_t waypoint, const WaypointRecord& record) {
+Row row_of(const Model& model, std::size_t waypoint, const WaypointRecord& record, std::optional<double> turn) {
   Row row{static_cast<std::int64_t>(waypoint)};
   add_values(record.actuation, row);
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (shows_measure(model.actuators[a])) row.emplace_back(record.actuators[a].achieved);
+  if (turn) row.emplace_back(*turn);
   row.insert(row.end(), {record.error_mm, std::int64_t{record.equilibria}, record.seconds, name_of(record.end)});
   if (record.unstable_modes > 0) row.back() = std::string(name_of(record.end)) + ", unstable";
   return row;

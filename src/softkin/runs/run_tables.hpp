@@ -3,6 +3,7 @@
 #include <softkin/io/table/table.hpp>
 #include <softkin/kinematics/grasp.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/turns.hpp>
 
 namespace softkin::runs {
 
@@ -20,12 +21,16 @@ namespace softkin::runs {
 
 // What people see of a run record by record, as they come: the columns of its table, and a record as a row of it.
 
-/// steps: how many there will be
-[[nodiscard]] Table table_of_steps(const Model& model, std::size_t steps);
-[[nodiscard]] Row row_of(const Model& model, std::size_t step, const StepRecord& record);
+/// steps: how many there will be; line: whose turn has a column
+[[nodiscard]] Table table_of_steps(const Model& model, std::size_t steps, const std::optional<MarkerLine>& line = {});
+/// turn: of the line [degrees]; there where the table has it
+[[nodiscard]] Row row_of(const Model& model, std::size_t step, const StepRecord& record,
+                         std::optional<double> turn = {});
 
-[[nodiscard]] Table table_of_waypoints(const Model& model, std::size_t waypoints);
-[[nodiscard]] Row row_of(std::size_t waypoint, const WaypointRecord& record);
+[[nodiscard]] Table table_of_waypoints(const Model& model, std::size_t waypoints,
+                                       const std::optional<MarkerLine>& line = {});
+[[nodiscard]] Row row_of(const Model& model, std::size_t waypoint, const WaypointRecord& record,
+                         std::optional<double> turn = {});
 
 [[nodiscard]] Table table_of_walk(const Model& model);
 [[nodiscard]] Row row_of(const Model& model, const WalkRecord& record);

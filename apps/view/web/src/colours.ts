@@ -9,12 +9,18 @@ const diverging: Rgb[] = [[5, 72, 138], [68, 133, 194], [146, 190, 223], [225, 2
 // Okabe and Ito 2008.
 const regions = ['#56b4e9', '#e69f00', '#009e73', '#cc79a7', '#f0e442', '#0072b2', '#d55e00', '#999999'];
 
+// Of the scales, what is told from the ground: on a dark one their darkest ends are not.
+const onLight = {sequential: [0, 1], diverging: [0, 1]}, onDark = {sequential: [0.3, 1], diverging: [0.12, 0.88]};
+let used = onLight;
+
 export const regionColour = (i: number): string => regions[i % regions.length];
 
 /** share: from 0 to 1, else the nearer end. */
 export function colourAt(share: number, about: boolean): Rgb {
   const list = about ? diverging : cividis;
-  const x = Math.min(Math.max(Number.isFinite(share) ? share : 0, 0), 1) * (list.length - 1);
+  const [from, to] = about ? used.diverging : used.sequential;
+  const inside = Math.min(Math.max(Number.isFinite(share) ? share : 0, 0), 1);
+  const x = (from + (to - from) * inside) * (list.length - 1);
   const i = Math.min(Math.floor(x), list.length - 2), f = x - i;
   return [0, 1, 2].map((k) => list[i][k] + f * (list[i + 1][k] - list[i][k])) as Rgb;
 }
@@ -42,11 +48,18 @@ const linear = (c: number): number => {
 };
 
 const steps = 256;
-const tables = [false, true].map((about) => {
+const makeTables = (): Float32Array[] => [false, true].map((about) => {
   const table = new Float32Array(3 * steps);
   for (let i = 0; i < steps; ++i) colourAt(i / (steps - 1), about).forEach((c, k) => { table[3 * i + k] = linear(c); });
   return table;
 });
+let tables = makeTables();
+
+/** Colours are those of a dark ground, or of a light one. */
+export function colourFor(dark: boolean): void {
+  used = dark ? onDark : onLight;
+  tables = makeTables();
+}
 
 /** Colours of values, three numbers each. */
 export function paint(values: ArrayLike<number>, {low, high, about}: Scale, to: Float32Array): void {

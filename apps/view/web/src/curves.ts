@@ -1,7 +1,7 @@
 import type {Actuator} from './document';
 import type {Robot} from './robot';
 import {digits, plain} from './text';
-import {commandWords} from './words';
+import {commandWords, loadWords, measured} from './words';
 
 const width = 340, height = 150, left = 46, right = 10, top = 20, bottom = 32;
 const sweepPoints = 33, trailPoints = 400;
@@ -27,11 +27,12 @@ export function makeCurves(box: HTMLElement, robot: Robot): () => void {
   });
   return () => actuators.forEach((actuator, i) => {
     if (!actuator.load_unit) return;
-    const {commands, loads, step} = robot.pose, now: [number, number] = [commands[i], loads[i] ?? 0];
+    const {commands, loads, step} = robot.pose;
+    const none = actuator.load_unit === measured ? 1 : 0, now: [number, number] = [commands[i], loads[i] ?? none];
     const trail = trails[i], last = trail.at(-1);
     if (step < 0 && (robot.map || robot.link) && (!last || last[0] !== now[0] || last[1] !== now[1])) trail.push(now);
     if (trail.length > trailPoints) trail.shift();
-    const ran = steps.map((one): [number, number] => [one.commands[i], one.loads[i] ?? 0]);
+    const ran = steps.map((one): [number, number] => [one.commands[i], one.loads[i] ?? none]);
     const sweep: [number, number][] = [];
     for (let k = 0; robot.map && k < sweepPoints; ++k) {
       const command = actuator.low + k / (sweepPoints - 1) * (actuator.high - actuator.low);
@@ -46,7 +47,8 @@ interface Lists { ran: [number, number][]; sweep: [number, number][]; trail: [nu
 
 function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lists): void {
   const values = [...ran, ...sweep, ...trail, now].map(([, load]) => load);
-  const low = Math.min(0, ...values), high = Math.max(...values, low + 1e-9);
+  const zero = actuator.load_unit === measured ? 1 : 0;  // of a ratio nothing happens at 1
+  const low = Math.min(zero, ...values), high = Math.max(...values, low + 1e-9);
   const x = (c: number) => left + (c - actuator.low) / (actuator.high - actuator.low) * (width - left - right);
   const y = (l: number) => height - bottom - (l - low) / (high - low) * (height - top - bottom);
   const line = (list: [number, number][]) => list.map(([c, l]) => `${x(c).toFixed(1)},${y(l).toFixed(1)}`).join(' ');
@@ -55,7 +57,7 @@ function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lis
   const base = height - bottom;
   svg.replaceChildren(
     drawn('path', {class: 'axis', d: `M${left},${top}V${base}H${width - right}`}),
-    drawn('text', {x: left, y: 12}, `${plain(actuator.name)}: load [${actuator.load_unit}]`),
+    drawn('text', {x: left, y: 12}, `${plain(actuator.name)}: ${loadWords(actuator)} [${actuator.load_unit}]`),
     drawn('text', {x: left - 4, y: top + 5, 'text-anchor': 'end'}, digits(high, 3)),
     drawn('text', {x: left - 4, y: base, 'text-anchor': 'end'}, digits(low, 3)),
     drawn('text', {x: left, y: base + 13}, digits(actuator.low, 3)),

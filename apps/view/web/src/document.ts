@@ -8,7 +8,8 @@ export interface Actuator {
   name: string; kind: Kind; control: string; unit: string; low: number; high: number; rest: number; load_unit: string;
   flux_density?: number[];
 }
-export interface Marker { name: string; at: number[] }
+/** body: it is the center of a rigid body. */
+export interface Marker { name: string; at: number[]; body?: boolean }
 export interface CablePoint { vertices: number[]; weights: number[] }
 export interface Cable { actuator: number; points: CablePoint[] }
 /** What the program says of a shape beside its numbers. */

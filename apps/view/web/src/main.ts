@@ -1,5 +1,6 @@
 import './style.css';
 import {type ComparisonDocument, readComparison, showComparison} from './comparison';
+import {colourFor} from './colours';
 import {makeCurves} from './curves';
 import {readDocument, type RobotDocument, robotName} from './document';
 import {makeDrag, placeOfHandles} from './drag';
@@ -24,6 +25,7 @@ import {makeLabels, tellAtSliders, tellAtTop} from './top';
 function chooseTheme(dark: boolean): void {
   document.documentElement.dataset.theme = dark ? 'dark' : 'light';
   byId('theme').textContent = dark ? 'Light' : 'Dark';
+  colourFor(dark);
 }
 
 async function savePicture(robot: Robot, scene: RobotScene): Promise<void> {
@@ -123,13 +125,13 @@ function start(): void {
   const theme = (on: boolean) => {
     chooseTheme(on);
     scene.dress();
+    robot.onChange();  // in the colours of the theme
   };
   byId('theme').addEventListener('click', () => theme(document.documentElement.dataset.theme !== 'dark'));
   dark.addEventListener('change', () => theme(dark.matches));
   listenToKeys(scene, acts);
-  if (robot.steps.length) robot.showStep(robot.steps.length - 1);
-  else if (robot.map && !live) robot.command(read.actuators.map(({low, high}) => low + 0.6 * (high - low)));
-  else robot.onChange();
+  if (robot.steps.length === 1 && !robot.map) robot.showStep(0);  // all that there is to be seen
+  else robot.rest();
   live?.connect();
 }
 

@@ -62,6 +62,13 @@ export class Robot {
       /^(kPa|N)$/.test(output.unit) && output.name.startsWith(`${name}_`)) ?? -1);
   }
 
+  /** As the page opens; the map knows what weight does at rest. */
+  rest(): void {
+    const at = this.document.actuators.map((a) => Math.min(Math.max(a.rest, a.low), a.high));
+    if (!this.link && this.map && this.ask(at)) this.command(at);
+    else this.onChange();
+  }
+
   /** Someone can move it here. */
   get able(): boolean { return this.link ? this.link.state.control : this.map !== null && !this.document.live; }
 
@@ -173,7 +180,9 @@ export class Robot {
     this.onChange();
   }
 
+  /** A rigid body goes where the robot pushes it: its center is no marker to be led somewhere. */
   canReach(marker: number): boolean {
+    if (this.document.markers[marker]?.body) return false;
     return this.link ? this.able : this.able && this.markerOutputs[marker] >= 0;
   }
 }

@@ -41,6 +41,7 @@ export class RobotScene {
   readonly field: FieldArrow | null;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
+  private readonly ambient = new AmbientLight(0xffffff);
   private readonly body: Mesh<BufferGeometry, MeshLambertMaterial[]>;
   private readonly ghost: Mesh<BufferGeometry, MeshBasicMaterial>;
   private readonly around: Mesh[];
@@ -100,7 +101,7 @@ export class RobotScene {
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(-0.4, -1, 1.4);
     this.camera.add(sun);
-    this.scene.add(new AmbientLight(0xffffff, 1.3), this.camera, this.grid, this.body, this.ghost, ...this.around,
+    this.scene.add(this.ambient, this.camera, this.grid, this.body, this.ghost, ...this.around,
                    ...this.traces, ...this.cables.flatMap(({rim, core}) => [rim, core]), ...this.balls, this.target,
                    this.gap, this.wanted, this.handles.group);
     if (this.cloud) this.scene.add(this.cloud);
@@ -128,6 +129,7 @@ export class RobotScene {
   /** Colours of the theme. */
   dress(): void {
     this.scene.background = ofTheme('--stage');
+    this.ambient.intensity = document.documentElement.dataset.theme === 'dark' ? 2.2 : 1.3;  // shaded sides are seen
     for (const {rim} of this.cables) rim.material.color = ofTheme('--cable');
     this.ghost.material.color = ofTheme('--ghost');
     for (const ball of [...this.balls, this.target]) ball.material.color = ofTheme('--target');

@@ -39,7 +39,8 @@ export function targetWords(robot: Robot): {text: string; bad: boolean} {
 /** The target typed as numbers; returns what brings it up to date. */
 export function makeTarget(robot: Robot): () => void {
   const {markers, live} = robot.document, box = byId('target'), error = byId('error');
-  const able = markers.map((_, i) => i).filter((i) => live !== null || robot.canReach(i));
+  const able = markers.map((_, i) => i).filter((i) =>
+    live !== null ? !markers[i].body : robot.canReach(i));
   if (!able.length) return () => {};
   robot.selected = able[0];
   byId('target-section').hidden = false;

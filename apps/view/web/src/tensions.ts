@@ -16,12 +16,12 @@ export function makeTensions(robot: Robot, scene: RobotScene, box: HTMLElement, 
   const bar = element('canvas', {width: 100, height: 1, 'aria-hidden': 'true'}), most = element('span');
   const legend = element('p', {class: 'tension'}, 'Cables by tension: 0', bar, most);
   const context = bar.getContext('2d');
-  for (let i = 0; context && i < bar.width; ++i) {
-    context.fillStyle = `rgb(${colourAt(i / (bar.width - 1), false).join()})`;
-    context.fillRect(i, 0, 1, 1);
-  }
   box.append(legend);
   return () => {
+    for (let i = 0; context && i < bar.width; ++i) {
+      context.fillStyle = `rgb(${colourAt(i / (bar.width - 1), false).join()})`;
+      context.fillRect(i, 0, 1, 1);
+    }
     grow(robot.pose.loads);
     most.textContent = `${digits(highest, 3)} N`;
     legend.hidden = highest <= 0;

@@ -1,4 +1,5 @@
 import {robotName} from './document';
+import {type Box, boxAt, place, type Spot} from './labels';
 import {largestField} from './field';
 import type {LiveState} from './live';
 import {whyOff} from './live_panel';
@@ -24,9 +25,11 @@ export function tellAtTop(robot: Robot): void {
   byId('about-robot').textContent =
     `A soft robot moved by ${partsOf(robot)}. Its shape ${live ? 'is' : 'was'} computed; lengths are in mm.`;
   const movable = live || robot.map, field = largestField(robot.document.actuators) !== null;
+  const led = robot.document.markers.some((marker, i) => live ? !marker.body : robot.canReach(i));
+  const marked = led ? [`the round marker${field ? ', its arrows' : ' or its arrows'}`] : [];
+  const drag = [...marked, ...(field ? ['the tip of the field'] : [])].join(' or ');
   byId('hint').textContent = movable
-    ? `Move a slider, or drag the round marker${field ? ', its arrows or the tip of the field' : ' or its arrows'}: ` +
-      'the robot follows. ' +
+    ? `Move a slider${drag && `, or drag ${drag}`}: the robot follows. ` +
       'Drag beside it to look from elsewhere. Pale: the shape at rest.'
     : 'Play the steps, or drag here to look from elsewhere. Pale: the shape at rest.';
 }
@@ -53,23 +56,50 @@ export function makeLabels(robot: Robot, scene: RobotScene): () => void {
   box.append(...labels, ...letters);
   const field = makeFieldLabel(box, robot, scene);
   let touched = false;
+  const before: number[] = [];
   return () => {
     touched ||= robot.target !== null;
+    const spots = markers.map((_, i) => scene.project(robot.pose.markers[i]));
     labels.forEach((label, i) => {
-      const {x, y} = scene.project(robot.pose.markers[i]), name = plain(markers[i].name);
-      const reach = robot.canReach(i);
+      const name = plain(markers[i].name), reach = robot.canReach(i);
       const text = reach && !touched && i === robot.selected ? `${name}: drag me` : name;
       if (label.textContent !== text) label.textContent = text;
       label.classList.toggle('target', reach);
-      put(label, x + 14, y + 8);
     });
-    letters.forEach((letter, k) => {
+    const around = letters.flatMap((letter, k): Box[] => {
       const at = scene.handles.letterAt(k);
       letter.hidden = !at;
-      if (at) put(letter, at.x - 4, at.y - 9);
+      if (!at) return [];
+      put(letter, at.x - 4, at.y - 9);
+      return [boxAt({x: at.x - 4, y: at.y - 9}, letter.offsetWidth, letter.offsetHeight)];
     });
     field();
+    putApart(box, labels, spots, around, before, robot.selected);
   };
+}
+
+const radiusPx = 6;  // of a marker
+
+/** Beside what they name, the chosen one first; none covers another, a marker, or what else stands on the picture. */
+function putApart(box: HTMLElement, labels: HTMLElement[], spots: Spot[], letters: Box[], before: number[],
+                  selected: number): void {
+  const {left, top, width, height} = box.getBoundingClientRect();
+  const others = ['#hint', '#colour-bar', '#state', '#grid-size', '#labels .field'].flatMap((name): Box[] => {
+    const at = document.querySelector(name)?.getBoundingClientRect();
+    return at?.width ? [boxAt({x: at.left - left, y: at.top - top}, at.width, at.height)] : [];
+  });
+  const balls = spots.map(({x, y}) => boxAt({x: x - radiusPx, y: y - radiusPx}, 2 * radiusPx, 2 * radiusPx));
+  const order = [...labels.keys()].sort((a, b) => Number(b === selected) - Number(a === selected) || a - b);
+  const kept = order.map((i) => before[i] ?? 0);
+  const found = place(order.map((i) => ({at: spots[i], width: labels[i].offsetWidth, height: labels[i].offsetHeight})),
+                      [...letters, ...others, ...balls], {left: 0, top: 0, right: width, bottom: height}, kept);
+  order.forEach((i, k) => {
+    const at = found[k], label = labels[i];
+    before[i] = kept[k];
+    label.dataset.at = `${spots[i].x.toFixed(1)},${spots[i].y.toFixed(1)}`;
+    label.classList.toggle('crowded', !at);
+    if (at) put(label, at.x, at.y);
+  });
 }
 
 /** The size of the field, at the tip of its arrow, where neither the arrow nor the robot is. */

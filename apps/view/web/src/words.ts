@@ -9,8 +9,14 @@ export const kindWords: Record<Kind, string> = {
 export const drives = ({kind}: Actuator): boolean => kind !== 'motion' && kind !== 'force' && kind !== 'hold';
 
 /** What is commanded, as a unit: "× rest length", "kPa". */
-export function commandWords({unit, control}: Actuator): string {
+export function commandWords({unit, control}: Pick<Actuator, 'unit' | 'control'>): string {
   return unit || (/^(length|area|volume)$/.test(control) ? `× rest ${control}` : '');
 }
 
-export const loadWords = ({kind}: Actuator): string => kind === 'cable' ? 'tension' : 'pressure';
+/** Of what is commanded by its load, the volume or area that comes of it. */
+export const measured = '× rest';
+
+export function loadWords({kind, load_unit: unit}: Actuator): string {
+  if (unit === measured) return kind === 'dea' ? 'area' : 'volume';
+  return {cable: 'tension', dea: 'voltage'}[kind as string] ?? 'pressure';
+}

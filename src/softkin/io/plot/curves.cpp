@@ -63,7 +63,8 @@ PlotPanel projection(const std::vector<SpaceCurve>& curves, int p, bool legend) 
 
 StepCurve command_curve(const Actuator& actuator) {
   const std::string unit = command_unit(actuator);
-  return {actuator.name, unit.empty() ? "-" : unit, {}};
+  // what is done to the surroundings is no force that they answer with
+  return {(drives(actuator) ? "" : "command ") + actuator.name, unit.empty() ? "-" : unit, {}};
 }
 
 StepAxis step_axis(const std::vector<std::optional<double>>& times, const std::vector<StepCurve>& commands) {

@@ -1,0 +1,112 @@
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <softkin/core/error.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/runs/turns.hpp>
+
+namespace softkin::runs {
+
+namespace {
+
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
+
+/// A place given by coordinates is a point of one element, and turns with nothing that users would know.
+bool is_of_one_element(const Model& model, const EmbeddedPoint& point) {
+  constexpr std::size_t most = 10;  // of a tetrahedron of order 2
+  if (point.vertices.size() > most) return false;
+  const auto has = [](const auto& list, Index v) { return std::find(list.begin(), list.end(), v) != list.end(); };
+  const auto all = [&](const auto& belongs) {
+    return std::all_of(point.vertices.begin(), point.vertices.end(), belongs);
+  };
+  for (std::size_t t = 0; t < model.tetrahedra.size(); ++t)
+    if (all([&](Index v) {
+          return has(model.tetrahedra[t], v) || (!model.edge_nodes.empty() && has(model.edge_nodes[t], v));
+        }))
+      return true;
+  return std::any_of(model.prisms.begin(), model.prisms.end(),
+                     [&](const Prism& prism) { return all([&](Index v) { return has(prism, v); }); });
+}
+
+Mat3 moments(const EmbeddedPoint& point, const Points& here, const Points& there) {
+  const Vec3 a = point.at(here), b = point.at(there);
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; i < point.vertices.size(); ++i) {
+    const Index v = point.vertices[i];
+    sum += std::abs(point.weights[i]) * (there.row(v).transpose() - b) * (here.row(v) - a.transpose());
+  }
+  return sum;
+}
+
+/// Do its vertices at rest span a plane, so that one rotation lays them best?
+bool spans_a_plane(const Model& model, const EmbeddedPoint& point) {
+  constexpr double flat = 1e-9;  // of squares of lengths
+  const Eigen::JacobiSVD<Mat3> svd(moments(point, model.rest, model.rest));
+  return svd.singularValues()[1] > flat * svd.singularValues()[0];
+}
+
+double turn_of(const EmbeddedPoint& point, const Points& rest, const Points& positions) {
+  const Eigen::JacobiSVD<Mat3> svd(moments(point, rest, positions), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+  const Mat3 rotation = svd.matrixU() * Vec3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+  return degrees_per_radian * Eigen::AngleAxisd(rotation).angle();
+}
+
+}  // namespace
+
+double TurnMeter::next(const Vec3& line) {
+  constexpr double rounding = 1e-9;  // below it the axis of a turn is noise
+  const Vec3 turned = start_.cross(line);
+  if (axis_.isZero() && turned.norm() > rounding * start_.norm() * line.norm()) axis_ = turned.normalized();
+  const double turn = degrees_per_radian * std::atan2(axis_.dot(turned), start_.dot(line));
+  last_ = turn + 360 * std::round((last_ - turn) / 360);
+  return last_;
+}
+
+Vec3 MarkerLine::in(const std::vector<Vec3>& markers) const {
+  return markers.at(static_cast<std::size_t>(to)) - markers.at(static_cast<std::size_t>(from));
+}
+
+Vec3 MarkerLine::at_rest(const Model& model) const {
+  return model.markers.at(static_cast<std::size_t>(to)).point.at(model.rest) -
+         model.markers.at(static_cast<std::size_t>(from)).point.at(model.rest);
+}
+
+std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names) {
+  if (names.empty()) return std::nullopt;
+  std::vector<std::string> known;
+  for (const Marker& marker : model.markers) known.push_back(marker.name);
+  MarkerLine line;
+  for (const auto& [name, index] : {std::pair{names.at(0), &line.from}, std::pair{names.at(1), &line.to}}) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      throw InvalidInput("--turn: there is no marker " + excerpt(name) +
+                         (known.empty() ? "; the robot has none" : suggest_name(name, known)));
+    *index = found - known.begin();
+  }
+  if (!(line.at_rest(model).norm() > 1e-9 * model.diagonal_mm))
+    throw InvalidInput("--turn: markers '" + names[0] + "' and '" + names[1] +
+                       "' are at one place at rest, so no line goes from one to the other");
+  return line;
+}
+
+std::vector<bool> oriented_markers(const Model& model) {
+  std::vector<bool> oriented;
+  for (const Marker& marker : model.markers)
+    oriented.push_back(!is_of_one_element(model, marker.point) && spans_a_plane(model, marker.point));
+  return oriented;
+}
+
+std::vector<double> marker_turns(const Model& model, const Points& positions) {
+  const std::vector<bool> oriented = oriented_markers(model);
+  std::vector<double> turns;
+  for (std::size_t m = 0; m < model.markers.size(); ++m)
+    turns.push_back(oriented[m] ? turn_of(model.markers[m].point, model.rest, positions)
+                                : std::numeric_limits<double>::quiet_NaN());
+  return turns;
+}
+
+}  // namespace softkin::runs

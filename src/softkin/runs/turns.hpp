@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <softkin/core/types.hpp>
+#include <softkin/io/table/table.hpp>
+#include <softkin/model/model.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin::runs {
+
+/// By how much a line has turned while it went from shape to shape. It may exceed 180 degrees: the axis is that of the
+/// first turn, and from shape to shape the line turns by less than 180.
+class TurnMeter {
+ public:
+  /// start: the line that turns are measured from, of some length
+  explicit TurnMeter(const Vec3& start) : start_(start) {}
+
+  /// [degrees]
+  double next(const Vec3& line);
+
+ private:
+  Vec3 start_, axis_ = Vec3::Zero();
+  double last_ = 0;
+};
+
+/// The line from one marker to another, whose turn from rest is shown.
+struct MarkerLine {
+  Index from = -1, to = -1;  // of Model::markers
+
+  [[nodiscard]] Vec3 in(const std::vector<Vec3>& markers) const;
+  [[nodiscard]] Vec3 at_rest(const Model& model) const;
+};
+
+/// names   none, or two markers
+/// throws  InvalidInput, naming the option --turn: no such marker, or two that are at one place at rest
+[[nodiscard]] std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names);
+
+/// How far each marker that is a region or a body has turned from rest: the angle of the rotation that lays its
+/// vertices, weighted as in the marker's mean, best onto where they are.
+///
+/// positions  #V by 3 [mm]
+/// returns    per marker, 0 to 180 [degrees]; not finite where it is a point of the body, or its vertices are on a line
+/// source     W. Kabsch, Acta Cryst. A32, 1976
+[[nodiscard]] std::vector<double> marker_turns(const Model& model, const Points& positions);
+
+/// Which markers have an orientation, by which marker_turns knows their turn.
+[[nodiscard]] std::vector<bool> oriented_markers(const Model& model);
+
+}  // namespace softkin::runs
