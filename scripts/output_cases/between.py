@@ -7,13 +7,15 @@ UNITS = {"mm": "mm", "kPa": "kPa", "N": "N", "MPa": "MPa", "deg": "degrees", "kV
 # what says how an answer was found, and how well
 PASSED = {"seconds", "elapsed_s", "iterations", "residual", "residual_N", "pull_N", "step_mm", "tolerance_mm", "history",
           "estimated_error_mm", "predicted_mm", "corrected_mm", "projections", "factorisations", "factorisations_in_double",
-          "shape_fingerprint", "instruction_set", "threads", "softkin", "at_mm", "where_mm", "element",
-          "volume_shares"}  # the last one counts elements on both sides of bounds
+          "shape_fingerprint", "instruction_set", "threads", "softkin", "at_mm", "where_mm", "element", "region",
+          "volume_shares", "bin_edges"}  # the last two count elements on both sides of bounds
 PLACES = {"markers"}  # [mm], though their keys do not say so
 
 
 def unit_of(key, within):
     """The unit that a key names after its last underscore, else that of what it stands in; none: "-"."""
+    if key.endswith("_N_mm"):
+        return "N mm"
     end = re.search(r"_([A-Za-z]+)$", key)
     if end and end.group(1) in UNITS:
         return UNITS[end.group(1)]
@@ -21,8 +23,10 @@ def unit_of(key, within):
 
 
 def leaves(value, unit="-", path=""):
-    """(path, unit, value) of every number and text of a report that is an answer."""
-    if isinstance(value, dict):
+    """(path, unit, value) of every number and text of a report that is an answer: one that did not converge is none."""
+    if isinstance(value, dict) and "iterations" in value and value.get("status") not in ("converged", None):
+        yield f"{path}.status", unit, value["status"]
+    elif isinstance(value, dict):
         for key, inner in value.items():
             if key not in PASSED:
                 yield from leaves(inner, unit_of(key, unit), f"{path}.{key}")
