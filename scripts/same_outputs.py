@@ -4,6 +4,9 @@
 Runs every case of scripts/output_cases with both programs, each in a fresh folder, and compares standard output,
 standard error, exit codes and all files that are there in the end, byte for byte but for what a clock gives. Needs Python
 alone.
+
+With --targets one program runs its examples with each of these instruction sets, and what is told is by how much the
+answers in their reports differ from those of the first, by unit. Exit code 1 then: words or exit codes differ.
 """
 
 import argparse
@@ -21,6 +24,7 @@ import time
 
 sys.dont_write_bytecode = True
 from output_cases import all_cases
+from output_cases.between import compared
 from output_cases.normal import normal_text, rounded_vtu
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -33,6 +37,8 @@ def copy_examples(case, folder):
     """Copies what a case names below examples and docs, so that paths are those of the checkout."""
     named = {match for words in case.words() for match in re.findall(r"examples/\w+|docs/(?:scenes|images/measure)",
                                                                      words)}
+    if "examples/two_finger_gripper" in named:  # its fingers
+        named.add("examples/pneumatic_finger")
     if "docs/scenes" in named:
         named |= {"examples/pneumatic_finger", "examples/two_material_bar"}
     for name in sorted(named):
@@ -40,7 +46,7 @@ def copy_examples(case, folder):
             shutil.copytree(ROOT / name, folder / name)
 
 
-def run_case(program, case, folder):
+def run_case(program, case, folder, target=None):
     """Everything that the case leaves: by name the bytes of outputs and files, and the last exit code."""
     folder.mkdir(parents=True)
     copy_examples(case, folder)
@@ -48,6 +54,8 @@ def run_case(program, case, folder):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     environment = {"PATH": os.environ.get("PATH", ""), "LC_ALL": "C", "HOME": str(folder)}
+    if target:
+        environment["SOFTKIN_TARGET"] = target
     left, code = {}, None
     for number, step in enumerate(case.steps, 1):
         if callable(step):
@@ -151,6 +159,35 @@ def check(case, programs, folder, digits, keep):
     return case.name, lines, seconds
 
 
+def between_targets(program, targets, cases, base):
+    """Prints the largest differences of every case; returns the exit code."""
+    largest, wrong = {}, 0
+    for number, case in enumerate(cases):
+        left = {}
+        for target in targets:
+            folder = base / f"{number:03d}" / target
+            left[target], code = run_case(program, case, folder, target)
+            if case.ends is not None and code != case.ends:
+                errors = [text.decode().strip() for name, text in left[target].items() if name.endswith("standard error")]
+                print(f"{case.name}: {target}: ends with {code}, not with {case.ends}: {errors[-1:]}")
+                wrong += 1
+            shutil.rmtree(folder)
+        for target in targets[1:]:
+            by_unit, other = compared(left[targets[0]], left[target])
+            told = ", ".join(f"{apart:.1e} {unit.replace('-', 'without unit')} ({share:.0e})" for unit, (apart, share) in sorted(by_unit.items()))
+            print(f"{case.name}: {target}: {told or 'the same numbers'}", *("  " + line for line in other), sep="\n",
+                  flush=True)
+            wrong += bool(other)
+            for unit, (apart, share) in by_unit.items():
+                most = largest.get((target, unit), (0, 0))
+                largest[target, unit] = max(most[0], apart), max(most[1], share)
+    for (target, unit), (apart, share) in sorted(largest.items()):
+        of = "of itself, or of 1" if unit == "-" else "of the largest of its report, or of 1"
+        print(f"{target} beside {targets[0]}: at most {apart:.1e} {unit.replace('-', 'without unit')}; at most {share:.0e} {of}")
+    print(f"{len(cases)} cases, {wrong} with other words or exit codes")
+    return 1 if wrong else 0
+
+
 def measures(program):
     return pathlib.Path(program).with_name("softkin-measure").exists()
 
@@ -169,7 +206,9 @@ def chosen_cases(options, programs):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old", metavar="OLD_PROGRAM")
-    parser.add_argument("new", metavar="NEW_PROGRAM")
+    parser.add_argument("new", metavar="NEW_PROGRAM", nargs="?", help="not with --targets")
+    parser.add_argument("--targets", metavar="A,B,...",
+                        help="instruction sets as SOFTKIN_TARGET has them, such as avx512,avx2,sse4")
     parser.add_argument("--only", metavar="PATTERN", action="append",
                         help="cases whose name has this; * and ? stand for any")
     parser.add_argument("--jobs", metavar="N", type=int, default=1, help="cases at once (default: 1)")
@@ -180,8 +219,12 @@ def main():
     parser.add_argument("--list", action="store_true", help="print the names of the cases and run nothing")
     parser.add_argument("--slow", metavar="N", type=int, default=0, help="name the N slowest cases")
     options = parser.parse_args()
-    programs = [str(pathlib.Path(program).resolve()) for program in (options.old, options.new)]
+    if bool(options.targets) == bool(options.new):
+        parser.error("give two programs, or one and --targets")
+    programs = [str(pathlib.Path(program).resolve()) for program in (options.old, options.new) if program]
     cases = chosen_cases(options, programs)
+    if options.targets:
+        cases = [case for case in cases if case.name.startswith(("example ", "scene "))]
     if options.list:
         print(*(f"{number:03d}  {case.name}" for number, case in enumerate(cases)), sep="\n")
         return 0
@@ -195,6 +238,8 @@ def main():
     base = options.keep.resolve() if options.keep else pathlib.Path(tempfile.mkdtemp(prefix="same_outputs_"))
     wrong, took = 0, []
     try:
+        if options.targets:
+            return between_targets(programs[0], options.targets.split(","), cases, base)
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             def checked(number):
                 return check(cases[number], programs, base / f"{number:03d}", options.digits, options.keep)

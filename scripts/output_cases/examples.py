@@ -15,6 +15,14 @@ SCENES = {
     "examples/three_tendon_finger/three_tendon_finger.yaml": "tendon2=0.9",
     "examples/two_material_bar/two_material_bar.yaml": "",
 }
+PHYSICAL = {  # those of the physical formulation alone
+    "examples/dea_crawler/voltage/crawler.yaml": "skin=14kV",
+    "examples/magnetic_cantilever/magnetic_cantilever.yaml": "field=10",
+    "examples/magnetic_crawler/magnetic_crawler.yaml": "field_x=0.5",
+    "examples/pneumatic_finger/cycles/viscous_finger.yaml": "air=10",
+    "examples/three_tendon_finger/creep/creeping_finger.yaml": "",
+    "examples/two_finger_gripper/two_finger_gripper.yaml": "left.air=1.1 --set right.air=1.1",
+}
 DOCS = {"bar_10_30": "", "bar_7_08": "", "block_neo_hookean": "", "finger_order_1": "air=1.2",
         "finger_order_1_incompressible": "air=1.2", "finger_pressure": "air=200kPa", "finger_weight_1": "air=1.2",
         "finger_weight_20": "air=1.2"}
@@ -34,6 +42,9 @@ def shapes():
         yield Case(f"example {name} physical", [f"fk {scene}{setting(command)} --report r.json -o s.vtu"])
         yield Case(f"example {name} target",
                    [f"fk {scene}{setting(command)} --formulation target-shape --report r.json --image i.png"])
+    for scene, command in PHYSICAL.items():
+        name = scene.removeprefix("examples/").removesuffix(".yaml")
+        yield Case(f"example {name}", [f"fk {scene}{setting(command)} --report r.json -o s.vtu"])
     for name, command in DOCS.items():
         yield Case(f"scene {name}", [f"fk docs/scenes/{name}.yaml{setting(command)} --report r.json -o s.vtu"])
     yield Case("scene block_svk", ["fk docs/scenes/block_svk.yaml --report r.json"])
