@@ -139,9 +139,9 @@ bool is_commanded_by_volume(const Actuator& actuator) {
   return actuator.kind == ActuatorKind::pneumatic && actuator.control == Control::ratio;
 }
 
-class Reader {
+class CommandReader {
  public:
-  Reader(const Model& model, const std::string& file) : model_(model), table_(read_csv(file)) {
+  CommandReader(const Model& model, const std::string& file) : model_(model), table_(read_csv(file)) {
     commands_.file = file;
     commands_.commanded.assign(model.actuators.size(), false);
     commands_.pressure_known.assign(model.actuators.size(), false);
@@ -267,7 +267,7 @@ std::vector<ActuationStep> read_actuation_path(const Model& model, const std::st
 }
 
 Commands read_commands(const Model& model, const std::string& file, const std::string& report) {
-  return Reader(model, file).read(report);
+  return CommandReader(model, file).read(report);
 }
 
 std::vector<std::size_t> chambers_without_pressures(const Model& model, const Commands& commands,

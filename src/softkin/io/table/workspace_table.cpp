@@ -35,9 +35,9 @@ void add_number(std::string& line, double value) {
   line.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), printed).ptr);
 }
 
-class Reader {
+class SampleReader {
  public:
-  Reader(const std::filesystem::path& path, const WorkspaceColumns& columns)
+  SampleReader(const std::filesystem::path& path, const WorkspaceColumns& columns)
       : file_(path.string()), columns_(columns), content_(read_file(path)) {}
 
   WorkspaceTable read() {
@@ -212,7 +212,7 @@ const char* workspace_status(Status status) {
 }
 
 WorkspaceTable read_workspace(const std::filesystem::path& path, const WorkspaceColumns& columns) {
-  return Reader(path, columns).read();
+  return SampleReader(path, columns).read();
 }
 
 }  // namespace softkin
