@@ -268,7 +268,8 @@ int run_fk(const FkOptions& options) {
   const std::vector<ActuationStep> steps = asked_steps(model, options);
   if (steps.front().time) check_times(model, options.path, options, options);
   (void)runs::read_marker_line(model, options.turn);  // before anything is written
-  const std::vector<Output> outputs = options.outputs(steps.size());
+  std::vector<Output> outputs = options.outputs(steps.size());
+  if (options.resume) leave_to_resume(outputs, options.report);
   check_outputs(outputs, inputs, options.may_replace);
   if (steps.front().time && !options.start.empty())
     throw InvalidInput(

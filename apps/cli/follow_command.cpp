@@ -169,7 +169,8 @@ int run_follow(const FollowOptions& options) {
   const std::vector<std::string> doubts = doubts_about(model, path);
   const std::optional<runs::MarkerLine> line_turned = runs::read_marker_line(model, options.turn);
   if (options.max_step_mm > 0) path = densified(path, options.max_step_mm);
-  const std::vector<Output> outputs = options.outputs(path.waypoints.size());
+  std::vector<Output> outputs = options.outputs(path.waypoints.size());
+  if (options.resume) leave_to_resume(outputs, options.files().run().report);
   check_outputs(outputs, inputs, options.may_replace);
   TrajectoryOptions trajectory = options.trajectory();
   if (!options.workspace.empty())

@@ -201,6 +201,11 @@ std::vector<Output> asked_outputs(const std::vector<std::pair<std::string, std::
   return outputs;
 }
 
+void leave_to_resume(std::vector<Output>& outputs, const std::filesystem::path& file) {
+  for (Output& output : outputs)
+    if (output.file == file) output.is_own = [](const std::filesystem::path&) { return true; };
+}
+
 void check_view(const ShowOptions& options) {
   if (options.view.empty()) return;
   if (options.image.empty()) throw InvalidInput("--view is the view of the picture: it needs --image F.png");

@@ -61,6 +61,8 @@ void check_extension(const std::string& option, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& endings);
 /// Those of them that are given.
 [[nodiscard]] std::vector<Output> asked_outputs(const std::vector<std::pair<std::string, std::string>>& files);
+/// What --resume reads before it goes on: it refuses the file itself, with the reason, where that is none of the run's.
+void leave_to_resume(std::vector<Output>& outputs, const std::filesystem::path& file);
 /// Throws InvalidInput where there is a view without a picture, or it is no direction.
 void check_view(const ShowOptions& options);
 

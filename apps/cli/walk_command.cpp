@@ -143,7 +143,8 @@ int run_walk(const WalkOptions& options) {
   const Model model = asked_robot(options, inputs);
   std::vector<runs::GaitStep> steps = runs::repeated(
       model, options.gait, read_actuation_path(model, options.gait, Settings(model.actuators.size())), options.cycles);
-  const std::vector<Output> outputs = options.outputs(steps.size());
+  std::vector<Output> outputs = options.outputs(steps.size());
+  if (options.resume) leave_to_resume(outputs, options.files().run().report);
   check_outputs(outputs, inputs, options.may_replace);
   line.show(-1, "assembling");
   runs::WalkRun walk(model, {options.scene, options.gait, std::move(steps), options.cycles}, options.statics(),

@@ -129,8 +129,10 @@ class WorkspaceRun {
 
   /// Rank 0: before anything is written.
   void begin() {
-    check_outputs(options_.outputs(), asked_.inputs, options_.may_replace);
-    folders_.emplace(options_.outputs());
+    std::vector<Output> outputs = options_.outputs();
+    if (options_.resume) leave_to_resume(outputs, options_.output);
+    check_outputs(outputs, asked_.inputs, options_.may_replace);
+    folders_.emplace(outputs);
     file_.emplace(options_.output, asked_.head, columns_, asked_.plan, options_.resume);
     if (options_.resume) remove_torn_files(options_.outputs());
     say(options_.scene + ": " + summary(asked_.model, options_.solver_name));

@@ -11,7 +11,7 @@ namespace {
 using namespace softkin::testing;
 using nlohmann::json;
 
-const std::string loads = replaced(loaded_scene(), "range: [-100, 3000]", "range: [0, 200]");
+const std::string low_loads = replaced(loaded_scene(), "range: [-100, 3000]", "range: [0, 200]");
 
 /// The same report as that of a scene with the numbers in it, but for what it says of the change and of time.
 TEST(OtherNumbers, AreThoseOfASceneThatHasThem) {
@@ -54,7 +54,7 @@ TEST(OtherNumbers, WrongNamesAreRefusedWithTheNearest) {
 }
 
 TEST(OtherNumbers, BlanksInSettingsArePassedOver) {
-  const BlockFolder folder(loads);
+  const BlockFolder folder(low_loads);
   const auto air = [&](const std::string& setting) {
     const ProgramResult result = run_fk(folder.scene, {"--set", setting, "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -64,7 +64,7 @@ TEST(OtherNumbers, BlanksInSettingsArePassedOver) {
 }
 
 TEST(OtherNumbers, OtherUnitsAreConverted) {
-  const BlockFolder folder(loads);
+  const BlockFolder folder(low_loads);
   expect_refused(folder, {"--set", "air=0.5bar"}, "0.5bar is 50kPa");
   expect_refused(folder, {"--set", "air=50000Pa"}, "50000Pa is 50kPa");
   expect_refused(folder, {"--set", "air=10 psi"}, "10 psi is 68.9476kPa");
@@ -77,12 +77,12 @@ TEST(OtherNumbers, OtherUnitsAreConverted) {
 }
 
 TEST(OtherNumbers, RangesOfPressureInPascalAreDoubted) {
-  const BlockFolder folder(replaced(loads, "[0, 200]", "[0, 60000]"));
+  const BlockFolder folder(replaced(low_loads, "[0, 200]", "[0, 60000]"));
   const ProgramResult result = run_fk(folder.scene, {});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   expect_words(result.output, {"warning: The range of chamber 'air' goes to 60000 kPa",
                                "taken as Pa it would be 60 kPa", "1 bar is 100 kPa"});
-  const BlockFolder usual(loads);
+  const BlockFolder usual(low_loads);
   EXPECT_EQ(run_fk(usual.scene, {}).output.find("The range of chamber"), std::string::npos);
 }
 

@@ -45,7 +45,7 @@ class OwnFileOnDisk : public ::testing::Test {
     folder_ = name;
   }
   ~OwnFileOnDisk() override { fs::remove_all(folder_); }
-  [[nodiscard]] fs::path write(const char* name, const std::string& content) const {
+  fs::path write(const char* name, const std::string& content) const {
     std::ofstream(folder_ / name) << content;
     return folder_ / name;
   }

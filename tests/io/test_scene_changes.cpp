@@ -25,7 +25,7 @@ RobotSpec with(const std::string& text, const std::vector<std::string>& changes)
   return parse_scene(*root, "arm.yaml", fake_files());
 }
 
-std::string refusal(const std::string& change, const std::string& within = "") {
+std::string change_refusal(const std::string& change, const std::string& within = "") {
   try {
     const auto root = scene::changed(scene::parse_yaml(arm, "arm.yaml"), "--change", change, within);
     (void)parse_scene(*root, "arm.yaml", fake_files());
@@ -35,8 +35,8 @@ std::string refusal(const std::string& change, const std::string& within = "") {
   return "";
 }
 
-void expect_refused(const std::string& change, const std::vector<std::string>& words) {
-  const std::string text = refusal(change);
+void expect_change_refused(const std::string& change, const std::vector<std::string>& words) {
+  const std::string text = change_refusal(change);
   for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << word << " is not in: " << text;
 }
 
@@ -61,20 +61,21 @@ TEST(SceneChanges, AliasesKeepTheirOwn) {
 }
 
 TEST(SceneChanges, WrongPathsNameTheNearest) {
-  expect_refused("materials.bady.youngs_modulus=1",
-                 {"--change 'materials.bady.youngs_modulus=1'", "no 'bady' in 'materials'", "did you mean 'body'?"});
-  expect_refused("materals.all.youngs_modulus=1", {"no 'materals' in the scene", "did you mean 'materials'?"});
-  expect_refused("materials.all.youngs_moduls=1",
-                 {"--change 'materials.all.youngs_moduls=1'", "unknown key 'youngs_moduls'", "'youngs_modulus'"});
-  expect_refused("materials.body.youngs_modulus=1", {"several of the name 'body'", "number of the one that is meant"});
-  expect_refused("materials.all.youngs_modulus.x=1", {"'youngs_modulus' has no parts"});
-  expect_refused("materials.all=1", {"say which number", "materials.all.KEY=VALUE"});
-  expect_refused("materials.all.youngs_modulus=-1", {"--change", "must be greater than 0, not -1"});
-  expect_refused("materials.all.youngs_modulus=soft", {"--change", "must be a finite number"});
-  expect_refused("materials.all.youngs_modulus=", {"the value is missing"});
-  expect_refused("materials.all.youngs_modulus", {"expected PATH=VALUE"});
-  expect_refused("gravity.4=1", {"no '4' in 'gravity'"});
-  EXPECT_NE(refusal("bady.youngs_modulus=1", "materials").find("did you mean 'body'?"), std::string::npos);
+  expect_change_refused("materials.bady.youngs_modulus=1", {"--change 'materials.bady.youngs_modulus=1'",
+                                                            "no 'bady' in 'materials'", "did you mean 'body'?"});
+  expect_change_refused("materals.all.youngs_modulus=1", {"no 'materals' in the scene", "did you mean 'materials'?"});
+  expect_change_refused("materials.all.youngs_moduls=1", {"--change 'materials.all.youngs_moduls=1'",
+                                                          "unknown key 'youngs_moduls'", "'youngs_modulus'"});
+  expect_change_refused("materials.body.youngs_modulus=1",
+                        {"several of the name 'body'", "number of the one that is meant"});
+  expect_change_refused("materials.all.youngs_modulus.x=1", {"'youngs_modulus' has no parts"});
+  expect_change_refused("materials.all=1", {"say which number", "materials.all.KEY=VALUE"});
+  expect_change_refused("materials.all.youngs_modulus=-1", {"--change", "must be greater than 0, not -1"});
+  expect_change_refused("materials.all.youngs_modulus=soft", {"--change", "must be a finite number"});
+  expect_change_refused("materials.all.youngs_modulus=", {"the value is missing"});
+  expect_change_refused("materials.all.youngs_modulus", {"expected PATH=VALUE"});
+  expect_change_refused("gravity.4=1", {"no '4' in 'gravity'"});
+  EXPECT_NE(change_refusal("bady.youngs_modulus=1", "materials").find("did you mean 'body'?"), std::string::npos);
 }
 
 /// Nominal stress [MPa] of the scene's neo-hookean law in simple tension: the sides are free, which fixes their stretch.

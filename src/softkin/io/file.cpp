@@ -115,7 +115,7 @@ void check_own(const Output& output, const fs::path& ours) {
   if (!fs::exists(ours, failure)) return;
   bool own = false;
   try {
-    own = is_own_file(ours) || (ours == output.file && output.is_own && output.is_own(ours));
+    own = is_own_file(ours) || (output.is_own && output.is_own(ours));
   } catch (const InvalidInput&) {  // what cannot be read is not known
   }
   if (!own)

@@ -51,8 +51,8 @@ const Silicone& silicone(const std::string& name, const Origin& origin) {
     if (each.name == name) return each;
     names.push_back(each.name);
   }
-  throw InvalidInput(origin, "there is no silicone " + excerpt(name) + " that softkin knows" +
-                                 suggest_name(name, names) + "; docs/scene.md has the table");
+  throw InvalidInput(origin, "softkin knows no silicone " + excerpt(name) + " (docs/scene.md has a table)" +
+                                 suggest_name(name, names));
 }
 
 }  // namespace softkin
