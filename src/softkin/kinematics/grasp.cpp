@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <softkin/core/text.hpp>
 #include <softkin/kinematics/grasp.hpp>
 #include <softkin/model/names.hpp>
-#include <tuple>
 #include <utility>
 
 namespace softkin {
@@ -14,8 +12,8 @@ namespace {
 constexpr double begin_share = 0.1;   // of what presses on the body, to begin with
 constexpr double least_share = 1e-6;  // the same, of the largest that may be commanded
 constexpr double gravity = 9.81;      // m/s^2
-constexpr double accuracy = 1e-4;     // of the largest pull
-constexpr double approach = 0.8;      // of the way to the maximum that is foretold
+constexpr double accuracy = 1e-3;     // of the largest pull
+constexpr double much = 0.25;         // of the normal forces: where so much slips, it is that which ends a pull
 
 const FreeBody& body_at(const Model& model, Index body) {
   if (body < 0 || body >= static_cast<Index>(model.bodies.size()))
@@ -100,7 +98,7 @@ std::vector<PullDirection> axes_to_pull_along() {
 const char* what_then(const Pull& pull) {
   if (pull.status == Status::converged) return "holds more";
   if (pull.status != Status::limit) return name_of(pull.status);
-  return pull.pressed.slipping.value_or(0) >= 0.5 ? "slips" : "gives way";
+  return pull.pressed.slipping.value_or(0) >= much ? "slips" : "gives way";
 }
 
 Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3& direction, double force_N) {
@@ -121,29 +119,7 @@ double most_pull(const Model& model, Index body) {
   return 0;
 }
 
-void LoadMaximum::add(double load, double way) {
-  points_.push_back({points_.empty() ? way : points_.back().way + way, load});
-  if (points_.size() > 3) points_.erase(points_.begin());
-}
-
-std::optional<double> LoadMaximum::estimate() const {
-  if (points_.size() < 3) return std::nullopt;
-  const auto& [a, b, c] = std::tie(points_[0], points_[1], points_[2]);
-  const double before = (b.load - a.load) / (b.way - a.way), last = (c.load - b.load) / (c.way - b.way);
-  const double bend = (last - before) / (c.way - a.way);
-  if (!(bend < 0)) return std::nullopt;
-  const double slope = last + bend * (c.way - b.way);  // at the last one
-  return slope > 0 ? c.load + slope * slope / (-4 * bend) : c.load;
-}
-
 namespace {
-
-/// The root mean square of the moves of a body's vertices [mm].
-double way_of(const FreeBody& body, const Points& from, const Points& to) {
-  double sum = 0;
-  for (const Index v : body.vertices) sum += (to.row(v) - from.row(v)).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(body.vertices.size()));
-}
 
 /// From equilibrium to equilibrium below the largest pull.
 class Pulling {
@@ -156,83 +132,64 @@ class Pulling {
         body_(body),
         options_(options),
         progress_(progress),
-        pull_(pull) {
-    maximum_.add(0, 0);
-  }
+        pull_(pull) {}
 
   void to_limit(double first, double most) {
     double step = first;
-    for (int tries = 0; tries < most_tries; ++tries) {
-      const double force = next(step, most);
-      const double before = pull_.force_N;
-      const Outcome outcome = go(force, usual_iterations);
+    bool missed = false;
+    for (;;) {
+      const double force = std::min(most, pull_.force_N + step);
+      const Outcome outcome = go(force);
       if (outcome == Outcome::stopped) return;
-      if (outcome == Outcome::missed) unmet_ = force;
-      if (pull_.force_N >= most) return end(Status::converged);
-      const std::optional<double> largest = foretold();
-      if (largest && *largest - pull_.force_N <= accuracy * *largest) return end(Status::limit);
-      if (unmet_ - pull_.force_N <= accuracy * unmet_ && !goes_on()) return;
-      const double grown = pull_.force_N > before ? pull_.force_N : 0.5 * step;
-      step = largest ? approach * (*largest - pull_.force_N) : grown;
+      if (outcome == Outcome::met && force >= most) return end(Status::converged);
+      if (outcome == Outcome::met) {
+        if (!missed) step *= growth;
+        continue;
+      }
+      missed = true;
+      if (step <= std::max(accuracy * pull_.force_N, least * first)) return end(Status::limit);
+      step *= shrinking;
     }
-    pull_.status = Status::not_converged;
-    pull_.last.report.remark = "the largest pull was not found in " + std::to_string(most_tries) + " tries";
   }
 
  private:
   enum class Outcome { met, missed, stopped };
 
-  static constexpr int most_tries = 60, usual_iterations = 25, patient_iterations = 200;
+  static constexpr double growth = 2, shrinking = 0.4, least = 1e-3;  // of steps
+  static constexpr int patience = 25;                                 // iterations that lead no farther
+  static constexpr double far = 0.01;                                 // of the diagonal, in one of them
+  static constexpr int settled = 5;                                   // iterations before which far moves are right
 
-  /// Below what was not met.
-  [[nodiscard]] double next(double step, double most) const {
-    const double low = pull_.force_N;
-    return std::min({most, low + step, std::isfinite(unmet_) ? 0.5 * (low + unmet_) : most});
-  }
-
-  /// The maximum, where it lies below what was not met.
-  [[nodiscard]] std::optional<double> foretold() const {
-    const std::optional<double> largest = maximum_.estimate();
-    return largest && *largest < unmet_ ? largest : std::nullopt;
-  }
-
-  /// To an equilibrium at that force, or as near as so many iterations lead.
-  Outcome go(double force, int iterations) {
-    bool spent = false;
+  /// To an equilibrium at that force. Where there is none a body flies off: what leads nowhere is left early.
+  Outcome go(double force) {
+    bool astray = false;
+    int since = 0;
+    double share = -1;
     const std::string doing = "pulling along " + pull_.direction.name + ", " + number(pull_.force_N, 3) + " N held";
     const ProgressCallback tell = [&](const Progress& p) {
-      spent = p.iteration > iterations;
-      return !spent && (!progress_ || progress_(doing, p));
+      if (p.share > share) {
+        share = p.share;
+        since = p.iteration;
+      }
+      const int idle = p.iteration - since;
+      astray = idle > patience || (idle > settled && p.step_mm > far * model_.diagonal_mm);
+      return !astray && (!progress_ || progress_(doing, p));
     };
     Equilibrium found = statics_.solve(pulled(model_, grasp_.actuation, body_, pull_.direction.along, force),
                                        pull_.last.state, options_, tell);
     const SolveReport report = found.report;
-    const double before = pull_.force_N, share = std::clamp(report.reached, 0.0, 1.0);
+    const double before = pull_.force_N, reached = std::clamp(report.reached, 0.0, 1.0);
     const bool met = report.status == Status::converged;
-    if (found.state.knows(grasp_.actuation.size()) && share > 0)
-      take(met ? force : before + share * (force - before), std::move(found));
-    if (report.stopped && !spent) {
-      pull_.status = report.status;
-      pull_.last.report = report;
-      return Outcome::stopped;
+    if (found.state.knows(grasp_.actuation.size()) && reached > 0) {
+      pull_.force_N = met ? force : before + reached * (force - before);
+      pull_.last = std::move(found);
     }
-    return met ? Outcome::met : Outcome::missed;
-  }
-
-  void take(double force, Equilibrium&& found) {
-    const double way =
-        way_of(model_.bodies[static_cast<std::size_t>(body_)], pull_.last.state.positions, found.state.positions);
-    if (force > pull_.force_N && way > 0) maximum_.add(force, way);
-    pull_.force_N = std::max(force, pull_.force_N);
-    pull_.last = std::move(found);
-  }
-
-  /// What was not met in few iterations may be met in many.
-  bool goes_on() {
-    const Outcome outcome = go(unmet_, patient_iterations);
-    if (outcome == Outcome::missed) end(Status::limit);
-    if (outcome == Outcome::met) unmet_ = std::numeric_limits<double>::infinity();
-    return outcome == Outcome::met;
+    if (met) return Outcome::met;
+    lost_ = !astray && report.status == Status::not_converged ? report.remark : "";
+    if (astray || !report.stopped) return Outcome::missed;
+    pull_.status = report.status;
+    pull_.last.report = report;
+    return Outcome::stopped;
   }
 
   void end(Status status) {
@@ -240,7 +197,9 @@ class Pulling {
     SolveReport& report = pull_.last.report;
     report.status = status;
     report.stopped = false;
-    if (status == Status::limit) report.remark = "no larger pull has an equilibrium";
+    if (status == Status::converged) return;
+    report.remark = lost_.empty() ? "no equilibrium was found under a larger pull" : lost_;
+    if (!lost_.empty()) pull_.status = report.status = Status::not_converged;
   }
 
   const Model& model_;
@@ -250,8 +209,7 @@ class Pulling {
   const StaticsOptions& options_;
   const GraspProgress& progress_;
   Pull& pull_;
-  LoadMaximum maximum_;
-  double unmet_ = std::numeric_limits<double>::infinity();  // the least force that was not met [N]
+  std::string lost_;  // why the last step that was missed did not converge; empty: it has no equilibrium
 };
 
 }  // namespace
@@ -269,7 +227,7 @@ Pull largest_pull(const Model& model, const Statics& statics, const State& grasp
   pull.last.state = grasp;
   pull.last.actuation = grasp.actuation;
   const double presses = std::max(gravity * held.mass_kg, pressed(model, body, statics.measured(grasp)).normal_N);
-  const double first = std::min(most, std::max(begin_share * presses, least_share * most_pull(model, body)));
+  const double first = presses > 0 ? begin_share * presses : least_share * most_pull(model, body);
   Pulling(model, statics, grasp, body, options, progress, pull).to_limit(first, most);
   pull.moved_mm = (held.center.at(pull.last.state.positions) - held.center.at(grasp.positions)).norm();
   pull.pressed = pressed(model, body, statics.measured(pull.last.state));

@@ -73,27 +73,10 @@ struct Pull {
 [[nodiscard]] Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3& direction,
                                double force_N);
 
-/// The largest load of a way along which the load has a maximum, from equilibria below it.
-class LoadMaximum {
- public:
-  /// load: larger than the last one; way: since then, > 0, such as how far something moved
-  void add(double load, double way);
-
-  /// By the parabola of the load over the way through the last three equilibria; none: it does not bend down there.
-  [[nodiscard]] std::optional<double> estimate() const;
-
- private:
-  struct Point {
-    double way, load;
-  };
-  std::vector<Point> points_;  // the last three
-};
-
-/// The largest force on a body along a direction before it slips or no equilibrium is left, to 1e-4 of it. The pull
-/// grows from a tenth of the body's weight, or of what presses on it if that is more: first by what holds already,
-/// then to the maximum of the force that the way of the body's vertices foretells, without crossing it, since looking
-/// for an equilibrium where none is costs more than all others. Where a pull is not met in some iterations, smaller
-/// steps go towards it.
+/// The largest force on a body along a direction before it slips or no equilibrium is left, to 1e-3 of it. The pull is
+/// followed from a tenth of the body's weight, or of what presses on it if that is more, in steps that double until one
+/// is not met, and shrink where one is not. That costs most, as a body that nothing holds flies off: a step is left
+/// where the body moves far, or where 25 iterations lead no farther.
 ///
 /// grasp    an equilibrium that solve() returned, the body free
 /// most_N   > 0: no larger force is tried; none: most_pull()
