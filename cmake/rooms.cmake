@@ -91,12 +91,13 @@ function(softkin_kernels room)
   endforeach()
 endfunction()
 
-# softkin_room(NAME [rooms and libraries it uses...]): every .cpp of the folder and of those in it
+# softkin_room(NAME [rooms and libraries it uses...]): every .cpp of the folder and of those in it, but for `linked`, which
+# is vision's alone
 function(softkin_room name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   set(kernels ${sources})
   list(FILTER kernels INCLUDE REGEX "/kernels/")
-  list(FILTER sources EXCLUDE REGEX "/kernels/")
+  list(FILTER sources EXCLUDE REGEX "/(kernels|linked)/")
   add_library(softkin_${name} STATIC ${sources})
   if(kernels)
     softkin_kernels(${name} ${kernels})

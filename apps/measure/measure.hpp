@@ -15,6 +15,9 @@ struct PicturesOptions : vision::MeasureOptions {
   bool json = false, may_replace = false;
 };
 
+/// The whole program `softkin measure`; returns its exit code.
+[[nodiscard]] int measure_program(int argc, const char* const* argv);
+
 // The commands; return the exit code, throw InvalidInput.
 [[nodiscard]] int measure_photos(const PicturesOptions& options);
 [[nodiscard]] int measure_film(const PicturesOptions& options);

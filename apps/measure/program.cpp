@@ -186,7 +186,7 @@ void add_board(CLI::App& app, Run& run) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int softkin::cli::measure_program(int argc, const char* const* argv) {
   CLI::App app{"Measure in pictures: markers, specimens, angles, tracks; in mm", "softkin measure"};
   app.formatter(std::make_shared<PageFormatter>());
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);

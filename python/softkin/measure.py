@@ -1,6 +1,6 @@
 """Markers, specimens, angles and tracks in mm, out of pictures and films: docs/measure.md.
 
-Needs a softkin that was built where OpenCV is; `available()` tells.
+Needs OpenCV's package for Python, which `pip install 'softkin[measure]'` brings; `available()` tells.
 """
 
 from __future__ import annotations
@@ -43,14 +43,11 @@ Image = NDArray[np.uint8]
 ProgressFunction = Callable[[float], object]
 Point = str | tuple[float, float]
 
-INSTALL = (
-    "softkin.measure needs a softkin built with OpenCV 4.5 or 4.6, which this one is not: "
-    "apt-get install libopencv-dev, then pip install . from a clone of softkin"
-)
+INSTALL = "needs OpenCV's package for Python, 4.10 or later: pip install 'softkin[measure]'"
 
 
 def available() -> bool:
-    """Was OpenCV there when this softkin was built, and does it load?"""
+    """Is OpenCV's package for Python there, and does it load?"""
     try:
         _loaded()
     except ImportError:
@@ -61,9 +58,10 @@ def available() -> bool:
 def _loaded() -> Any:
     """The part on OpenCV, which takes a third of a second to load: not before it is needed."""
     try:
-        return importlib.import_module("softkin._vision")
+        importlib.import_module("softkin._opencv")
     except ImportError as error:
-        raise ImportError(f"{INSTALL} ({error})") from None
+        raise ImportError(f"softkin.measure {INSTALL} ({error})") from None
+    return importlib.import_module("softkin._vision")
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +17,8 @@ import softkin
 from softkin import measure
 
 PICTURES = Path(__file__).resolve().parents[2] / "docs/images/measure"
-needs_opencv = pytest.mark.skipif(not measure.available(), reason="this softkin was built without OpenCV")
+LINKED = Path(__file__).resolve().parents[2] / "build/softkin-measure"  # where the C++ program was built with OpenCV
+needs_opencv = pytest.mark.skipif(not measure.available(), reason="needs pip install softkin[measure]")
 SCALE = ("green", "yellow", 60.0)
 GRID = "5x4,tag=12mm,gap=3mm"
 CHECKER = "checker,9x6,square=10mm"
@@ -28,7 +30,7 @@ def told(command: str, *arguments: object) -> Any:
 
 
 def test_without_opencv_one_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "softkin._vision", None)
+    monkeypatch.setitem(sys.modules, "softkin._opencv", None)
     assert not measure.available()
     for call in (
         lambda: measure.pictures([PICTURES / "rest.png"], dots=["red"], scale=SCALE),
@@ -36,8 +38,21 @@ def test_without_opencv_one_error_says_how_to_get_it(monkeypatch: pytest.MonkeyP
         lambda: measure.camera([], CHECKER),
         lambda: measure.Board(GRID),
     ):
-        with pytest.raises(ImportError, match="needs a softkin built with OpenCV .*libopencv-dev"):
+        with pytest.raises(ImportError, match=r"softkin.measure needs .* pip install 'softkin\[measure\]'"):
             call()
+
+
+def test_without_opencv_the_command_says_so_too(tmp_path: Path) -> None:
+    (tmp_path / "cv2.py").write_text("raise ImportError('no cv2 here')\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "softkin._measure_command", "--help"],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2 and done.stdout == ""
+    assert done.stderr.startswith("softkin: measure needs OpenCV") and done.stderr.count("\n") == 1
+    assert "pip install 'softkin[measure]' (no cv2 here)" in done.stderr
 
 
 @needs_opencv
@@ -159,6 +174,48 @@ def test_a_camera(command: str, tmp_path: Path) -> None:
     by_file = measure.pictures(view, scale_board=GRID, tags=[7], camera=ours)
     assert by_object[0].markers["tag7"].place_mm == pytest.approx(by_file[0].markers["tag7"].place_mm, abs=1e-6)
     assert by_file[0].markers["tag7"].place_mm == pytest.approx([36, 36], abs=0.1)
+
+
+def apart(ours: Any, theirs: Any) -> float:
+    """The largest difference of two reports, whose words are the same."""
+    if isinstance(ours, dict):
+        assert ours.keys() == theirs.keys()
+        return max((apart(ours[key], theirs[key]) for key in ours), default=0.0)
+    if isinstance(ours, list):
+        assert len(ours) == len(theirs)
+        return max((apart(a, b) for a, b in zip(ours, theirs)), default=0.0)
+    if isinstance(ours, float) or isinstance(theirs, float):
+        return abs(ours - theirs)
+    assert ours == theirs
+    return 0.0
+
+
+@needs_opencv
+@pytest.mark.skipif(not LINKED.exists(), reason="no program with OpenCV linked was built")
+def test_pythons_opencv_measures_as_the_linked_one(tmp_path: Path) -> None:
+    def both(*arguments: object) -> tuple[Any, Any]:
+        """What each of the two says, in JSON."""
+        words = [*map(str, arguments), "--json"]
+        ours = [sys.executable, "-m", "softkin._measure_command"]
+        texts = [subprocess.run([*by, *words], check=True, capture_output=True).stdout for by in (ours, [LINKED])]
+        return json.loads(texts[0]), json.loads(texts[1])
+
+    # all that is measured here is softkin's own: the same bits
+    bar = [PICTURES / "rest.png", PICTURES / "stretched.png", "--interface", "red,blue", "--dots", "green,yellow"]
+    ours, theirs = both(*bar, "--scale", "green,yellow=60mm")
+    assert ours == theirs
+    board = tmp_path / "board.png"
+    measure.Board(GRID).save(board)
+    # tags are found by OpenCV, whose versions begin at other corners
+    assert apart(*both(board, "--scale-board", "5x3,tag=12mm,gap=3mm", "--tags")) < 1e-3  # [mm, px]
+    files = []
+    for number, tilt in enumerate([(0.0, 0.0), (30.0, 0.0), (-30.0, 5.0), (5.0, 30.0), (-5.0, -30.0), (20.0, 25.0)]):
+        files.append(tmp_path / f"view{number}.ppm")
+        view = seen(measure.Board(CHECKER).picture(300), 300, tilt, 200)
+        files[-1].write_bytes(b"P6 640 480 255\n" + view.tobytes())
+    ours, theirs = both("camera", *files, "--board", CHECKER, "-o", tmp_path / "camera.yaml")
+    assert ours["fx_px"] == pytest.approx(theirs["fx_px"], rel=1e-3)
+    assert ours["distortion"]["k1"] == pytest.approx(theirs["distortion"]["k1"], abs=5e-3)
 
 
 @needs_opencv

@@ -12,6 +12,7 @@
 #include <softkin/vision/measurements.hpp>
 
 #include "../convert.hpp"
+#include "measure/measure.hpp"
 
 namespace softkin::python {
 
@@ -161,7 +162,15 @@ void bind_series(nb::module_& module) {
 
 NB_MODULE(_vision, module) {
   using namespace softkin;
-  module.doc() = "What softkin measures in pictures, on OpenCV; the public interface is softkin.measure.";
+  module.doc() = "What softkin measures in pictures, on Python's OpenCV; the public interface is softkin.measure.";
+  module.def(
+      "program",
+      [](const std::vector<std::string>& arguments) {
+        std::vector<const char*> pointers;
+        for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+        return cli::measure_program(static_cast<int>(pointers.size()), pointers.data());
+      },
+      nanobind::arg("arguments"), "softkin measure; its exit code.");
   module.def("prepare", &vision::prepare_opencv, nanobind::arg("threads"));
   python::bind_options(module);
   python::bind_board(module);

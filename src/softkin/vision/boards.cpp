@@ -1,15 +1,15 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <opencv2/aruco.hpp>
-#include <opencv2/calib3d.hpp>
 #include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/vision/boards.hpp>
 #include <softkin/vision/camera.hpp>
+#include <softkin/vision/open_cv.hpp>
 #include <softkin/vision/pixels.hpp>
 
 namespace softkin::vision {
@@ -23,67 +23,74 @@ constexpr double end_share = 0.12;     // of an edge: left out at both ends, whe
 
 using Line = Eigen::Hyperplane<double, 2>;
 
-cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
+int number_of_dictionary(const std::string& name) {
   static const std::vector<std::string> names{"4x4_50",  "4x4_100",  "4x4_250", "4x4_1000", "5x5_50",  "5x5_100",
                                               "5x5_250", "5x5_1000", "6x6_50",  "6x6_100",  "6x6_250", "6x6_1000",
                                               "7x7_50",  "7x7_100",  "7x7_250", "7x7_1000", "original"};
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) throw InvalidInput("no dictionary '" + name + "'" + suggest_name(name, names));
-  return cv::aruco::getPredefinedDictionary(static_cast<int>(found - names.begin()));  // in OpenCV's order
+  return static_cast<int>(found - names.begin());  // in OpenCV's order
 }
 
 /// Distance from the middle of a profile at which it passes the level upwards, nearest to the middle.
-std::optional<double> passage(const cv::Mat1f& profile, double reach, double level) {
+std::optional<double> passage(const Eigen::ArrayXd& profile, double reach, double level) {
   std::optional<double> best;
-  for (int i = 0; i + 1 < profile.cols; ++i) {
-    if (!(profile(i) <= level && profile(i + 1) > level)) continue;
-    const double s = -reach + step * (i + (level - profile(i)) / (profile(i + 1) - profile(i)));
+  for (Eigen::Index i = 0; i + 1 < profile.size(); ++i) {
+    if (!(profile[i] <= level && profile[i + 1] > level)) continue;
+    const double s = -reach + step * (static_cast<double>(i) + (level - profile[i]) / (profile[i + 1] - profile[i]));
     if (!best || std::abs(s) < std::abs(*best)) best = s;
   }
   return best;
 }
 
+/// The line of least squares through points.
+Line fitted_line(const std::vector<Vec2>& points) {
+  Vec2 mean = Vec2::Zero();
+  for (const Vec2& point : points) mean += point / static_cast<double>(points.size());
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Vec2& point : points) spread += (point - mean) * (point - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
+  return Line(solver.eigenvectors().col(0), mean);
+}
+
 /// An edge, distortion taken out.
-std::optional<Line> edge_line(const cv::Mat& gray, const Vec2& from, const Vec2& to, const Vec2& middle, double module,
-                              const std::optional<Camera>& camera) {
+std::optional<Line> edge_line(const GrayImage& gray, const Vec2& from, const Vec2& to, const Vec2& middle,
+                              double module, const std::optional<Camera>& camera) {
   const double length = (to - from).norm();
   Vec2 outwards = Vec2(to.y() - from.y(), from.x() - to.x()) / length;
   if (outwards.dot(middle - from) > 0) outwards = -outwards;
   const double depth = 2 * std::abs(outwards.dot(middle - from));  // of the square behind this edge
   const double reach = std::clamp(0.75 * module * depth, 1.5, 5.0);
   // profiles across the edge, from inside (dark) outwards
-  cv::Mat1f profiles(std::clamp(static_cast<int>(length), 10, 60), static_cast<int>(2 * reach / step + 1e-9) + 1), mean;
+  const int rows = std::clamp(static_cast<int>(length), 10, 60),
+            columns = static_cast<int>(2 * reach / step + 1e-9) + 1;
+  Eigen::ArrayXXd profiles(columns, rows);
   const auto place = [&](int i) {
-    return Vec2(from + (end_share + (1 - 2 * end_share) * (i + 0.5) / profiles.rows) * (to - from));
+    return Vec2(from + (end_share + (1 - 2 * end_share) * (i + 0.5) / rows) * (to - from));
   };
-  for (int i = 0; i < profiles.rows; ++i)
-    for (int k = 0; k < profiles.cols; ++k)
-      profiles(i, k) = between<float>(gray, place(i) + (step * k - reach) * outwards);
+  for (int i = 0; i < rows; ++i)
+    for (int k = 0; k < columns; ++k) profiles(k, i) = between(gray, place(i) + (step * k - reach) * outwards);
   // darkest on the inner half and lightest on the outer half: ink and paper, also where the dark border and the margin
   // are hardly wider than the blur
-  cv::reduce(profiles, mean, 0, cv::REDUCE_AVG);
-  double dark = 0, light = 0;
-  cv::minMaxLoc(mean.colRange(0, (mean.cols + 1) / 2), &dark, nullptr);
-  cv::minMaxLoc(mean.colRange((mean.cols + 1) / 2, mean.cols), nullptr, &light);
+  const Eigen::ArrayXd mean = profiles.rowwise().mean();
+  const double dark = mean.head((columns + 1) / 2).minCoeff(), light = mean.tail(columns / 2).maxCoeff();
   if (!(light - dark > least_contrast)) return std::nullopt;
-  std::vector<cv::Point2f> points;
-  for (int i = 0; i < profiles.rows; ++i)
-    if (const auto s = passage(profiles.row(i), reach, (dark + light) / 2)) {
-      const Vec2 seen = place(i) + *s * outwards, ideal = camera ? undistorted(*camera, seen) : seen;
-      points.emplace_back(cv::Point2d(ideal.x(), ideal.y()));
+  std::vector<Vec2> points;
+  for (int i = 0; i < rows; ++i)
+    if (const auto s = passage(profiles.col(i), reach, (dark + light) / 2)) {
+      const Vec2 seen = place(i) + *s * outwards;
+      points.push_back(camera ? undistorted(*camera, seen) : seen);
     }
-  cv::Vec4f line;
+  std::optional<Line> line;
   for (int round = 0; round < 2; ++round) {
     if (points.size() < 5) return std::nullopt;
-    cv::fitLine(points, line, cv::DIST_L2, 0, 0, 0);
-    std::erase_if(points, [&](const cv::Point2f& p) {
-      return std::abs((p.x - line[2]) * line[1] - (p.y - line[3]) * line[0]) > far_off;
-    });
+    line = fitted_line(points);
+    std::erase_if(points, [&](const Vec2& point) { return line->absDistance(point) > far_off; });
   }
-  return Line(Vec2(line[1], -line[0]), Vec2(line[2], line[3]));
+  return line;
 }
 
-std::optional<std::array<Vec2, 4>> refined(const cv::Mat& gray, std::array<Vec2, 4> corners, double module,
+std::optional<std::array<Vec2, 4>> refined(const GrayImage& gray, std::array<Vec2, 4> corners, double module,
                                            const std::optional<Camera>& camera) {
   std::array<Vec2, 4> ideal;
   for (int round = 0; round < 2; ++round) {
@@ -166,8 +173,7 @@ std::array<Vec2, 4> tag_places(const BoardSpec& board, int number) {
   return {low + Vec2(0, side), low + Vec2(side, side), low + Vec2(side, 0), low};
 }
 
-PlanePoint point_of(const cv::Point2f& corner, const Vec2& place, const std::optional<Camera>& camera) {
-  const Vec2 seen(corner.x, corner.y);
+PlanePoint point_of(const Vec2& seen, const Vec2& place, const std::optional<Camera>& camera) {
   return {camera ? undistorted(*camera, seen) : seen, place};
 }
 
@@ -209,8 +215,7 @@ void append(std::vector<PlanePoint>& points, const BoardSpec& board, int number,
 std::vector<PlanePoint> charuco_corners(const RgbImage& picture, const BoardSpec& board,
                                         const std::optional<Camera>& camera) {
   const std::map<int, Tag> tags = tags_on(picture, board, std::nullopt);
-  std::vector<Vec2> places;
-  std::vector<cv::Point2f> corners;
+  std::vector<Vec2> places, corners;
   double side = 1e9;  // of a square in the picture [px]
   for (int y = 1; y < board.rows; ++y)
     for (int x = 1; x < board.columns; ++x) {
@@ -225,7 +230,7 @@ std::vector<PlanePoint> charuco_corners(const RgbImage& picture, const BoardSpec
       const Vec2 pixel = view.to_pixel(place);
       side = std::min(side, board.square / std::sqrt(view.pixel_area(pixel)));
       places.push_back(place);
-      corners.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+      corners.push_back(pixel);
     }
   const int all = (board.rows - 1) * (board.columns - 1);
   if (static_cast<double>(corners.size()) < std::max(4.0, least_share * all))
@@ -233,8 +238,7 @@ std::vector<PlanePoint> charuco_corners(const RgbImage& picture, const BoardSpec
   // the window holds the crossing alone, not the tags beside it
   const double margin = side * (board.square - board.tag) / (2 * board.square);
   const int reach = std::max(2, static_cast<int>(0.9 * margin));
-  cv::cornerSubPix(gray_of(picture), corners, cv::Size(reach, reach), cv::Size(-1, -1),
-                   cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 50, 1e-3));
+  corners = opencv::crossings(gray_of(picture), corners, reach);
   std::vector<PlanePoint> points;
   for (std::size_t i = 0; i < corners.size(); ++i) points.push_back(point_of(corners[i], places[i], camera));
   // the tags reach farther out than the crossings between squares
@@ -245,36 +249,36 @@ std::vector<PlanePoint> charuco_corners(const RgbImage& picture, const BoardSpec
 std::vector<PlanePoint> checker_corners(const RgbImage& picture, const BoardSpec& board,
                                         const std::optional<Camera>& camera) {
   const int columns = board.columns - 1, rows = board.rows - 1;
-  std::vector<cv::Point2f> corners;
-  if (!cv::findChessboardCornersSB(gray_of(picture), cv::Size(columns, rows), corners, cv::CALIB_CB_ACCURACY))
+  const auto corners = opencv::chessboard(gray_of(picture), columns, rows);
+  if (!corners)
     throw InvalidInput("the board is not found: no " + std::to_string(columns) + " x " + std::to_string(rows) +
                        " inner corners of " + std::to_string(board.columns) + " x " + std::to_string(board.rows) +
                        " squares; all of it must be in the picture");
   std::vector<PlanePoint> points;
   for (int i = 0; i < rows * columns; ++i) {
     const Vec2 place((i % columns + 1) * board.square, board.height() - (i / columns + 1) * board.square);
-    points.push_back(point_of(corners[std::size_t(i)], place, camera));
+    points.push_back(point_of((*corners)[std::size_t(i)], place, camera));
   }
   return points;
 }
 
 /// The dark squares of a tag, its border included.
 void append_tag(std::vector<std::array<double, 4>>& squares, const BoardSpec& board, int number) {
-  const auto tags = dictionary_of(board.dictionary);
-  const int count = tags->markerSize + 2;  // of squares in a row
-  cv::Mat1b image;
-  tags->drawMarker(board.first + number, count, image, 1);
+  const int dictionary = number_of_dictionary(board.dictionary);
+  const int count = opencv::dictionary(dictionary).modules + 2;  // of squares in a row
+  const std::vector<std::uint8_t> tag = opencv::tag_squares(dictionary, board.first + number);
   const Vec2 top_left = tag_places(board, number)[0];
   const double side = board.tag / count;
   for (int r = 0; r < count; ++r)
     for (int c = 0; c < count; ++c)
-      if (image(r, c) < 128) squares.push_back({top_left.x() + c * side, top_left.y() - (r + 1) * side, side, side});
+      if (tag[std::size_t(r * count + c)] == 0)
+        squares.push_back({top_left.x() + c * side, top_left.y() - (r + 1) * side, side, side});
 }
 
 }  // namespace
 
 int dictionary_size(const std::string& dictionary) {
-  return dictionary_of(dictionary)->bytesList.rows;
+  return opencv::dictionary(number_of_dictionary(dictionary)).size;
 }
 
 Vec2 Tag::centre() const {
@@ -283,21 +287,12 @@ Vec2 Tag::centre() const {
 
 std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionary,
                            const std::optional<Camera>& camera) {
-  const auto known = dictionary_of(dictionary);
-  const cv::Ptr<cv::aruco::DetectorParameters> parameters = cv::aruco::DetectorParameters::create();
-  // OpenCV's own refinement may jump to a corner of the pattern beside; refine_quad starts from the contour
-  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
-  std::vector<std::vector<cv::Point2f>> corners;
-  std::vector<int> numbers;
-  const cv::Mat gray = gray_of(picture);
-  cv::aruco::detectMarkers(gray, known, corners, numbers, parameters);
+  const int number = number_of_dictionary(dictionary);
+  const double module = 1.0 / (opencv::dictionary(number).modules + 2);
+  const GrayImage gray = gray_of(picture);
   std::vector<Tag> tags;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    std::array<Vec2, 4> rough;
-    for (std::size_t k = 0; k < 4; ++k) rough[k] = Vec2(corners[i][k].x, corners[i][k].y);
-    const auto corner = refined(gray, rough, 1.0 / (known->markerSize + 2), camera);
-    if (corner) tags.push_back({numbers[i], *corner});
-  }
+  for (const opencv::RoughTag& rough : opencv::find_tags(gray, number))
+    if (const auto corners = refined(gray, rough.corners, module, camera)) tags.push_back({rough.number, *corners});
   std::stable_sort(tags.begin(), tags.end(), [](const Tag& a, const Tag& b) { return a.number < b.number; });
   return tags;
 }

@@ -1,17 +1,18 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/scene/tree.hpp>
 #include <softkin/vision/camera.hpp>
+#include <softkin/vision/open_cv.hpp>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 namespace softkin::vision {
@@ -22,28 +23,40 @@ constexpr std::size_t least_pictures = 4;
 constexpr double most_focal_error = 0.03;  // of the focal length
 constexpr double least_tilt = 0.2;         // between two boards [rad]: seen straight, near and small is far and large
 
-using Points = std::vector<cv::Point2d>;
-
-cv::Matx33d matrix_of(const Camera& camera) {
-  return {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1};
-}
-
-cv::Vec<double, 5> lens_of(const Camera& camera) {
-  return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
-}
-
 /// Largest angle between the planes of two of the boards [rad].
-double tilt_between(const cv::Mat& turns) {
-  std::vector<cv::Vec3d> normals;
-  for (int i = 0; i < turns.rows; ++i) {
-    cv::Matx33d frame;
-    cv::Rodrigues(turns.at<cv::Vec3d>(i), frame);
-    normals.emplace_back(frame(0, 2), frame(1, 2), frame(2, 2));
+double tilt_between(const std::vector<std::array<double, 3>>& rotations) {
+  std::vector<Eigen::Vector3d> normals;
+  for (const std::array<double, 3>& rotation : rotations) {
+    const Eigen::Vector3d turn(rotation[0], rotation[1], rotation[2]);
+    const double angle = turn.norm();
+    normals.emplace_back(angle > 0 ? Eigen::AngleAxisd(angle, turn / angle) * Eigen::Vector3d::UnitZ()
+                                   : Eigen::Vector3d::UnitZ());
   }
   double least = 1;
-  for (const cv::Vec3d& a : normals)
-    for (const cv::Vec3d& b : normals) least = std::min(least, a.dot(b));
-  return std::acos(std::max(-1.0, least));
+  for (const Eigen::Vector3d& a : normals)
+    for (const Eigen::Vector3d& b : normals) least = std::min(least, a.dot(b));
+  return std::acos(std::clamp(least, -1.0, 1.0));
+}
+
+/// What the lens does to a direction (x, y, 1): the factor along the radius, and what is added to it.
+struct Bend {
+  double radial;
+  Vec2 tangential;
+
+  Bend(const Camera& camera, const Vec2& at) {
+    const double x = at.x(), y = at.y(), r = at.squaredNorm();
+    radial = 1 + r * (camera.k1 + r * (camera.k2 + r * camera.k3));
+    tangential = {2 * camera.p1 * x * y + camera.p2 * (r + 2 * x * x),
+                  camera.p1 * (r + 2 * y * y) + 2 * camera.p2 * x * y};
+  }
+};
+
+Vec2 direction_of(const Camera& camera, const Vec2& pixel) {
+  return {(pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy};
+}
+
+Vec2 pixel_of(const Camera& camera, const Vec2& direction) {
+  return {camera.fx * direction.x() + camera.cx, camera.fy * direction.y() + camera.cy};
 }
 
 using scene::Node;
@@ -136,60 +149,75 @@ Eigen::Matrix<double, 2, 8> by_entries(const Map& map, const Vec2& point) {
   return result / w;
 }
 
-/// To the last digits of single precision, which OpenCV computes it in.
+/// Moves points so that their mean is 0 and their mean distance from it the root of 2.
+Map normaliser(const std::vector<PlanePoint>& points, Vec2 PlanePoint::*const which) {
+  Vec2 mean = Vec2::Zero();
+  for (const PlanePoint& point : points) mean += point.*which / static_cast<double>(points.size());
+  double distance = 0;
+  for (const PlanePoint& point : points) distance += (point.*which - mean).norm() / static_cast<double>(points.size());
+  const double scale = std::sqrt(2) / distance;
+  Map map;
+  map << scale, 0, -scale * mean.x(), 0, scale, -scale * mean.y(), 0, 0, 1;
+  return map;
+}
+
+/// The map of least algebraic error, whose ninth entry is 1 (Hartley and Zisserman, Multiple View Geometry, Alg. 4.2).
 Map first_guess(const std::vector<PlanePoint>& points) {
-  std::vector<cv::Point2d> places, pixels;
+  const Map from = normaliser(points, &PlanePoint::place), to = normaliser(points, &PlanePoint::pixel);
+  Eigen::Matrix<double, 9, 9> square = Eigen::Matrix<double, 9, 9>::Zero();
   for (const PlanePoint& point : points) {
-    places.emplace_back(point.place.x(), point.place.y());
-    pixels.emplace_back(point.pixel.x(), point.pixel.y());
+    const Eigen::Vector3d place = from * point.place.homogeneous();
+    const Vec2 pixel = mapped(to, point.pixel);
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      Eigen::Matrix<double, 9, 1> row = Eigen::Matrix<double, 9, 1>::Zero();
+      row.segment<3>(3 * axis) = place;
+      row.tail<3>() = -pixel[axis] * place;
+      square += row * row.transpose();
+    }
   }
-  Map result = Map::Constant(NAN);
-  if (const cv::Mat map = cv::findHomography(places, pixels); !map.empty()) cv::cv2eigen(map, result);
-  return result;
+  if (!square.allFinite()) return Map::Constant(NAN);  // all at one point
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(square);
+  const Map map = to.inverse() * solver.eigenvectors().col(0).reshaped<Eigen::RowMajor>(3, 3) * from;
+  return map / map(2, 2);
 }
 
 }  // namespace
 
 Vec2 distorted(const Camera& camera, const Vec2& ideal) {
-  const std::vector<cv::Point3d> ray{{(ideal.x() - camera.cx) / camera.fx, (ideal.y() - camera.cy) / camera.fy, 1}};
-  Points seen;
-  cv::projectPoints(ray, cv::Vec3d(), cv::Vec3d(), matrix_of(camera), lens_of(camera), seen);
-  return {seen[0].x, seen[0].y};
+  const Vec2 direction = direction_of(camera, ideal);
+  const Bend bend(camera, direction);
+  return pixel_of(camera, bend.radial * direction + bend.tangential);
 }
 
 Vec2 undistorted(const Camera& camera, const Vec2& seen) {
-  Points ideal;
-  cv::undistortPoints(Points{{seen.x(), seen.y()}}, ideal, matrix_of(camera), lens_of(camera), cv::noArray(),
-                      matrix_of(camera), cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-11));
-  return {ideal[0].x, ideal[0].y};
+  constexpr int most_rounds = 100;
+  const Vec2 bent = direction_of(camera, seen);
+  Vec2 direction = bent;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Bend bend(camera, direction);
+    if (!(bend.radial > 0)) return seen;  // where the picture is folded over itself nothing is taken out
+    const Vec2 next = (bent - bend.tangential) / bend.radial;
+    const bool done = (next - direction).norm() < 1e-15;
+    direction = next;
+    if (done) break;
+  }
+  return pixel_of(camera, direction);
 }
 
 Camera fit_camera(const std::vector<BoardSight>& sights, int width, int height, std::vector<double>& errors) {
   if (sights.size() < least_pictures)
     throw InvalidInput("a camera is found from " + std::to_string(least_pictures) +
                        " pictures of the board or more, better 10 to 20 under different angles");
-  std::vector<std::vector<cv::Point3f>> places(sights.size());
-  std::vector<std::vector<cv::Point2f>> pixels(sights.size());
-  for (std::size_t i = 0; i < sights.size(); ++i)
-    for (const PlanePoint& point : sights[i].points) {
-      places[i].emplace_back(cv::Point3d(point.place.x(), point.place.y(), 0));
-      pixels[i].emplace_back(cv::Point2d(point.pixel.x(), point.pixel.y()));
-    }
-  cv::Matx33d matrix;
-  cv::Vec<double, 5> lens;
-  cv::Mat turns, shifts, spread, spread_outside;
+  const std::optional<opencv::Fit> fit = opencv::calibrated(sights, width, height);
+  if (!fit) throw InvalidInput("no camera fits these pictures; is the board flat, and are they all from one camera?");
+  errors = fit->errors;
   Camera camera{.width = width, .height = height, .pictures = static_cast<int>(sights.size())};
-  try {
-    camera.reprojection_error = cv::calibrateCamera(places, pixels, cv::Size(width, height), matrix, lens, turns,
-                                                    shifts, spread, spread_outside, errors, cv::CALIB_FIX_K3);
-  } catch (const cv::Exception&) {
-    throw InvalidInput("no camera fits these pictures; is the board flat, and are they all from one camera?");
-  }
-  camera.fx = matrix(0, 0), camera.fy = matrix(1, 1), camera.cx = matrix(0, 2), camera.cy = matrix(1, 2);
-  camera.k1 = lens[0], camera.k2 = lens[1], camera.p1 = lens[2], camera.p2 = lens[3];
-  camera.focal_error = std::max(spread.at<double>(0), spread.at<double>(1));
+  std::tie(camera.fx, camera.fy, camera.cx, camera.cy) = std::tuple_cat(fit->matrix);
+  std::tie(camera.k1, camera.k2, camera.p1, camera.p2) = std::tuple_cat(fit->lens);
+  camera.focal_error = std::max(fit->focal_errors[0], fit->focal_errors[1]);
+  camera.reprojection_error = fit->reprojection_error;
   if (!std::isfinite(camera.reprojection_error) || !(camera.focal_error < most_focal_error * camera.fx) ||
-      !(tilt_between(turns) > least_tilt))
+      !(tilt_between(fit->rotations) > least_tilt))
     throw InvalidInput(
         "these pictures do not tell the focal length: take the board under different angles, tilted by "
         "20 to 45 degrees to different sides");

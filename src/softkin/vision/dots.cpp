@@ -5,6 +5,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/vision/dots.hpp>
 #include <softkin/vision/pixels.hpp>
+#include <utility>
 
 namespace softkin::vision {
 
@@ -43,19 +44,42 @@ struct Pixels {
   }
 };
 
-/// Those of a window that the mask has.
-Pixels pixels_in(const RgbImage& picture, const cv::Rect& window, const cv::Mat& mask, const Vec2& centre) {
-  const cv::Mat3b rgb = mat_of(picture)(window);
-  std::vector<cv::Point> points;
-  cv::findNonZero(mask, points);
+/// Those of a window of the picture that a condition of their place in it holds for.
+template <class Condition>
+Pixels pixels_in(const RgbImage& picture, const PixelBox& window, const Vec2& centre, const Condition& condition) {
+  std::vector<std::pair<int, int>> points;
+  for (int y = 0; y < window.height; ++y)
+    for (int x = 0; x < window.width; ++x)
+      if (condition(x, y)) points.emplace_back(window.x + x, window.y + y);
   Pixels pixels{Eigen::MatrixX3d(points.size(), 3), Eigen::MatrixX3d(points.size(), 3)};
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const cv::Vec3b& colour = rgb(points[i]);
-    pixels.places.row(row) << 1, window.x + points[i].x - centre.x(), window.y + points[i].y - centre.y();
-    pixels.colours.row(row) << colour[0], colour[1], colour[2];
+    const auto [x, y] = points[i];
+    const std::uint8_t* rgb = picture.bytes.data() + 3 * (std::size_t(y) * std::size_t(picture.width) + std::size_t(x));
+    pixels.places.row(row) << 1, x - centre.x(), y - centre.y();
+    pixels.colours.row(row) << rgb[0], rgb[1], rgb[2];
   }
   return pixels;
+}
+
+/// Steps along rows, columns or diagonals from the blob, of each pixel of a window that holds it.
+Eigen::ArrayXXi steps_from(const Blob& blob, const PixelBox& window) {
+  const int far = window.width + window.height;
+  Eigen::ArrayXXi steps = Eigen::ArrayXXi::Constant(window.width + 2, window.height + 2, far);  // with a rim
+  auto inner = steps.block(1, 1, window.width, window.height);
+  for (int y = 0; y < blob.box.height; ++y)
+    for (int x = 0; x < blob.box.width; ++x)
+      if (blob.mask.at(x, y) != 0) inner(blob.box.x - window.x + x, blob.box.y - window.y + y) = 0;
+  // from the pixels before and then from those behind: exact for these steps
+  for (int y = 1; y <= window.height; ++y)
+    for (int x = 1; x <= window.width; ++x)
+      steps(x, y) = std::min(
+          {steps(x, y), steps(x - 1, y) + 1, steps(x - 1, y - 1) + 1, steps(x, y - 1) + 1, steps(x + 1, y - 1) + 1});
+  for (int y = window.height; y >= 1; --y)
+    for (int x = window.width; x >= 1; --x)
+      steps(x, y) = std::min(
+          {steps(x, y), steps(x + 1, y) + 1, steps(x + 1, y + 1) + 1, steps(x, y + 1) + 1, steps(x - 1, y + 1) + 1});
+  return inner;
 }
 
 Rgb3 median(Eigen::MatrixX3d colours) {
@@ -72,7 +96,7 @@ Eigen::ArrayXd distances(const Pixels& pixels, const Blob& blob) {
 
 /// Median colour in the middle, where no ground shines through; of the whole blob where that is a ring.
 Rgb3 core_colour(const RgbImage& picture, const Blob& blob) {
-  const Pixels all = pixels_in(picture, blob.box, blob.mask, blob.centre);
+  const Pixels all = pixels_in(picture, blob.box, blob.centre, [&](int x, int y) { return blob.mask.at(x, y) != 0; });
   const Eigen::ArrayXd distance = distances(all, blob);
   const Pixels core = all.where([&](Eigen::Index i) { return distance[i] <= 1; });
   return median(core.places.rows() > 0 ? core.colours : all.colours);
@@ -98,15 +122,14 @@ Ground ground_of(const Pixels& ring_pixels) {
 }
 
 MarkerPlace refined(const RgbImage& picture, const Blob& blob, const PlaneView& view) {
-  const cv::Point reach(blur + ring, blur + ring);
-  const cv::Rect window =
-      cv::Rect(blob.box.tl() - reach, blob.box.br() + reach) & cv::Rect(0, 0, picture.width, picture.height);
-  cv::Mat outside(window.size(), CV_8U, cv::Scalar(255)), distance;  // from the blob, along rows, columns or diagonals
-  outside(blob.box - window.tl()).setTo(0, blob.mask);
-  cv::distanceTransform(outside, distance, cv::DIST_C, 3);
-  const Ground ground =
-      ground_of(pixels_in(picture, window, (distance > blur) & (distance <= blur + ring), blob.centre));
-  const Pixels near = pixels_in(picture, window, distance <= blur, blob.centre);
+  const int reach = blur + ring;
+  const PixelBox window =
+      shared_part({blob.box.x - reach, blob.box.y - reach, blob.box.width + 2 * reach, blob.box.height + 2 * reach},
+                  {0, 0, picture.width, picture.height});
+  const Eigen::ArrayXXi steps = steps_from(blob, window);
+  const Ground ground = ground_of(pixels_in(
+      picture, window, blob.centre, [&](int x, int y) { return steps(x, y) > blur && steps(x, y) <= blur + ring; }));
+  const Pixels near = pixels_in(picture, window, blob.centre, [&](int x, int y) { return steps(x, y) <= blur; });
   const Rgb3 contrast = core_colour(picture, blob) - ground.fit.row(0);
   const double size = contrast.squaredNorm();
   const Eigen::VectorXd shares = (near.colours - near.places * ground.fit) * contrast.transpose() / size;
@@ -131,7 +154,7 @@ MarkerPlace refined(const RgbImage& picture, const Blob& blob, const PlaneView& 
 /// Share of the inner dot that is nearer to white than to the dot's colour: a highlight, which moves the centre.
 double glare(const RgbImage& picture, const Blob& blob) {
   const double white = (core_colour(picture, blob).minCoeff() + 255) / 2;
-  const Pixels all = pixels_in(picture, blob.box, cv::Mat::ones(blob.box.size(), CV_8U), blob.centre);
+  const Pixels all = pixels_in(picture, blob.box, blob.centre, [](int, int) { return true; });
   const auto inner = (distances(all, blob) <= 1.5).eval();  // farther out the ground shines through
   const auto bright = (all.colours.rowwise().minCoeff().array() > white).eval();
   return inner.any() ? static_cast<double>((inner && bright).count()) / static_cast<double>(inner.count()) : 0;
@@ -165,8 +188,9 @@ MarkerPlace find_dot(const RgbImage& picture, const Colour& colour, const PlaneV
   if (blobs.size() > 1 && blobs[1].area > rival_share * blobs[0].area)
     throw InvalidInput("two candidates for " + dot + ": at " + at_pixel(blobs[0].centre) + " and " +
                        at_pixel(blobs[1].centre) + "; cover one, or give another colour");
-  const cv::Size free(picture.width - 2 * blur, picture.height - 2 * blur);  // a dot that fills it leaves no ground
-  if (blobs[0].touches_frame(picture, blur) || blobs[0].box.size() == free)
+  // a dot that fills what is free of the margin leaves no ground
+  const bool fills = blobs[0].box.width == picture.width - 2 * blur && blobs[0].box.height == picture.height - 2 * blur;
+  if (blobs[0].touches_frame(picture, blur) || fills)
     throw InvalidInput(dot + " at " + at_pixel(blobs[0].centre) + " is partly outside the frame");
   refuse_glare(blobs[0]);
   return refined(picture, blobs[0], view);

@@ -1,13 +1,9 @@
 #include <algorithm>
 #include <cstdlib>
-#include <opencv2/core/utility.hpp>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/vision/open_cv.hpp>
 #include <softkin/vision/pictures.hpp>
 #include <softkin/vision/pixels.hpp>
 #include <utility>
@@ -19,13 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int least_side = 16;  // [px]
-
-RgbImage as_rgb(const cv::Mat& bgr) {
-  RgbImage picture(bgr.cols, bgr.rows);
-  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, picture.bytes.data());
-  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
-  return picture;
-}
 
 /// A JPEG that was cut off would decode into a picture whose lower part is grey; libpng would print its own words.
 bool is_cut_off(const std::string& content) {
@@ -104,42 +93,28 @@ Known known(const std::string& name) {
   if (name.size() != 7 || name[0] != '#' || name.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
     throw InvalidInput("no colour '" + name + "'" + suggest_name(name, names) + " (or #rrggbb)");
   const auto bits = std::strtol(name.c_str() + 1, nullptr, 16);
-  cv::Mat3f pixel(1, 1, cv::Vec3f(float(bits >> 16), float((bits >> 8) & 255), float(bits & 255)));
-  cv::cvtColor(pixel, pixel, cv::COLOR_RGB2HSV);
-  const double hue = pixel(0)[0];
-  if (pixel(0)[1] < least_saturation || pixel(0)[2] < least_value)
+  const auto [hue, saturation, value] = hsv_of({float(bits >> 16), float((bits >> 8) & 255), float(bits & 255)});
+  if (saturation < least_saturation || value < least_value)
     throw InvalidInput("colour " + name + " has no hue; take one of more saturation, or black, or white");
   return by_hue("", hue - hue_tolerance, hue + hue_tolerance);
 }
 
 }  // namespace
 
-struct Film::Video {
-  cv::VideoCapture capture;
-};
-
 void prepare_opencv(int threads) {
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // quiet; what is wrong with a video is said by Film
-  if (threads > 0) cv::setNumThreads(threads);
+  opencv::prepare(threads);
 }
 
 RgbImage read_picture(const fs::path& path) {
   const std::string content = read_file(path);
-  cv::Mat bgr;
-  try {
-    if (!content.empty() && !is_cut_off(content))
-      bgr = cv::imdecode(cv::Mat(1, static_cast<int>(content.size()), CV_8U, const_cast<char*>(content.data())),
-                         cv::IMREAD_COLOR);
-  } catch (const cv::Exception&) {
-    bgr.release();
-  }
-  if (bgr.empty())
+  std::optional<RgbImage> picture;
+  if (!content.empty() && !is_cut_off(content)) picture = opencv::decoded(content);
+  if (!picture)
     throw InvalidInput({path.string()},
                        is_cut_off(content) ? "the picture is cut off" : "not a picture that can be read");
-  if (bgr.cols < least_side || bgr.rows < least_side)
+  if (picture->width < least_side || picture->height < least_side)
     throw InvalidInput({path.string()}, "the picture is smaller than 16 x 16 pixels");
-  return as_rgb(bgr);
+  return *std::move(picture);
 }
 
 bool is_film(const fs::path& path) {
@@ -163,17 +138,12 @@ Film::Film(std::vector<fs::path> files, std::optional<double> rate) : name_(file
     rate_ = *rate;
   } else {
     (void)fs::file_size(files[0]);  // names what is wrong with the file
-    video_ = std::make_unique<Video>();
-    try {
-      video_->capture.open(name_);
-    } catch (const cv::Exception&) {
-      video_->capture.release();
-    }
-    if (!video_->capture.isOpened()) throw InvalidInput({name_}, "not a video that can be read");
-    rate_ = rate ? *rate : video_->capture.get(cv::CAP_PROP_FPS);
+    video_ = opencv::open_video(name_);
+    if (!video_) throw InvalidInput({name_}, "not a video that can be read");
+    rate_ = rate ? *rate : video_->rate();
     if (!rate && !(rate_ > 0))
       throw InvalidInput({name_}, "the video does not say its frames per second: give them (fps)");
-    frames_ = static_cast<std::size_t>(std::max(0.0, video_->capture.get(cv::CAP_PROP_FRAME_COUNT)));
+    frames_ = static_cast<std::size_t>(std::max(0.0, video_->frames()));
   }
   if (!(rate_ > 0 && rate_ <= 1e6)) throw InvalidInput({name_}, "frames per second must be above 0, at most 1e6");
 }
@@ -183,12 +153,12 @@ Film::~Film() = default;
 std::optional<Frame> Film::next() {
   Frame frame{RgbImage(0, 0), static_cast<double>(position_) / rate_, ""};
   if (video_) {
-    cv::Mat bgr;
-    if (!video_->capture.read(bgr) || bgr.empty()) {
+    std::optional<RgbImage> picture = video_->next();
+    if (!picture) {
       if (position_ == 0) throw InvalidInput({name_}, "the video has no frame that can be read");
       return std::nullopt;
     }
-    frame.picture = as_rgb(bgr);
+    frame.picture = *std::move(picture);
     frame.name = name_ + ": frame " + std::to_string(position_ + 1);
   } else {
     if (position_ == pictures_.size()) return std::nullopt;
@@ -207,9 +177,11 @@ std::optional<Frame> Film::next() {
 Colour::Colour(const std::string& asked) : name(asked), low(known(asked).low), high(known(asked).high) {}
 
 double clipped_share(const RgbImage& picture) {
-  cv::Mat clipped;
-  cv::inRange(mat_of(picture), cv::Scalar::all(254), cv::Scalar::all(255), clipped);
-  return cv::countNonZero(clipped) / static_cast<double>(clipped.total());
+  std::size_t clipped = 0;
+  for (std::size_t i = 0; i < picture.bytes.size(); i += 3)
+    clipped += *std::min_element(picture.bytes.begin() + std::ptrdiff_t(i),
+                                 picture.bytes.begin() + std::ptrdiff_t(i + 3)) >= 254;
+  return static_cast<double>(clipped) / (static_cast<double>(picture.bytes.size()) / 3);
 }
 
 }  // namespace softkin::vision

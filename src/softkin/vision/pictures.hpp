@@ -10,6 +10,10 @@
 
 namespace softkin::vision {
 
+namespace opencv {
+class Video;
+}
+
 /// Before anything else of this room: threads of OpenCV (0: one a core), and its own messages off.
 void prepare_opencv(int threads);
 
@@ -43,11 +47,9 @@ class Film {
   [[nodiscard]] std::size_t frames() const { return frames_; }
 
  private:
-  struct Video;
-
   std::string name_;
   std::vector<std::filesystem::path> pictures_;
-  std::unique_ptr<Video> video_;
+  std::unique_ptr<opencv::Video> video_;
   double rate_ = 0;
   std::size_t frames_ = 0, position_ = 0;
   int width_ = 0, height_ = 0;

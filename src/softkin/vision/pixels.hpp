@@ -1,31 +1,50 @@
 #pragma once
 
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <softkin/vision/camera.hpp>
 #include <softkin/vision/pictures.hpp>
+#include <vector>
 
-// Pictures as OpenCV has them: for sources of this room only.
+// What pictures are looked at with.
 namespace softkin::vision {
 
-/// The same bytes as a matrix: red, green, blue, 8 bits each.
-[[nodiscard]] cv::Mat3b mat_of(const RgbImage& picture);
+/// One byte a pixel, row by row from the top left.
+struct GrayImage {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> bytes{};
 
-/// Brightness, 8 bits.
-[[nodiscard]] cv::Mat gray_of(const RgbImage& picture);
+  [[nodiscard]] std::uint8_t at(int x, int y) const {
+    return bytes[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+  }
+};
 
-/// Value between the pixels, beyond the frame that of the nearest. Exact, where cv::remap goes by 1/32 pixel.
-template <class Value>
-[[nodiscard]] Value between(const cv::Mat& picture, const Vec2& pixel) {
-  cv::Mat_<Value> patch;
-  cv::getRectSubPix(picture, {1, 1}, cv::Point2d(pixel.x(), pixel.y()), patch, CV_32F);
-  return patch(0);
-}
+/// A rectangle of pixels.
+struct PixelBox {
+  int x = 0, y = 0, width = 0, height = 0;
+
+  friend bool operator==(const PixelBox&, const PixelBox&) = default;
+};
+
+/// What two rectangles share; empty where that is nothing.
+[[nodiscard]] PixelBox shared_part(const PixelBox& a, const PixelBox& b);
+
+/// Brightness (ITU-R BT.601), 8 bits.
+[[nodiscard]] GrayImage gray_of(const RgbImage& picture);
+
+/// Hue [degrees, 0 to 360], saturation [-] and value, of a colour of any scale.
+[[nodiscard]] std::array<float, 3> hsv_of(const std::array<float, 3>& rgb);
+
+/// Red, green and blue, or brightness, between the pixels: bilinear, beyond the frame that of the nearest pixel.
+[[nodiscard]] Eigen::Vector3d between(const RgbImage& picture, const Vec2& pixel);
+[[nodiscard]] double between(const GrayImage& picture, const Vec2& pixel);
 
 /// Pixels of a colour that hang together, corners counting as contact.
 struct Blob {
-  cv::Rect box;                                      // [px]
-  cv::Mat mask;                                      // of the box, 8 bits: its pixels are not 0
+  PixelBox box{};
+  GrayImage mask{};                                  // of the box: its pixels are not 0
   double area = 0;                                   // [px]
   Vec2 centre = Vec2::Zero();                        // of mass [px]
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // covariance of its pixels [px^2]

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <softkin/core/error.hpp>
+#include <softkin/vision/outlines.hpp>
 #include <softkin/vision/pixels.hpp>
 #include <softkin/vision/specimen_edges.hpp>
 
@@ -21,25 +22,16 @@ constexpr int level_samples = 6;          // there, in each strip
 constexpr double strip_step = 0.5;        // along a strip [px]
 constexpr double degrees = 180 / std::numbers::pi;
 
-Vec2 vec(const cv::Point2d& point) {
-  return {point.x, point.y};
-}
-
 /// The outline of the part of a specimen that has this colour [mm].
-std::vector<cv::Point2f> outline_of(const RgbImage& picture, const Colour& colour, const PlaneView& view) {
+std::vector<Vec2> outline_in_mm(const RgbImage& picture, const Colour& colour, const PlaneView& view) {
   const std::vector<Blob> blobs = find_blobs(picture, colour, least_part_area);
   const std::string part = "part of the specimen that is " + colour.name;
   if (blobs.empty()) throw InvalidInput("no " + part + " found");
   if (blobs.size() > 1 && blobs[1].area > rival_part_share * blobs[0].area)
     throw InvalidInput("two candidates for the " + part);
   if (blobs[0].touches_frame(picture, margin)) throw InvalidInput("the " + part + " is partly outside the frame");
-  std::vector<std::vector<cv::Point>> outlines;
-  cv::findContours(blobs[0].mask, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE, blobs[0].box.tl());
-  std::vector<cv::Point2f> outline;
-  for (const cv::Point& pixel : outlines[0]) {
-    const Vec2 place = view.to_mm(vec(pixel));
-    outline.emplace_back(cv::Point2d(place.x(), place.y()));
-  }
+  std::vector<Vec2> outline = outline_of(blobs[0]);
+  for (Vec2& place : outline) place = view.to_mm(place);
   return outline;
 }
 
@@ -52,14 +44,13 @@ struct BarFrame {
   [[nodiscard]] Vec2 place(double s, double t) const { return origin + s * along + t * across; }
 };
 
-BarFrame frame_of(const cv::Moments& a, const cv::Moments& b, const PlaneView& view) {
-  const double area = a.m00 + b.m00;
-  const Vec2 from_a_to_b = Vec2(b.m10, b.m01) / b.m00 - Vec2(a.m10, a.m01) / a.m00;
+BarFrame frame_of(const AreaMoments& a, const AreaMoments& b, const PlaneView& view) {
+  const double area = a.area + b.area;
+  const Vec2 from_a_to_b = b.centre - a.centre;
   BarFrame frame;
-  frame.origin = Vec2(a.m10 + b.m10, a.m01 + b.m01) / area;
-  Eigen::Matrix2d spread;
-  spread << a.m20 + b.m20, a.m11 + b.m11, a.m11 + b.m11, a.m02 + b.m02;
-  spread = spread / area - frame.origin * frame.origin.transpose();
+  frame.origin = (a.area * a.centre + b.area * b.centre) / area;
+  const Eigen::Matrix2d spread =
+      (a.area * a.second + b.area * b.second) / area - frame.origin * frame.origin.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
   frame.along = solver.eigenvectors().col(1);
   if (frame.along.dot(from_a_to_b) < 0) frame.along = -frame.along;
@@ -72,10 +63,10 @@ BarFrame frame_of(const cv::Moments& a, const cv::Moments& b, const PlaneView& v
 }
 
 /// First and last position of a part along the axis in the middle strips [mm].
-std::pair<double, double> extent(const std::vector<cv::Point2f>& outline, const BarFrame& frame) {
+std::pair<double, double> extent(const std::vector<Vec2>& outline, const BarFrame& frame) {
   std::vector<double> positions;
-  for (const cv::Point2f& place : outline) {
-    const Vec2 arm = vec(place) - frame.origin;
+  for (const Vec2& place : outline) {
+    const Vec2 arm = place - frame.origin;
     if (std::abs(arm.dot(frame.across)) < 0.3 * frame.half_width + frame.pixel)
       positions.push_back(arm.dot(frame.along));
   }
@@ -109,8 +100,15 @@ LineFit line_through(Eigen::MatrixX2d points) {
   return fit;
 }
 
+/// Mean colour of all strips in the level that begins at a sample.
+Eigen::Vector3d mean_of(const std::vector<Eigen::Matrix3Xd>& strips, int begin) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Matrix3Xd& strip : strips) sum += strip.middleCols(begin, level_samples).rowwise().mean();
+  return sum / static_cast<double>(strips.size());
+}
+
 /// The edge near a position. room: lengths free of other edges on both sides [mm].
-SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const BarFrame& frame, double position, double room,
+SpecimenEdge edge_near(const RgbImage& rgb, const PlaneView& view, const BarFrame& frame, double position, double room,
                        const std::string& name) {
   LineFit fit{position, 0, 0, 0};
   const double half = std::min(reach * frame.pixel, 0.6 * room), level = levels * frame.pixel;
@@ -123,24 +121,25 @@ SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const BarFrame
   for (int k = level_samples - 1; k >= 0; --k) at.push_back(-half - level * k / level_samples);
   for (int k = 0; k < samples; ++k) at.push_back(half * (2 * (k + 0.5) / samples - 1));
   for (int k = 0; k < level_samples; ++k) at.push_back(half + level * k / level_samples);
-  cv::Mat3f read(strips, static_cast<int>(at.size()));
+  const auto columns = static_cast<int>(at.size());
+  std::vector<Eigen::Matrix3Xd> read(static_cast<std::size_t>(strips), Eigen::Matrix3Xd(3, columns));  // colours
   for (int round = 0; round < 3; ++round) {
     Eigen::MatrixX2d points(strips, 2);
     for (int i = 0; i < strips; ++i) {
       const double t = frame.half_width * (2 * (i + 0.5) / strips - 1);
       points.row(i) << t, fit.offset + fit.slope * t;
-      for (int k = 0; k < read.cols; ++k)
-        read(i, k) = between<cv::Vec3f>(rgb, view.to_pixel(frame.place(points(i, 1) + at[std::size_t(k)], t)));
+      for (int k = 0; k < columns; ++k)
+        read[std::size_t(i)].col(k) = between(rgb, view.to_pixel(frame.place(points(i, 1) + at[std::size_t(k)], t)));
     }
-    const cv::Scalar before = cv::mean(read.colRange(0, level_samples));
-    const cv::Scalar contrast = cv::mean(read.colRange(level_samples + samples, read.cols)) - before;
-    const double size = contrast.dot(contrast);
+    const Eigen::Vector3d before = mean_of(read, 0);
+    const Eigen::Vector3d contrast = mean_of(read, level_samples + samples) - before;
+    const double size = contrast.squaredNorm();
     if (!(size > 40 * 40))
       throw InvalidInput("the " + name + " cannot be seen: the colours on both sides of it are nearly the same");
     for (int i = 0; i < strips; ++i) {
       // the edge is where the share of what lies behind it says
       const double share =
-          (cv::mean(read.row(i).colRange(level_samples, level_samples + samples)) - before).dot(contrast) / size;
+          (read[std::size_t(i)].middleCols(level_samples, samples).rowwise().mean() - before).dot(contrast) / size;
       points(i, 1) += half * (1 - 2 * share);
     }
     fit = line_through(points);
@@ -159,17 +158,16 @@ SpecimenEdge edge_near(const cv::Mat& rgb, const PlaneView& view, const BarFrame
 }  // namespace
 
 SpecimenView find_specimen(const RgbImage& picture, const Colour& a, const Colour& b, const PlaneView& view) {
-  const std::vector<cv::Point2f> part_a = outline_of(picture, a, view), part_b = outline_of(picture, b, view);
-  const BarFrame frame = frame_of(cv::moments(part_a), cv::moments(part_b), view);
+  const std::vector<Vec2> part_a = outline_in_mm(picture, a, view), part_b = outline_in_mm(picture, b, view);
+  const BarFrame frame = frame_of(moments_of(part_a), moments_of(part_b), view);
   const auto [first, last_a] = extent(part_a, frame);
   const auto [first_b, last] = extent(part_b, frame);
   if (std::abs(first_b - last_a) > 12 * frame.pixel)
     throw InvalidInput("the parts of the specimen that are " + a.name + " and " + b.name + " do not meet");
   const double middle = (last_a + first_b) / 2, room = std::min(middle - first, last - middle);
-  const cv::Mat rgb = mat_of(picture);
-  return {.fixed = edge_near(rgb, view, frame, first, room, "fixed end"),
-          .interface = edge_near(rgb, view, frame, middle, room, "interface"),
-          .free = edge_near(rgb, view, frame, last, room, "free end"),
+  return {.fixed = edge_near(picture, view, frame, first, room, "fixed end"),
+          .interface = edge_near(picture, view, frame, middle, room, "interface"),
+          .free = edge_near(picture, view, frame, last, room, "free end"),
           .axis = std::atan2(frame.along.y(), frame.along.x()) * degrees};
 }
 

@@ -1,0 +1,5 @@
+#include "measure.hpp"
+
+int main(int argc, char** argv) {
+  return softkin::cli::measure_program(argc, argv);
+}
