@@ -265,7 +265,7 @@ TEST(Scene, CurvedEdges) {
   EXPECT_FALSE(curve("false"));
   ASSERT_TRUE(curve("true"));
   EXPECT_TRUE(curve("true")->smooth);
-  EXPECT_EQ(curve("true")->crease_degrees, 40);
+  EXPECT_EQ(curve("true")->crease_degrees, 50);
   EXPECT_EQ(curve("{crease: 65}")->crease_degrees, 65);
   const auto several =
       curve("[{sphere: {center: [1, 2, 3], radius: 4}}, {cylinder: {start: [0, 0, 0], end: [1, 0, 0], radius: 2}}]");

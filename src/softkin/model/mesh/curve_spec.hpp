@@ -16,10 +16,10 @@ struct GivenSurface {
 
 /// How the edges of a mesh of order 2 are curved.
 struct CurveSpec {
-  std::vector<GivenSurface> surfaces;  // each takes the edges of the mesh's surface both of whose ends lie on it
-  bool smooth = false;                 // the others go onto a smooth surface through the vertices
-  double crease_degrees = 40;          // of that: where faces turn by more is a crease; > 0, <= 120
-  Origin origin;
+  std::vector<GivenSurface> surfaces{};  // each takes the edges of the mesh's surface both of whose ends lie on it
+  bool smooth = false;                   // the others go onto a smooth surface through the vertices
+  double crease_degrees = 50;            // of that: where faces turn by more is a crease; > 0, <= 120
+  Origin origin{};
 };
 
 }  // namespace softkin

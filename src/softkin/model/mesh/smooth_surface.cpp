@@ -11,7 +11,8 @@ namespace {
 
 constexpr double radians = std::numbers::pi / 180;
 const double flat_cosine = std::cos(0.5 * radians);     // within this faces are of one plane
-const double flat_crease = std::cos(2 * radians);       // between flat faces more than this is a crease
+const double flat_crease = std::cos(2 * radians);       // more is a crease between flat faces,
+const double flat_to_round = std::cos(25 * radians);    // and between a flat one and another
 const double parallel_sheets = std::cos(45 * radians);  // both sides of a wall
 constexpr double least_turn = 0.5;                      // cosine of 60 degrees, of a tangent against its chord
 constexpr double least_crossing = 0.17;                 // sine of the angle at which sheets cross in a line
@@ -27,13 +28,28 @@ Vec3 tangent(const Vec3& chord, const Vec3& normal, const Vec3* other) {
   return along.dot(chord) >= least_turn * length && length > 0 ? Vec3(along / length) : chord;
 }
 
-/// From the middle of a chord to that of an arc with these tangents at its ends: L / 4 (tan(a / 2) + tan(b / 2)) for
-/// the angles a and b, which is exact for a circle.
-Vec3 arc_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end) {
+/// From the middle of a chord to that of an arc with these tangents at its ends: c / 4 (tan(a / 2) + tan(b / 2)) for the
+/// angles a and b in the plane in which the surface turns, and the chord's extent c in it; exact for circles and, where
+/// the chord runs aslant to that plane, for cylinders.
+///
+/// in_plane  the chord's extent in the plane over its length
+Vec3 arc_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end, double in_plane) {
   const double length = chord.norm();
   const Vec3 along = chord / length;
-  const auto across = [&](const Vec3& t) { return Vec3((t - t.dot(along) * along) / (1 + t.dot(along))); };
+  const auto across = [&](const Vec3& t) {
+    const Vec3 rise = t - t.dot(along) * along;
+    return Vec3(rise / (1 + std::sqrt(std::max(0.25, 1 - rise.squaredNorm() / (in_plane * in_plane)))));
+  };
   return length / 4 * (across(at_start) - across(at_end));
+}
+
+/// The arc between two places of one sheet with these normals.
+Vec3 sheet_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end) {
+  constexpr double least_turning = 0.02, least_share = 0.3;
+  const Vec3 along = chord.normalized(), axis = at_start.cross(at_end);
+  double in_plane = 1;
+  if (axis.norm() > least_turning) in_plane = std::max(least_share, axis.normalized().cross(along).norm());
+  return arc_bulge(chord, tangent(along, at_start, nullptr), tangent(along, at_end, nullptr), in_plane);
 }
 
 }  // namespace
@@ -184,8 +200,9 @@ void SmoothSurface::find_flat_faces() {
 void SmoothSurface::part_flat_faces() {
   for (Index half = 0; half < static_cast<Index>(halves_.size()); ++half) {
     const Index other = partner_[half];
-    if (other < 0 || !flat_[half / 3] || !flat_[other / 3]) continue;
-    if (turned(half, other) * normals_[half / 3].dot(normals_[other / 3]) < flat_crease)
+    if (other < 0 || !(flat_[half / 3] || flat_[other / 3])) continue;
+    const double least = flat_[half / 3] && flat_[other / 3] ? flat_crease : flat_to_round;
+    if (turned(half, other) * normals_[half / 3].dot(normals_[other / 3]) < least)
       partner_[half] = partner_[other] = -1;
   }
 }
@@ -296,9 +313,9 @@ Vec3 SmoothSurface::bulge(std::size_t edge) const {
   const Side* other = nullptr;  // of several the one that crosses most
   for (std::size_t s = 1; s < found.size(); ++s)
     if (!other || found[s].face.cross(one.face).norm() > other->face.cross(one.face).norm()) other = &found[s];
+  if (!other) return sheet_bulge(chord, one.low, one.high);
   const Vec3 along = chord.normalized();
-  return arc_bulge(chord, tangent(along, one.low, other ? &other->low : nullptr),
-                   tangent(along, one.high, other ? &other->high : nullptr));
+  return arc_bulge(chord, tangent(along, one.low, &other->low), tangent(along, one.high, &other->high), 1);
 }
 
 Vec3 SmoothSurface::inner_bulge(Index a, Index b) const {
@@ -307,13 +324,12 @@ Vec3 SmoothSurface::inner_bulge(Index a, Index b) const {
   };
   const Vec3 chord = vertex_at(vertices_, b) - vertex_at(vertices_, a);
   if (!(chord.norm() > 0)) return Vec3::Zero();
-  const Vec3 along = chord.normalized();
   Vec3 largest = Vec3::Zero();
   for (auto i = first_of(a); i != sectors_of_vertex_.end() && i->first == a; ++i)
     for (auto j = first_of(b); j != sectors_of_vertex_.end() && j->first == b; ++j) {
       const Vec3 &at_a = sectors_[i->second].normal, &at_b = sectors_[j->second].normal;
       if (std::abs(at_a.dot(at_b)) < parallel_sheets) continue;
-      const Vec3 bulge = arc_bulge(chord, tangent(along, at_a, nullptr), tangent(along, at_b, nullptr));
+      const Vec3 bulge = sheet_bulge(chord, at_a, at_b);
       if (bulge.squaredNorm() > largest.squaredNorm()) largest = bulge;
     }
   return largest;

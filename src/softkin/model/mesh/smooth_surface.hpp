@@ -8,8 +8,8 @@ namespace softkin {
 ///
 /// Faces are those of one element and those between elements of different labels. Two faces at an edge are of one
 /// smooth sheet where the angle between their normals is at most the crease angle, but for flat faces, which are those
-/// around a vertex about which all is flat: between two of these any angle above 2 degrees is a crease. So chamfers
-/// and flat sides stay what they are.
+/// around a vertex about which all is flat: between two of these any angle above 2 degrees is a crease, between one of
+/// these and another face any above 25. So chamfers and flat sides stay what they are.
 class SmoothSurface {
  public:
   /// labels  of the tetrahedra: the boundary between two labels is a surface too
