@@ -114,7 +114,7 @@ struct ActuatorSpec {
   std::string robot;                       // of several: whose elements, gaps and empty spaces count; empty: all
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
-  double spacing = 0;                      // cable: inside the body it is guided at least this often [mm]; 0: at its points
+  double spacing = 0;                      // cable: how often it is guided inside the body [mm]; 0: at its points
   Control control = Control::ratio;        // load: physical formulation
   double low = 0, high = 0;                // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
                                            // pressure [kPa]: any

@@ -16,7 +16,7 @@ std::string segment_text(std::size_t segment) {
 }
 
 /// Where the cable is guided on the straight way to `end` [mm]: at most `spacing` apart, but nowhere outside the body.
-void add_guides(const Compilation& c, const ActuatorSpec& spec, const Vec3& end, Actuator& cable) {
+void add_guides(Compilation& c, const ActuatorSpec& spec, const Vec3& end, Actuator& cable) {
   const Vec3 start = cable.points.back().at(c.model.rest);
   const double pieces = std::ceil((end - start).norm() / spec.spacing * (1 - 1e-12));
   if (pieces > most_guides)
