@@ -226,34 +226,28 @@ std::vector<std::pair<std::string, std::string>> file_options(const std::string&
   return all;
 }
 
+Words all_commands() {
+  Words all{"fk", "ik", "follow", "walk", "workspace", "grasp", "map", "map export", "drive", "compare", "view"};
+  for (const char* kind : {"pressure", "dea", "material", "relaxation"})
+    all.push_back(std::string("calibrate ") + kind);
+  for (const char* kind : {"info", "check", "convert"}) all.push_back(std::string("mesh ") + kind);
+  for (const char* kind : {"list", "copy"}) all.push_back(std::string("examples ") + kind);
+#ifdef SOFTKIN_OPENCV
+  for (const char* kind : {"measure", "measure camera", "measure board"}) all.emplace_back(kind);
+#endif
+  return all;
+}
+
 /// An option that names a file is read, or stands above; --pull has a direction.
 TEST(Overwriting, EveryOutputOptionIsTested) {
   const std::set<std::string> read{"--path",    "--map",   "--start", "--workspace", "--hardware", "--pressures",
-                                   "--tensile", "--twist", "--creep", "--sum",       "--pull"};
+                                   "--tensile", "--twist", "--creep", "--sum",       "--pull",     "--camera"};
   std::set<std::pair<std::string, std::string>> tested;
   for (const Written& each : all_outputs()) tested.emplace(each.command, each.option);
-  tested.emplace("drive", "--log");  // below
+  for (const auto& [command, option] : {std::pair("drive", "--log"), {"measure", "-o"}, {"measure camera", "-o"}})
+    tested.emplace(command, option);  // below
   std::size_t options = 0;
-  for (const std::string command : {"fk",
-                                    "ik",
-                                    "follow",
-                                    "walk",
-                                    "workspace",
-                                    "grasp",
-                                    "map",
-                                    "map export",
-                                    "drive",
-                                    "compare",
-                                    "view",
-                                    "calibrate pressure",
-                                    "calibrate dea",
-                                    "calibrate material",
-                                    "calibrate relaxation",
-                                    "mesh info",
-                                    "mesh check",
-                                    "mesh convert",
-                                    "examples list",
-                                    "examples copy"}) {
+  for (const std::string& command : all_commands()) {
     Words words;
     std::istringstream all(command + " --help");
     for (std::string word; all >> word;) words.push_back(word);
@@ -279,7 +273,7 @@ TEST(Overwriting, LogsOfADriveAreRefusedBeforeThePortIsOpened) {
 #ifdef SOFTKIN_OPENCV
 TEST(Overwriting, MeasurementsAreRefusedBeforeAPictureIsRead) {
   const Workshop& folder = workshop();
-  for (const Words& command : {Words{"measure", "none.png", "--tags", "-o"},
+  for (const Words& command : {Words{"measure", "none.png", "--tags", "--scale-board", "5x4,tag=12mm,gap=3mm", "-o"},
                                Words{"measure", "camera", "none.png", "--board", "checker,9x6,square=10mm", "-o"}}) {
     Words words = command;
     const std::string file = folder.write(words[1] == "camera" ? "camera.yaml" : "track.csv", mine);
