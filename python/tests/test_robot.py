@@ -77,6 +77,27 @@ def test_every_key_of_a_scene_from_memory(examples: Path) -> None:
     assert shape["tip"][2] != pytest.approx(10)
 
 
+def test_curved_edges_make_a_rod_round() -> None:
+    vertices, tetrahedra = block((6, 4, 4), (60, 20, 20))  # pushed onto a rod of 10 mm radius
+    across = vertices[:, 1:] - 10
+    length = np.maximum(np.hypot(across[:, 0], across[:, 1]), 1e-30)
+    vertices[:, 1:] = 10 + across * (np.abs(across).max(axis=1) / length)[:, None]
+
+    def least_radius(robot: softkin.Robot) -> float:
+        radius = np.hypot(robot.rest[:, 1] - 10, robot.rest[:, 2] - 10)
+        return float(radius[radius > 9.7].min())
+
+    with pytest.warns(softkin.SoftkinWarning, match="The edges are straight"):
+        straight = softkin.Robot(vertices, tetrahedra, order=2, **CLAMPED)
+    assert least_radius(straight) < 9.82  # sixteen corners: 10 cos(180 / 16 degrees)
+    for curve in (True, {"cylinder": {"start": (0, 10, 10), "end": (60, 10, 10), "radius": 10}}):
+        robot = softkin.Robot(vertices, tetrahedra, order=2, curve=curve, **CLAMPED)
+        assert any("'curve' moved" in note for note in robot.notes)
+        assert least_radius(robot) > 9.9
+    with pytest.raises(softkin.InvalidInput, match="order: 2"):
+        softkin.Robot(vertices, tetrahedra, curve=True, **CLAMPED)
+
+
 def test_units() -> None:
     vertices, tetrahedra = block((6, 2, 2), (60, 20, 20))
     in_mm = softkin.Robot(vertices, tetrahedra, **CLAMPED)
