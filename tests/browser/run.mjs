@@ -6,6 +6,7 @@ import {launch} from './browser.mjs';
 import {fieldTests, liveFieldTests} from './field.mjs';
 import {liveTests} from './live.mjs';
 import {reportTests} from './report.mjs';
+import {liveShownTests, shownTests} from './shown.mjs';
 import {hasView, stopAll} from './softkin.mjs';
 import {timeTests} from './times.mjs';
 
@@ -28,10 +29,12 @@ async function test(name, act) {
 try {
   if (process.argv[4] === 'files') {
     await reportTests(browser, test);
+    await shownTests(browser, test);
     await fieldTests(browser, test);
     await timeTests(browser, test);
   } else if (await hasView()) {
     await liveFieldTests(browser, test);
+    await liveShownTests(browser, test);
     await liveTests(browser, test);
   } else console.log('skipped: live mode, this softkin has no view');
 } finally {

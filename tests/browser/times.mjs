@@ -37,6 +37,8 @@ async function played(page) {
 async function checkSeconds(browser) {
   const {page, watch, context} = await pageOf(browser, 'fk',
     ['t_s,tendon1', '0,1', '0.25,0.95', '1.25,0.9', '1.3,0.85'], {scheme: 'dark'});
+  assert.equal(await shown(page), '4 computed steps');
+  await page.locator('#step').fill('3');
   assert.equal(await shown(page), '4 of 4, t = 1.3 s');
   await page.locator('#step').fill('2');
   assert.equal(await shown(page), '3 of 4, t = 1.25 s');
@@ -57,6 +59,7 @@ async function checkSeconds(browser) {
 async function checkHours(browser) {
   const {page, watch, context} = await pageOf(browser, 'follow',
     ['t_s,x_mm,z_mm', '0,76,74', '3600,77,74', '7200,78,74', '14400,79,74'], {width: 390, height: 844});
+  await page.locator('#step').fill('3');
   assert.equal(await shown(page), '4 of 4, t = 14400 s');
   assert.deepEqual(await speeds(page), ['0.25 ×', '1 ×', '4 ×', '500 ×']);
   assert.equal(await page.locator('#speed').inputValue(), '500');
@@ -70,6 +73,7 @@ async function checkHours(browser) {
 
 async function checkNone(browser) {
   const {page, context} = await pageOf(browser, 'fk', ['tendon1', '1', '0.9'], {});
+  await page.locator('#step').fill('1');
   assert.equal(await shown(page), '2 of 2');
   assert.ok(await page.locator('#speed').isHidden());
   await context.close();

@@ -13,7 +13,7 @@ constexpr double begin_share = 0.1;   // of what presses on the body, to begin w
 constexpr double least_share = 1e-6;  // the same, of the largest that may be commanded
 constexpr double gravity = 9.81;      // m/s^2
 constexpr double accuracy = 1e-3;     // of the largest pull
-constexpr double much = 0.25;         // of the normal forces: where so much slips, it is that which ends a pull
+constexpr double nearly = 0.9;        // of the friction that there can be: where so much is used, the body slips
 
 const FreeBody& body_at(const Model& model, Index body) {
   if (body < 0 || body >= static_cast<Index>(model.bodies.size()))
@@ -98,7 +98,7 @@ std::vector<PullDirection> axes_to_pull_along() {
 const char* what_then(const Pull& pull) {
   if (pull.status == Status::converged) return "holds more";
   if (pull.status != Status::limit) return name_of(pull.status);
-  return pull.pressed.slipping.value_or(0) >= much ? "slips" : "gives way";
+  return pull.last.report.remark.find("slips") != std::string::npos ? "slips" : "gives way";
 }
 
 Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3& direction, double force_N) {
@@ -192,6 +192,23 @@ class Pulling {
     return Outcome::stopped;
   }
 
+  /// What rubs on the body, along the surfaces, over what friction can hold at most [-]; 0 without friction.
+  [[nodiscard]] double friction_used() const {
+    const ElementDeformation shape = statics_.measured(pull_.last.state);
+    const std::string& name = model_.bodies[static_cast<std::size_t>(body_)].name;
+    double used = 0, most = 0;
+    if (!shape.contacts) return 0;
+    for (const PairForces& pair : shape.contacts->pairs) {
+      const auto is_body = [&](Index part) {
+        return model_.contact.parts[static_cast<std::size_t>(part)].name == name;
+      };
+      if (!is_body(pair.a) && !is_body(pair.b)) continue;
+      used += std::sqrt(std::max(0.0, pair.force.squaredNorm() - pair.normal_N * pair.normal_N));
+      most += model_.contact.pair(pair.a, pair.b).friction * pair.normal_N;
+    }
+    return most > 0 ? used / most : 0;
+  }
+
   void end(Status status) {
     pull_.status = status;
     SolveReport& report = pull_.last.report;
@@ -199,6 +216,7 @@ class Pulling {
     report.stopped = false;
     if (status == Status::converged) return;
     report.remark = lost_.empty() ? "no equilibrium was found under a larger pull" : lost_;
+    if (lost_.empty() && friction_used() >= nearly) report.remark += ", where it slips";
     if (!lost_.empty()) pull_.status = report.status = Status::not_converged;
   }
 

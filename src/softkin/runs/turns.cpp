@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -41,15 +42,27 @@ Mat3 moments(const EmbeddedPoint& point, const Points& here, const Points& there
   return sum;
 }
 
-/// Do its vertices at rest span a plane, so that one rotation lays them best?
+constexpr double flat = 1e-6;  // of squares of lengths: what is thinner is a plane, and less a line
+
+/// Do its vertices at rest span a plane, so that it has an orientation?
 bool spans_a_plane(const Model& model, const EmbeddedPoint& point) {
-  constexpr double flat = 1e-9;  // of squares of lengths
-  const Eigen::JacobiSVD<Mat3> svd(moments(point, model.rest, model.rest));
-  return svd.singularValues()[1] > flat * svd.singularValues()[0];
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments(point, model.rest, model.rest));
+  return axes.eigenvalues()[1] > flat * axes.eigenvalues()[2];
+}
+
+/// The linear map that takes its vertices best from rest to where they are; of a plane's normal to the normal.
+Mat3 best_map(const EmbeddedPoint& point, const Points& rest, const Points& positions) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments(point, rest, rest));
+  const Mat3 from = axes.eigenvectors(), there = moments(point, rest, positions);
+  Mat3 to;
+  for (Index k = 0; k < 3; ++k) to.col(k) = there * from.col(k) / axes.eigenvalues()[k];
+  if (axes.eigenvalues()[0] <= flat * axes.eigenvalues()[2])
+    to.col(0) = from.determinant() * to.col(1).cross(to.col(2)).normalized();
+  return to * from.transpose();
 }
 
 double turn_of(const EmbeddedPoint& point, const Points& rest, const Points& positions) {
-  const Eigen::JacobiSVD<Mat3> svd(moments(point, rest, positions), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Mat3> svd(best_map(point, rest, positions), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
   const Mat3 rotation = svd.matrixU() * Vec3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
   return degrees_per_radian * Eigen::AngleAxisd(rotation).angle();

@@ -36,12 +36,11 @@ struct MarkerLine {
 /// throws  InvalidInput, naming the option --turn: no such marker, or two that are at one place at rest
 [[nodiscard]] std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names);
 
-/// How far each marker that is a region or a body has turned from rest: the angle of the rotation that lays its
-/// vertices, weighted as in the marker's mean, best onto where they are.
+/// How far each marker that is a region or a body has turned from rest: the angle of the rotation in the polar
+/// decomposition of the linear map that takes its vertices, weighted as in the marker's mean, best to where they are.
 ///
 /// positions  #V by 3 [mm]
 /// returns    per marker, 0 to 180 [degrees]; not finite where it is a point of the body, or its vertices are on a line
-/// source     W. Kabsch, Acta Cryst. A32, 1976
 [[nodiscard]] std::vector<double> marker_turns(const Model& model, const Points& positions);
 
 /// Which markers have an orientation, by which marker_turns knows their turn.

@@ -48,7 +48,8 @@ export function stateWords(robot: Robot): {text: string; bad: boolean} {
     return {text: `${now}; softkin is computing …`, bad: false};
   }
   if (robot.outside) return {text: 'Outside the map: the shape before is shown.', bad: true};
-  if (!told) return {text: from === 'map' ? 'From the map' : 'At rest', bad: false};
+  const {commands, document: {actuators}} = robot, rests = actuators.every(({rest}, i) => commands[i] === rest);
+  if (!told) return {text: from === 'map' && !rests ? 'From the map' : 'At rest', bad: false};
   const {status, iterations, seconds, remark} = told, bad = status !== 'converged';
   const text = `${from === 'step' ? `Step ${step + 1}` : 'Computed'}: ${plain(status)}, ${iterations} iterations, ` +
     `${digits(seconds, 2)} s${remark ? ` – ${remark}` : ''}`;

@@ -20,8 +20,8 @@ export function whyNotTaken(text: string, {name, low, high, unit, control}: Actu
   const value = Number(text);
   if (value >= low && value <= high) return '';
   const words = commandWords({unit, control});
-  return `${plain(name)}: ${digits(value, 6)} is outside its range, ` +
-    `${withUnit(`${digits(low)} to ${digits(high)}`, words)}. The robot stays as it is.`;
+  return `${plain(name)}: ${typed(value)} is outside its range, ` +
+    `${withUnit(`${typed(low)} to ${typed(high)}`, words)}. The robot stays as it is.`;
 }
 
 function makeRow(actuator: Actuator, i: number): Row & {whole: HTMLElement} {
