@@ -39,16 +39,10 @@ inline Footprint disc(int corners, int rings, double hole = 0) {
   return plan;
 }
 
-/// A sphere of radius 1: an icosahedron whose faces are cut in four so often.
-inline Footprint ball_surface(int cuts) {
-  const double g = (1 + std::sqrt(5.0)) / 2;
+/// Cuts each triangle on the sphere of radius 1 in four, so often.
+inline Footprint cut_on_ball(std::vector<Vec3> at, std::vector<Triangle> triangles, int cuts) {
   Footprint plan;
-  std::vector<Vec3> at{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                       {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  for (Vec3& p : at) p.normalize();
-  plan.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  plan.triangles = std::move(triangles);
   for (int cut = 0; cut < cuts; ++cut) {
     std::map<std::pair<Index, Index>, Index> middles;
     const auto middle = [&](Index a, Index b) {
@@ -66,6 +60,32 @@ inline Footprint ball_surface(int cuts) {
   plan.vertices.resize(static_cast<Index>(at.size()), 3);
   for (std::size_t i = 0; i < at.size(); ++i) plan.vertices.row(static_cast<Index>(i)) = at[i].transpose();
   return plan;
+}
+
+/// A sphere of radius 1: an icosahedron whose faces are cut in four so often.
+inline Footprint ball_surface(int cuts) {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  std::vector<Vec3> at{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                       {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  for (Vec3& p : at) p.normalize();
+  return cut_on_ball(std::move(at),
+                     {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}},
+                     cuts);
+}
+
+/// Its half above z = 0, of a pyramid with so many sides.
+inline Footprint dome_surface(int sides, int cuts) {
+  std::vector<Vec3> at;
+  std::vector<Triangle> triangles;
+  for (Index i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    at.emplace_back(std::cos(angle), std::sin(angle), 0);
+    triangles.push_back({i, (i + 1) % sides, static_cast<Index>(sides)});
+  }
+  at.emplace_back(0, 0, 1);
+  return cut_on_ball(std::move(at), std::move(triangles), cuts);
 }
 
 /// Layers of prisms over a footprint, each of three tetrahedra, at the places place(vertex's place, layer over the number

@@ -240,7 +240,7 @@ void check_random_bodies(unsigned first, int count) {
 }  // namespace
 
 TEST(CurvedEdges, NoElementOfRandomBodiesFolds) {
-  check_random_bodies(1, 40);
+  check_random_bodies(1, 25);
 }
 
 TEST(CurvedEdges, NoElementOfAThousandRandomBodiesFolds) {

@@ -9,7 +9,7 @@ namespace softkin {
 namespace {
 
 constexpr double least_quality = 0.1;    // Jacobian over that with straight edges
-constexpr double good_quality = 0.4;     // below it nodes inside go along
+constexpr double good_quality = 0.7;     // below it nodes inside make room
 constexpr double farthest_share = 0.24;  // of an edge's length; compile() refuses a node beyond a quarter
 
 }  // namespace
@@ -73,10 +73,10 @@ double EdgeBulges::quality(Index element) const {
 }
 
 /// What its elements lack in quality, summed up.
-double EdgeBulges::deficit_around(Index node) const {
+double EdgeBulges::deficit_around(Index node, double wanted) const {
   double deficit = 0;
   for (std::size_t i = nodes_[node].begin; i < nodes_[node].end; ++i)
-    deficit += std::max(0.0, least_quality - quality(around_[i]));
+    deficit += std::max(0.0, wanted - quality(around_[i]));
   return deficit;
 }
 
@@ -118,17 +118,17 @@ void EdgeBulges::go_along(const std::vector<Index>& bad, const SmoothSurface& su
     }
 }
 
-void EdgeBulges::make_room(Index node, const SmoothSurface& surface) {
+void EdgeBulges::make_room(Index node, const SmoothSurface& surface, double wanted) {
   Node& own = nodes_[node];
   if (!may_give_way(own)) return;
   const Vec3 mean = mean_bulge(node), inner = surface.inner_bulge(own.low, own.high);
   Vec3 best = own.bulge;
-  double least = deficit_around(node);
+  double least = deficit_around(node, wanted);
   for (const Vec3& way : {inner, mean, Vec3(2 * mean), Vec3(0.5 * (inner + mean)), Vec3(0.5 * mean), Vec3(0 * mean)}) {
     if (!(least > 0)) break;
     own.bulge = allowed(own, way);
     place(node);
-    if (const double left = deficit_around(node); left < least) {
+    if (const double left = deficit_around(node, wanted); left < least) {
       least = left;
       best = own.bulge;
     }
@@ -168,11 +168,13 @@ void EdgeBulges::go(const SmoothSurface& surface) {
     go_along(bad, surface);
     bad = elements_below(good_quality);
   }
-  bad = elements_below(least_quality);
-  for (int sweep = 0; sweep < sweeps && !bad.empty(); ++sweep) {
-    for (const Index element : bad)
-      for (const Index node : mesh_.edge_nodes[element]) make_room(node, surface);
-    bad = elements_below(least_quality);
+  for (const double wanted : {good_quality, least_quality}) {
+    bad = elements_below(wanted);
+    for (int sweep = 0; sweep < sweeps && !bad.empty(); ++sweep) {
+      for (const Index element : bad)
+        for (const Index node : mesh_.edge_nodes[element]) make_room(node, surface, wanted);
+      bad = elements_below(wanted);
+    }
   }
   for (int round = 0; !bad.empty(); ++round) {
     for (const Index element : bad)

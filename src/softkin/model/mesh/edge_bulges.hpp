@@ -31,13 +31,13 @@ class EdgeBulges {
   [[nodiscard]] Vec3 middle(const Node& node) const;
   void place(Index node);
   [[nodiscard]] double quality(Index element) const;
-  [[nodiscard]] double deficit_around(Index node) const;
+  [[nodiscard]] double deficit_around(Index node, double wanted) const;
   [[nodiscard]] Vec3 mean_bulge(Index node) const;
   [[nodiscard]] std::vector<Index> elements_below(double least) const;
   [[nodiscard]] bool may_give_way(const Node& node) const;
   [[nodiscard]] Vec3 allowed(const Node& node, const Vec3& way) const;
   void go_along(const std::vector<Index>& bad, const SmoothSurface& surface);
-  void make_room(Index node, const SmoothSurface& surface);
+  void make_room(Index node, const SmoothSurface& surface, double wanted);
   void hold_back(Index element, bool wholly);
 
   Mesh& mesh_;
