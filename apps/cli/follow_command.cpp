@@ -164,7 +164,9 @@ int run_follow(const FollowOptions& options) {
   const std::vector<std::string> doubts = doubts_about(model, path);
   if (options.max_step_mm > 0) path = densified(path, options.max_step_mm);
   std::vector<Output> outputs = options.outputs(path.waypoints.size());
-  if (options.resume) leave_to_resume(outputs, options.files().run().report);
+  if (options.resume)  // the commands of a run that was killed are older than its journal
+    for (const fs::path& file : {options.files().run().report, options.files().commands()})
+      leave_to_resume(outputs, file);
   check_outputs(outputs, inputs, options.may_replace);
   TrajectoryOptions trajectory = options.trajectory();
   if (!options.workspace.empty())
