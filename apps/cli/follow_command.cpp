@@ -170,7 +170,9 @@ int run_follow(const FollowOptions& options) {
   const std::optional<runs::MarkerLine> line_turned = runs::read_marker_line(model, options.turn);
   if (options.max_step_mm > 0) path = densified(path, options.max_step_mm);
   std::vector<Output> outputs = options.outputs(path.waypoints.size());
-  if (options.resume) leave_to_resume(outputs, options.files().run().report);
+  if (options.resume)  // the commands of a run that was killed are older than its journal
+    for (const fs::path& file : {options.files().run().report, options.files().commands()})
+      leave_to_resume(outputs, file);
   check_outputs(outputs, inputs, options.may_replace);
   TrajectoryOptions trajectory = options.trajectory();
   if (!options.workspace.empty())

@@ -155,7 +155,8 @@ TEST(DriveCommand, TakesThePressuresOfCurves) {
   const std::string expected = "t_s,regulator1_kPa\n0,0\n1,60\n2,120\n";
   const auto schedule_of = [&](const std::string& commands, const std::vector<std::string>& options) {
     const std::string schedule = work / "schedule.csv";
-    std::vector<std::string> arguments{"drive", scene, commands, "--hardware", hardware, "--schedule", schedule};
+    std::vector<std::string> arguments{"drive",  scene,        commands, "--hardware",
+                                       hardware, "--schedule", schedule, "--force-overwrite"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProgramResult result = run_program(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.errors;

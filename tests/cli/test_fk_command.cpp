@@ -27,7 +27,7 @@ TEST(FkCommand, RefusesSettings) {
   refused({"air=2.5"}, "--set 'air=2.5': the ratio is outside its range, 1 to 2 [-]");
   refused({"air=0.9999999"}, "--set 'air=0.9999999': the ratio is outside its range, 1 to 2 [-]");
   refused({"air=1.1", "air=1.1"}, "--set 'air=1.1': actuator 'air' is set twice");
-  for (const std::string text : {"1.8kPa", "", "nan", "inf", "1,5", "1.5 ", "0x1p0", "--5"})
+  for (const std::string text : {"1.8kPa", "", "nan", "inf", "1,5", "1 5", "0x1p0", "--5"})
     refused({"air=" + text}, "the ratio to rest must be a finite number without unit, not '" + text + "'");
   refused({"air=1,5"}, "without unit, not '1,5'; write a decimal point: 1.5");
   refused({"air=1.2,tendon=3"}, "not '1.2,tendon=3'; set each actuator on its own: --set air=1.2 --set tendon=3");

@@ -20,7 +20,7 @@ TEST(HtmlOption, IsRefusedWhereItCannotBe) {
     return;
   }
   expect_refused(folder, {"--html", folder / "a.html", "--report", folder / "a.html"},
-                 "--html " + (folder / "a.html") + ": is the file of --report");
+                 "--report " + (folder / "a.html") + ": must end in .json");
 }
 
 TEST(HtmlOption, FkWritesItsStepsIntoThePage) {

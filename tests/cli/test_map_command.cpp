@@ -210,7 +210,7 @@ TEST(MapCommand, RefusesWhatDoesNotFit) {
   const MapFolder folder;
   EXPECT_EQ(run_program({"map", folder.scene, "-o", folder / "map.csv"}).exit_code, 2);
   EXPECT_EQ(folder.run({"--accuracy", "0"}).exit_code, 2);
-  softkin::write_file(folder.map + ".run", "something\n");
+  softkin::write_file(folder.map + ".run", "softkin map journal of another run\n");
   const ProgramResult unfinished = folder.run();
   EXPECT_EQ(unfinished.exit_code, 2);
   EXPECT_NE(unfinished.errors.find("--resume"), std::string::npos) << unfinished.errors;

@@ -73,7 +73,7 @@ TEST(OtherNumbers, OtherUnitsAreConverted) {
   const BlockFolder volumes(physical_scene());
   for (const char* pressure : {"air=50kPa", "air=0.5bar", "air=5e4Pa"})
     expect_refused(volumes, {"--set", pressure},
-                   "'air' is commanded by its volume: a pressure needs 'control: pressure'");
+                   "'air' is commanded by its volume: a pressure needs a curve in the scene");
 }
 
 TEST(OtherNumbers, RangesOfPressureInPascalAreDoubted) {

@@ -92,7 +92,7 @@ TEST(PlotOption, FkRefusesPlotsThatCannotBe) {
   expect_refused(folder, {"--plot", folder / "plot.svg"}, "--plot draws the steps of a path");
   expect_refused(folder, {"--path", path, "--plot", folder / "plot.png"}, "must end in .svg");
   expect_refused(folder, {"--path", path, "--plot", folder / "a.svg", "--report", folder / "a.svg"},
-                 "--plot " + (folder / "a.svg") + ": is the file of --report");
+                 "--report " + (folder / "a.svg") + ": must end in .json");
   expect_refused(folder, {"--path", path, "--plot", folder.scene + "/a.svg"}, "--plot");
 }
 

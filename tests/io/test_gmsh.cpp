@@ -237,6 +237,7 @@ Mesh one_tetrahedron() {
 TEST_F(Gmsh, WritesTheFormat) {
   write_gmsh(folder_ / "mesh.msh", one_tetrahedron(), false);
   EXPECT_EQ(read_file(folder_ / "mesh.msh"),
+            "$Comments\nmade by softkin\n$EndComments\n"
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
             "$PhysicalNames\n4\n3 1 \"body\"\n2 2 \"base\"\n3 3 \"all\"\n0 4 \"tip\"\n$EndPhysicalNames\n"
             "$Entities\n1 0 1 1\n"

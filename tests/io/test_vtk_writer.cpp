@@ -182,7 +182,8 @@ TEST(VtkWriter, Collection) {
   const TempFolder folder;
   write_pvd(folder.file("a.pvd"), {{0, "a_0.vtu"}, {0.1, "b&c.vtu"}});
   EXPECT_EQ(slurp(folder.file("a.pvd")),
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+            "<?xml version=\"1.0\"?>\n<!-- made by softkin -->\n<VTKFile type=\"Collection\" version=\"0.1\" "
+            "byte_order=\"LittleEndian\">\n"
             "<Collection>\n<DataSet timestep=\"0\" group=\"\" part=\"0\" file=\"a_0.vtu\"/>\n"
             "<DataSet timestep=\"0.1\" group=\"\" part=\"0\" file=\"b&amp;c.vtu\"/>\n</Collection>\n</VTKFile>\n");
   EXPECT_NE(refusal([&] {

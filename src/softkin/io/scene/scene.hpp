@@ -40,11 +40,11 @@ struct SceneFiles {
 
 /// A scene, and what the user changes in it.
 struct AskedScene {
-  std::string scene;                   // file
-  std::string formulation;             // "physical" or "target-shape"; empty: the scene's
-  std::vector<std::string> forces;     // NAME=FX,FY,FZ [N]
-  std::vector<std::string> materials;  // REGION.KEY=VALUE, of the scene's materials
-  std::vector<std::string> changes;    // PATH=VALUE, of anything in the scene (changes.hpp)
+  std::string scene;                     // file
+  std::string formulation;               // "physical" or "target-shape"; empty: the scene's
+  std::vector<std::string> forces;       // NAME=FX,FY,FZ [N]
+  std::vector<std::string> materials{};  // REGION.KEY=VALUE, of the scene's materials
+  std::vector<std::string> changes{};    // PATH=VALUE, of anything in the scene (changes.hpp)
 };
 
 /// inputs  the files that the scene names are added

@@ -130,8 +130,9 @@ std::string missing_curve(const Actuator& actuator, const std::string& text) {
                    [&](const auto& each) { return is_kPa(each.own) && text.ends_with(each.unit); }) ||
        text.ends_with("kPa")))
     return "; '" + actuator.name +
-           "' is commanded by its volume: a pressure needs 'control: pressure' and a range in "
-           "kPa in the scene (physical), or a measured curve (softkin calibrate pressure)";
+           "' is commanded by its volume: a pressure needs a curve in the scene (softkin calibrate pressure), or "
+           "'control: "
+           "pressure' with a range in kPa (physical)";
   if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
     return "; a voltage needs 'control: voltage', or a curve in the scene (softkin calibrate dea)";
   return "";
