@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -30,6 +31,7 @@ struct FkOptions : SolveOptions, RunOptions, MapUse {
   ShowOptions show;
   std::vector<std::string> settings;  // ACTUATOR=VALUE
   std::vector<std::string> turn;      // two markers
+  double beyond = 0;                  // volume or length over that at rest; 0: not given
 
   [[nodiscard]] bool series() const { return lower_extension(output) == ".pvd"; }
   /// The files to write; a path has so many steps.
@@ -68,6 +70,11 @@ void add_options(CLI::App& command, FkOptions& options) {
                "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest");
   add_value(command, "--start", options.start, "F.vtu",
             "Begin at a shape that softkin wrote instead of at rest, such as\none that was stopped on its way");
+  add_value(
+      command, "--beyond", options.beyond, "RATIO",
+      "Where a pressure or tension comes to its maximum, go on beyond\nit, where it falls, to this volume or length "
+      "over that at rest;\nphysical (default: end at the maximum)",
+      positive_ratio());
   add_map_use(command, options);
   add_force(command, options);
   add_view(command, options.show);
@@ -132,6 +139,7 @@ class FkRun {
   static StaticsOptions solving(const FkOptions& options) {
     StaticsOptions statics = options.statics();
     statics.trace = !options.trace.empty();
+    statics.beyond = options.beyond;
     return statics;
   }
 
@@ -250,6 +258,21 @@ class FkRun {
   std::vector<std::vector<TracedStep>> traces_;  // of the steps that this run made
 };
 
+/// Is there a pressure or tension that may have a maximum?
+void check_beyond(const Model& model, const FkOptions& options) {
+  const auto loads = [](const Actuator& a) {
+    return a.control == Control::load && (a.kind == ActuatorKind::pneumatic || a.kind == ActuatorKind::cable);
+  };
+  if (options.beyond == 0) return;
+  if (model.formulation != Formulation::physical || std::none_of(model.actuators.begin(), model.actuators.end(), loads))
+    throw InvalidInput(
+        "--beyond goes on beyond the maximum of a pressure or tension, and no actuator of this robot is commanded by "
+        "one "
+        "(control: pressure, control: tension): leave it out");
+  if (!options.map.empty() && !options.polish)
+    throw InvalidInput("--beyond is for the solver, not for a map: it needs --polish, or no --map");
+}
+
 std::vector<ActuationStep> asked_steps(const Model& model, const FkOptions& options) {
   const Settings settings = read_settings(model, "--set", options.settings);
   if (!options.path.empty()) return read_actuation_path(model, options.path, settings);
@@ -265,6 +288,7 @@ int run_fk(const FkOptions& options) {
   ProgressLine line;
   line.show(-1, "reading the scene");
   const Model model = asked_robot(options, inputs);
+  check_beyond(model, options);
   const std::vector<ActuationStep> steps = asked_steps(model, options);
   if (steps.front().time) check_times(model, options.path, options, options);
   (void)runs::read_marker_line(model, options.turn);  // before anything is written

@@ -71,6 +71,17 @@ std::string point_text(const double* xyz) {
   return softkin::point_text({xyz[0], xyz[1], xyz[2]}, 4, 1e-6);
 }
 
+/// "air by its volume: 0 kPa at 1, 9.1 kPa at 2.4, ..."
+std::string branch_text(const Model& model, const runs::Finding& finding) {
+  const auto is_it = [&](const Actuator& actuator) { return actuator.name == finding.name; };
+  const Actuator& actuator = *std::find_if(model.actuators.begin(), model.actuators.end(), is_it);
+  std::string text = finding.name + " by its " + (actuator.kind == ActuatorKind::cable ? "length" : "volume") + " [-]:";
+  for (std::size_t i = 0; i + 1 < finding.values.size(); i += 2)
+    text += (i > 0 ? ", " : " ") + number(finding.values[i + 1], 4) + " " + command_unit(actuator) + " at " +
+            number(finding.values[i], 4);
+  return text;
+}
+
 std::string finding_text(const Model& model, const runs::Finding& finding) {
   using Kind = runs::Finding::Kind;
   const std::vector<double>& v = finding.values;
@@ -142,6 +153,8 @@ std::string finding_text(const Model& model, const runs::Finding& finding) {
       return "warning: from " + percent(v[0]) +
              " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
              "another one; --stable looks for it";
+    case Kind::branch:
+      return branch_text(model, finding);
     case Kind::diverged:
       break;
   }
@@ -192,10 +205,11 @@ void RunProgress::show(const std::string& detail, double share) {
   line_.show((static_cast<double>(at_) + share_) / static_cast<double>(all_), text + ", " + detail);
 }
 
-/// Moves shrink by about the same factor each iteration, so their logarithm tells how far the step is.
+/// Before the first equilibrium on the way moves tell: they shrink by about the same factor each iteration, so that
+/// their logarithm tells how far a step is that leads there at once, as most do.
 double EquilibriumProgress::share(const Progress& p) {
   if (p.iteration == 1) first_move_ = p.step_mm;
-  if (p.share >= 0) return p.share;
+  if (p.share > 0) return p.share;
   const double gone = std::log(p.step_mm / first_move_) / std::log(p.tolerance_mm / first_move_);
   return std::isfinite(gone) ? std::clamp(gone, 0.0, 1.0) : 0;
 }

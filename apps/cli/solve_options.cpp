@@ -62,6 +62,10 @@ CLI::Validator positive_force() {
   return positive("a force > 0 in N");
 }
 
+CLI::Validator positive_ratio() {
+  return positive("a volume or length > 0 over that at rest");
+}
+
 CLI::Validator positive_time() {
   return positive("a time > 0 in s");
 }

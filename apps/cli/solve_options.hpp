@@ -84,6 +84,7 @@ void check_solver(const SolveOptions& options);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);
 [[nodiscard]] CLI::Validator positive_length();
 [[nodiscard]] CLI::Validator positive_force();
+[[nodiscard]] CLI::Validator positive_ratio();
 [[nodiscard]] CLI::Validator positive_time();
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& names);
 

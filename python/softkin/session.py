@@ -65,6 +65,7 @@ class Session(Solving):
         anderson: int = 6,
         threads: int = 0,
         stable: bool = False,
+        beyond: float | None = None,
         elapsed_s: float | None = None,
         budget_s: float | None = None,
         progress: ProgressFunction | None = None,
@@ -72,7 +73,7 @@ class Session(Solving):
     ) -> Shape:
         """As Robot.solve, from the last equilibrium where no start is given."""
         options = _within(
-            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s), budget_s
+            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s, beyond), budget_s
         )
         by = self._by(map, polish, options)
         found = self._solve(

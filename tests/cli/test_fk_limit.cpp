@@ -51,6 +51,39 @@ TEST(FkLimit, IsToldWithTheLastGoodShape) {
   expect_same_markers(step, same, 1e-4);
 }
 
+TEST(FkLimit, GoesOnBeyondTheMaximum) {
+  const BlockFolder folder(loaded_scene());
+  std::vector<std::string> options = too_much;
+  options.insert(options.end(), {"--report", folder / "a.json"});
+  EXPECT_EQ(run_fk(folder.scene, options).exit_code, 1);
+  const json summit = json::parse(read_text(folder / "a.json"))["steps"][0];
+  const double ratio = 1.3 * summit["actuators"]["air"]["achieved"].get<double>();
+  options.insert(options.end(), {"--beyond", text(ratio)});
+  const ProgramResult result = run_fk(folder.scene, options);
+  EXPECT_EQ(result.exit_code, 1);
+  const json step = json::parse(read_text(folder / "a.json"))["steps"][0];
+  EXPECT_NEAR(step["actuators"]["air"]["achieved"].get<double>(), ratio, 1e-6 * ratio);
+  EXPECT_LT(step["actuators"]["air"]["pressure_kPa"], summit["actuators"]["air"]["pressure_kPa"]);
+  EXPECT_NE(result.errors.find("; beyond it, at "), std::string::npos) << result.errors;
+  EXPECT_NE(result.output.find("air by its volume [-]: 0 kPa at 1, "), std::string::npos) << result.output;
+  const json& branch = step["branch"];
+  EXPECT_EQ(branch["actuator"], "air");
+  ASSERT_EQ(branch["ratio"].size(), branch["pressure_kPa"].size());
+  EXPECT_GT(branch["ratio"].size(), 5u);
+  EXPECT_NEAR(branch["ratio"].back().get<double>(), ratio, 1e-9 * ratio);
+  EXPECT_NEAR(branch["pressure_kPa"].back().get<double>(), step["actuators"]["air"]["pressure_kPa"].get<double>(),
+              1e-6);
+}
+
+TEST(FkLimit, BeyondNeedsALoadThatMayHaveAMaximum) {
+  const BlockFolder folder(replaced(loaded_scene(), "pressure, range: [-100, 3000]", "volume, range: [1, 50]"));
+  const ProgramResult result = run_fk(folder.scene, {"--set", "air=1.1", "--beyond", "3"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("--beyond goes on beyond the maximum of a pressure or tension"), std::string::npos)
+      << result.errors;
+  EXPECT_EQ(run_fk(folder.scene, {"--set", "air=1.1", "--beyond", "-3"}).exit_code, 2);
+}
+
 TEST(FkLimit, OfLoadsAndDisplacementsIsTold) {
   const BlockFolder folder(physical_scene());
   const ProgramResult result = run_fk(folder.scene, {"--force", "payload=-1000,0,0"});  // a column gives way

@@ -5,6 +5,7 @@
 
 #include "random/commanded_fields.hpp"
 #include "random/confirm.hpp"
+#include "random/confirm_floor.hpp"
 #include "random/reference_elements.hpp"
 
 namespace softkin::random_robots {
@@ -337,9 +338,13 @@ struct Balance {
   }
 };
 
+/// floor: near it, what pushes the region up and tilts it is not known
 void enter_rigid(const Model& model, const RigidRegion& region, const Points& positions, const Forces& forces,
-                 Balance& balance) {
-  const RigidMoves moves = moves_of(model, region);
+                 const ConfirmedFloor* floor, Balance& balance) {
+  RigidMoves moves = moves_of(model, region);
+  const auto near = [&](Index v) { return floor && floor->near(v); };
+  if (std::any_of(region.vertices.begin(), region.vertices.end(), near))
+    moves.slides[2] = moves.turns[0] = moves.turns[1] = false;
   RealVec3 middle = RealVec3::Zero(), force = RealVec3::Zero(), moment = RealVec3::Zero();
   for (const Index v : region.vertices) middle += positions.row(v).transpose().cast<Real>();
   middle /= static_cast<Real>(region.vertices.size());
@@ -380,10 +385,17 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   balance.tolerance_mm = found.report.tolerance_mm;
   balance.largest = *std::max_element(forces.size.begin(), forces.size.end());
   std::vector<bool> of_rigid(model.used.size());
-  for (const RigidRegion& region : model.rigid) {
+  for (const RigidRegion& region : model.rigid)
     for (const Index v : region.vertices) of_rigid[v] = true;
+  std::optional<ConfirmedFloor> floor;
+  if (model.contact.any()) {
+    floor.emplace(model, state.positions);
+    if (floor->depth() > 0) out.faults.push_back("a point is " + digits(floor->depth()) + " mm below the floor");
+    floor->push(of_rigid, forces.sum);
+  }
+  for (const RigidRegion& region : model.rigid) {
     check_shape(model, region, state.positions, out);
-    enter_rigid(model, region, state.positions, forces, balance);
+    enter_rigid(model, region, state.positions, forces, floor ? &*floor : nullptr, balance);
   }
   for (Index v = 0; v < model.rest.rows(); ++v) {
     Real square = 0;

@@ -72,6 +72,8 @@ RandomCase make_case(std::uint64_t seed) {
   make_commands(m);
   make_options(m);
   make_magnetism(m);
+  make_stiff(m);
+  make_floor(m);
   spoil_number(m);
   return std::move(m.made);
 }

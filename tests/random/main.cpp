@@ -43,6 +43,8 @@ struct Options {
   std::uint64_t count = 300;
   int threads = 1;
   std::filesystem::path folder;
+  bool effort = false;
+  int most = 0, most_of_99 = 0;  // iterations of a solve, and of 99 % of them; 0: as many as it takes
 };
 
 Summary run_all(const Options& options) {
@@ -53,7 +55,7 @@ Summary run_all(const Options& options) {
   const auto work = [&] {
     for (std::uint64_t i; (i = next++) < options.count;) {
       current_seed = options.first + i;
-      const RunResult run = run_seed(current_seed, false);
+      const RunResult run = run_seed(current_seed, false, options.effort);
       const std::lock_guard lock(mutex);
       summary.add(run);
       if (run.outcome == Outcome::failed)
@@ -71,15 +73,24 @@ Summary run_all(const Options& options) {
   return summary;
 }
 
+bool takes_longer(const Summary& summary, double share, int most) {
+  const int took = summary.iterations_of(share);
+  if (most == 0 || took <= most) return false;
+  std::fprintf(stderr, "%g %% of the solves take up to %d iterations, more than %d\n", 100 * share, took, most);
+  return true;
+}
+
 int run(const Options& options) {
   const Summary summary = run_all(options);
-  std::fputs(summary.text().c_str(), stdout);
+  const std::string text = summary.text() + (options.effort ? summary.effort_text() : "");
+  std::fputs(text.c_str(), stdout);
   if (!options.folder.empty()) {
     std::filesystem::create_directories(options.folder);
-    std::ofstream(options.folder / "summary.txt") << summary.text();
+    std::ofstream(options.folder / "summary.txt") << text;
     std::ofstream(options.folder / "failures.csv") << summary.failure_table();
   }
-  return summary.failures().empty() ? 0 : 1;
+  const bool long_ways = takes_longer(summary, 0.99, options.most_of_99) | takes_longer(summary, 1, options.most);
+  return summary.failures().empty() && !long_ways ? 0 : 1;
 }
 
 }  // namespace
@@ -96,6 +107,9 @@ int main(int argc, char** argv) {
   app.add_option("--count", options.count, "how many seeds");
   app.add_option("--threads", options.threads, "runs at once")->check(CLI::PositiveNumber);
   app.add_option("--out", options.folder, "folder for summary.txt and failures.csv");
+  app.add_flag("--stats", options.effort, "what solves took, and why steps of their ways were not taken");
+  app.add_option("--most", options.most, "fail where a solve takes more iterations");
+  app.add_option("--most-of-99", options.most_of_99, "fail where more than 1 % of the solves take more iterations");
   const CLI::Option* one = app.add_option("--seed", seed, "one seed, told at length");
   bool falsify = false;
   app.add_flag("--falsify", falsify, "falsify answers: every false one must be noticed");

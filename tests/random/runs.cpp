@@ -34,9 +34,10 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
 }
 
 Equilibrium solve(const Statics& statics, const RandomCase& robot, const Actuation& command, const State& start,
-                  int threads) {
+                  int threads, bool trace = false) {
   StaticsOptions options = robot.options;
   options.threads = threads;
+  options.trace = trace;
   int calls = 0;
   const ProgressCallback stop = [&](const Progress&) { return ++calls < robot.interrupt_after; };
   return statics.solve(command, start, options, robot.interrupt_after > 0 ? stop : ProgressCallback());
@@ -103,16 +104,37 @@ void take(const Confirmation& from, const Equilibrium& found, RunResult& run) {
   run.unstable = run.unstable || found.report.remark.find("unstable") != std::string::npos;
 }
 
-void solve_all(const RandomCase& robot, bool verbose, RunResult& run, std::vector<std::string>& faults) {
+Effort effort_of(const SolveReport& report) {
+  Effort effort{{report.iterations, report.factorisations, report.projections, report.continuation_steps, 0}, {}};
+  for (const TracedStep& step : report.trace)
+    if (!step.taken) {
+      ++effort.of.back();
+      ++effort.rejections[step.why];
+    }
+  return effort;
+}
+
+void tell(const SolveReport& report) {
+  for (const TracedStep& step : report.trace)
+    std::printf("  %s%s%.5g to %.5g: %d iterations, %d factorisations, %d projections%s%s\n", step.along.c_str(),
+                step.along.empty() ? "" : " ", step.from, step.to, step.iterations, step.factorisations,
+                step.projections, step.taken ? ", taken" : "", step.why.empty() ? "" : (": " + step.why).c_str());
+}
+
+void solve_all(const RandomCase& robot, bool verbose, bool trace, RunResult& run, std::vector<std::string>& faults) {
   const Model model = compile(robot.spec);
   if (verbose) describe(robot, model);
   const Statics statics(model);
   const State begun = long_rest(model, robot.options);
   State start = statics.rest();
   for (const Actuation& command : robot.commands) {
-    const Equilibrium found = solve(statics, robot, command, start, 1);
+    const Equilibrium found = solve(statics, robot, command, start, 1, trace || verbose);
+    if (found.report.solver == "newton") run.efforts.push_back(effort_of(found.report));
     const Confirmation confirmed = confirm(model, command, found, begun);
-    if (verbose) tell(command, found, confirmed);
+    if (verbose) {
+      tell(found.report);
+      tell(command, found, confirmed);
+    }
     take(confirmed, found, run);
     run.outcome = outcome_of(found.report.status);
     faults.insert(faults.end(), confirmed.faults.begin(), confirmed.faults.end());
@@ -139,7 +161,7 @@ const char* name_of(Outcome outcome) {
   return names[static_cast<int>(outcome)];
 }
 
-RunResult run_seed(std::uint64_t seed, bool verbose) {
+RunResult run_seed(std::uint64_t seed, bool verbose, bool trace) {
   const auto begin = std::chrono::steady_clock::now();
   const RandomCase robot = make_case(seed);
   RunResult run;
@@ -149,7 +171,7 @@ RunResult run_seed(std::uint64_t seed, bool verbose) {
   run.features = joined(robot.features, " + ");
   std::vector<std::string> faults;
   try {
-    solve_all(robot, verbose, run, faults);
+    solve_all(robot, verbose, trace, run, faults);
   } catch (const InvalidInput& refusal) {
     run.outcome = Outcome::refused;
     run.message = refusal.what();

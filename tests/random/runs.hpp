@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -12,6 +13,15 @@ enum class Outcome { converged, limit, not_converged, interrupted, refused, fail
 inline constexpr int outcomes = 6;
 [[nodiscard]] const char* name_of(Outcome outcome);
 
+/// What the solves of a run took together, but for those of Algorithm 1, and why steps of their ways were not taken.
+struct Effort {
+  static constexpr int counts = 5;
+  static constexpr std::array<const char*, counts> names{"iterations", "factorisations", "projections", "equilibria",
+                                                         "rejected steps"};
+  std::array<int, counts> of{};
+  std::map<std::string, int> rejections;
+};
+
 struct RunResult {
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::failed;
@@ -20,11 +30,14 @@ struct RunResult {
   std::string message;   // of a refusal; of a failure its faults
   double residual_ratio = 0, constraint_error = 0, step_ratio = 0;
   bool blurred = false, undecided = false, unstable = false, inverted = false, confirmed = false;
+  std::vector<Effort> efforts;  // of each solve
   double seconds = 0;
 };
 
 /// Solves the robot of a seed and confirms what comes. verbose: tells on the standard output what it does.
-[[nodiscard]] RunResult run_seed(std::uint64_t seed, bool verbose);
+///
+/// trace  the ways too, for what they took
+[[nodiscard]] RunResult run_seed(std::uint64_t seed, bool verbose, bool trace = false);
 
 /// Falsifies confirmed answers of sensible robots and returns how many of them would be confirmed still; > 0 where
 /// there was nothing to falsify.
@@ -37,6 +50,10 @@ class Summary {
   [[nodiscard]] std::string text() const;
   [[nodiscard]] const std::vector<RunResult>& failures() const { return failures_; }
   [[nodiscard]] std::size_t runs() const { return runs_; }
+  /// Quantiles of what solves took, the seeds that took most, and why steps were not taken.
+  [[nodiscard]] std::string effort_text() const;
+  /// Iterations that a share of all solves does not exceed.
+  [[nodiscard]] int iterations_of(double share) const;
   /// seed, formulation, features and faults of every failure, as CSV
   [[nodiscard]] std::string failure_table() const;
 
@@ -57,6 +74,8 @@ class Summary {
   Extreme residual_, constraint_, step_, seconds_;
   double total_seconds_ = 0;
   std::vector<RunResult> failures_;
+  std::array<std::vector<std::pair<int, std::uint64_t>>, Effort::counts> efforts_;  // with their seeds
+  std::map<std::string, std::pair<std::size_t, std::uint64_t>> rejections_;         // reason: how many, a seed
 };
 
 }  // namespace softkin::random_robots

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 
 #include "random/runs.hpp"
@@ -55,6 +57,11 @@ void Summary::add(const RunResult& run) {
   undecided_ += run.undecided;
   unstable_ += run.unstable;
   inverted_ += run.inverted;
+  for (const Effort& effort : run.efforts) {
+    for (std::size_t i = 0; i < effort.of.size(); ++i) efforts_[i].emplace_back(effort.of[i], run.seed);
+    for (const auto& [why, times] : effort.rejections)
+      rejections_.try_emplace(why, 0, run.seed).first->second.first += static_cast<std::size_t>(times);
+  }
   total_seconds_ += run.seconds;
   seconds_.enter(run.seconds, run.seed);
   if (run.outcome == Outcome::refused) {
@@ -93,6 +100,43 @@ std::string Summary::text() const {
     text += line("%6zu  %s  (seed %llu)\n", found.first, kind.c_str(), static_cast<unsigned long long>(found.second));
   for (const RunResult& failure : failures_)
     text += "FAILED  seed " + std::to_string(failure.seed) + ": " + failure.message + "\n";
+  return text;
+}
+
+namespace {
+
+/// Of values in ascending order.
+std::pair<int, std::uint64_t> quantile(const std::vector<std::pair<int, std::uint64_t>>& sorted, double share) {
+  if (sorted.empty()) return {};
+  const double place = std::ceil(share * static_cast<double>(sorted.size())) - 1;
+  return sorted[static_cast<std::size_t>(std::max(0.0, place))];
+}
+
+}  // namespace
+
+int Summary::iterations_of(double share) const {
+  auto sorted = efforts_[0];
+  std::sort(sorted.begin(), sorted.end());
+  return quantile(sorted, share).first;
+}
+
+std::string Summary::effort_text() const {
+  constexpr std::size_t shown = 10;
+  std::string text = line("of %zu solves %10s %8s %8s %8s  seed of the last, and of those before\n", efforts_[0].size(),
+                          "median", "90 %", "99 %", "all");
+  for (std::size_t i = 0; i < efforts_.size(); ++i) {
+    auto sorted = efforts_[i];
+    std::sort(sorted.begin(), sorted.end());
+    text += line("%-14s", Effort::names[i]);
+    for (const double share : {0.5, 0.9, 0.99, 1.0}) text += line(" %8d", quantile(sorted, share).first);
+    text += " ";
+    for (std::size_t k = 0; k < std::min(shown, sorted.size()); ++k)
+      text += " " + std::to_string(sorted[sorted.size() - 1 - k].second);
+    text += "\n";
+  }
+  for (const auto& [why, found] : rejections_)
+    text += line("%6zu steps not taken: %s (seed %llu)\n", found.first, why.c_str(),
+                 static_cast<unsigned long long>(found.second));
   return text;
 }
 

@@ -97,6 +97,37 @@ TEST(PhysicalWays, PathBeyondAMaximum) {
   EXPECT_EQ(distance(second.state.positions, first.state.positions), 0);
 }
 
+/// Of both orders, with the paper and without, from rest and under its weight, in few iterations.
+TEST(PhysicalWays, MaximumOfAPressure) {
+  for (const bool quadratic : {false, true})
+    for (const bool paper : {false, true}) {
+      RobotSpec spec = paper_finger(0.49);
+      spec.quadratic = quadratic;
+      if (!paper) spec.materials.pop_back();
+      spec.materials[0].density = 1000;
+      spec.gravity = {0, 0, -9.81};
+      const Model by_volume = compile(spec);
+      const Statics volumes(by_volume);
+      double most = 0;
+      State state = volumes.rest();
+      for (const double ratio : {1.5, 2.0, 2.5, 2.75, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0, 7.0, 8.0}) {
+        const Equilibrium found = volumes.solve(values({ratio}), state);
+        state = found.state;
+        most = std::max(most, state.multipliers[0]);
+      }
+      ASSERT_GT(most, 1.01 * state.multipliers[0]) << "no maximum was passed";
+      spec.actuators[0] = by_load(spec.actuators[0]);
+      const Model model = compile(spec);
+      const Statics statics(model);
+      const Equilibrium found = statics.solve(values({6 * most}), statics.rest());
+      ASSERT_EQ(found.report.status, Status::limit);
+      const std::string told = "the pressure of chamber 'chamber' has its maximum there, ";
+      ASSERT_EQ(found.report.remark.find(told), 0u) << found.report.remark;
+      EXPECT_NEAR(std::stod(found.report.remark.substr(told.size())), most, 0.01 * most);
+      EXPECT_LE(found.report.iterations, 100) << quadratic << paper;
+    }
+}
+
 /// A heavy strip on a smooth floor, one end lifted: it leaves the floor over the length a of a beam without moment at
 /// either end, 24 E I h = q a^4, and q a / 2 holds its end. It is held at its lower edge, which turns outwards from its
 /// middle by d = sin(2 h / a) of half its height: 1.5 d / a of that force less, to first order.

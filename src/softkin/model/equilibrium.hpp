@@ -67,6 +67,16 @@ struct TracedStep {
   std::string why{};  // it was not taken; or what the equilibrium is
 };
 
+/// Equilibria along the volume or length of an actuator whose load was asked for and has a maximum, in their order.
+struct LoadBranch {
+  struct Point {
+    double measure = 0;  // over that at rest [-]
+    double load = 0;     // gauge pressure [kPa] or tension [N]
+  };
+  Index actuator = -1;  // none
+  std::vector<Point> points{};
+};
+
 struct SolveReport {
   Status status = Status::not_converged;
   bool stopped = false;  // before it had ended by itself: by its progress callback or its deadline
@@ -95,6 +105,7 @@ struct SolveReport {
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   std::vector<TracedStep> trace;  // with StaticsOptions::trace
+  LoadBranch branch;                  // where a maximum was looked for
   double seconds = 0;
 
   /// A map gave the equilibrium: there is nothing to tell of an iteration.

@@ -192,6 +192,23 @@ void add_magnetic(const Model& model, const StepRecord& record, std::vector<Find
   add_vector(record.magnetic->center, 0, magnetic);
 }
 
+/// A choice of them, evenly by their places, with the largest load.
+void add_branch(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  constexpr std::size_t most = 12;
+  const auto& points = record.branch.points;
+  if (points.size() < 2) return;
+  Finding& branch =
+      found.emplace_back(Finding{Kind::branch, model.actuators[static_cast<std::size_t>(record.branch.actuator)].name});
+  const auto top = std::max_element(points.begin(), points.end(),
+                                    [](const auto& a, const auto& b) { return std::abs(a.load) < std::abs(b.load); });
+  const std::size_t stride = 1 + (points.size() - 1) / most, last = points.size() - 1;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i % stride != 0 && i != last && points.begin() + static_cast<std::ptrdiff_t>(i) != top) continue;
+    branch.values.push_back(points[i].measure);
+    branch.values.push_back(points[i].load);
+  }
+}
+
 void add_forces(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   if (record.stress) {
     const auto& [most, greatest, least] = *record.stress;
@@ -215,6 +232,7 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
     found.push_back({Kind::unstable, "", {static_cast<double>(record.unstable_modes)}});
   else if (record.unstable_from > 0)
     found.push_back({Kind::unstable_way, "", {record.unstable_from}});
+  add_branch(model, record, found);
 }
 
 }  // namespace

@@ -103,20 +103,22 @@ struct Finding {
     far_strained,         // values: greatest strain [-]
     far_moved,            // values: largest displacement, diagonal of the robot [mm]
     diverged,             // the iteration
-    accuracy,     // values: last step, estimated distance from the equilibrium [mm]; physical: largest force out
-                  // of balance, largest pull of the elements at a vertex [N]
-    stress,       // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
-                  // least principal stress [MPa]
-    reaction,     // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
-    contact,      // name: what presses on the other, which is empty where it is itself; values: force [N] (3), moment
-                  // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm],
-                  // with friction the share of the normal force that slips [-]
-    magnetic,     // values: force [N] (3), moment [N mm] (3), centre [mm] (3)
-    untouched,    // nothing touches what it might
-    unstable,     // values: in how many ways
-    buckled,      // values: how often, the largest move [mm]
-    snapped,      // values: the longest move [mm], share of the way at which its step began [-]
-    unstable_way  // of an equilibrium that is stable; values: share of the way from which it was not [-]
+    accuracy,   // values: last step, estimated distance from the equilibrium [mm]; physical: largest force out
+                // of balance, largest pull of the elements at a vertex [N]
+    stress,     // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
+                // least principal stress [MPa]
+    reaction,   // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
+    contact,    // name: what presses on the other, which is empty where it is itself; values: force [N] (3), moment
+                // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm],
+                // with friction the share of the normal force that slips [-]
+    magnetic,   // values: force [N] (3), moment [N mm] (3), centre [mm] (3)
+    untouched,  // nothing touches what it might
+    unstable,   // values: in how many ways
+    buckled,    // values: how often, the largest move [mm]
+    snapped,    // values: the longest move [mm], share of the way at which its step began [-]
+    unstable_way,  // of an equilibrium that is stable; values: share of the way from which it was not [-]
+    branch         // name: chamber or cable whose load has a maximum; values: ratio [-] and load [kPa, N] of each shape
+                   // along its volume or length
   };
   Kind kind;
   std::string name{};

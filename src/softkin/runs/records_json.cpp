@@ -155,10 +155,32 @@ void forces(Record& record, const Visit& visit) {
   visit("unstable_from", record.unstable_from);
 }
 
+Json branch_json(const Model& model, const LoadBranch& branch) {
+  const Actuator& actuator = model.actuators[static_cast<std::size_t>(branch.actuator)];
+  Json json = {{"actuator", actuator.name}, {"ratio", Json::array()}, {multiplier_key(actuator), Json::array()}};
+  for (const LoadBranch::Point& point : branch.points) {
+    json["ratio"].push_back(known(point.measure));
+    json[multiplier_key(actuator)].push_back(known(point.load));
+  }
+  return json;
+}
+
+LoadBranch branch_of(const Model& model, const Json& json) {
+  LoadBranch branch;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (model.actuators[a].name == json.at("actuator").get<std::string>()) branch.actuator = static_cast<Index>(a);
+  if (branch.actuator < 0) throw std::out_of_range("no such actuator");
+  const Json& loads = json.at(multiplier_key(model.actuators[static_cast<std::size_t>(branch.actuator)]));
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    branch.points.push_back({number_or_nan(json.at("ratio").at(i)), number_or_nan(loads.at(i))});
+  return branch;
+}
+
 Json physical_json(const Model& model, const StepRecord& record) {
   Json json = {{"shape_load_share", record.shape_load_share}};
   forces(record, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
   json["stress"] = record.stress ? stress_json(*record.stress) : Json();
+  if (!record.branch.points.empty()) json["branch"] = branch_json(model, record.branch);
   json["limit"] = record.worst ? worst_json(*record.worst) : Json();
   json["reactions"] = Json::array();
   for (std::size_t s = 0; s < record.reactions.size(); ++s)
@@ -173,6 +195,7 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
   record.shape_load_share = json.at("shape_load_share").get<double>();
   forces(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   if (const Json& stress = json.at("stress"); !stress.is_null()) record.stress = stress_of(stress);
+  if (json.contains("branch")) record.branch = branch_of(model, json.at("branch"));
   if (const Json& worst = json.at("limit"); !worst.is_null()) record.worst = worst_of(worst);
   for (const Json& each : json.at("reactions"))
     record.reactions.push_back(

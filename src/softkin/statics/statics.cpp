@@ -133,8 +133,16 @@ struct Statics::Parts {
   }
   [[nodiscard]] physical::Equilibria::Options physical_options(const StaticsOptions& options) const {
     const double longest = tolerance(options), blur = 1e-6 * std::max(1.0, longest / paper_tolerance());
-    return {longest, options.max_iterations, options.keep_history, options.trace, options.reuse_factor, options.stable,
-            blur,    options.history,        options.elapsed_s};
+    return {longest,
+            options.max_iterations,
+            options.keep_history,
+            options.trace,
+            options.reuse_factor,
+            options.stable,
+            options.beyond,
+            blur,
+            options.history,
+            options.elapsed_s};
   }
 
   /// Where a viscous robot has stood for long, relaxed, before times begin: found once. Else not converged.
@@ -216,6 +224,8 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
+  if (!(options.beyond >= 0 && std::isfinite(options.beyond)))
+    throw InvalidInput("beyond must be a volume or length over that at rest, above 0, not " + number(options.beyond));
   if (parts_->given && !parts_->assembled()) {
     Equilibrium given = parts_->given->at(actuation, start);
     given.report.seconds = seconds_since(begin);
@@ -235,6 +245,8 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
       throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
     result = parts_->solve(actuation, begun, options, progress, *team);
   } else {
+    if (options.beyond > 0)
+      throw InvalidInput("beyond is for the physical formulation: target shapes have no pressures and tensions");
     if (options.stable)
       throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
     result.actuation = actuation;

@@ -29,6 +29,10 @@ struct StaticsOptions {
   bool trace = false;          // SolveReport::trace; physical
   Deadline deadline{};         // solve() ends there, not converged, with its last good shape
   bool stable = false;         // physical: leave an unstable equilibrium along its lowest mode for a stable one
+  /// physical: where one pressure or tension that changes comes to its maximum, the way goes on beyond it along its
+  /// volume or length, over that at rest, to this one, > 0 [-], and from there back along the same equilibria; 0: it
+  /// ends at the maximum.
+  double beyond = 0;
   /// The factor of an earlier solve that ended at the start, where no other thread has taken it by then: the same
   /// result within the tolerance. false: bit for bit that of a new object.
   bool reuse_factor = true;

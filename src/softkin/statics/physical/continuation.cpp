@@ -21,8 +21,8 @@ constexpr double least_move = 1000;
 /// The same where things touch, over the contact distance: what sticks moves by a hundredth of that.
 constexpr double least_contact_move = 1e-4;
 /// A way on which so many iterations bring less than this share of it leads nowhere either.
-constexpr int patience = 500;
-constexpr double least_progress = 0.01;
+constexpr int patience = 200;
+constexpr double least_progress = 0.02;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
 /// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
@@ -53,6 +53,7 @@ Continuation::Continuation(const System& system, System::Workspace& work, Team& 
       tolerance_mm_(options.tolerance_mm),
       max_iterations_(options.max_iterations),
       stable_(options.stable),
+      beyond_(options.beyond),
       report_(report),
       tracer_(options.trace, report) {}
 
@@ -77,6 +78,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     return move.has_value();
   };
   if (!prediction()) return Newton::Outcome::blocked;
+  if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : Newton::Policy::descend;
   auto outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));
@@ -107,6 +109,12 @@ bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate
 }
 
 Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
+  const Status end = follow_whole(from, to, at);
+  sort_branch();
+  return end;
+}
+
+Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate& at) {
   active_.resize(static_cast<std::size_t>(system_.actuators()));
   for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
   set_out(from, to);
@@ -151,7 +159,7 @@ double Continuation::whole(double done) const {
 /// Where loads change beside weights, prestretch and supports: these first, so that the loads alone are left, of which
 /// one can be climbed.
 bool Continuation::loads_at_last(const Iterate& at) {
-  if (way_.load >= 0 || together_ || way_.from.share == way_.to.share) return false;
+  if (way_.load >= 0 || together_ || way_.here.share == way_.to.share) return false;
   Demand rest = way_.to;
   rest.actuation = way_.here.actuation;
   if (!change_loads(rest, way_.to)) return false;
@@ -185,27 +193,35 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const Demand there = between(way_.from, way_.to, next);
   Iterate trial = at;
   if (release(there, at, false)) way_.factorised = false;
-  if (!way_.factorised && prepare(way_.here, at) < 0)
-    return limit(way_.done, "the stiffness at the start is not stable", at);
+  const int modes = way_.factorised ? last_.modes : prepare(way_.here, at);
+  if (modes < 0) return limit(way_.done, "the stiffness at the start is not stable", at);
   way_.factorised = true;
+  if (beyond_ > 0 && modes > 0 && way_.load >= 0 && way_.done == 0) {
+    const Climb back = go_back(way_.load, way_.from, way_.to, at);
+    if (back == Climb::interrupted) return Status::interrupted;
+    if (back == Climb::arrived) return arrive(way_.to, at);
+    way_.factorised = prepare(way_.here, at) >= 0;
+  }
   const int before = report_.iterations;
   const std::vector<bool> active = active_;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
   auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
+  note_pace(length);
   std::string why = outcome == Newton::Outcome::stuck     ? newton_.why_stuck()
                     : outcome == Newton::Outcome::blocked ? "something is in the way"
+                    : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
                     : outcome == Newton::Outcome::unmet   ? "what actuators command contradicts each other"
                                                           : "";
   const auto reject = [&](const char* because) {
     outcome = Newton::Outcome::stuck;
     why = because;
   };
-  if (outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::blocked && way_.loads_change &&
+  const bool blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
+  if (outcome != Newton::Outcome::stuck && !blocked && way_.loads_change &&
       snapped(move_mm_, largest_move(begun_, trial.positions)) && jumped(way_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
-  const bool blocked = outcome == Newton::Outcome::blocked;
   if (blocked) outcome = Newton::Outcome::stuck;
   const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
   const bool unstable = outcome == Newton::Outcome::unstable;
@@ -236,6 +252,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     const int used = (report_.iterations - before) / rounds_;  // those for new normal forces are as many each
     way_.advance *= lengthened(used);
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
+    if (near_fold()) return limit(way_.done, "beyond this point no equilibrium follows" + instead_of_loads(), at);
     if (leads_beyond(at)) {
       take_beyond(at);
     } else if (way_.beyond && system_.contact()) {  // a step as long would end there again
@@ -277,15 +294,20 @@ void Continuation::take_beyond(Iterate& at) {
 /// After a step of this length that led to no equilibrium.
 std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   const std::vector<bool> active = active_;
-  if (loads_at_last(at)) return std::nullopt;
-  way_.advance = 0.4 * length;
   if (way_.load >= 0) {  // along what the load does
     const Climb end = climb(std::exchange(way_.load, -1), way_.from, way_.here, way_.to, at);
     if (end == Climb::interrupted) return Status::interrupted;
     if (end == Climb::arrived) return arrive(way_.to, at);
     if (end == Climb::summit) return limit(way_.done, report_.remark, at);
     active_ = active;
+    way_.factorised = false;
+    report_.reached = whole(way_.done);
   }
+  if (loads_at_last(at)) return std::nullopt;
+  way_.failed = std::min(way_.failed, way_.done + length);
+  way_.advance = 0.4 * length;
+  if (near_fold()) way_.advance = 0;
+  way_.advance = std::max(way_.advance, way_.advance > 0 ? 0.1 * length : 0);
   if (way_.beyond && way_.advance < finest) {
     tell_snap(way_.beyond->jump_mm, whole(way_.done));
     take_beyond(at);
@@ -332,7 +354,7 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
   } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= patience) {
     return limit(way_.done,
                  "the way there goes on in ever smaller steps: " + std::to_string(patience) +
-                     " iterations brought less than 1 % of it",
+                     " iterations brought less than 2 % of it",
                  at);
   }
   if (way_.done == 1 || report_.iterations < max_iterations_) return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <softkin/statics/physical/equilibria.hpp>
 #include <softkin/statics/physical/stability.hpp>
@@ -57,22 +58,30 @@ class Continuation {
     double load = 0;     // that it takes [N, kPa]
     Iterate at;
     Judgement last{};
-    double gain = 0;  // of the load that was asked for, by the measure on its way
+    double gain = 0;      // of the load that was asked for, by the measure on its way
+    double share = 1;     // of weights and forces
+    double short_of = 0;  // measure that is left to the maximum, about
   };
   enum class Climb { lost, arrived, summit, interrupted };
+  /// What stopped a way along a measure: the load that was asked, the measure, or nothing that follows.
+  enum class Passed { asked, end, nowhere, interrupted };
 
   /// The way asked for, and how far it was gone.
   struct Way {
     Demand from{}, to{}, here{};
     double done = 0, advance = 1;  // shares of it: gone, and of the next step
-    Index load = -1;               // that alone changes, until it was climbed along what it does
+    Index load = -1;               // that alone changes beside weights, until it was climbed along what it does
     bool loads_change = false;
     bool releases = false;    // a body, which hardly moves until it is nearly free
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
-    std::optional<Demand> then{};  // where the next way leads
-    double before = 0;             // share of all that was asked, gone on ways before
-    double marked = 0;             // the last share at which it was getting on
+    std::optional<Demand> then{};                                  // where the next way leads
+    double before = 0;                                             // share of all that was asked, gone on ways before
+    double failed = std::numeric_limits<double>::infinity();       // the first share to which no step led
+    double fold = std::numeric_limits<double>::infinity();         // where loads come to their maximum, as paces tell
+    double fold_before = std::numeric_limits<double>::infinity();  // as they told before
+    double paced_at = -1, pace = 0;  // how fast the shape moves there [mm], of the last two
+    double marked = 0;               // the last share at which it was getting on
     int marked_iterations = 0;
   };
 
@@ -84,18 +93,36 @@ class Continuation {
     Judgement last;
   };
 
+  Status follow_whole(const Demand& from, const Demand& to, Iterate& at);
   void set_out(const Demand& from, const Demand& to);
   [[nodiscard]] double whole(double done) const;
   [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
   bool loads_at_last(const Iterate& at);
   void go_together(Iterate& at);
-  std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from, bool prepared);
+  std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from, bool prepared,
+                                     const Measured* beside);
+  void bend(Index a, const Demand& here, const Demand& there, const Measured& from, const Measured& beside,
+            Iterate& trial);
+  bool leads_too_far(const Demand& here, const Demand& there, const Iterate& at);
   Climb climb(Index a, const Demand& from, const Demand& here, const Demand& to, Iterate& at);
+  [[nodiscard]] static double left_to_summit(double way, const Measured* beside, const Measured& low,
+                                             const Measured& next);
   double slope_at(Index a, const Demand& load, const Measured& point);
-  Climb arrive_at(const Demand& to, const Measured& near, Iterate& at);
+  Climb arrive_at(const Demand& to, const Measured& near, Iterate& at, Newton::Policy policy);
   Climb stop_at(Index a, double way, double begin, const Demand& from, const Demand& to, const Measured& summit,
                 Iterate& at);
   void keep(Index a, const Demand& from, const Demand& to, const Measured& kept, Iterate& at);
+  [[nodiscard]] double share_of(Index a, const Demand& from, const Demand& to, double load) const;
+  Passed go_along(Index a, double way, double end, double longest, const Demand& to, Measured& last,
+                  std::optional<Measured>& next);
+  Climb arrive_between(Index a, const Demand& to, Measured low, Measured high, Iterate& at);
+  Climb go_beyond(Index a, double way, const Demand& from, const Demand& to, const Measured& summit, Iterate& at);
+  Climb go_back(Index a, const Demand& from, const Demand& to, Iterate& at);
+  void note_branch(Index a, const Measured& point);
+  void sort_branch();
+  [[nodiscard]] std::string measure_text(Index a, double measure) const;
+  [[nodiscard]] std::string load_text(Index a, double load) const;
+  void tell_beyond(Index a, const Measured& last, bool asked);
   void tell_summit(Index a, const Demand& from, const Demand& to, const Measured& summit);
   [[nodiscard]] Judgement judged() const;
   [[nodiscard]] bool factor_holds_active() const;
@@ -107,6 +134,8 @@ class Continuation {
   void tell_balance();
   Status limit(double done, const std::string& why, const Iterate& at);
   std::optional<Status> go_on(Iterate& at);
+  void note_pace(double length);
+  [[nodiscard]] bool near_fold();
   std::optional<Status> shorten(double length, Iterate& at);
   bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
   void pass(const Demand& demand, double done);
@@ -138,6 +167,7 @@ class Continuation {
   double tolerance_mm_;
   int max_iterations_;
   bool stable_;
+  double beyond_;
   SolveReport& report_;
   StepTracer tracer_;
   Way way_;

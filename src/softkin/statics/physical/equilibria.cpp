@@ -113,7 +113,12 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
                      comes_to(start.positions, at.positions, lease.work(), team);
   Continuation continuation(system_, lease.work(), team, options, progress, report);
-  report.status = clear ? continuation.follow(from, to, at) : Status::limit;
+  if (clear)
+    report.status = continuation.follow(from, to, at);
+  else {
+    report.status = Status::limit;
+    report.remark = "the start's supports are elsewhere, and something is in the way from there";
+  }
   // what rubs remembers the way to its equilibrium, and from rest comes to another one
   const bool remembers = system_.friction() && start.knows(system_.actuators());
   if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest && !remembers &&

@@ -23,6 +23,7 @@ class Equilibria {
     bool trace = false;
     bool reuse_factor = true;
     bool stable = false;        // leave unstable equilibria
+    double beyond = 0;          // see StaticsOptions
     double force_share = 1e-6;  // of the elements' largest pull that may be out of balance
     std::shared_ptr<const ViscousHistory> history{};
     double elapsed_s = std::numeric_limits<double>::infinity();

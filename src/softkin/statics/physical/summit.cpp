@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <softkin/core/text.hpp>
@@ -9,8 +10,8 @@ namespace softkin::physical {
 namespace {
 
 /// First step over the measure at hand, how steps grow, their bounds, and how many there may be.
-constexpr double first_step = 0.02, growth = 1.6, most_growth = 0.5, shortest_step = 1e-5;
-constexpr int most_steps = 200;
+constexpr double first_step = 0.02, growth = 1.6, first_growth = 0.5, most_growth = 0.6, shortest_step = 1e-5;
+constexpr int most_steps = 200, most_missed = 6;
 /// The load is at its maximum where its relative change is this share of its measure's.
 constexpr double flat = 0.01;
 /// Of two points with a maximum between them, that it is at least away from either.
@@ -23,12 +24,11 @@ constexpr double before_summit = 0.01;
 
 }  // namespace
 
-/// The one load that changes where nothing else does; -1: none.
+/// The one load that changes, where nothing else does but weights and forces; -1: none.
 Index Continuation::only_load(const Demand& from, const Demand& to) const {
   const Model& model = system_.model();
   if (from.fading != to.fading) return -1;
-  if (from.share != to.share && (system_.any_dead_load() || system_.prestretched() || model.held != model.rest))
-    return -1;
+  if (from.share != to.share && (system_.prestretched() || model.held != model.rest)) return -1;
   Index found = -1;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (from.actuation[a] == to.actuation[a]) continue;
@@ -38,14 +38,29 @@ Index Continuation::only_load(const Demand& from, const Demand& to) const {
   return found;
 }
 
+/// Does the load that alone changes do so much, by the slope of what it does, that it is better climbed along that?
+bool Continuation::leads_too_far(const Demand& here, const Demand& there, const Iterate& at) {
+  constexpr double share = 0.01, most = 0.4;  // of the way, that the slope is taken on; of the measure
+  const Index a = way_.load;
+  if (a < 0 || system_.contact()) return false;
+  Iterate near = at;
+  (void)predict(system_, here, between(here, there, share), active_, work_, team_, near);
+  const double before = system_.measures().value(a, at.positions);
+  const double change = (system_.measures().value(a, near.positions) - before) / share;
+  return !(change < most * before && change > -0.5 * most * before);
+}
+
 /// The equilibrium at which the load's actuator has so large a measure, over that at rest; none where there is none, or
 /// an unstable one.
 ///
 /// prepared  the workspace is as slope_at(from) left it
+/// beside    another equilibrium, by which the prediction bends
 std::optional<Continuation::Measured> Continuation::at_measure(Index a, double measure, const Demand& load,
-                                                               const Measured& from, bool prepared) {
+                                                               const Measured& from, bool prepared,
+                                                               const Measured* beside) {
   Demand here = load, there = load;
   here.actuation[a] = from.measure;
+  here.share = from.share;
   there.actuation[a] = measure;
   active_[a] = true;
   from_ = from.at.positions;
@@ -54,12 +69,13 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
     Iterate trial = from.at;
     tracer_.begin(from.measure, measure, std::abs(measure - from.measure), system_.model().actuators[a].name);
     const bool clear = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_).has_value();
+    if (clear && beside && beside->share == there.share) bend(a, here, there, from, *beside, trial);
     const Points begun = trial.positions;
     const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
     interrupted_ = outcome == Newton::Outcome::interrupted;
     if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted)) {
       system_.slide_friction(trial, work_, team_);
-      found = Measured{measure, trial.multipliers[a] / system_.unit(a), std::move(trial), judged()};
+      found = Measured{measure, trial.multipliers[a] / system_.unit(a), std::move(trial), judged(), 0, there.share};
     }
     const Points& end = found ? found->at.positions : begun;
     tracer_.end(found.has_value(),
@@ -74,11 +90,47 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
   return found;
 }
 
+/// Adds to a first-order prediction what one back to another equilibrium misses, which grows with the square of the way.
+void Continuation::bend(Index a, const Demand& here, const Demand& there, const Measured& from, const Measured& beside,
+                        Iterate& trial) {
+  constexpr double farthest = 3, most = 0.5;  // over the way back, and of the first order
+  const double ratio = (there.actuation[a] - from.measure) / (from.measure - beside.measure);
+  if (system_.contact() || here.share != there.share || !(std::abs(ratio) < farthest)) return;
+  Demand behind = here;
+  behind.actuation[a] = beside.measure;
+  Iterate back = from.at;
+  (void)predict(system_, here, behind, active_, work_, team_, back);
+  const Points miss = ratio * ratio * (beside.at.positions - back.positions);
+  if (!(miss.rowwise().norm().maxCoeff() < most * largest_move(from.at.positions, trial.positions))) return;
+  trial.positions += miss;
+  system_.hold(there, trial.positions);
+  trial.multipliers += ratio * ratio * (beside.at.multipliers - back.multipliers);
+}
+
+/// How far it is from the last point to where the slope of the load is zero, by a line through the last two, or by the
+/// measure as a parabola of the slope, which falls less and less, through three. Infinite where it does not fall.
+double Continuation::left_to_summit(double way, const Measured* beside, const Measured& low, const Measured& next) {
+  const double fell = low.gain - next.gain, went = way * (next.measure - low.measure);
+  if (!(fell > 0)) return std::numeric_limits<double>::infinity();
+  const double line = went * next.gain / fell;
+  if (!beside || beside->gain == low.gain || beside->gain == next.gain) return line;
+  const std::array<const Measured*, 3> at{beside, &low, &next};
+  double curve = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double term = way * (at[i]->measure - next.measure);
+    for (std::size_t j = 0; j < 3; ++j)
+      if (j != i) term *= at[j]->gain / (at[j]->gain - at[i]->gain);
+    curve += term;
+  }
+  return curve / line > 0.3 && curve / line < 3 ? curve : line;
+}
+
 /// Change of the load by the measure; NaN where it is not known.
 double Continuation::slope_at(Index a, const Demand& load, const Measured& point) {
   Demand here = load, there = load;
   here.actuation[a] = point.measure;
   there.actuation[a] = (1 + first_step) * point.measure;
+  here.share = there.share = point.share;
   active_[a] = true;
   const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
   double slope = std::numeric_limits<double>::quiet_NaN();
@@ -98,7 +150,7 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
   const double up = to.actuation[a] > here.actuation[a] ? 1 : -1;  // a chamber grows with its pressure, a cable
   const double way = -up * system_.sign(a);                        // shortens with its tension
   const double begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
-  Measured low{begin, here.actuation[a], at, last_};
+  Measured low{begin, here.actuation[a], at, last_, 0, here.share};
   low.at.multipliers[a] = system_.unit(a) * low.load;
   const auto gain = [&](const Measured& point) { return up * way * slope_at(a, here, point); };
   const auto at_maximum = [&](const Measured& point) {
@@ -106,15 +158,19 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
   };
   low.gain = gain(low);
   if (!std::isfinite(low.gain)) return Climb::lost;
+  report_.branch = {};
+  note_branch(a, low);
   const bool may_stand_there = at_maximum(low);
   if (low.gain < 0 && !may_stand_there) return Climb::lost;
-  std::optional<Measured> high;
+  std::optional<Measured> high, passed;
   double length = first_step * begin;
-  if (!may_stand_there) length = std::clamp(up * (to.actuation[a] - low.load) / low.gain, length, most_growth * begin);
+  if (!may_stand_there) length = std::clamp(up * (to.actuation[a] - low.load) / low.gain, length, first_growth * begin);
   bool prepared = true;
+  int missed = 0;
   for (int i = 0; i < most_steps && length > shortest_step * begin; ++i) {
     if (report_.iterations >= max_iterations_) return Climb::lost;
-    std::optional<Measured> next = at_measure(a, low.measure + way * length, here, low, prepared);
+    const Measured* beside = high ? &*high : passed ? &*passed : nullptr;
+    std::optional<Measured> next = at_measure(a, low.measure + way * length, to, low, prepared, beside);
     if (interrupted_) {
       keep(a, from, to, low, at);
       return Climb::interrupted;
@@ -122,38 +178,51 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
     prepared = false;
     if (!next) {
       length *= 0.4;
+      if (++missed > most_missed) break;
       continue;
     }
-    if (up * (next->load - to.actuation[a]) >= 0) return arrive_at(to, *next, at);
+    note_branch(a, *next);
+    if (up * (next->load - to.actuation[a]) >= 0) {
+      const Climb end = arrive_at(to, *next, at, Newton::Policy::descend);
+      if (end == Climb::interrupted) keep(a, from, to, low, at);
+      return end;
+    }
     next->gain = gain(*next);
     if (!std::isfinite(next->gain)) return Climb::lost;
     if (may_stand_there && i == 0 && next->gain < 0) return stop_at(a, way, begin, from, to, low, at);
+    const double went = way * (next->measure - low.measure);
+    const double left = left_to_summit(way, beside, low, *next);
+    const double summit = went + left;  // from low on
+    next->short_of = left;
     if (at_maximum(*next) && !(may_stand_there && next->gain > low.gain))
       return stop_at(a, way, begin, from, to, *next, at);
-    // where the slope would be zero if it went on as between the two
-    const double went = way * (next->measure - low.measure), fell = low.gain - next->gain;
-    double summit = fell > 0 ? went * low.gain / fell : std::numeric_limits<double>::infinity();  // from low on
     if (next->gain < 0) {
       high = std::move(next);
       length = std::clamp(summit, margin * went, (1 - margin) * went);
       continue;
     }
-    summit -= went;
+    passed = std::move(low);
     low = std::move(*next);
+    report_.reached = whole(share_of(a, from, to, low.load));
     prepared = true;
-    length = std::min({growth * went, most_growth * low.measure, ahead * summit});
+    length = std::min({growth * went, most_growth * low.measure, beside ? left : ahead * left});
     if (high) length = std::min(length, (1 - margin) * way * (high->measure - low.measure));
   }
+  if (low.measure != begin) keep(a, from, to, low, at);  // and loads go on from there
   return Climb::lost;
 }
 
-Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& near, Iterate& at) {
+/// policy: follow where it may be unstable under its load
+Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& near, Iterate& at,
+                                            Newton::Policy policy) {
   Iterate trial = near.at;
   for (Index a = 0; a < system_.actuators(); ++a)
     if (system_.given_load(a)) trial.multipliers[a] = system_.unit(a) * to.actuation[a];
-  const auto outcome = settle(to, Newton::Policy::descend, trial);
+  const auto outcome = settle(to, policy, trial);
   if (outcome == Newton::Outcome::interrupted) return Climb::interrupted;
-  if (outcome != Newton::Outcome::converged || (newton_.inverted() && !last_.inverted)) return Climb::lost;
+  const bool found = outcome == Newton::Outcome::converged ||
+                     (policy == Newton::Policy::follow && outcome == Newton::Outcome::unstable);
+  if (!found || (newton_.inverted() && !last_.inverted)) return Climb::lost;
   take(at, std::move(trial));
   last_ = judged();
   ++report_.continuation_steps;
@@ -166,9 +235,18 @@ Continuation::Climb Continuation::stop_at(Index a, double way, double begin, con
                                           const Measured& summit, Iterate& at) {
   tell_summit(a, from, to, summit);
   at_summit_ = true;
+  if (beyond_ > 0 || stable_) {
+    const Climb end = go_beyond(a, way, from, to, summit, at);
+    if (end != Climb::lost) return end;
+  }
   if (summit.measure == begin) return Climb::summit;
-  const std::optional<Measured> kept =
-      at_measure(a, summit.measure - way * before_summit * std::abs(summit.measure - begin), from, summit, false);
+  const double before = before_summit * std::abs(summit.measure - begin);
+  if (summit.short_of > 0.1 * before) {
+    keep(a, from, to, summit, at);
+    return Climb::summit;
+  }
+  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);  // so short a step is near what rounding hides
+  const std::optional<Measured> kept = at_measure(a, summit.measure - way * before, to, summit, false, nullptr);
   if (interrupted_) {
     keep(a, from, to, summit, at);
     return Climb::interrupted;
@@ -184,8 +262,14 @@ void Continuation::keep(Index a, const Demand& from, const Demand& to, const Mea
   last_ = kept.last;
   ++report_.continuation_steps;
   way_.here.actuation[a] = kept.load;
-  way_.done = (kept.load - from.actuation[a]) / (to.actuation[a] - from.actuation[a]);
+  way_.here.share = kept.share;
+  way_.done = share_of(a, from, to, kept.load);
   report_.reached = whole(way_.done);
+}
+
+/// Of the way from one load to another; beyond a maximum it may have fallen below the first.
+double Continuation::share_of(Index a, const Demand& from, const Demand& to, double load) const {
+  return std::clamp((load - from.actuation[a]) / (to.actuation[a] - from.actuation[a]), 0.0, 1.0);
 }
 
 void Continuation::tell_summit(Index a, const Demand& from, const Demand& to, const Measured& summit) {
@@ -193,9 +277,10 @@ void Continuation::tell_summit(Index a, const Demand& from, const Demand& to, co
   const bool cable = actuator.kind == ActuatorKind::cable;
   report_.remark = std::string(cable ? "the tension of cable '" : "the pressure of chamber '") + actuator.name +
                    "' has its " + (to.actuation[a] > from.actuation[a] ? "maximum" : "minimum") + " there, " +
-                   number(summit.load, 5) + (cable ? " N at " : " kPa at ") + number(summit.measure, 4) +
-                   (cable ? " of its length" : " times its volume") + "; command its " +
-                   (cable ? "length (control: length)" : "volume (control: volume)") + " to go on beyond it";
+                   load_text(a, summit.load) + " at " + measure_text(a, summit.measure);
+  if (beyond_ > 0) return;
+  report_.remark += std::string("; command its ") + (cable ? "length (control: length)" : "volume (control: volume)") +
+                    " to go on beyond it";
 }
 
 }  // namespace softkin::physical

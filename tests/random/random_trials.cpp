@@ -1,0 +1,56 @@
+#include "random/parts.hpp"
+
+namespace softkin::random_robots {
+
+namespace {
+
+/// Draws of their own, so that robots of the same seed are otherwise what they were.
+constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72;
+
+void scale(ElasticSpec& elastic, double by) {
+  for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
+                                         &elastic.c10, &elastic.c01, &elastic.c20, &elastic.c30})
+    if (*modulus) **modulus *= by;
+}
+
+}  // namespace
+
+void make_stiff(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_stiffness);
+  if (!m.physical || !draw.chance(0.15)) return;
+  std::vector<MaterialSpec>& materials = m.made.spec.materials;
+  for (const char* part : {"layer", "part0", "part1"}) {
+    const bool is_there = std::any_of(m.mesh().regions.begin(), m.mesh().regions.end(),
+                                      [&](const Region& region) { return region.name == part; });
+    if (!is_there || materials.empty() || !materials.front().elastic) continue;
+    MaterialSpec stiff = materials.front();
+    stiff.region = part;
+    scale(*stiff.elastic, draw.log_between(300, 3000));
+    std::erase_if(materials, [&](const MaterialSpec& material) { return material.region == part; });
+    materials.push_back(std::move(stiff));
+    return;
+  }
+}
+
+void make_floor(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_floor);
+  if (!draw.chance(m.physical ? 0.15 : 0.01) || m.mesh().vertices.rows() == 0) return;
+  RobotSpec& spec = m.made.spec;
+  ContactSpec contact;
+  contact.self = false;
+  contact.distance_mm = draw.log_between(1e-3, 0.02) * m.size.minCoeff();
+  const double gap = *contact.distance_mm * draw.between(1.01, 3);
+  const double low = m.mesh().vertices.col(2).minCoeff();
+  ObstacleSpec floor;
+  floor.name = "floor";
+  floor.shape = Halfspace{{0, 0, low - gap}, {0, 0, 1}};
+  contact.obstacles.push_back(std::move(floor));
+  spec.contact = std::move(contact);
+  if (!draw.chance(0.7) || spec.materials.empty()) return;
+  // a column of it would be strained by about so much; a robot that is held at one end bends by far more
+  const double strain = draw.log_between(1e-6, 1e-3), density = std::max(900.0, spec.materials[0].density);
+  for (MaterialSpec& material : spec.materials) material.density = density;
+  spec.gravity = {0, 0, -strain * m.modulus / (1e-9 * density * m.longest())};
+}
+
+}  // namespace softkin::random_robots
