@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/linear/front_tree.hpp>
+#include <softkin/linear/kernels/front.hpp>
 #include <vector>
 
 namespace softkin::bench {

@@ -12,17 +12,24 @@ struct MagnetBlockOf {
   double shape[Q][K];         // the functions at the points [-]
 };
 
+/// Flux density at a point of every lane.
+template <class Pack>
+struct FluxPointOf {
+  Pack3Of<Pack> value;       // [mT]
+  Pack33Of<Pack> slope;      // by place, a row for each component [mT/mm]
+  Pack33Of<Pack> second[3];  // of each component [mT/mm^2]
+};
+
 /// Flux density at the quadrature points of a block.
 template <class Pack, int Q>
 struct FluxBlockOf {
-  bool in_space = false;        // are the derivatives there, else zero
-  Pack3Of<Pack> value[Q];       // [mT]
-  Pack33Of<Pack> slope[Q];      // by place, a row for each component [mT/mm]
-  Pack33Of<Pack> second[Q][3];  // of each component [mT/mm^2]
+  bool in_space = false;  // are the derivatives there, else zero
+  FluxPointOf<Pack> point[Q];
 };
 
 template <int K, int Q>
 using MagnetBlock = MagnetBlockOf<Pack, K, Q>;
+using FluxPoint = FluxPointOf<Pack>;
 template <int Q>
 using FluxBlock = FluxBlockOf<Pack, Q>;
 

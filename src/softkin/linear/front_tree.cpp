@@ -201,16 +201,6 @@ void plan_arenas(FrontTree& tree) {
   tree.arena_sizes.push_back(above.size());
 }
 
-void add_runs(const Front& child, const std::vector<Index>& place, FrontTree& tree) {
-  for (Index r = 0; r < child.below; ++r) {
-    const Index to = place[tree.rows[child.first_row + r]];
-    if (r > 0 && tree.runs.back().to + tree.runs.back().length == to)
-      ++tree.runs.back().length;
-    else
-      tree.runs.push_back({r, to, 1});
-  }
-}
-
 void place_rows(const BlockColumns& pattern, FrontTree& tree) {
   tree.entry_places.resize(pattern.rows.size());
   std::vector<Index> place(static_cast<std::size_t>(pattern.size()));
@@ -218,17 +208,14 @@ void place_rows(const BlockColumns& pattern, FrontTree& tree) {
     for (Index u = front.begin; u < front.end; ++u) place[u] = u - front.begin;
     for (Index r = 0; r < front.below; ++r) place[tree.rows[front.first_row + r]] = front.pivots() + r;
   };
+  tree.places.resize(tree.rows.size());
   for (const Front& front : tree.fronts) {
-    tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
-    if (front.parent >= 0) {
-      place_in(tree.fronts[front.parent]);
-      add_runs(front, place, tree);
-    }
+    if (front.parent >= 0) place_in(tree.fronts[front.parent]);
+    for (std::int64_t r = front.first_row; r < front.first_row + front.below; ++r) tree.places[r] = place[tree.rows[r]];
     place_in(front);
     for (Index e = pattern.starts[front.begin_node]; e < pattern.starts[front.end_node]; ++e)
       tree.entry_places[e] = place[pattern.unknowns[pattern.rows[e]]];
   }
-  tree.first_run.push_back(static_cast<std::int64_t>(tree.runs.size()));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <softkin/linear/block_matrix.hpp>
-#include <softkin/linear/kernels/front.hpp>
 
 namespace softkin::linear {
 
@@ -25,8 +24,7 @@ struct FrontTree {
   std::vector<Front> fronts;
   std::vector<Index> first_child, next_sibling;  // of each front; -1: none
   std::vector<Index> rows;                       // unknowns below each front
-  std::vector<RowRun> runs;                      // places of those rows in the parent's front
-  std::vector<std::int64_t> first_run;           // of each front, then their number
+  std::vector<Index> places;                     // of those rows in the parent's front
   std::vector<Index> entry_places;               // row of each entry of the pattern in its column's front
   std::vector<Index> pieces;                     // first front of every piece, then of the top, then their number
   std::vector<std::int64_t> arena_sizes;         // values, of every piece, then of the top

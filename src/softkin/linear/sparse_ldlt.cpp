@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <softkin/linear/front_solve.hpp>
+#include <softkin/linear/kernels/front.hpp>
 #include <softkin/linear/sparse_ldlt.hpp>
 #include <utility>
 
@@ -21,8 +22,22 @@ void each_column(Index columns, Index rows, Team& team, const Body& body) {
 }
 
 template <class Number>
-void run_add_columns(const FrontSum<Number>& sum, const RowRun* run, Index low, Index high) {
-  SOFTKIN_RUN_KERNEL(add_run_columns(sum, run, low, high));
+Index run_pack_rows() {
+  SOFTKIN_RUN_KERNEL(pack_rows<Number>());
+}
+template <class Number>
+void run_add_columns(const FrontSum<Number>& sum, const RowPack* pack) {
+  SOFTKIN_RUN_KERNEL(add_pack_columns(sum, pack));
+}
+
+/// The rows that a front leaves as its parent takes them; no pack has rows on both sides of its last pivot.
+void add_packs(const Index* places, Index count, Index parent_pivots, Index rows, std::vector<RowPack>& packs) {
+  for (Index r = 0; r < count;) {
+    RowPack pack{r, places[r], 0};
+    const Index end = pack.to < parent_pivots ? std::min(pack.to + rows, parent_pivots) : pack.to + rows;
+    for (; r < count && places[r] < end; ++r) pack.bits |= std::uint32_t{1} << (places[r] - pack.to);
+    packs.push_back(pack);
+  }
 }
 
 /// Room for a front's arena; what stood in the memory is lost.
@@ -88,6 +103,14 @@ void SparseLdltOf<Number>::take_memory() {
   has_memory_ = true;
   lower_.resize(static_cast<std::size_t>(tree_->values) + solve_slack);
   std::fill(lower_.end() - solve_slack, lower_.end(), Number(0));
+  packs_.clear();
+  first_pack_.assign(1, 0);
+  for (const Front& front : tree_->fronts) {
+    if (front.parent >= 0)
+      add_packs(tree_->places.data() + front.first_row, front.below, tree_->fronts[front.parent].pivots(),
+                run_pack_rows<Number>(), packs_);
+    first_pack_.push_back(static_cast<std::int64_t>(packs_.size()));
+  }
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     Index size = 0;
     for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f) size = std::max(size, tree_->fronts[f].size());
@@ -105,7 +128,7 @@ double SparseLdltOf<Number>::bytes() const {
   add(top_);
   for (const auto& bench : benches_) add(*bench);
   return own + static_cast<double>(sizeof(Number)) * values +
-         4.0 * static_cast<double>(tree_->rows.size() + 3 * tree_->runs.size() + tree_->pattern.rows.size() +
+         4.0 * static_cast<double>(2 * tree_->rows.size() + 3 * packs_.size() + tree_->pattern.rows.size() +
                                    tree_->entry_places.size());
 }
 
@@ -131,27 +154,24 @@ void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& valu
           target[static_cast<std::ptrdiff_t>(c) * stride + r] = static_cast<Number>(block[c * height + r]);
     }
   }
-  add_children(index, 0, own.pivots(), front, bench, team);
+  add_children(index, true, front, bench, team);
 }
 
-/// What the children leave in columns [begin, end) of a front.
+/// What the children leave in the columns of a front's pivots, or in those below them.
 template <class Number>
-void SparseLdltOf<Number>::add_children(Index index, Index begin, Index end, Number* front, const Bench& bench,
+void SparseLdltOf<Number>::add_children(Index index, bool of_pivots, Number* front, const Bench& bench,
                                         Team& team) const {
-  const Index stride = front_stride<Number>(tree_->fronts[index].size());
+  const Front& own = tree_->fronts[index];
+  const Index stride = front_stride<Number>(own.size());
   for (Index i = tree_->first_child[index]; i >= 0; i = tree_->next_sibling[i]) {
     const Front& child = tree_->fronts[i];
     const Index child_stride = front_stride<Number>(child.size()), pivots = child.pivots();
     const Number* update = bench.arena + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
-    const RowRun* first = tree_->runs.data() + tree_->first_run[i];
-    const RowRun* last = tree_->runs.data() + tree_->first_run[i + 1];
-    while (first < last && first->to + first->length <= begin) ++first;
-    const RowRun* beyond = first;
-    while (beyond < last && beyond->to < end) ++beyond;
+    const RowPack *first = packs_.data() + first_pack_[i], *last = packs_.data() + first_pack_[i + 1];
+    const RowPack* below = std::partition_point(first, last, [&](const RowPack& p) { return p.to < own.pivots(); });
+    const RowPack *begin = of_pivots ? first : below, *end = of_pivots ? below : last;
     const FrontSum<Number> sum{update, front, child_stride, stride, last};
-    each_column(static_cast<Index>(beyond - first), child.below, team, [&](Index k) {
-      run_add_columns(sum, first + k, std::max(0, begin - first[k].to), std::min(first[k].length, end - first[k].to));
-    });
+    each_column(static_cast<Index>(end - begin), child.below, team, [&](Index k) { run_add_columns(sum, begin + k); });
   }
 }
 
@@ -164,7 +184,7 @@ Index SparseLdltOf<Number>::factor(Index index, const LargeVector<double>& value
   Number* front = (own.parent >= top_front() ? top_ : bench).arena + own.offset;
   assemble(index, values, front, bench, team);
   const Index negative = factor_front(front, size, pivots, least, diagonal_.data() + own.begin, bench.work, team);
-  add_children(index, pivots, size, front, bench, team);
+  add_children(index, false, front, bench, team);
   const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
   each_column(pivots, size, team, [&](Index c) {
     Number* to = lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size;

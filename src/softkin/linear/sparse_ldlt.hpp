@@ -6,6 +6,7 @@
 #include <softkin/core/large_vector.hpp>
 #include <softkin/linear/front_kernel.hpp>
 #include <softkin/linear/front_tree.hpp>
+#include <softkin/linear/kernels/front.hpp>
 
 namespace softkin::linear {
 
@@ -62,13 +63,15 @@ class SparseLdltOf {
   void take_memory();
   Index factor(Index front, const LargeVector<double>& values, Number least, Bench& bench, Team& team);
   void assemble(Index index, const LargeVector<double>& values, Number* front, const Bench& bench, Team& team) const;
-  void add_children(Index index, Index begin, Index end, Number* front, const Bench& bench, Team& team) const;
+  void add_children(Index index, bool of_pivots, Number* front, const Bench& bench, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_->pieces[tree_->pieces.size() - 2]; }
   void forward(const Front& front, Index begin, Index columns, Piece& piece, Index top);
   void backward(const Front& front, Index begin, Index columns, Piece& piece);
 
   std::shared_ptr<const FrontTree> tree_;
-  bool has_memory_ = false;  // for this tree
+  bool has_memory_ = false;               // for this tree
+  std::vector<RowPack> packs_;            // of the rows that each front leaves to its parent
+  std::vector<std::int64_t> first_pack_;  // of each front, then their number
   LargeVector<Number> lower_;
   std::vector<Number> diagonal_;
   std::vector<Piece> pieces_;  // the top's is the last

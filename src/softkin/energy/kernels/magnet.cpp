@@ -110,16 +110,16 @@ class ExactMagnet {
  public:
   template <int Q>
   void set(const MagnetBlock<K, Q>& block, const FluxBlock<Q>& flux, int q, const Shape<K>& current) {
-    const MagnetPoint p = magnet_point<K>(block.slope[q], block.moment[q], flux.value[q], current);
+    const MagnetPoint p = magnet_point<K>(block.slope[q], block.moment[q], flux.point[q].value, current);
     const Pack33& g = p.compliance;
-    Pack33 turn = times(times(g, by_turn(p, flux.value[q])), g);
+    Pack33 turn = times(times(g, by_turn(p, flux.point[q].value)), g);
     add(turn, pack(-1), symmetric(crossed(g, p.twist)));
     shape_ = flux.in_space ? block.shape[q] : nullptr;
     Pack33 of_moment, moved, place;
     if (shape_) {
-      of_moment = crossed(p.moment, flux.slope[q]);
+      of_moment = crossed(p.moment, flux.point[q].slope);
       moved = times(g, of_moment);
-      place = by_place(p, flux.second[q]);
+      place = by_place(p, flux.point[q].second);
     }
     for (int a = 0; a < K; ++a) {
       slope_[a] = p.rotation * block.slope[q][a];
@@ -159,9 +159,9 @@ class PositiveMagnet {
   template <int Q>
   void set(const MagnetBlock<K, Q>& block, const FluxBlock<Q>& flux, int q, const Shape<K>& current) {
     Pack33 stiffness;
-    const MagnetPoint p = magnet_point<K>(block.slope[q], block.moment[q], flux.value[q], current, &stiffness);
+    const MagnetPoint p = magnet_point<K>(block.slope[q], block.moment[q], flux.point[q].value, current, &stiffness);
     for (int a = 0; a < K; ++a) slope_[a] = p.rotation * block.slope[q][a];
-    Pack33 turn = by_turn(p, flux.value[q]);
+    Pack33 turn = by_turn(p, flux.point[q].value);
     add(turn, pack(-1), symmetric(crossed(p.twist, stiffness)));
     const Principal modes = principal(turn);
     const Pack33 axes = transposed(modes.axes);
@@ -191,14 +191,14 @@ class PositiveMagnet {
     shape_ = block.shape[q];
     Pack per_length{};
     for (int a = 0; a < K; ++a) per_length += norm(slope_[a]);
-    const Pack33 mixed = scaled(pack(-1), crossed(p.moment, flux.slope[q]));
+    const Pack33 mixed = scaled(pack(-1), crossed(p.moment, flux.point[q].slope));
     const Pack weight = sqrt(inner(mixed, mixed)) / per_length, inverse = 1 / (weight + smallest);
     for (int i = 0; i < 3; ++i) {
       weight_[3 + i] = weight;
       for (int a = 0; a < K; ++a)
         row_[3 + i][a] = cross(p.compliance.row[i], slope_[a]) + (shape_[a] * inverse) * mixed.row[i];
     }
-    const Principal modes = principal(symmetric(by_place(p, flux.second[q])));
+    const Principal modes = principal(symmetric(by_place(p, flux.point[q].second)));
     const Pack33 axes = transposed(modes.axes);
     place_ = Pack33{};
     for (int i = 0; i < 3; ++i) add_outer(place_, max(modes.value[i], pack(0)) * axes.row[i], axes.row[i]);
@@ -236,11 +236,11 @@ void magnet_force(const energy::MagnetBlock<K, Q>& magnets, const energy::FluxBl
   Pack energy{};
   for (int a = 0; a < K; ++a) gradient[a] = Pack3{pack(0), pack(0), pack(0)};
   for (int q = 0; q < Q; ++q) {
-    const MagnetPoint p = magnet_point<K>(block.slope[q], block.moment[q], flux.value[q], current);
-    energy -= dot(p.moment, flux.value[q]);
+    const MagnetPoint p = magnet_point<K>(block.slope[q], block.moment[q], flux.point[q].value, current);
+    energy -= dot(p.moment, flux.point[q].value);
     for (int a = 0; a < K; ++a) gradient[a] = gradient[a] - cross(p.twist, p.rotation * block.slope[q][a]);
     if (!flux.in_space) continue;
-    const Pack3 pull = transposed(flux.slope[q]) * p.moment;
+    const Pack3 pull = transposed(flux.point[q].slope) * p.moment;
     for (int a = 0; a < K; ++a) gradient[a] = gradient[a] - pack(block.shape[q][a]) * pull;
   }
   keep(energy, &potential[0]);

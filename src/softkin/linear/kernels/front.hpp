@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <softkin/core/target.hpp>
 
 namespace softkin::linear {
@@ -32,9 +33,11 @@ struct FrontBlock {
   return size + 64;
 }
 
-/// Rows of a front's column that stand together somewhere in its parent's, too.
-struct RowRun {
-  Index from, to, length;
+/// Rows that a front leaves, from `from` on, one after the other, to as many of a vector's rows of its parent from `to`
+/// on: to those whose bits are set, the first always.
+struct RowPack {
+  Index from, to;
+  std::uint32_t bits;
 };
 
 /// Columns of what a front leaves that are added to its parent's columns.
@@ -43,7 +46,7 @@ struct FrontSum {
   const Number* from;  // what the child leaves: its column and row 0
   Number* to;          // the parent's column and row 0
   Index from_stride, to_stride;
-  const RowRun* last;  // beyond the child's last run
+  const RowPack* last;  // beyond the child's last pack
 };
 
 SOFTKIN_KERNELS(
@@ -61,8 +64,13 @@ SOFTKIN_KERNELS(
     /// there beyond the front's pivots the first block takes no notice: it is as if it were zero.
     template <class Number> void update_strips(const FrontBlock<Number>& block, Index low, Index high);
 
-    /// Columns [low, high) of the run `run`, and all runs after it below them.
-    template <class Number> void add_run_columns(const FrontSum<Number>& sum, const RowRun* run, Index low, Index high);
+    /// Rows of a RowPack's vector.
+    template <class Number> Index pack_rows();
+
+    /// The columns of a pack's rows, their rows of this pack and of all after it. What is added above the diagonal is
+    /// anything at all; rows of the parent between those of a pack, and up to pack_rows() - 1 below its last, are read
+    /// and written, and stay as they are.
+    template <class Number> void add_pack_columns(const FrontSum<Number>& sum, const RowPack* pack);
 
     /// One front's part of a solution (linear/front_solve.hpp).
     template <class Number>

@@ -1,5 +1,6 @@
 #include <softkin/core/lanes.hpp>
 #include <softkin/linear/kernels/front.hpp>
+#include <type_traits>
 
 namespace softkin::linear::SOFTKIN_TARGET {
 
@@ -7,59 +8,127 @@ namespace {
 
 using namespace softkin::SOFTKIN_TARGET;
 
-/// to += from, less than 2 `Bytes` of them: halves, quarters and so on of a register.
-template <class Number, int Bytes>
-[[gnu::always_inline]] inline void add_few(Number* to, const Number* from, Index length) {
-  constexpr Index lanes = Bytes / static_cast<Index>(sizeof(Number));
-  if (length >= lanes) {
-    typedef Number Some __attribute__((vector_size(Bytes)));
-    Some a, b;
-    std::memcpy(&a, to, sizeof a);
-    std::memcpy(&b, from, sizeof b);
-    a += b;
-    std::memcpy(to, &a, sizeof a);
-    to += lanes, from += lanes, length -= lanes;
-  }
-  if constexpr (lanes > 1) add_few<Number, Bytes / 2>(to, from, length);
-}
-
-/// to += from, for runs that are mostly short.
-template <class Number>
-[[gnu::always_inline]] inline void add_run(Number* to, const Number* from, Index length) {
-  constexpr Index lanes = lanes_of<Number>;
-  for (; length >= lanes; length -= lanes, to += lanes, from += lanes) store(to, load(to) + load(from));
 #if defined(__AVX512F__)
-  if (length == 0) return;
-  if constexpr (sizeof(Number) == 8) {
-    const auto some = static_cast<__mmask8>((1u << length) - 1);
-    _mm512_mask_storeu_pd(to, some, _mm512_maskz_loadu_pd(some, to) + _mm512_maskz_loadu_pd(some, from));
-  } else {
-    const auto some = static_cast<__mmask16>((1u << length) - 1);
-    _mm512_mask_storeu_ps(to, some, _mm512_maskz_loadu_ps(some, to) + _mm512_maskz_loadu_ps(some, from));
+
+/// A child's next rows in the places of a pack, zero in the others.
+class Spread {
+ public:
+  explicit Spread(std::uint32_t bits) : bits_(bits) {}
+
+  Vector<double> operator()(const double* from) const {
+    return _mm512_maskz_expand_pd(static_cast<__mmask8>(bits_), _mm512_loadu_pd(from));
   }
+  Vector<float> operator()(const float* from) const {
+    return _mm512_maskz_expand_ps(static_cast<__mmask16>(bits_), _mm512_loadu_ps(from));
+  }
+
+ private:
+  std::uint32_t bits_;
+};
+template <class Number>
+using SpreadOf = Spread;
+
 #else
-  add_few<Number, vector_bytes / 2>(to, from, length);
+
+// Of places a machine without AVX-512 permutes 32 bits in registers of 32 bytes, else bytes.
+constexpr int moved_bytes = vector_bytes == 32 ? 4 : 1, moved = vector_bytes / moved_bytes;
+typedef std::conditional_t<moved_bytes == 4, std::int32_t, std::int8_t> Place;
+typedef Place Places __attribute__((vector_size(vector_bytes)));
+
+/// Which of a child's next rows comes to each place, by the pack's bits but for the first, which is set; -1: none.
+template <int Lanes>
+struct Moves {
+  static constexpr int patterns = 1 << (Lanes - 1), each = moved / Lanes;
+  alignas(vector_bytes) Place of[patterns][moved];
+};
+template <int Lanes>
+constexpr Moves<Lanes> make_moves() {
+  Moves<Lanes> moves{};
+  for (int pattern = 0; pattern < Moves<Lanes>::patterns; ++pattern) {
+    const int bits = 2 * pattern + 1;
+    for (int lane = 0, next = 0; lane < Lanes; ++lane) {
+      const bool set = (bits >> lane & 1) != 0;
+      for (int i = 0; i < Moves<Lanes>::each; ++i)
+        moves.of[pattern][lane * Moves<Lanes>::each + i] = static_cast<Place>(set ? next * Moves<Lanes>::each + i : -1);
+      next += set;
+    }
+  }
+  return moves;
+}
+template <int Lanes>
+constexpr Moves<Lanes> moves = make_moves<Lanes>();
+
+/// A child's next rows in the places of a pack, zero in the others.
+template <class Number>
+class SpreadOf {
+ public:
+  explicit SpreadOf(std::uint32_t bits) {
+    std::memcpy(&from_, moves<static_cast<int>(lanes_of<Number>)>.of[bits >> 1], sizeof from_);
+    keep_ = from_ >= 0;
+  }
+  Vector<Number> operator()(const Number* from) const {
+    Places rows;
+    std::memcpy(&rows, from, sizeof rows);
+    if constexpr (lanes_of < Number >> 2) rows = __builtin_shuffle(rows, from_);
+    rows &= keep_;
+    Vector<Number> spread;
+    std::memcpy(&spread, &rows, sizeof spread);
+    return spread;
+  }
+
+ private:
+  Places from_, keep_;
+};
+
 #endif
+
+/// `Columns` columns of a child from `from` on, each to the parent's column beside it in `to`.
+template <int Columns, class Number>
+[[gnu::always_inline]] inline void add_columns(const FrontSum<Number>& sum, const RowPack* pack, const Number* from,
+                                               Number* const (&to)[Columns]) {
+  for (; pack < sum.last; ++pack) {
+    const SpreadOf<Number> spread(pack->bits);
+#pragma GCC unroll 4
+    for (int c = 0; c < Columns; ++c) {
+      Number* rows = to[c] + pack->to;
+      // no processor foresees where the next columns' packs stand
+      __builtin_prefetch(rows + Columns * static_cast<std::ptrdiff_t>(sum.to_stride), 1);
+      __builtin_prefetch(from + (c + Columns) * static_cast<std::ptrdiff_t>(sum.from_stride) + pack->from);
+      store(rows, load(rows) + spread(from + c * static_cast<std::ptrdiff_t>(sum.from_stride) + pack->from));
+    }
+  }
 }
 
 }  // namespace
 
 template <class Number>
-void add_run_columns(const FrontSum<Number>& sum, const RowRun* run, Index low, Index high) {
-  for (Index c = low; c < high; ++c) {
-    Number* to = sum.to + static_cast<std::ptrdiff_t>(run->to + c) * sum.to_stride;
-    const Number* from = sum.from + static_cast<std::ptrdiff_t>(run->from + c) * sum.from_stride;
-    add_run(to + run->to + c, from + run->from + c, run->length - c);
-    for (const RowRun* below = run + 1; below < sum.last; ++below) {
-      // no processor foresees where the next columns' short runs stand
-      __builtin_prefetch(to + 2 * sum.to_stride + below->to, 1);
-      __builtin_prefetch(from + 2 * sum.from_stride + below->from);
-      add_run(to + below->to, from + below->from, below->length);
-    }
+Index pack_rows() {
+  return lanes_of<Number>;
+}
+
+template <class Number>
+void add_pack_columns(const FrontSum<Number>& sum, const RowPack* pack) {
+  std::uint32_t bits = pack->bits;
+  const Number* from = sum.from + pack->from * static_cast<std::ptrdiff_t>(sum.from_stride);
+  const auto next = [&] {
+    const int bit = __builtin_ctz(bits);
+    bits &= bits - 1;
+    return sum.to + (pack->to + bit) * static_cast<std::ptrdiff_t>(sum.to_stride);
+  };
+  int left = __builtin_popcount(bits);
+  for (; left >= 3; left -= 3, from += 3 * static_cast<std::ptrdiff_t>(sum.from_stride)) {
+    Number* const to[3] = {next(), next(), next()};
+    add_columns<3>(sum, pack, from, to);
+  }
+  for (; left > 0; --left, from += sum.from_stride) {
+    Number* const to[1] = {next()};
+    add_columns<1>(sum, pack, from, to);
   }
 }
 
-template void add_run_columns(const FrontSum<double>&, const RowRun*, Index, Index);
-template void add_run_columns(const FrontSum<float>&, const RowRun*, Index, Index);
+template Index pack_rows<double>();
+template Index pack_rows<float>();
+template void add_pack_columns(const FrontSum<double>&, const RowPack*);
+template void add_pack_columns(const FrontSum<float>&, const RowPack*);
 
 }  // namespace softkin::linear::SOFTKIN_TARGET

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <softkin/energy/loop_field.hpp>
 #include <softkin/statics/physical/fields.hpp>
 #include <type_traits>
 
@@ -90,98 +90,6 @@ void add_component(const Local<Second>& local, const Vec3& direction, Flux& out)
     for (int i = 0; i < 3; ++i) out.second[i] += direction[i] * local.second;
 }
 
-/// Integrals over a loop's angle, k^2 = t: f of (1 - k cos)^-3/2 and g of cos (1 - k cos)^-3/2 / k, with derivatives by
-/// t; h, of (1 - k cos)^-1/2, is 2 pi F(1/4, 3/4; 1; t), and f = h + t g, h' = g / 4.
-struct LoopIntegrals {
-  double f, f1, f2, g, g1, g2;
-
-  explicit LoopIntegrals(double t) {
-    double h = 0;
-    if (t < 0.25)
-      by_series(t);
-    else
-      by_means(t, h);
-    if (t >= 0.25) {  // the hypergeometric equation of h, and its derivative
-      g1 = (0.75 * h - (1 - 2 * t) * g) / (t * (1 - t));
-      g2 = (35.0 / 16 * g - 2 * (1 - 2 * t) * g1) / (t * (1 - t));
-    }
-    f1 = 1.25 * g + t * g1;
-    f2 = 2.25 * g1 + t * g2;
-  }
-
- private:
-  struct Series {
-    static constexpr int terms = 32;  // of a quarter's powers, below rounding
-    std::array<double, terms> h{}, g{};
-    constexpr Series() {
-      double of_h = 2 * std::numbers::pi, of_g = 1.5 * std::numbers::pi;
-      for (std::size_t n = 0; n < terms; ++n) {
-        const auto i = static_cast<double>(n);
-        h[n] = of_h;
-        g[n] = of_g;
-        of_h *= (0.25 + i) * (0.75 + i) / ((1.0 + i) * (1.0 + i));
-        of_g *= (1.25 + i) * (1.75 + i) / ((2.0 + i) * (1.0 + i));
-      }
-    }
-  };
-
-  void by_series(double t) {
-    static constexpr Series series;
-    const int terms = t < 0.02 ? 12 : t < 0.08 ? 18 : Series::terms;  // likewise of these powers
-    double h = 0;
-    g = g1 = g2 = 0;
-    for (int n = terms - 1; n >= 0; --n) {  // Horner's scheme, with the derivatives
-      g2 = g2 * t + 2 * g1;
-      g1 = g1 * t + g;
-      g = g * t + series.g[static_cast<std::size_t>(n)];
-      h = h * t + series.h[static_cast<std::size_t>(n)];
-    }
-    f = h + t * g;
-  }
-
-  /// Complete elliptic integrals of m = 2 k / (1 + k) by arithmetic-geometric means.
-  void by_means(double t, double& h) {
-    const double k = std::sqrt(t);
-    double a = 1, b = std::sqrt((1 - k) / (1 + k)), sum = 0.5 * (2 * k / (1 + k)), weight = 0.5;
-    for (int i = 0; i < 40 && a - b > 1e-16 * a; ++i) {
-      const double c = 0.5 * (a - b), next = 0.5 * (a + b);
-      b = std::sqrt(a * b);
-      a = next;
-      weight *= 2;
-      sum += weight * c * c;
-    }
-    const double first = std::numbers::pi / (2 * a), second = first * (1 - sum);
-    h = 4 * first / std::sqrt(1 + k);
-    f = 4 * second / ((1 - k) * std::sqrt(1 + k));
-    g = (f - h) / t;
-  }
-};
-
-template <bool Second>
-bool add_loop(const CoilLoop& loop, double current, const Vec3& place, Flux& out) {
-  const double a = loop.radius_mm;
-  const Vec3 from_center = place - loop.center;
-  const Local<Second> z = along<Second>(from_center, loop.axis);
-  const Local<Second> square = square_of<Second>(from_center);
-  const Local<Second> size = square + Local<Second>(a * a);
-  const Local<Second> across = square + -1.0 * (z * z);  // rho^2
-  const InversePowers<Second> over(size);
-  const Local<Second> t = 4 * a * a * (across * over.template power<4>());
-  if (!(t.value < 1)) return false;
-  const LoopIntegrals of(std::max(0.0, t.value));
-  const Local<Second> f = composed(t, of.f, of.f1, of.f2), g = composed(t, of.g, of.g1, of.g2);
-  const double scale = loop_constant * current * loop.turns * a;
-  const Local<Second> axial =
-      scale * (over.template power<3>() * (a * f + -2 * a * (across * over.template power<2>() * g)));
-  const Local<Second> radial = 2 * a * scale * (z * over.template power<5>() * g);  // over rho
-  add_component(axial + -1.0 * (radial * z), loop.axis, out);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 unit = Vec3::Unit(i);
-    add_component(radial * along<Second>(from_center, unit), unit, out);
-  }
-  return true;
-}
-
 template <bool Second>
 bool add_dipole(const Vec3& position, const Vec3& moment, const Vec3& place, Flux& out) {
   const Vec3 from = place - position;
@@ -195,6 +103,20 @@ bool add_dipole(const Vec3& position, const Vec3& moment, const Vec3& place, Flu
     add_component(toward * along<Second>(from, unit), unit, out);
   }
   return true;
+}
+
+void add_lane(const Vec3& vector, int lane, energy::Pack3& to) {
+  to.x[lane] += vector[0];
+  to.y[lane] += vector[1];
+  to.z[lane] += vector[2];
+}
+void add_lane(const Mat3& matrix, int lane, energy::Pack33& to) {
+  for (int r = 0; r < 3; ++r) add_lane(matrix.row(r).transpose(), lane, to.row[r]);
+}
+void add_lane(const Flux& flux, int lane, bool second, energy::FluxPoint& to) {
+  add_lane(flux.value, lane, to.value);
+  add_lane(flux.slope, lane, to.slope);
+  for (int i = 0; second && i < 3; ++i) add_lane(flux.second[i], lane, to.second[i]);
 }
 
 }  // namespace
@@ -264,6 +186,12 @@ Fields::Setting Fields::derivative(Index actuator, const Demand& demand) const {
   return result;
 }
 
+bool Fields::lane_by_lane(const Setting& setting) const {
+  for (std::size_t s = 0; s < setting.sources.size(); ++s)
+    if (!setting.sources[s].moment.isZero(0) || (setting.sources[s].current != 0 && grids_[s])) return true;
+  return false;
+}
+
 template <bool Second>
 bool Fields::sum(const Setting& setting, const Vec3& place, Flux& out) const {
   out = {};
@@ -271,15 +199,13 @@ bool Fields::sum(const Setting& setting, const Vec3& place, Flux& out) const {
     const auto& [current, position, moment] = setting.sources[s];
     bool known = true;
     if (current != 0 && grids_[s]) known = grids_[s]->add(place, current, out);
-    if (const auto* coil = std::get_if<CoilField>(&magnetism_.sources[s].field); coil && current != 0)
-      for (const CoilLoop& loop : coil->loops) known = known && add_loop<Second>(loop, current, place, out);
     if (!moment.isZero(0)) known = add_dipole<Second>(position, moment, place, out);
     if (!known) return false;
   }
   return true;
 }
 
-bool Fields::flux(const Setting& setting, const Vec3& place, bool second, Flux& out) const {
+bool Fields::flux_of_lane(const Setting& setting, const Vec3& place, bool second, Flux& out) const {
   const bool moved = setting.moved_along >= 0;
   if (!(second || moved ? sum<true>(setting, place, out) : sum<false>(setting, place, out))) return false;
   if (!moved) return true;
@@ -287,6 +213,31 @@ bool Fields::flux(const Setting& setting, const Vec3& place, bool second, Flux& 
   out.value = -there.slope.col(setting.moved_along);
   for (int i = 0; i < 3; ++i) out.slope.row(i) = -there.second[i].col(setting.moved_along).transpose();
   return true;
+}
+
+bool Fields::flux(const Setting& setting, const energy::Pack3& places, Index count, bool second,
+                  energy::FluxPoint& out) const {
+  out = {};
+  bool known = true;
+  for (std::size_t s = 0; s < setting.sources.size(); ++s) {
+    const auto* coil = std::get_if<CoilField>(&magnetism_.sources[s].field);
+    const double current = setting.sources[s].current;
+    if (!coil || current == 0) continue;
+    for (const CoilLoop& loop : coil->loops) {
+      const Vec3 &c = loop.center, &a = loop.axis;
+      const energy::LoopOfCurrent of{
+          {c[0], c[1], c[2]}, {a[0], a[1], a[2]}, loop.radius_mm, loop_constant * current * loop.turns};
+      const energy::PackMask there = energy::add_loop(of, places, second, out);
+      for (int l = 0; l < count; ++l) known = known && there[l] != 0;
+    }
+  }
+  if (!lane_by_lane(setting)) return known;
+  for (int l = 0; l < count; ++l) {
+    Flux flux;
+    known = flux_of_lane(setting, {places.x[l], places.y[l], places.z[l]}, second, flux) && known;
+    add_lane(flux, l, second, out);
+  }
+  return known;
 }
 
 }  // namespace softkin::physical

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <softkin/energy/magnet_blocks.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/physical/iterate.hpp>
@@ -33,18 +34,22 @@ class Fields {
   /// Is a field there that grows with the share of the dead loads?
   [[nodiscard]] bool any_dipole() const { return any_dipole_; }
 
-  /// What changes in space, all but Setting::uniform, at a place [mm].
+  /// What changes in space, all but Setting::uniform, at a place of every lane [mm].
   ///
-  /// source   loops: complete elliptic integrals, as in Simpson et al. 2001, "Simple analytic expressions for the
-  ///          magnetic field of a circular current loop", of 4 a^2 rho^2 / (a^2 + r^2)^2, which is smooth on the axis;
-  ///          dipole: mu_0 / (4 pi) (3 (m . r) r / r^5 - m / r^3); grid: SplineGrid
-  /// second   are second derivatives asked for: they cost as much again; not of a setting that is moved
-  /// returns  false outside a grid, on a wire and on a dipole
-  bool flux(const Setting& setting, const Vec3& place, bool second, Flux& out) const;
+  /// source   loops: energy/loop_field.hpp; dipole: mu_0 / (4 pi) (3 (m . r) r / r^5 - m / r^3); grid: SplineGrid
+  /// count    lanes that matter
+  /// second   are second derivatives asked for: they cost as much again, and are zero otherwise; not of a setting that
+  ///          is moved
+  /// returns  false where one of those lanes is outside a grid, on a wire or on a dipole
+  bool flux(const Setting& setting, const energy::Pack3& places, Index count, bool second,
+            energy::FluxPoint& out) const;
 
  private:
+  /// Has it grids or dipoles, which are summed lane by lane?
+  [[nodiscard]] bool lane_by_lane(const Setting& setting) const;
   template <bool Second>
   bool sum(const Setting& setting, const Vec3& place, Flux& out) const;
+  bool flux_of_lane(const Setting& setting, const Vec3& place, bool second, Flux& out) const;
 
   const Model& model_;
   const Magnetism& magnetism_;

@@ -11,6 +11,7 @@ namespace softkin::physical {
 
 namespace {
 
+using energy::lanes;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Where a quadrature point is, and its moment: (volume / mu_0) F b_r [N mm / mT].
@@ -27,6 +28,41 @@ Point point_of(const std::array<Index, K>& nodes, const std::array<double, K>& s
     point.moment += poles[i] * positions.row(nodes[i]).transpose();
   }
   return point;
+}
+
+/// Of the elements of a block, the last of all for those that it lacks.
+template <int K, class Set>
+std::array<Point, lanes> points_of(const Set& set, Index block, int q, const Points& positions) {
+  std::array<Point, lanes> points;
+  for (int l = 0; l < lanes; ++l) {
+    const Index e = std::min(lanes * block + l, static_cast<Index>(set.nodes.size()) - 1);
+    points[l] = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
+  }
+  return points;
+}
+
+energy::Pack3 places_of(const std::array<Point, energy::lanes>& points) {
+  energy::Pack3 places;
+  for (int l = 0; l < lanes; ++l) {
+    places.x[l] = points[l].place[0];
+    places.y[l] = points[l].place[1];
+    places.z[l] = points[l].place[2];
+  }
+  return places;
+}
+
+Vec3 lane_of(const energy::Pack3& vector, int lane) {
+  return {vector.x[lane], vector.y[lane], vector.z[lane]};
+}
+Mat3 lane_of(const energy::Pack33& matrix, int lane) {
+  Mat3 own;
+  for (int r = 0; r < 3; ++r) own.row(r) = lane_of(matrix.row[r], lane).transpose();
+  return own;
+}
+Flux lane_of(const energy::FluxPoint& flux, int lane) {
+  return {lane_of(flux.value, lane),
+          lane_of(flux.slope, lane),
+          {lane_of(flux.second[0], lane), lane_of(flux.second[1], lane), lane_of(flux.second[2], lane)}};
 }
 
 /// Second derivative of -moment . b(place) by (moment, place).
@@ -116,18 +152,19 @@ std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, cons
   std::atomic<bool> known = true;
   each([&]<int K, int Q>(const Set<K, Q>& set) {
     const auto count = static_cast<Index>(set.nodes.size());
-    std::vector<std::array<Flux, Q>> fluxes(set.nodes.size());
-    team.pieces(count, [&](Index begin, Index end) {
-      for (Index e = begin; e < end; ++e)
+    LargeVector<std::array<energy::FluxPoint, Q>> fluxes((set.nodes.size() + lanes - 1) / lanes);
+    team.pieces(static_cast<Index>(fluxes.size()), [&](Index begin, Index end) {
+      for (Index b = begin; b < end; ++b)
         for (int q = 0; q < Q; ++q) {
-          const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
-          if (!fields_.flux(setting, point.place, false, fluxes[e][q])) known = false;
+          const auto points = points_of<K>(set, b, q, positions);
+          if (!fields_.flux(setting, places_of(points), std::min<Index>(lanes, count - lanes * b), false, fluxes[b][q]))
+            known = false;
         }
     });
     for (Index e = 0; e < count; ++e)  // by one thread: elements share vertices
       for (int q = 0; q < Q; ++q) {
         const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
-        const Flux& flux = fluxes[e][q];
+        const Flux flux = lane_of(fluxes[e / lanes][q], e % lanes);
         energy -= point.moment.dot(flux.value);
         const Vec3 pull = flux.slope.transpose() * point.moment;
         for (int i = 0; i < K; ++i)
@@ -163,12 +200,9 @@ void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool 
   turning_.add_stiffness(fields_, setting, positions, projected, slots, team);
   if (!setting.in_space()) return;
   each([&]<int K, int Q>(const Set<K, Q>& set) {
-    const auto of_element = [&](Index e, int q, double* slot) {
+    const auto of_element = [&](Index e, int q, const Point& point, const Flux& flux, double* slot) {
       const auto& shapes = set.shapes[q];
       const auto& poles = set.poles[e][q];
-      const Point point = point_of<K>(set.nodes[e], shapes, poles, positions);
-      Flux flux;
-      if (!fields_.flux(setting, point.place, true, flux)) return;  // of a shape that is forbidden
       Matrix6 second = second_derivative(point, flux);
       if (projected) second = made_positive(second, std::cbrt(set.volumes[e][q]));
       const Mat3 mixed = second.topRightCorner<3, 3>(), of_place = second.bottomRightCorner<3, 3>(),
@@ -181,9 +215,17 @@ void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool 
             for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(r, c);
         }
     };
-    team.pieces(static_cast<Index>(set.nodes.size()), [&](Index begin, Index end) {
-      for (Index e = begin; e < end; ++e)
-        for (int q = 0; q < Q; ++q) of_element(e, q, slots.data() + 9 * set.slots[static_cast<std::size_t>(e)]);
+    const auto count = static_cast<Index>(set.nodes.size());
+    team.pieces((count + lanes - 1) / lanes, [&](Index begin, Index end) {
+      energy::FluxPoint flux;
+      for (Index b = begin; b < end; ++b)
+        for (int q = 0; q < Q; ++q) {
+          const auto points = points_of<K>(set, b, q, positions);
+          const Index elements = std::min<Index>(lanes, count - lanes * b);
+          if (!fields_.flux(setting, places_of(points), elements, true, flux)) continue;  // a shape that is forbidden
+          for (Index l = 0; l < elements; ++l)
+            of_element(lanes * b + l, q, points[l], lane_of(flux, l), slots.data() + 9 * set.slots[lanes * b + l]);
+        }
     });
   });
 }

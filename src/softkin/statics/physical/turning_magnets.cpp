@@ -17,8 +17,8 @@ void put(energy::Pack3& vector, int lane, const Vec3& value) {
   vector.z[lane] = value[2];
 }
 
-void put(energy::Pack33& matrix, int lane, const Mat3& value) {
-  for (int r = 0; r < 3; ++r) put(matrix.row[r], lane, value.row(r).transpose());
+energy::Pack3 everywhere(const Vec3& vector) {
+  return {energy::pack(vector[0]), energy::pack(vector[1]), energy::pack(vector[2])};
 }
 
 /// Flux density of a field that is the same everywhere.
@@ -26,34 +26,22 @@ template <int Q>
 energy::FluxBlock<Q> uniform_flux(const Fields::Setting& setting) {
   energy::FluxBlock<Q> flux;
   flux.in_space = setting.in_space();
-  for (int q = 0; q < Q; ++q)
-    for (int l = 0; l < lanes; ++l) put(flux.value[q], l, setting.uniform);
+  for (energy::FluxPoint& point : flux.point) point.value = everywhere(setting.uniform);
   return flux;
 }
 
 /// Flux density of one that is not, where the first `count` elements of a block are. False where it is not known for
-/// one of them.
+/// one of them: the shape is forbidden.
 template <int K, int Q>
 bool set_flux(const Fields& fields, const Fields::Setting& setting, const energy::MagnetBlock<K, Q>& block,
               const energy::Shape<K>& shape, Index count, bool second, energy::FluxBlock<Q>& out) {
   if (!out.in_space) return true;
   bool known = true;
   for (int q = 0; q < Q; ++q) {
-    out.slope[q] = {};
-    for (energy::Pack33& of_component : out.second[q]) of_component = {};
-    for (int l = 0; l < count; ++l) {
-      Vec3 place = Vec3::Zero();
-      for (int i = 0; i < K; ++i) place += block.shape[q][i] * Vec3(shape[i].x[l], shape[i].y[l], shape[i].z[l]);
-      Flux flux;
-      if (!fields.flux(setting, place, second, flux)) {  // the shape is forbidden
-        known = false;
-        continue;
-      }
-      put(out.value[q], l, setting.uniform + flux.value);
-      put(out.slope[q], l, flux.slope);
-      if (!second) continue;
-      for (int i = 0; i < 3; ++i) put(out.second[q][i], l, flux.second[i]);
-    }
+    energy::Pack3 place{};
+    for (int i = 0; i < K; ++i) place = place + energy::pack(block.shape[q][i]) * shape[i];
+    known = fields.flux(setting, place, count, second, out.point[q]) && known;
+    out.point[q].value = out.point[q].value + everywhere(setting.uniform);
   }
   return known;
 }
