@@ -105,7 +105,7 @@ struct SolveReport {
   double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;
   std::vector<TracedStep> trace;  // with StaticsOptions::trace
-  LoadBranch branch;                  // where a maximum was looked for
+  LoadBranch branch;              // where a maximum was looked for
   double seconds = 0;
 
   /// A map gave the equilibrium: there is nothing to tell of an iteration.
