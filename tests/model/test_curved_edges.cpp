@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double pi = std::numbers::pi;
+constexpr double curve_pi = std::numbers::pi;
 
 CurveSpec smooth_curve(double crease = 50) {
   CurveSpec spec;
@@ -35,7 +35,7 @@ struct CurvedMesh {
   CurvedEdges done;
 };
 
-CurvedMesh curved(const Mesh& linear, const CurveSpec& spec) {
+CurvedMesh curved_mesh(const Mesh& linear, const CurveSpec& spec) {
   CurvedMesh result{elevated(linear), {}, {}};
   result.mesh = result.straight;
   result.done = curve_edges(result.mesh, labels_of(result.mesh, result.mesh.regions), spec);
@@ -98,11 +98,12 @@ TEST(JacobianBound, IsBelowWhatSamplesFindAndExactOnStraightEdges) {
 /// Of rods of 10 to 24 corners straight edges take 6.5 to 1.1 % of the section.
 TEST(CurvedEdges, ARodIsRoundAndItsEndsStayFlat) {
   for (const int corners : {10, 12, 16, 24}) {
-    const CurvedMesh rod = curved(rod_mesh(corners, 1, 6, 10, 60), smooth_curve());
-    const double exact = pi * 100 * 60;
+    const CurvedMesh rod = curved_mesh(rod_mesh(corners, 1, 6, 10, 60), smooth_curve());
+    const double exact = curve_pi * 100 * 60;
     EXPECT_NEAR(measure_curved(rod.mesh).volume, exact, 1.5e-3 * exact) << corners;
     EXPECT_LT(measure_curved(rod.straight).volume, 0.99 * exact);
-    EXPECT_NEAR(measure_curved(rod.mesh).boundary, 2 * pi * 10 * 60 + 2 * pi * 100, 2e-3 * 2 * pi * 600);
+    EXPECT_NEAR(measure_curved(rod.mesh).boundary, 2 * curve_pi * 10 * 60 + 2 * curve_pi * 100,
+                2e-3 * 2 * curve_pi * 600);
     EXPECT_EQ(rod.done.held_back, 0u);
     for (const double end : {0.0, 60.0})
       for (const Index v : boundary_nodes(rod.mesh, [&](const Vec3& p) { return p.x() == end; }))
@@ -115,8 +116,8 @@ TEST(CurvedEdges, ARodIsRoundAndItsEndsStayFlat) {
 TEST(CurvedEdges, ABallIsRound) {
   for (const double inner : {8.0, 9.8}) {  // the thinner shell is thinner than its edges' arcs are high
     for (const int cuts : {1, 2}) {
-      const CurvedMesh ball = curved(shell_mesh(cuts, 1, inner, 10), smooth_curve());
-      const double exact = 4 * pi / 3 * (1000 - inner * inner * inner);
+      const CurvedMesh ball = curved_mesh(shell_mesh(cuts, 1, inner, 10), smooth_curve());
+      const double exact = 4 * curve_pi / 3 * (1000 - inner * inner * inner);
       EXPECT_NEAR(measure_curved(ball.mesh).volume, exact, (cuts == 1 ? 3e-3 : 3e-4) * exact);
       EXPECT_LT(measure_curved(ball.straight).volume, (cuts == 1 ? 0.88 : 0.97) * exact);
       EXPECT_EQ(ball.done.held_back, 0u);
@@ -128,7 +129,7 @@ TEST(CurvedEdges, ABallIsRound) {
 TEST(CurvedEdges, OntoGivenSurfaces) {
   const GivenSurface side{Cylinder{{0, 0, 0}, {60, 0, 0}, 10}, {}};
   for (const int corners : {6, 8}) {
-    const CurvedMesh rod = curved(rod_mesh(corners, 1, 12, 10, 60), onto({side}));
+    const CurvedMesh rod = curved_mesh(rod_mesh(corners, 1, 12, 10, 60), onto({side}));
     EXPECT_EQ(rod.done.held_back, 0u);
     EXPECT_GT(rod.done.taken[0], 0u);
     for (const Index v : boundary_nodes(rod.mesh, [](const Vec3& p) { return p.tail<2>().norm() > 9.9; }))
@@ -136,19 +137,19 @@ TEST(CurvedEdges, OntoGivenSurfaces) {
     for (const Index v : boundary_nodes(rod.mesh, [&](const Vec3& p) { return p.x() == 60; }))
       EXPECT_NEAR(rod.mesh.vertices(v, 0), 60, 1e-12);
   }
-  const CurvedMesh ball = curved(shell_mesh(1, 1, 7, 10), onto({{Sphere{{0, 0, 0}, 10}, {}}}));
+  const CurvedMesh ball = curved_mesh(shell_mesh(1, 1, 7, 10), onto({{Sphere{{0, 0, 0}, 10}, {}}}));
   for (const Index v : boundary_nodes(ball.mesh, [](const Vec3& p) { return p.norm() > 9; }))
     EXPECT_NEAR(ball.mesh.vertices.row(v).norm(), 10, 1e-12);
   for (const Index v : boundary_nodes(ball.mesh, [](const Vec3& p) { return p.norm() < 9; }))
     EXPECT_LT(ball.mesh.vertices.row(v).norm(), 6.8);  // the hollow was not given
-  EXPECT_EQ(curved(shell_mesh(1, 1, 7, 10), onto({{Sphere{{0, 0, 0}, 12}, {}}})).done.taken[0], 0u);
+  EXPECT_EQ(curved_mesh(shell_mesh(1, 1, 7, 10), onto({{Sphere{{0, 0, 0}, 12}, {}}})).done.taken[0], 0u);
 }
 
 /// A fine triangle surface in place of the sphere: nodes are as near to the sphere as its facets.
 TEST(CurvedEdges, OntoAFile) {
   const Footprint fine = ball_surface(4);
   const TriangleSurface surface{10 * fine.vertices, fine.triangles};
-  const CurvedMesh ball = curved(shell_mesh(1, 1, 7, 10), onto({{surface, {}}}));
+  const CurvedMesh ball = curved_mesh(shell_mesh(1, 1, 7, 10), onto({{surface, {}}}));
   double facet = 10;
   for (const auto& [a, b, c] : fine.triangles)
     facet = std::min(facet, 10 * (fine.vertices.row(a) + fine.vertices.row(b) + fine.vertices.row(c)).norm() / 3);
@@ -162,7 +163,7 @@ TEST(CurvedEdges, OntoAFile) {
 TEST(CurvedEdges, ASlantingRimStaysInItsPlane) {
   Mesh mesh = rod_mesh(8, 1, 6, 10, 60);
   for (Index v = 0; v < mesh.vertices.rows(); ++v) mesh.vertices(v, 0) += 0.5 * mesh.vertices(v, 1);
-  const CurvedMesh rod = curved(mesh, onto({{Cylinder{{-10, 0, 0}, {70, 0, 0}, 10}, {}}}));
+  const CurvedMesh rod = curved_mesh(mesh, onto({{Cylinder{{-10, 0, 0}, {70, 0, 0}, 10}, {}}}));
   const auto rim = [](const Vec3& p) { return p.x() - 0.5 * p.y() > 59.99 && p.tail<2>().norm() > 9.9; };
   for (const Index v : boundary_nodes(rod.mesh, rim)) {
     EXPECT_NEAR(rod.mesh.vertices.row(v).tail<2>().norm(), 10, 1e-9);
@@ -172,16 +173,17 @@ TEST(CurvedEdges, ASlantingRimStaysInItsPlane) {
 
 /// Boxes, a prism of six sides, and one of twelve whose sides are flat for several elements: chamfers are no curves.
 TEST(CurvedEdges, WhatHasFlatSidesStaysAsItIs) {
-  EXPECT_EQ(curved(block_mesh({4, 2, 2}, {40, 10, 10}), smooth_curve()).done.moved, 0u);
-  EXPECT_EQ(curved(rod_mesh(6, 1, 4, 10, 40), smooth_curve()).done.moved, 0u);
+  EXPECT_EQ(curved_mesh(block_mesh({4, 2, 2}, {40, 10, 10}), smooth_curve()).done.moved, 0u);
+  EXPECT_EQ(curved_mesh(rod_mesh(6, 1, 4, 10, 40), smooth_curve()).done.moved, 0u);
   Footprint plan = disc(48, 1);
   for (Index v = 1; v <= 48; ++v) {  // onto the chords of twelve corners
-    const double angle = 2 * pi * static_cast<double>(v - 1) / 48, from = pi / 6 * std::floor(angle / (pi / 6) + 1e-9);
-    plan.vertices.row(v) *= std::cos(pi / 12) / std::cos(angle - from - pi / 12);
+    const double angle = 2 * curve_pi * static_cast<double>(v - 1) / 48,
+                 from = curve_pi / 6 * std::floor(angle / (curve_pi / 6) + 1e-9);
+    plan.vertices.row(v) *= std::cos(curve_pi / 12) / std::cos(angle - from - curve_pi / 12);
   }
   const Mesh prism = layered(plan, 4, [](const Vec3& p, double s) { return Vec3(40 * s, 10 * p.x(), 10 * p.y()); });
-  EXPECT_EQ(curved(prism, smooth_curve()).done.moved, 0u);
-  EXPECT_GT(curved(rod_mesh(6, 1, 4, 10, 40), smooth_curve(65)).done.moved, 0u);
+  EXPECT_EQ(curved_mesh(prism, smooth_curve()).done.moved, 0u);
+  EXPECT_GT(curved_mesh(rod_mesh(6, 1, 4, 10, 40), smooth_curve(65)).done.moved, 0u);
 }
 
 /// What lies inside is curved where regions meet: a chamber in a rod, of elements of its own.
@@ -198,8 +200,8 @@ TEST(CurvedEdges, RegionsInsideAreRoundToo) {
     if (radius < 5.1 && middle > 7.5 && middle < 52.5) chamber.tetrahedra.push_back(static_cast<Index>(t));
   }
   mesh.regions.push_back(chamber);
-  const CurvedMesh rod = curved(mesh, smooth_curve());
-  const double exact = pi * 25 * 45;
+  const CurvedMesh rod = curved_mesh(mesh, smooth_curve());
+  const double exact = curve_pi * 25 * 45;
   EXPECT_NEAR(measure_curved(rod.mesh).regions[1], exact, 2e-3 * exact);
   EXPECT_LT(measure_curved(rod.straight).regions[1], 0.96 * exact);
   EXPECT_EQ(rod.done.held_back, 0u);
@@ -210,7 +212,8 @@ TEST(CurvedEdges, TurnAndMoveWithTheMesh) {
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   Mesh turned = mesh;
   turned.vertices = (mesh.vertices * turn.transpose()).rowwise() + Eigen::RowVector3d(3, -5, 2);
-  const Points here = curved(mesh, smooth_curve()).mesh.vertices, there = curved(turned, smooth_curve()).mesh.vertices;
+  const Points here = curved_mesh(mesh, smooth_curve()).mesh.vertices,
+               there = curved_mesh(turned, smooth_curve()).mesh.vertices;
   const Points moved = (here * turn.transpose()).rowwise() + Eigen::RowVector3d(3, -5, 2);
   EXPECT_LT((moved - there).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -222,7 +225,7 @@ void check_random_bodies(unsigned first, int count) {
   std::size_t moved = 0, held = 0;
   for (int i = 0; i < count; ++i) {
     const unsigned seed = first + static_cast<unsigned>(i);
-    const CurvedMesh body = curved(RandomRound(seed).draw(), smooth_curve(seed % 2 == 0 ? 50 : 65));
+    const CurvedMesh body = curved_mesh(RandomRound(seed).draw(), smooth_curve(seed % 2 == 0 ? 50 : 65));
     moved += body.done.moved;
     held += body.done.held_back;
     ASSERT_GT(least_on_lattice(body.mesh, 6), 0.1 - 1e-9) << seed;

@@ -12,20 +12,20 @@ namespace {
 
 using namespace testing;
 
-constexpr double pi = std::numbers::pi;
-constexpr double modulus = 1;
+constexpr double round_pi = std::numbers::pi;
+constexpr double round_modulus = 1;
 
 /// Linear in the load: small loads, St Venant and Kirchhoff's law.
 RobotSpec round_robot(Mesh mesh, double poisson_ratio, bool curved) {
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.fixed.clear();
   spec.quadratic = true;
-  spec.materials[0].elastic = elastic(Law::st_venant_kirchhoff, modulus, poisson_ratio);
+  spec.materials[0].elastic = elastic(Law::st_venant_kirchhoff, round_modulus, poisson_ratio);
   if (curved) spec.curve.emplace().smooth = true;
   return spec;
 }
 
-Model compiled(const RobotSpec& spec) {
+Model compiled_round(const RobotSpec& spec) {
   const Model model = compile(spec);
   const bool warns = std::any_of(model.warnings.begin(), model.warnings.end(), [](const std::string& warning) {
     return warning.find("The edges are straight") != std::string::npos;
@@ -36,7 +36,7 @@ Model compiled(const RobotSpec& spec) {
 
 /// Deflection of a cantilever of 100 mm length and 5 mm radius under a force at its end, over that of Timoshenko's beam,
 /// P L^3 / (3 E I) + P L / (0.9 G A); nu = 0.
-double cantilever(int corners, int layers, bool curved) {
+double bent_rod(int corners, int layers, bool curved) {
   constexpr double length = 100, radius = 5, force = 1e-5;
   RobotSpec spec = round_robot(rod_mesh(corners, 1, layers, radius, length), 0, curved);
   spec.fixed.push_back({{Halfspace{{1e-6, 0, 0}, {-1, 0, 0}}, {}}});
@@ -51,100 +51,104 @@ double cantilever(int corners, int layers, bool curved) {
   spec.mesh.regions.push_back(end);
   spec.forces.push_back({"load", {std::string("end"), {}}, {0, 0, -force}});
   spec.markers.push_back({"tip", {std::string("end"), {}}});
-  const Model model = compiled(spec);
+  const Model model = compiled_round(spec);
   const Statics statics(model);
-  const double area = pi * radius * radius, inertia = area * radius * radius / 4;
+  const double area = round_pi * radius * radius, inertia = area * radius * radius / 4;
   const double expected =
-      force * std::pow(length, 3) / (3 * modulus * inertia) + force * length / (0.9 * modulus / 2 * area);
+      force * std::pow(length, 3) / (3 * round_modulus * inertia) + force * length / (0.9 * round_modulus / 2 * area);
   return -marker_at(model, settled(statics, {}, tight(1e-11)))[2] / expected;
 }
 
-constexpr double pressure_MPa = 1e-5, inner = 7, outer = 10, nu = 0.3;
+constexpr double blown_MPa = 1e-5, inner_mm = 7, outer_mm = 10, round_nu = 0.3;
 
-ActuatorSpec pressure() {
+ActuatorSpec round_air() {
   ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0, 1, true);
   air.control = Control::load;
   air.rest = 0;
   return air;
 }
 
-void hold(RobotSpec& spec, Index vertex, const std::array<bool, 3>& axes) {
+void hold_vertex(RobotSpec& spec, Index vertex, const std::array<bool, 3>& axes) {
   spec.fixed.push_back({{VertexList{{vertex}}, {}}, axes});
 }
 
 /// By how much a chamber grows, over what Lame says [mm^3].
-double growth(const RobotSpec& spec, double expected) {
-  const Model model = compiled(spec);
+double growth_over(const RobotSpec& spec, double expected) {
+  const Model model = compiled_round(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1e3 * pressure_MPa}), tight(1e-11));
+  const Equilibrium found = settled(statics, values({1e3 * blown_MPa}), tight(1e-11));
   const Actuator& chamber = model.actuators[0];
   return (achieved_ratio(model, chamber, found.state.positions) - 1) * chamber.rest_measure / expected;
 }
 
 /// A tube in plane strain around a chamber of elements; nothing but rigid motions is held.
-double tube(int corners, bool curved) {
+double blown_tube(int corners, bool curved) {
   constexpr double length = 8;
-  Mesh mesh = rod_mesh(corners, 2, 2, outer, length);
+  Mesh mesh = rod_mesh(corners, 2, 2, outer_mm, length);
   mesh.regions.assign(2, {});
   mesh.regions[0].name = "wall";
   mesh.regions[1].name = "chamber";
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const Tetrahedron& all = mesh.tetrahedra[t];
     const bool inside = std::all_of(all.begin(), all.end(),
-                                    [&](Index v) { return mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer; });
+                                    [&](Index v) { return mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer_mm; });
     mesh.regions[inside ? 1 : 0].tetrahedra.push_back(static_cast<Index>(t));
   }
   for (Index v = 0; v < mesh.vertices.rows(); ++v)
-    if (mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer) mesh.vertices.row(v).tail<2>() *= 2 * inner / outer;
-  RobotSpec spec = round_robot(std::move(mesh), nu, curved);
-  spec.actuators = {pressure()};
+    if (mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer_mm)
+      mesh.vertices.row(v).tail<2>() *= 2 * inner_mm / outer_mm;
+  RobotSpec spec = round_robot(std::move(mesh), round_nu, curved);
+  spec.actuators = {round_air()};
   spec.actuators[0].region = "chamber";
   spec.fixed.push_back({{std::string("wall"), {}}, {true, false, false}});
-  hold(spec, 1, {false, true, true});
-  hold(spec, 1 + corners / 2, {false, false, true});
-  const double ratio2 = outer * outer / (inner * inner);
-  const double widened = (1 + nu) * pressure_MPa * inner / modulus / (ratio2 - 1) * (1 - 2 * nu + ratio2);
-  return growth(spec, 2 * pi * inner * length * widened);
+  hold_vertex(spec, 1, {false, true, true});
+  hold_vertex(spec, 1 + corners / 2, {false, false, true});
+  const double ratio2 = outer_mm * outer_mm / (inner_mm * inner_mm);
+  const double widened =
+      (1 + round_nu) * blown_MPa * inner_mm / round_modulus / (ratio2 - 1) * (1 - 2 * round_nu + ratio2);
+  return growth_over(spec, 2 * round_pi * inner_mm * length * widened);
 }
 
 /// A ball around a hollow, its only empty space.
-double ball(int cuts, int layers, bool curved) {
-  RobotSpec spec = round_robot(shell_mesh(cuts, layers, inner, outer), nu, curved);
-  spec.actuators = {pressure()};
-  hold(spec, 0, {true, true, true});
-  hold(spec, 1, {false, true, true});
-  hold(spec, 2, {false, false, true});
-  const double ratio3 = std::pow(outer / inner, 3);
-  const double widened = pressure_MPa * inner / modulus / (ratio3 - 1) * (1 - 2 * nu + (1 + nu) * ratio3 / 2);
-  return growth(spec, 4 * pi * inner * inner * widened);
+double blown_ball(int cuts, int layers, bool curved) {
+  RobotSpec spec = round_robot(shell_mesh(cuts, layers, inner_mm, outer_mm), round_nu, curved);
+  spec.actuators = {round_air()};
+  hold_vertex(spec, 0, {true, true, true});
+  hold_vertex(spec, 1, {false, true, true});
+  hold_vertex(spec, 2, {false, false, true});
+  const double ratio3 = std::pow(outer_mm / inner_mm, 3);
+  const double widened =
+      blown_MPa * inner_mm / round_modulus / (ratio3 - 1) * (1 - 2 * round_nu + (1 + round_nu) * ratio3 / 2);
+  return growth_over(spec, 4 * round_pi * inner_mm * inner_mm * widened);
 }
 
 /// How far the top of a half ball on a smooth floor sinks under its weight [mm]: it bends at its rim, which is free to
 /// widen.
-double dome(int sides, int cuts, int layers, bool curved) {
-  Mesh mesh = layered(dome_surface(sides, cuts), layers,
-                      [](const Vec3& p, double across) { return Vec3((inner + across * (outer - inner)) * p); });
-  RobotSpec spec = round_robot(std::move(mesh), nu, curved);
+double sinking_dome(int sides, int cuts, int layers, bool curved) {
+  Mesh mesh = layered(dome_surface(sides, cuts), layers, [](const Vec3& p, double across) {
+    return Vec3((inner_mm + across * (outer_mm - inner_mm)) * p);
+  });
+  RobotSpec spec = round_robot(std::move(mesh), round_nu, curved);
   if (curved) {
     spec.curve->smooth = false;
-    for (const double radius : {inner, outer}) spec.curve->surfaces.push_back({Sphere{{0, 0, 0}, radius}, {}});
+    for (const double radius : {inner_mm, outer_mm}) spec.curve->surfaces.push_back({Sphere{{0, 0, 0}, radius}, {}});
   }
   spec.materials[0].density = 1;
   spec.gravity = {0, 0, -1};
   spec.fixed.push_back({{Halfspace{{0, 0, 1e-9}, {0, 0, -1}}, {}}, {false, false, true}});
-  hold(spec, 0, {true, true, false});
-  hold(spec, 1, {true, false, false});
-  spec.markers.push_back({"top", {Vec3(0, 0, outer), {}}});
-  const Model model = compiled(spec);
+  hold_vertex(spec, 0, {true, true, false});
+  hold_vertex(spec, 1, {true, false, false});
+  spec.markers.push_back({"top", {Vec3(0, 0, outer_mm), {}}});
+  const Model model = compiled_round(spec);
   const Statics statics(model);
-  return outer - marker_at(model, settled(statics, {}, tight(1e-12)))[2];
+  return outer_mm - marker_at(model, settled(statics, {}, tight(1e-12)))[2];
 }
 
 }  // namespace
 
 TEST(PhysicalCurved, ARodBendsAsABeam) {
   for (const int corners : {10, 12, 14}) {
-    const double straight = cantilever(corners, 12, false), curved = cantilever(corners, 12, true);
+    const double straight = bent_rod(corners, 12, false), curved = bent_rod(corners, 12, true);
     EXPECT_NEAR(curved, 1, 0.01) << corners;
     EXPECT_GT(straight, 1.05) << corners;
     RecordProperty("rod_" + std::to_string(corners), std::to_string(straight) + " " + std::to_string(curved));
@@ -153,7 +157,7 @@ TEST(PhysicalCurved, ARodBendsAsABeam) {
 
 TEST(PhysicalCurved, ATubeWidensAsLameSays) {
   for (const int corners : {8, 9, 10}) {
-    const double straight = tube(corners, false), curved = tube(corners, true);
+    const double straight = blown_tube(corners, false), curved = blown_tube(corners, true);
     EXPECT_NEAR(curved, 1, 0.01) << corners;
     EXPECT_GT(std::abs(straight - 1), 0.05) << corners;
     RecordProperty("tube_" + std::to_string(corners), std::to_string(straight) + " " + std::to_string(curved));
@@ -162,7 +166,7 @@ TEST(PhysicalCurved, ATubeWidensAsLameSays) {
 
 TEST(PhysicalCurved, ABallWidensAsLameSays) {
   for (const auto& [cuts, layers] : {std::pair(1, 1), std::pair(1, 2), std::pair(1, 3)}) {
-    const double straight = ball(cuts, layers, false), curved = ball(cuts, layers, true);
+    const double straight = blown_ball(cuts, layers, false), curved = blown_ball(cuts, layers, true);
     EXPECT_NEAR(curved, 1, 0.01) << cuts << layers;
     EXPECT_GT(std::abs(straight - 1), 0.05) << cuts << layers;
     RecordProperty("ball_" + std::to_string(cuts) + std::to_string(layers),
@@ -172,10 +176,10 @@ TEST(PhysicalCurved, ABallWidensAsLameSays) {
 
 /// Against a mesh of eight times as many elements, whose half differs by a third of a percent.
 TEST(PhysicalCurved, ADomeBendsAsOneOfAFinerMesh) {
-  const double fine = dome(4, 3, 2, true);
-  EXPECT_NEAR(dome(4, 3, 1, true), fine, 4e-3 * fine);
+  const double fine = sinking_dome(4, 3, 2, true);
+  EXPECT_NEAR(sinking_dome(4, 3, 1, true), fine, 4e-3 * fine);
   for (const int sides : {4, 5, 6}) {
-    const double straight = dome(sides, 2, 1, false) / fine, curved = dome(sides, 2, 1, true) / fine;
+    const double straight = sinking_dome(sides, 2, 1, false) / fine, curved = sinking_dome(sides, 2, 1, true) / fine;
     EXPECT_NEAR(curved, 1, 0.01) << sides;
     EXPECT_GT(std::abs(straight - 1), 0.05) << sides;
     RecordProperty("dome_" + std::to_string(sides), std::to_string(straight) + " " + std::to_string(curved));

@@ -109,7 +109,7 @@ CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::strin
 void doubt_straight_edges(Compilation& c) {
   Model& model = c.model;
   if (model.formulation != Formulation::physical || model.edge_nodes.empty()) return;
-  if (c.spec.curve || c.spec.curved) return;
+  if (c.spec.curve || c.spec.curved || !has_straight_edges(c.mesh)) return;
   const Points bulges =
       smooth_bulges(c.mesh, labels_of(c.mesh, regions_of(c.spec, c.mesh)), CurveSpec{}.crease_degrees);
   Points positions = model.rest;
