@@ -73,7 +73,8 @@ TEST(FkCommand, RefusesFiles) {
   fs::create_directory(folder / "folder.json");
   fs::create_symlink("/dev/null", folder / "device.json");
   expect_refused(folder, {"--report", folder / "folder.json"}, "is a folder, not a file");
-  expect_refused(folder, {"--report", folder / "device.json"}, "device.json: is no plain file and will not be replaced");
+  expect_refused(folder, {"--report", folder / "device.json"},
+                 "device.json: is no plain file and will not be replaced");
   for (const std::string& input : {folder.scene, mesh, folder / "./block.msh"})
     expect_refused(folder, {"--report", input}, "--report " + input + ": must end in .json");
   const std::string path = folder.write("path.csv", "air\n1\n");
