@@ -170,6 +170,7 @@ struct RobotSpec {
   Origin mesh_origin;               // of the entry that names it
   bool accept_mesh_errors = false;  // take doubled or overlapping elements, with a note
   bool quadratic = false;           // physical: elevate a mesh of order 1 to order 2
+  bool linear_by_choice = false;    // it was said that the mesh stays of order 1: what that costs is told as a note
   Vec3 gravity{0, 0, 0};            // [m/s^2]; physical
   Origin gravity_origin;            // no file: none is given
   std::vector<ForceSpec> forces;    // physical
