@@ -159,6 +159,16 @@ def test_formulation_and_forces_of_a_scene(examples: Path) -> None:
         softkin.load(scene, forces={"payload": (0, 0, -1)})
 
 
+def test_other_numbers_of_a_scene(examples: Path) -> None:
+    scene = examples / "three_tendon_finger/three_tendon_finger.yaml"
+    first = softkin.load(scene).actuators[0]
+    path = f"actuators.{first}.range"
+    assert softkin.load(scene, changes={path: (0.9, 1.0)}).ranges.tolist()[0] == [0.9, 1.0]
+    assert softkin.load(scene, changes={f"{path}.1": 0.95}).ranges.tolist()[0][0] == 0.95
+    with pytest.raises(softkin.InvalidInput, match="changes 'materals.1.density=1.0': there is no 'materals'.*'materials'"):
+        softkin.load(scene, changes={"materals.1.density": 1})
+
+
 def test_pickle_of_a_scene_needs_no_files(examples: Path, tmp_path: Path) -> None:
     folder = tmp_path / "copy"
     folder.mkdir()

@@ -85,7 +85,8 @@ TEST_F(OwnFileOnDisk, OutputsAreRefusedWhereTheyWouldReplaceOthers) {
   EXPECT_EQ(refusal({"--report", own}, {}, false), "");
   EXPECT_NE(refusal({"--report", own}, {own}, true).find("would replace a file that is read"), std::string::npos);
   EXPECT_EQ(refusal({.option = "-o", .file = mine, .is_own = [](const fs::path&) { return true; }}, {}, false), "");
-  EXPECT_THROW(check_outputs({{"--cloud", folder_ / "a.vtu"}, {"--hull", folder_ / "./a.vtu"}}, {}, true), InvalidInput);
+  EXPECT_THROW(check_outputs({{"--cloud", folder_ / "a.vtu"}, {"--hull", folder_ / "./a.vtu"}}, {}, true),
+               InvalidInput);
   write("a_0002.vtu", "mine");
   EXPECT_EQ(refusal({"-o", folder_ / "a.pvd", 2}, {}, false), "");
   EXPECT_NE(refusal({"-o", folder_ / "a.pvd", 3}, {}, false).find("its a_0002.vtu is there already"),

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <softkin/core/text.hpp>
@@ -81,6 +82,11 @@ TEST(Locking, IsToldWhereWallsAreThinInElements) {
   RobotSpec quadratic = one;
   quadratic.quadratic = true;
   EXPECT_EQ(warning(quadratic), "");
+  RobotSpec chosen = one;
+  chosen.linear_by_choice = true;
+  EXPECT_EQ(warning(chosen), "");
+  const std::vector<std::string> notes = compile(chosen).notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note == warning(one); }));
   RobotSpec target = one;
   target.formulation = Formulation::target_shape;
   target.materials[0].shape_ratio = 1;

@@ -93,6 +93,7 @@ class Joiner {
                            robot_.mesh_origin, robot_.accept_mesh_errors});
     all_.quadratic = all_.quadratic || robot_.quadratic;
     all_.curved = all_.curved || robot_.curve || robot_.curved;
+    all_.linear_by_choice = (all_.robots.size() == 1 || all_.linear_by_choice) && robot_.linear_by_choice;
     add_regions();
     add_supports();
     add_actuators();

@@ -175,6 +175,7 @@ struct RobotSpec {
   std::optional<CurveSpec> curve;   // physical, order 2: how the edges are curved; none: as the mesh has them
   bool curved = false;              // of several robots: one was, by a `curve` of its own
   std::vector<std::string> notes;   // of what was done before compile()
+  bool linear_by_choice = false;    // it was said that the mesh stays of order 1: what that costs is told as a note
   Vec3 gravity{0, 0, 0};            // [m/s^2]; physical
   Origin gravity_origin;            // no file: none is given
   std::vector<ForceSpec> forces;    // physical

@@ -17,7 +17,7 @@ std::int64_t read_order(const Node& node) {
 /// One file of `mesh` or `meshes`, in mm, where its transform puts it.
 struct MeshFile {
   Mesh mesh;
-  bool quadratic = false;
+  bool quadratic = false, linear_by_choice = false;
   std::optional<CurveSpec> curve = std::nullopt;
 };
 
@@ -31,7 +31,8 @@ void rotate(const Context& context, const Node& node, Points& vertices) {
 MeshFile read_file_of(const Context& context, const Map& map) {
   const Node& file = map.at("file");
   const Node* order = map.find("order");
-  MeshFile read{load_file(context, file, context.files.mesh), order && read_order(*order) == 2};
+  const int of_order = order ? read_order(*order) : 0;
+  MeshFile read{load_file(context, file, context.files.mesh), of_order == 2, of_order == 1};
   Points& vertices = read.mesh.vertices;
   vertices *= context.to_mm;
   if (const Node* scale = map.find("scale")) vertices *= positive(*scale);
@@ -94,6 +95,7 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
     spec.mesh = std::move(read.mesh);
     spec.quadratic = read.quadratic;
     spec.curve = std::move(read.curve);
+    spec.linear_by_choice = read.linear_by_choice;
     note_origin(map, spec);
     return;
   }
@@ -113,12 +115,14 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
       continue;
     }
     check_joinable(*item, *all, read);
+    all->linear_by_choice = all->linear_by_choice && read.linear_by_choice;
     append(all->mesh, read.mesh);
     add_curve(all->curve, read.curve);
   }
   spec.mesh = std::move(all->mesh);
   spec.quadratic = all->quadratic;
   spec.curve = std::move(all->curve);
+  spec.linear_by_choice = all->linear_by_choice;
 }
 
 }  // namespace softkin::scene

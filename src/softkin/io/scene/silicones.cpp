@@ -36,7 +36,6 @@ const std::vector<Silicone>& silicones() {
       by_data_sheet("dragon-skin-20", "20 A", 49, 1080, "Dragon Skin"),
       by_data_sheet("dragon-skin-30", "30 A", 86, 1080, "Dragon Skin"),
       by_data_sheet("mold-star-15", "15 A", 55, 1180, "Mold Star"),
-      by_data_sheet("mold-star-16", "16 A", 55, 1180, "Mold Star"),
       by_data_sheet("mold-star-30", "30 A", 96, 1120, "Mold Star"),
       by_data_sheet("smooth-sil-940", "40 A", 200, 1180, "Smooth-Sil"),
       by_data_sheet("smooth-sil-950", "50 A", 272, 1240, "Smooth-Sil"),

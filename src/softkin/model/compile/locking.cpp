@@ -68,9 +68,9 @@ void doubt_linear_tetrahedra(Compilation& c) {
       excess < 1 ? "about " + decimal(100 * excess, 0) + " % too stiff" : "more than twice as stiff as they should be";
   const std::string cure =
       model.prisms.empty() ? "take 'mesh: {file: F, order: 2}'" : "take a finer mesh, as prisms allow no 'order: 2'";
-  model.warnings.push_back("The walls that bend most are about " + thick +
-                           " elements thick, of tetrahedra of order 1: where they bend they are " + stiff + "; " +
-                           cure + ".");
+  (c.spec.linear_by_choice ? model.notes : model.warnings)
+      .push_back("The walls that bend most are about " + thick +
+                 " elements thick, of tetrahedra of order 1: where they bend they are " + stiff + "; " + cure + ".");
 }
 
 }  // namespace softkin
