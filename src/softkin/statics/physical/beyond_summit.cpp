@@ -10,7 +10,7 @@ namespace {
 
 /// First step over the measure at hand, how steps grow, their bounds, and how many there may be.
 constexpr double first_beyond = 0.1, growth_beyond = 1.6, most_beyond = 0.5, shortest_beyond = 1e-4;
-constexpr int most_steps_beyond = 200;
+constexpr int most_steps_beyond = 200, most_missed_beyond = 6;
 /// Points on the way to the measure that was asked for, at least.
 constexpr int points_beyond = 8;
 /// Where the next stable shape is looked for, over the measure at the maximum.
@@ -30,6 +30,7 @@ Continuation::Passed Continuation::go_along(Index a, double way, double end, dou
   const bool below = last.load < asked;
   double length = std::min(first_beyond * last.measure, longest);
   std::optional<Measured> before;
+  int missed = 0;
   for (int i = 0; i < most_steps_beyond && report_.iterations < max_iterations_; ++i) {
     const double left = way * (end - last.measure);
     if (!(left > 1e-9 * std::abs(end))) return Passed::end;
@@ -38,7 +39,7 @@ Continuation::Passed Continuation::go_along(Index a, double way, double end, dou
     if (interrupted_) return Passed::interrupted;
     if (!next) {
       length *= 0.4;
-      if (length < shortest_beyond * last.measure) return Passed::nowhere;
+      if (length < shortest_beyond * last.measure || ++missed > most_missed_beyond) return Passed::nowhere;
       continue;
     }
     note_branch(a, *next);
