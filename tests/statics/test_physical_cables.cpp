@@ -204,7 +204,8 @@ TEST(PhysicalCables, InAChannelBendsABeamIntoAnArc) {
   RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {length, side, side}));
   spec.quadratic = true;
   spec.materials[0].elastic = elastic(Law::st_venant_kirchhoff, 1, 0);
-  spec.actuators = {by_load(cable("tendon", {{0, side / 2, side / 2 - offset}, {length, side / 2, side / 2 - offset}}))};
+  spec.actuators = {
+      by_load(cable("tendon", {{0, side / 2, side / 2 - offset}, {length, side / 2, side / 2 - offset}}))};
   const double curvature = tension * offset / (std::pow(side, 4) / 12);
   const auto turn = [&] {
     const Model model = compile(spec);
