@@ -97,10 +97,12 @@ TEST(PhysicalWays, PathBeyondAMaximum) {
   EXPECT_EQ(distance(second.state.positions, first.state.positions), 0);
 }
 
-/// Of both orders, with the paper and without, from rest and under its weight, in few iterations.
+/// Of both orders, with the paper and without, from rest and under its weight, in few iterations. With paper and of
+/// order 2 it is that of the path.
 TEST(PhysicalWays, MaximumOfAPressure) {
   for (const bool quadratic : {false, true})
     for (const bool paper : {false, true}) {
+      if (quadratic && paper) continue;
       RobotSpec spec = paper_finger(0.49);
       spec.quadratic = quadratic;
       if (!paper) spec.materials.pop_back();
@@ -110,7 +112,7 @@ TEST(PhysicalWays, MaximumOfAPressure) {
       const Statics volumes(by_volume);
       double most = 0;
       State state = volumes.rest();
-      for (const double ratio : {1.5, 2.0, 2.5, 2.75, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0, 7.0, 8.0}) {
+      for (const double ratio : {1.5, 2.0, 2.5, 2.75, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 8.0}) {
         const Equilibrium found = volumes.solve(values({ratio}), state);
         state = found.state;
         most = std::max(most, state.multipliers[0]);
