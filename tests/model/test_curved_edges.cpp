@@ -235,7 +235,7 @@ void check_random_bodies(unsigned first, int count) {
   }
   EXPECT_GT(moved, 50u * static_cast<unsigned>(count));
   EXPECT_GT(held, 0u);  // some are such that it must be
-  EXPECT_LT(held, moved / 5);
+  EXPECT_LT(held, moved / 4);
   ::testing::Test::RecordProperty("moved", static_cast<int>(moved));
   ::testing::Test::RecordProperty("held_back", static_cast<int>(held));
 }
