@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <softkin/statics/physical/contact_potential.hpp>
+#include <tuple>
 
 namespace softkin::physical {
 
@@ -141,10 +142,22 @@ void note_once(std::vector<Index>& seen, Index item, const auto& visit) {
 
 }  // namespace
 
+double ContactPotential::reach_of(Index vertex, Index triangle, const ContactFirmness& firmness) const {
+  const bool wider =
+      firmness.reach != 1 && !same_robot(surfaces_, surfaces_.vertex_part, vertex, surfaces_.triangle_part, triangle);
+  return wider ? firmness.reach * surfaces_.reach_mm : surfaces_.reach_mm;
+}
+
+double ContactPotential::reach_of_edges(const Pair& edges, const ContactFirmness& firmness) const {
+  const bool wider = firmness.reach != 1 &&
+                     !same_robot(surfaces_, surfaces_.edge_part, edges.first, surfaces_.edge_part, edges.second);
+  return wider ? firmness.reach * surfaces_.reach_mm : surfaces_.reach_mm;
+}
+
 /// count  of what the separation was looked for in: a triangle, or a side or corner of it
-void ContactPotential::count(Index triangle, const Separation& separation, Index count, Index pair,
+void ContactPotential::count(Index triangle, const Separation& separation, Index count, Index pair, double reach,
                              std::vector<Feature>& features) const {
-  if (!(separation.squared < surfaces_.reach_mm * surfaces_.reach_mm)) return;
+  if (!(separation.squared < reach * reach)) return;
   const contact::Surface& surface = surfaces_.surface;
   const auto t = static_cast<std::size_t>(triangle);
   const int corners = std::popcount(static_cast<unsigned>(separation.nodes)) - 1;
@@ -179,10 +192,37 @@ Index ContactPotential::count_at(Index vertex, Index corner) const {
   return 1 + triangles - static_cast<Index>(edges.size());  // every triangle has two of the edges
 }
 
+namespace {
+
+/// Of a gap, per area and the scene's modulus.
+energy::LengthLaw law_of(const Separation& separation, double reach, const ContactFirmness& firmness) {
+  energy::LengthLaw law = energy::barrier(std::sqrt(separation.squared), reach);
+  if (firmness.modulus == 1) return law;
+  return {firmness.modulus * law.value, firmness.modulus * law.slope, firmness.modulus * law.curvature};
+}
+
+/// The gap at which a barrier pushes so much.
+double gap_of_push(double push, double reach, double modulus) {
+  double nearer = 0, farther = reach;
+  const double wanted = push / modulus;
+  double gap = reach * (1 - std::sqrt(std::min(wanted, 0.5) / 3));
+  constexpr int most = 60;
+  for (int i = 0; i < most && farther - nearer > 1e-12 * reach; ++i) {
+    const energy::LengthLaw law = energy::barrier(gap, reach);
+    const double miss = -law.slope - wanted;
+    (miss > 0 ? nearer : farther) = gap;
+    const double next = law.curvature > 0 ? gap + miss / law.curvature : farther;
+    if (std::abs(next - gap) <= 1e-12 * reach) break;
+    gap = next > nearer && next < farther ? next : 0.5 * (nearer + farther);
+  }
+  return gap;
+}
+
+}  // namespace
+
 void ContactPotential::add_vertex(const Points& positions, const Candidates& candidates, std::size_t begin,
-                                  std::size_t end, std::vector<Term>& terms) const {
+                                  std::size_t end, const ContactFirmness& firmness, std::vector<Term>& terms) const {
   const contact::Surface& surface = surfaces_.surface;
-  const double squared_reach = surfaces_.reach_mm * surfaces_.reach_mm;
   const Index vertex = candidates.vertex_triangle[begin].first;
   std::vector<Feature> features;
   std::vector<std::size_t> near;
@@ -190,24 +230,26 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
     const Pair& pair = candidates.vertex_triangle[i];
     if (!felt(vertex, pair.second)) continue;
     const Separation found = contact::vertex_triangle(points_of(positions, nodes_of_vertex_triangle(surface, pair)));
-    if (!(found.squared < squared_reach)) continue;
-    count(pair.second, found, 1, static_cast<Index>(i), features);
+    const double reach = firmness.foresight * reach_of(vertex, pair.second, firmness);
+    if (!(found.squared < reach * reach)) continue;
+    count(pair.second, found, 1, static_cast<Index>(i), reach, features);
     near.push_back(i);
   }
   std::vector<Index> edges, corners;
   for (const std::size_t i : near) {
     const Pair& pair = candidates.vertex_triangle[i];
     const FourPoints x = points_of(positions, nodes_of_vertex_triangle(surface, pair));
+    const double reach = firmness.foresight * reach_of(vertex, pair.second, firmness);
     for (int k = 0; k < 3; ++k) {
       const Index edge = surface.triangle_edges[static_cast<std::size_t>(pair.second)][static_cast<std::size_t>(k)];
       note_once(edges, edge, [&] {
         const Index more = felt_at(vertex, edge) - 1;
-        if (more != 0) count(pair.second, contact::vertex_side(x, k), -more, static_cast<Index>(i), features);
+        if (more != 0) count(pair.second, contact::vertex_side(x, k), -more, static_cast<Index>(i), reach, features);
       });
       const Index corner = surface.triangles[static_cast<std::size_t>(pair.second)][static_cast<std::size_t>(k)];
       note_once(corners, corner, [&] {
         const Index more = count_at(vertex, corner);
-        if (more != 0) count(pair.second, contact::vertex_corner(x, k), more, static_cast<Index>(i), features);
+        if (more != 0) count(pair.second, contact::vertex_corner(x, k), more, static_cast<Index>(i), reach, features);
       });
     }
   }
@@ -215,16 +257,18 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
     if (feature.count == 0) continue;
     const Pair& pair = candidates.vertex_triangle[static_cast<std::size_t>(feature.pair)];
     const double weight = surfaces_.modulus_MPa * surfaces_.area(vertex, pair.second);
-    terms.push_back({nodes_of_vertex_triangle(surface, pair), feature.separation, feature.count * weight, 0, pair});
+    terms.push_back({nodes_of_vertex_triangle(surface, pair), feature.separation, feature.count * weight, 0, pair,
+                     law_of(feature.separation, reach_of(vertex, pair.second, firmness), firmness)});
   }
 }
 
-void ContactPotential::find(const Points& positions, const Candidates& candidates, std::vector<Term>& terms) const {
+void ContactPotential::find(const Points& positions, const Candidates& candidates, std::vector<Term>& terms,
+                            const ContactFirmness& firmness) const {
   terms.clear();
   const std::vector<Pair>& vertices = candidates.vertex_triangle;
   for (std::size_t i = 0, j = 0; i < vertices.size(); i = j) {
     for (j = i + 1; j < vertices.size() && vertices[j].first == vertices[i].first;) ++j;
-    add_vertex(positions, candidates, i, j, terms);
+    add_vertex(positions, candidates, i, j, firmness, terms);
   }
   const contact::Surface& surface = surfaces_.surface;
   for (std::size_t i = 0; i < candidates.edge_edge.size(); ++i) {
@@ -232,25 +276,128 @@ void ContactPotential::find(const Points& positions, const Candidates& candidate
     if (!edges_felt(pair)) continue;
     const contact::Nodes nodes = nodes_of_edge_edge(surface, pair);
     const Separation found = contact::edge_edge(points_of(positions, nodes));
-    if (!(found.squared < surfaces_.reach_mm * surfaces_.reach_mm)) continue;
+    const double reach = reach_of_edges(pair, firmness);
+    if (!(std::sqrt(found.squared) < firmness.foresight * reach)) continue;
     terms.push_back({nodes, found, surfaces_.modulus_MPa * surfaces_.area_of_edges(pair.first, pair.second),
-                     contact::mollifier_threshold(points_of(rest_, nodes)), pair});
+                     contact::mollifier_threshold(points_of(rest_, nodes)), pair, law_of(found, reach, firmness)});
+  }
+}
+
+ContactPush ContactPotential::push_of(const Term& term) const {
+  const bool edges = term.threshold > 0;
+  const Index part = edges || surfaces_.triangle_part.empty()
+                         ? 0
+                         : surfaces_.triangle_part[static_cast<std::size_t>(term.pair.second)];
+  return {term.pair.first, edges ? term.pair.second : part, edges, -term.law.slope};
+}
+
+namespace {
+
+bool push_before(const ContactPush& a, const ContactPush& b) {
+  return std::tie(a.edges, a.first, a.second) < std::tie(b.edges, b.first, b.second);
+}
+
+/// The one of the same vertex and part, or edges; none: null.
+ContactPush* same_push(std::vector<ContactPush>& sorted, const ContactPush& as) {
+  const auto found = std::lower_bound(sorted.begin(), sorted.end(), as, push_before);
+  return found == sorted.end() || push_before(as, *found) ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<ContactPush> ContactPotential::pushes(const std::vector<Term>& terms) const {
+  std::vector<ContactPush> all, nearest;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (!(terms[i].weight > 0)) continue;
+    all.push_back(push_of(terms[i]));
+    all.back().term = static_cast<Index>(i);
+  }
+  std::sort(all.begin(), all.end(), [&](const ContactPush& a, const ContactPush& b) {
+    if (push_before(a, b) || push_before(b, a)) return push_before(a, b);
+    return a.push > b.push;
+  });
+  for (const ContactPush& push : all) {
+    if (!nearest.empty() && !push_before(nearest.back(), push)) continue;
+    nearest.push_back(push);
+    nearest.back().stiffness = terms[static_cast<std::size_t>(push.term)].law.curvature;
+  }
+  std::erase_if(nearest, [](const ContactPush& push) { return !(push.push > 0); });
+  return nearest;
+}
+
+/// Of gap and push of a law one is right where shapes change: the push where something rests, the gap where it does
+/// not. The line has the slope of the law where it pushes so, or where the gap for that is far below the gap at hand,
+/// the one with which the push vanishes where the gap does not change.
+void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactPush>& known_pushes) const {
+  double most = 0;
+  for (ContactPush& push : known_pushes) {
+    push.term = -1;
+    most = std::max(most, push.push);
+  }
+  std::vector<ContactPush> fresh;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (!(terms[i].weight > 0)) continue;
+    ContactPush as = push_of(terms[i]);
+    ContactPush* known = same_push(known_pushes, as);
+    as.term = static_cast<Index>(i);
+    if (known == nullptr && as.push > 0)
+      fresh.push_back(as);
+    else if (known != nullptr &&
+             (known->term < 0 ||
+              terms[i].separation.squared < terms[static_cast<std::size_t>(known->term)].separation.squared))
+      known->term = as.term;
+  }
+  std::sort(fresh.begin(), fresh.end(), [&](const ContactPush& a, const ContactPush& b) {
+    if (push_before(a, b) || push_before(b, a)) return push_before(a, b);
+    return a.push > b.push;
+  });
+  fresh.erase(std::unique(fresh.begin(), fresh.end(),
+                          [](const ContactPush& a, const ContactPush& b) { return !push_before(a, b); }),
+              fresh.end());
+  for (ContactPush& push : fresh)  // how deep it came is by chance
+    if (most > 0) push.push = std::min(push.push, most);
+  known_pushes.insert(known_pushes.end(), fresh.begin(), fresh.end());
+  std::erase_if(known_pushes, [](const ContactPush& push) { return push.term < 0; });
+  std::sort(known_pushes.begin(), known_pushes.end(), push_before);
+  for (ContactPush& push : known_pushes) {
+    const Term& term = terms[static_cast<std::size_t>(push.term)];
+    push.shift = gap_of_push(push.push, surfaces_.reach_mm, 1) - std::sqrt(term.separation.squared);
+  }
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    ContactPush* push = same_push(known_pushes, push_of(terms[i]));
+    if (push == nullptr) continue;
+    energy::LengthLaw& law = terms[i].law;
+    law = energy::barrier(std::sqrt(terms[i].separation.squared) + push->shift, surfaces_.reach_mm);
+    if (push->shift < 0) law.curvature = std::min(law.curvature, law.slope / push->shift);
+    law.slope -= law.curvature * push->shift;
+    if (push->term == static_cast<Index>(i)) push->stiffness = law.curvature;
+  }
+}
+
+void ContactPotential::follow(const std::vector<Term>& terms, const Points& moves, double share,
+                              std::vector<ContactPush>& known_pushes) const {
+  constexpr double least = 0.1;  // that one step leaves of a push
+  for (ContactPush& push : known_pushes) {
+    const Term& term = terms[static_cast<std::size_t>(push.term)];
+    const Vec3 normal = term.separation.vector / std::sqrt(term.separation.squared);
+    const double wider = normal.dot(points_of(moves, term.nodes) * term.separation.weights);
+    const double next = push.push + share * push.stiffness * (push.shift - wider);
+    push.push = std::max(next, least * push.push);
   }
 }
 
 double ContactPotential::energy(const Points& positions, const std::vector<Term>& terms) const {
   double sum = 0;
   for (const Term& term : terms) {
-    const double gap = std::sqrt(term.separation.squared);
     const double smooth = term.threshold > 0 ? contact::mollifier(points_of(positions, term.nodes), term.threshold) : 1;
-    sum += smooth * term.weight * energy::barrier(gap, surfaces_.reach_mm).value;
+    sum += smooth * term.weight * term.law.value;
   }
   return sum;
 }
 
 contact::Gradient ContactPotential::gradient(const Points& positions, const Term& term) const {
   const double gap = std::sqrt(term.separation.squared);
-  const energy::LengthLaw law = energy::barrier(gap, surfaces_.reach_mm);
+  const energy::LengthLaw& law = term.law;
   contact::Gradient of_term = law.slope * length_gradient(term.separation, term.separation.vector / gap);
   if (term.threshold > 0) {
     contact::Gradient of_mollifier;
@@ -272,7 +419,7 @@ void ContactPotential::add_gradient(const Points& positions, const std::vector<T
 void ContactPotential::stiffness(const Points& positions, const Term& term, bool projected,
                                  contact::Hessian& out) const {
   const double gap = std::sqrt(term.separation.squared);
-  const energy::LengthLaw law = energy::barrier(gap, surfaces_.reach_mm);
+  const energy::LengthLaw& law = term.law;
   const Vec3 normal = term.separation.vector / gap;
   const contact::Gradient along = length_gradient(term.separation, normal);
   const contact::Relief relief = contact::relief(term.separation);

@@ -28,6 +28,25 @@ struct ContactSurfaces {
   [[nodiscard]] double area_of_edges(Index a, Index b) const;
 };
 
+/// How contact is felt for a while, other than the scene has it.
+struct ContactFirmness {
+  double modulus = 1;    // over the scene's
+  double reach = 1;      // over the scene's, of different solids
+  double foresight = 1;  // up to so many reaches surfaces are looked at that do not feel each other yet
+  bool operator==(const ContactFirmness&) const = default;
+};
+
+/// With what a vertex and a part, or two edges, push each other: kept from shape to shape, while gaps come to what goes
+/// with it.
+struct ContactPush {
+  Index first, second;  // vertex and part, or two edges
+  bool edges;
+  double push = 0;       // per area, over the modulus
+  double shift = 0;      // from the gap in the shape at hand to that at which firm contact pushes so [mm]
+  double stiffness = 0;  // [1/mm]
+  Index term = -1;       // that is nearest
+};
+
 /// Closeness of a robot to itself at rest is no contact: none of its vertices and edges feels what is nearer than twice
 /// the reach at rest.
 ///
@@ -51,15 +70,26 @@ class ContactPotential {
   struct Term {
     contact::Nodes nodes;
     contact::Separation separation;
-    double weight = 0;     // area times modulus [N], negative where features are excluded
-    double threshold = 0;  // of the mollifier of two edges [mm^4]; 0: a vertex
-    contact::Pair pair{};  // whose nodes these are: of edges where there is a threshold
+    double weight = 0;        // area times modulus [N], negative where features are excluded
+    double threshold = 0;     // of the mollifier of two edges [mm^4]; 0: a vertex
+    contact::Pair pair{};     // whose nodes these are: of edges where there is a threshold
+    energy::LengthLaw law{};  // of the gap, per area and modulus
   };
 
   /// The terms of a shape, always in the same order.
   ///
   /// candidates  all pairs that are closer than the reach; sorted
-  void find(const Points& positions, const contact::Candidates& candidates, std::vector<Term>& terms) const;
+  void find(const Points& positions, const contact::Candidates& candidates, std::vector<Term>& terms,
+            const ContactFirmness& firmness = {}) const;
+
+  /// What terms push with, ascending.
+  [[nodiscard]] std::vector<ContactPush> pushes(const std::vector<Term>& terms) const;
+  /// Straightens the laws of terms that were found: lines through what they push with and the gaps that go with it in
+  /// the scene's contact. Forgets what is gone, and adds what begins to push.
+  void straighten(std::vector<Term>& terms, std::vector<ContactPush>& pushes) const;
+  /// What they push with after so much of a move of the vertices, by these lines.
+  void follow(const std::vector<Term>& terms, const Points& moves, double share,
+              std::vector<ContactPush>& pushes) const;
 
   /// [mJ]; infinite where a pair touches.
   [[nodiscard]] double energy(const Points& positions, const std::vector<Term>& terms) const;
@@ -80,9 +110,12 @@ class ContactPotential {
  private:
   struct Feature;
   void add_vertex(const Points& positions, const contact::Candidates& candidates, std::size_t begin, std::size_t end,
-                  std::vector<Term>& terms) const;
-  void count(Index triangle, const contact::Separation& separation, Index count, Index pair,
+                  const ContactFirmness& firmness, std::vector<Term>& terms) const;
+  void count(Index triangle, const contact::Separation& separation, Index count, Index pair, double reach,
              std::vector<Feature>& features) const;
+  [[nodiscard]] double reach_of(Index vertex, Index triangle, const ContactFirmness& firmness) const;
+  [[nodiscard]] double reach_of_edges(const contact::Pair& edges, const ContactFirmness& firmness) const;
+  [[nodiscard]] ContactPush push_of(const Term& term) const;
   [[nodiscard]] Index count_at(Index vertex, Index corner) const;
   [[nodiscard]] Index felt_at(Index vertex, Index edge) const;
 

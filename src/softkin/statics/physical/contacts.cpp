@@ -154,7 +154,8 @@ double Contacts::moved(const Points& from, const Points& to) {
 
 void Contacts::search(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
   std::swap(scratch.around, scratch.before);
-  scratch.broad.find(from, to, surfaces_.reach_mm + margin_mm_, team, scratch.around.pairs);
+  scratch.around.reach = reach_mm(scratch);
+  scratch.broad.find(from, to, scratch.around.reach + margin_mm_, team, scratch.around.pairs);
   scratch.around.center = to;
   scratch.around.least = -1;
 }
@@ -162,7 +163,10 @@ void Contacts::search(const Points& from, const Points& to, Scratch& scratch, Te
 void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const {
   Points room;
   const Points& points = points_.of(positions, room);
-  const auto close_to = [&](const Scratch::Around& around) { return 2 * moved(around.center, points) <= margin_mm_; };
+  const double reach = reach_mm(scratch);
+  const auto close_to = [&](const Scratch::Around& around) {
+    return around.reach >= reach && 2 * moved(around.center, points) <= margin_mm_;
+  };
   if (!close_to(scratch.around)) {
     if (close_to(scratch.before))
       std::swap(scratch.around, scratch.before);
@@ -170,8 +174,9 @@ void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const
       search(points, points, scratch, team);
   }
   scratch.close = scratch.around.pairs;
-  keep_close(points, surfaces_.reach_mm, scratch.close);
-  potential_->find(points, scratch.close, scratch.terms);
+  keep_close(points, reach, scratch.close);
+  potential_->find(points, scratch.close, scratch.terms, scratch.firmness);
+  if (scratch.straight) potential_->straighten(scratch.terms, scratch.pushes);
 }
 
 /// Adds the gradient in the points that add(out) adds to out.
@@ -195,6 +200,11 @@ void Contacts::add_gradient(const Points& positions, const Scratch& scratch, Poi
     potential_->add_gradient(points, scratch.terms, out);
     friction_.add_gradient(points, scratch.holds, out);
   });
+}
+
+void Contacts::follow_pushes(const Points& moves, double share, Scratch& scratch) const {
+  Points room;
+  potential_->follow(scratch.terms, points_.of(moves, room), share, scratch.pushes);
 }
 
 void Contacts::add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
@@ -244,7 +254,7 @@ bool Contacts::holds(const Candidates& pairs, const Scratch& scratch) {
 void Contacts::find_pairs(const Points& positions, Scratch& scratch, Team& team, Candidates& pairs) const {
   Points room;
   const Points& points = points_.of(positions, room);
-  const double reach = foresight * surfaces_.reach_mm;
+  const double reach = foresight * reach_mm(scratch);
   scratch.broad.find(points, reach, team, pairs);
   keep_close(points, reach, pairs);
   for (const Friction::Hold& hold : scratch.holds) pairs.vertex_triangle.push_back(hold.pair);

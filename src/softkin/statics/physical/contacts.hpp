@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
@@ -23,6 +24,7 @@ class Contacts {
     struct Around {
       contact::Candidates pairs;
       Points center;      // the points of that shape
+      double reach = 0;   // for which it was looked for [mm]
       double least = -1;  // distance of those pairs there [mm]; negative: not known
     };
     contact::BroadPhase broad;
@@ -30,6 +32,9 @@ class Contacts {
     contact::Candidates close;                  // what is within reach of the shape that was found last
     std::vector<ContactPotential::Term> terms;  // of the points of the shape that was found last
     Friction::Holds holds;                      // of normal forces that were held last
+    ContactFirmness firmness{};                 // of what is found
+    bool straight = false;                      // are laws lines through the pushes
+    std::vector<ContactPush> pushes{};
   };
   [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const;
 
@@ -49,6 +54,11 @@ class Contacts {
   [[nodiscard]] double energy(const Points& positions, const Scratch& scratch) const;
   /// Adds it [N].
   void add_gradient(const Points& positions, const Scratch& scratch, Points& gradient) const;
+
+  /// What the terms that were found push with.
+  void note_pushes(Scratch& scratch) const { scratch.pushes = potential_->pushes(scratch.terms); }
+  /// What they push with after so much of a move.
+  void follow_pushes(const Points& moves, double share, Scratch& scratch) const;
 
   /// Does a pattern with the cliques of these pairs hold the stiffness of all terms?
   [[nodiscard]] static bool holds(const contact::Candidates& pairs, const Scratch& scratch);
@@ -80,6 +90,9 @@ class Contacts {
  private:
   [[nodiscard]] double safe_share_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
   void search(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
+  [[nodiscard]] double reach_mm(const Scratch& scratch) const {
+    return surfaces_.reach_mm * std::max(1.0, scratch.firmness.reach) * scratch.firmness.foresight;
+  }
   [[nodiscard]] static double moved(const Points& from, const Points& to);
   void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
   void find_parts();

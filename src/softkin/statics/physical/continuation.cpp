@@ -81,7 +81,14 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : Newton::Policy::descend;
+  const Iterate begun = system_.contact() ? trial : Iterate{};
   auto outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));
+  if (outcome == Newton::Outcome::stuck && system_.contact() && !follows) {
+    trial = begun;
+    const auto foreseen = foresee_contact(there, at, trial);
+    if (foreseen == Newton::Outcome::interrupted) return foreseen;
+    if (foreseen == Newton::Outcome::converged) outcome = settle(there, policy, trial);
+  }
   if (outcome == Newton::Outcome::converged && !led && whole)
     work_.trail.note_tangent(here, there, largest_move(begun_, trial.positions));
   if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && prepare(here, at) >= 0) {

@@ -152,6 +152,7 @@ class Continuation {
   std::optional<Pushed> lower(const Demand& demand, const Iterate& from, const LowestMode& mode);
   std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
   int prepare(const Demand& here, const Iterate& at);
+  Newton::Outcome foresee_contact(const Demand& demand, const Iterate& from, Iterate& at);
   Newton::Outcome settle_here(const Demand& demand, Iterate& at);
   Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised = false);
   Newton::Outcome settle_following(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised);

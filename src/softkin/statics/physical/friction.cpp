@@ -46,7 +46,7 @@ std::vector<Friction::Touch> Friction::touches(const Terms& terms) const {
                               [part](const Touch& touch) { return touch.part == part; });
     if (found == all.end()) found = all.insert(found, Touch{vertex, part});
     const double gap = std::sqrt(term.separation.squared);
-    found->force -= term.weight * energy::barrier(gap, surfaces_.reach_mm).slope / gap * term.separation.vector;
+    found->force -= term.weight * term.law.slope / gap * term.separation.vector;
     if (term.weight > 0 && term.separation.squared < found->nearest) {
       found->nearest = term.separation.squared;
       found->term = &term;
@@ -232,7 +232,7 @@ void Friction::add_response(const ContactPotential& potential, const Points& pos
     for (; term != end && term->pair.first == hold.pair.first; ++term) {
       if (surfaces_.triangle_part[static_cast<std::size_t>(term->pair.second)] != hold.part) continue;
       const double gap = std::sqrt(term->separation.squared);
-      pressed -= term->weight * energy::barrier(gap, surfaces_.reach_mm).slope / gap * term->separation.vector;
+      pressed -= term->weight * term->law.slope / gap * term->separation.vector;
       potential.stiffness(positions, *term, false, block);
       for (int i = 0; i < 4; ++i)
         change -= block.block<3, 3>(0, 3 * i) * moves.row(term->nodes[static_cast<std::size_t>(i)]).transpose();

@@ -36,6 +36,11 @@ class Newton {
   /// factorised  the workspace holds a stable, exact stiffness of a shape close to `at`: steps are tried with it first
   Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised, Iterate& at);
 
+  /// Moves `at` to where things touch as they push each other, in steps with both as unknowns: pushes change little
+  /// where gaps do. The workspace knows the pushes; see System::straighten_contact. converged: Newton's method on the
+  /// shape alone is near enough.
+  Outcome settle_pushes(const Demand& demand, const std::vector<bool>& active, Iterate& at);
+
   /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
   [[nodiscard]] int unstable_modes() const { return negative_; }
 

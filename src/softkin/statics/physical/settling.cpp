@@ -20,6 +20,34 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   return outcome;
 }
 
+/// From a prediction to where what touches pushes as it will, from an equilibrium: Newton's method on the shape alone
+/// loses a face that rests on another, as it presses so little that it lies within a hundredth of the contact distance
+/// of where forces end. Where nothing touched yet, through softer contact that is felt from farther away.
+Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterate& from, Iterate& at) {
+  constexpr ContactFirmness soft{1e-4, 6, 1};
+  constexpr double foresight = 2;
+  const std::vector<bool> before = active_;
+  Iterate trial = at;
+  system_.hold_friction(from, work_, team_);
+  system_.straighten_contact(from, foresight, work_, team_);
+  auto outcome = Newton::Outcome::converged;
+  if (!system_.any_push(work_)) {
+    system_.forget_pushes(work_);
+    system_.set_firmness(soft, work_);
+    outcome = settle_constraints(demand, Newton::Policy::descend, trial, false);
+    if (outcome == Newton::Outcome::converged) system_.straighten_contact(trial, soft.reach, work_, team_);
+  } else {
+    system_.follow_pushes(trial.positions - from.positions, 1, work_);
+  }
+  if (outcome == Newton::Outcome::converged) outcome = newton_.settle_pushes(demand, active_, trial);
+  system_.forget_pushes(work_);
+  if (outcome == Newton::Outcome::converged)
+    at = std::move(trial);
+  else
+    active_ = before;
+  return outcome;
+}
+
 /// Newton with friction that follows the normal forces by which it is limited; where that leads nowhere, with those
 /// that it led to, and again from there.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {

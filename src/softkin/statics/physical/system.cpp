@@ -476,6 +476,40 @@ bool System::advance_clear(const Eigen::VectorXd& step, double& scale, Workspace
   return false;
 }
 
+void System::set_firmness(const ContactFirmness& firmness, Workspace& work) const {
+  if (contacts_) work.contacts->firmness = firmness;
+}
+
+void System::straighten_contact(const Iterate& at, double foresight, Workspace& work, Team& team) const {
+  Contacts::Scratch& scratch = *work.contacts;
+  contacts_->find(at.positions, scratch, team);
+  contacts_->note_pushes(scratch);
+  scratch.firmness = {1, 1, foresight};
+  scratch.straight = true;
+}
+
+void System::follow_pushes(const Points& moves, double share, Workspace& work) const {
+  contacts_->follow_pushes(moves, share, *work.contacts);
+}
+
+double System::missed_by_pushes(const Workspace& work) const {
+  constexpr double faint = 0.01;  // over the largest
+  double largest = 0, most = 0;
+  for (const ContactPush& push : work.contacts->pushes) largest = std::max(largest, push.push);
+  for (const ContactPush& push : work.contacts->pushes) {
+    const ContactPotential::Term& term = work.contacts->terms[static_cast<std::size_t>(push.term)];
+    const double by_gap = -energy::barrier(std::sqrt(term.separation.squared), contacts_->surfaces().reach_mm).slope;
+    most = std::max(most, std::abs(by_gap - push.push) / (push.push + faint * largest));
+  }
+  return most;
+}
+
+void System::forget_pushes(Workspace& work) const {
+  work.contacts->firmness = {};
+  work.contacts->straight = false;
+  work.contacts->pushes.clear();
+}
+
 System::Size System::size_of(const Eigen::VectorXd& unknowns, const Points& positions) const {
   Points moves;
   freedoms_->expand(unknowns, positions, moves);

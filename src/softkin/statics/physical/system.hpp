@@ -195,6 +195,19 @@ class System {
   /// returns  false where hardly any move is possible
   bool advance_clear(const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions, Team& team) const;
 
+  /// Contact that is felt so in all that a workspace evaluates next.
+  void set_firmness(const ContactFirmness& firmness, Workspace& work) const;
+  /// Notes what touches in a shape, and with what it pushes, as it is felt: lines through that are its laws from there
+  /// on, to look up to so many reaches; see ContactPotential::straighten.
+  void straighten_contact(const Iterate& at, double foresight, Workspace& work, Team& team) const;
+  /// After so much of a move of the vertices.
+  void follow_pushes(const Points& moves, double share, Workspace& work) const;
+  [[nodiscard]] static bool any_push(const Workspace& work) { return !work.contacts->pushes.empty(); }
+  /// How far pushes are from those of the gaps by the scene's contact, over them: the largest, but for faint ones [-].
+  [[nodiscard]] double missed_by_pushes(const Workspace& work) const;
+  /// Contact by its own laws again.
+  void forget_pushes(Workspace& work) const;
+
   /// A way: the shape at a share of it.
   using Way = std::function<void(double, Points&)>;
   /// How far a way can be gone before something passes through something or is torn out of all proportion [-]. Where it

@@ -1,0 +1,40 @@
+#include <cmath>
+#include <limits>
+#include <softkin/statics/physical/newton.hpp>
+
+namespace softkin::physical {
+
+/// source  the primal-dual step of interior points, with the barrier of contact as it is instead of one that vanishes:
+///         Nocedal, Wright 2006, Numerical optimization, chapter 19
+Newton::Outcome Newton::settle_pushes(const Demand& demand, const std::vector<bool>& active, Iterate& at) {
+  constexpr int most_steps = 20;
+  constexpr double near = 0.2;  // of pushes to those of their gaps, over them
+  demand_ = &demand;
+  active_ = &active;
+  trial_ = at;
+  double damping = 0;
+  for (int i = 0; i < most_steps; ++i) {
+    system_.evaluate(trial_, demand, active, work_, balance_, team_);
+    if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
+    const double missed = system_.missed_by_pushes(work_);
+    if (damping == 1 && missed < near) {
+      at = std::move(trial_);
+      return Outcome::converged;
+    }
+    const Advance ready = factorise(trial_, Policy::descend);
+    if (ready == Advance::interrupted) return Outcome::interrupted;
+    if (ready == Advance::none) return Outcome::stuck;
+    system_.first_step(balance_, work_, step_.move, step_.change);
+    step_.size = system_.size_of(step_.move, trial_.positions);
+    const Points from = trial_.positions;
+    damping = 1;
+    if (!std::isfinite(step_.size.mean) || !system_.advance_clear(step_.move, damping, work_, trial_.positions, team_))
+      return Outcome::stuck;
+    trial_.multipliers += damping * step_.change;
+    system_.follow_pushes((trial_.positions - from) / damping, damping, work_);
+    record(damping * step_.size.largest);
+  }
+  return Outcome::stuck;
+}
+
+}  // namespace softkin::physical
