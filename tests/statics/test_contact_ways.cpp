@@ -44,19 +44,21 @@ void expect_held(const PlateOnFloor& plate, std::size_t lifted) {
   const Model model = compile(plate.robot());
   const Statics statics(model);
   const Equilibrium found = settled(statics, {});
-  EXPECT_LE(found.report.iterations, 80);
+  EXPECT_LE(found.report.iterations, 100);
   const ElementDeformation measured = statics.measured(found.state);
-  ASSERT_EQ(measured.contacts.pairs.size(), 1u);
-  const double held = reaction_of(model, statics, found, lifted).z();
-  EXPECT_GT(held, 0.01 * PlateOnFloor::weight());
-  EXPECT_NEAR(held + measured.contacts.pairs[0].normal_N, PlateOnFloor::weight(), 1e-5 * PlateOnFloor::weight());
+  ASSERT_TRUE(measured.contacts);
+  ASSERT_EQ(measured.contacts->pairs.size(), 1u);
+  EXPECT_GT(reaction_of(model, statics, found, lifted).z(), 0.01 * PlateOnFloor::weight());
+  double held = 0;
+  for (std::size_t i = 0; i < plate.fixed.size(); ++i) held += reaction_of(model, statics, found, i).z();
+  EXPECT_NEAR(held + measured.contacts->pairs[0].normal_N, PlateOnFloor::weight(), 1e-5 * PlateOnFloor::weight());
 }
 
 }  // namespace
 
 TEST(ContactWays, PlateLiftedAtAnEdge) {
   const double side = PlateOnFloor::side;
-  const FixedSpec back = held_below({true, true, false}, Vec3::Zero(), [](double x, double) { return x == 0; });
+  const FixedSpec back = held_below({true, true, true}, Vec3::Zero(), [](double x, double) { return x == 0; });
   const FixedSpec edge = held_below({false, false, true}, {0, 0, 2}, [&](double x, double) { return x == side; });
   expect_held({{back, edge}}, 1);
 }
@@ -64,9 +66,9 @@ TEST(ContactWays, PlateLiftedAtAnEdge) {
 TEST(ContactWays, PlateLiftedAtACorner) {
   const double side = PlateOnFloor::side;
   const FixedSpec back =
-      held_below({true, true, false}, Vec3::Zero(), [](double x, double y) { return x == 0 && y == 0; });
+      held_below({true, true, true}, Vec3::Zero(), [](double x, double y) { return x == 0 && y == 0; });
   const FixedSpec beside =
-      held_below({false, true, false}, Vec3::Zero(), [&](double x, double y) { return x == side && y == 0; });
+      held_below({false, true, true}, Vec3::Zero(), [&](double x, double y) { return x == side && y == 0; });
   const FixedSpec corner =
       held_below({false, false, true}, {0, 0, 2}, [&](double x, double y) { return x == side && y == side; });
   expect_held({{back, beside, corner}}, 2);
