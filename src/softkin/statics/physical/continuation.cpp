@@ -81,9 +81,10 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : Newton::Policy::descend;
-  const Iterate begun = system_.contact() ? trial : Iterate{};
+  const bool again = system_.contact() && !system_.friction() && !follows;  // what rubs is stuck where it slips, too
+  const Iterate begun = again ? trial : Iterate{};
   auto outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));
-  if (outcome == Newton::Outcome::stuck && system_.contact() && !follows) {
+  if (outcome == Newton::Outcome::stuck && again) {
     trial = begun;
     const auto foreseen = foresee_contact(there, at, trial);
     if (foreseen == Newton::Outcome::interrupted) return foreseen;
