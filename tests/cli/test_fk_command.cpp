@@ -302,7 +302,7 @@ TEST(FkTable, ColumnsStandUnderTheirHeaders) {
   const BlockFolder folder;
   const std::string path = folder.write("path.csv", "air\n1\n1.1\n");
   const std::string plain = run_fk(folder.scene, {"--path", path}).output;
-  expect_aligned(plain, 7);
+  expect_aligned(plain, 8);
   EXPECT_NE(plain.find("step  air [-]  achieved [-]  "), std::string::npos) << plain;
   EXPECT_NE(plain.find("tip x, y, z [mm]"), std::string::npos) << plain;
   EXPECT_NE(plain.find("time [s]  status"), std::string::npos) << plain;
@@ -318,7 +318,7 @@ TEST(FkTable, ColumnsStandUnderTheirHeaders) {
   folder.write("block.yaml", scene);
   folder.write("path.csv", long_name + "\n1\n1.1\n");
   const std::string named = run_fk(folder.scene, {"--path", path}).output;
-  expect_aligned(named, 7);
+  expect_aligned(named, 8);
   EXPECT_NE(named.find("actuator " + long_name + ": "), std::string::npos);
   EXPECT_NE(named.find("chamber_17 [-]"), std::string::npos) << named;
 
@@ -346,7 +346,7 @@ TEST(FkTable, TellsLargeAndTinyRobotsApart) {
     folder.write("block.yaml", scene.replace(scene.find(", {name: corner"), 40, "]"));
     const std::string path = folder.write("path.csv", "air\n1\n1.1\n");
     const std::string output = run_fk(folder.scene, {"--path", path}).output;
-    expect_aligned(output, 6);
+    expect_aligned(output, 7);
     EXPECT_NE(output.find(edge < 1 ? " 0.000500000 " : " 50000.0 "), std::string::npos) << output;
   }
 }

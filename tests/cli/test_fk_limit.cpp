@@ -76,7 +76,7 @@ TEST(FkLimit, GoesOnBeyondTheMaximum) {
 }
 
 TEST(FkLimit, BeyondNeedsALoadThatMayHaveAMaximum) {
-  const BlockFolder folder(replaced(loaded_scene(), "pressure, range: [-100, 3000]", "volume, range: [1, 50]"));
+  const BlockFolder folder(physical_scene());
   const ProgramResult result = run_fk(folder.scene, {"--set", "air=1.1", "--beyond", "3"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.errors.find("--beyond goes on beyond the maximum of a pressure or tension"), std::string::npos)

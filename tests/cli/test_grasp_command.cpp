@@ -64,8 +64,8 @@ TEST(GraspCommand, PullsUntilItSlipsOrLifts) {
   EXPECT_TRUE(read_text(table).starts_with("direction,force_N,moved_mm,normal_N,slipping,end\nx,")) << read_text(table);
 }
 
-/// A ball between two fingers: without an end before, as it flew off in every try beyond the largest pull. Coulomb's law
-/// at the places where the fingers touch it, their normals tilted by the angle at which they stand on the ball.
+/// A ball between two fingers: without an end before, as it flew off in every try beyond the largest pull. Coulomb's
+/// law at the places where the fingers touch it, their normals tilted by the angle at which they stand on the ball.
 TEST(GraspCommand, ABallIsHeldUntilItSlips) {
   const std::string scene = SOFTKIN_SOURCE_DIR "/examples/two_finger_gripper/ball.yaml";
   const TemporaryFolder folder;

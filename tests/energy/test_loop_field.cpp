@@ -24,7 +24,8 @@ LoopOfCurrent sample_loop() {
   return loop;
 }
 
-/// On the axis, near it, near the wire (0.05 of the radius), far away (20 radii), and on both sides of where series end.
+/// On the axis, near it, near the wire (0.05 of the radius), far away (20 radii), and on both sides of where series
+/// end.
 std::array<Eigen::Vector3d, lanes> sample_places() {
   const Eigen::Vector3d across = turned_about.unitOrthogonal(), other = turned_about.cross(across);
   return {middle,

@@ -25,8 +25,8 @@ TEST(OwnFile, KnowsWhatSoftkinWrites) {
     EXPECT_TRUE(is_own_content(content)) << content;
 }
 
-/// Among them what looks like softkin's and is the user's: scenes, as JSON too, materials that were made a scene, tables
-/// with commands.
+/// Among them what looks like softkin's and is the user's: scenes, as JSON too, materials that were made a scene,
+/// tables with commands.
 TEST(OwnFile, LeavesAllElseToTheUser) {
   for (const std::string content :
        {"softkin: 1\nmesh: {file: a.msh}\n", "{\"softkin\": 1, \"mesh\": {}}", "{\"a\": \"softkin\"}", "t_s,air\n0,1\n",

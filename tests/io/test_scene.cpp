@@ -114,7 +114,7 @@ TEST(Scene, WholeSceneChambersAndSkins) {
   ASSERT_TRUE(bag.surface);
   expect_near(bag.surface->vertices.row(1).transpose(), 1000, 0, 0);
   EXPECT_EQ(bag.surface->triangles.size(), 1u);
-  EXPECT_EQ(bag.origin.text(), "robots/finger.yaml:36");
+  EXPECT_EQ(bag.origin.text(), "robots/finger.yaml:37");
 }
 
 TEST(Scene, CavitiesAndErrorsOfTheMesh) {
@@ -150,7 +150,7 @@ TEST(Scene, WholeSceneCableAndMarkers) {
   ASSERT_EQ(spec.markers.size(), 2u);
   EXPECT_EQ(spec.markers[0].name, "tip");
   expect_near(position(spec.markers[0].at), 120, 12.5, 0);
-  EXPECT_EQ(spec.markers[0].at.origin.line, 38u);
+  EXPECT_EQ(spec.markers[0].at.origin.line, 39u);
   EXPECT_EQ(region(spec.markers[1].at), "tip");
 }
 

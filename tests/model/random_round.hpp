@@ -7,9 +7,9 @@
 
 namespace softkin::testing {
 
-/// Draws round bodies of a few coarse elements: rods, tubes and shells, thick and thin, bent, tapered, twisted, elliptic;
-/// cubes pushed onto balls, whose corners are flat elements with two faces on the surface. Vertices slide about on their
-/// surface.
+/// Draws round bodies of a few coarse elements: rods, tubes and shells, thick and thin, bent, tapered, twisted,
+/// elliptic; cubes pushed onto balls, whose corners are flat elements with two faces on the surface. Vertices slide
+/// about on their surface.
 class RandomRound {
  public:
   explicit RandomRound(unsigned seed) : random_(seed) {}

@@ -88,8 +88,8 @@ inline Footprint dome_surface(int sides, int cuts) {
   return cut_on_ball(std::move(at), std::move(triangles), cuts);
 }
 
-/// Layers of prisms over a footprint, each of three tetrahedra, at the places place(vertex's place, layer over the number
-/// of layers). What is no vertex of a triangle stays in the mesh, of no element.
+/// Layers of prisms over a footprint, each of three tetrahedra, at the places place(vertex's place, layer over the
+/// number of layers). What is no vertex of a triangle stays in the mesh, of no element.
 template <class Place>
 Mesh layered(const Footprint& plan, int layers, const Place& place) {
   Mesh mesh;

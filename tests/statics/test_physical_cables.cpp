@@ -197,8 +197,9 @@ TEST(PhysicalCables, TensionControlPullsAsAsked) {
   EXPECT_THROW((void)statics.solve(values({-0.1}), statics.rest()), InvalidInput);
 }
 
-/// In a channel off the axis a tension T bends a beam into an arc: per length at rest it turns by T d over E I, I of the section at rest and E by
-/// the slope of the law at the compression that T brings. Straight from end to end, across the bend, the same tension has no equilibrium.
+/// In a channel off the axis a tension T bends a beam into an arc: per length at rest it turns by T d over E I, I of
+/// the section at rest and E by the slope of the law at the compression that T brings. Straight from end to end, across
+/// the bend, the same tension has no equilibrium.
 TEST(PhysicalCables, InAChannelBendsABeamIntoAnArc) {
   const double length = 100, side = 6, offset = 2, tension = 0.7;
   RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {length, side, side}));

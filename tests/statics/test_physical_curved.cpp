@@ -34,8 +34,8 @@ Model compiled_round(const RobotSpec& spec) {
   return model;
 }
 
-/// Deflection of a cantilever of 100 mm length and 5 mm radius under a force at its end, over that of Timoshenko's beam,
-/// P L^3 / (3 E I) + P L / (0.9 G A); nu = 0.
+/// Deflection of a cantilever of 100 mm length and 5 mm radius under a force at its end, over that of Timoshenko's
+/// beam, P L^3 / (3 E I) + P L / (0.9 G A); nu = 0.
 double bent_rod(int corners, int layers, bool curved) {
   constexpr double length = 100, radius = 5, force = 1e-5;
   RobotSpec spec = round_robot(rod_mesh(corners, 1, layers, radius, length), 0, curved);

@@ -5,7 +5,8 @@
 
 namespace softkin {
 
-// What files say that softkin writes, so that it knows them again: what it knows it may replace, all else is the user's.
+// What files say that softkin writes, so that it knows them again: what it knows it may replace, all else is the
+// user's.
 inline constexpr std::string_view made_by_softkin = "made by softkin";      // in a comment, of forms that have some
 inline constexpr std::string_view xml_mark = "<!-- made by softkin -->\n";  // of .vtu, .pvd and .svg
 inline constexpr std::string_view page_mark = "id=\"softkin-page\"";        // of .html: where its document stands

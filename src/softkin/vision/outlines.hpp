@@ -7,7 +7,8 @@ namespace softkin::vision {
 
 /// The pixels of a blob's outer border one after the other, corners counting as contact, from the first of the topmost
 /// ones on; a part one pixel wide is passed there and back. Holes have no part in it.
-/// source  Suzuki and Abe, Topological structural analysis of digitized binary images by border following, CVGIP 30, 1985
+/// source  Suzuki and Abe, Topological structural analysis of digitized binary images by border following, CVGIP 30,
+///         1985
 [[nodiscard]] std::vector<Vec2> outline_of(const Blob& blob);
 
 /// Of the area that a polygon encloses; the second moments are about the origin and by its area.

@@ -171,7 +171,8 @@ struct StiffnessAtRest {
 /// Physical, tetrahedra of order 1: warns of walls of so few of them that they bend by a tenth too little or less.
 void doubt_linear_tetrahedra(Compilation& c);
 
-/// Physical, order 2: warns where straight edges cost more than 2 % of a section against the surface through the vertices.
+/// Physical, order 2: warns where straight edges cost more than 2 % of a section against the surface through the
+/// vertices.
 void doubt_straight_edges(Compilation& c);
 
 /// Warns of a size, moduli, gravity and densities that no soft robot has: of numbers in another unit than was meant.

@@ -28,9 +28,9 @@ Vec3 tangent(const Vec3& chord, const Vec3& normal, const Vec3* other) {
   return along.dot(chord) >= least_turn * length && length > 0 ? Vec3(along / length) : chord;
 }
 
-/// From the middle of a chord to that of an arc with these tangents at its ends: c / 4 (tan(a / 2) + tan(b / 2)) for the
-/// angles a and b in the plane in which the surface turns, and the chord's extent c in it; exact for circles and, where
-/// the chord runs aslant to that plane, for cylinders.
+/// From the middle of a chord to that of an arc with these tangents at its ends: c / 4 (tan(a / 2) + tan(b / 2)) for
+/// the angles a and b in the plane in which the surface turns, and the chord's extent c in it; exact for circles and,
+/// where the chord runs aslant to that plane, for cylinders.
 ///
 /// in_plane  the chord's extent in the plane over its length
 Vec3 arc_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end, double in_plane) {

@@ -25,8 +25,8 @@ class SmoothSurface {
   /// From the middle of the chord to that of the edge on the smooth surface [mm]: on the arc that has the surface's
   /// tangents at both ends; on a crease the tangents of the two sheets' intersection. 0 where nothing curves.
   [[nodiscard]] Vec3 bulge(std::size_t edge) const;
-  /// The same of an edge through the inside, or across a side, whose ends both lie on sheets that are nearly parallel, as
-  /// on both sides of a thin wall; of several the largest, of none 0.
+  /// The same of an edge through the inside, or across a side, whose ends both lie on sheets that are nearly parallel,
+  /// as on both sides of a thin wall; of several the largest, of none 0.
   [[nodiscard]] Vec3 inner_bulge(Index a, Index b) const;
 
   /// One sheet at an edge: the normals of its faces there and the smooth normals at the ends, by ascending ends.

@@ -21,8 +21,8 @@ constexpr double least_move = 1000;
 /// The same where things touch, over the contact distance: what sticks moves by a hundredth of that.
 constexpr double least_contact_move = 1e-4;
 /// A way on which so many iterations bring less than this share of it leads nowhere either.
-constexpr int patience = 200;
-constexpr double least_progress = 0.02;
+constexpr int patience = 500;
+constexpr double least_progress = 0.01;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
 /// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
@@ -216,7 +216,6 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   tracer_.begin(whole(way_.done), whole(next), length);
   auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
-  note_pace(length);
   std::string why = outcome == Newton::Outcome::stuck     ? newton_.why_stuck()
                     : outcome == Newton::Outcome::blocked ? "something is in the way"
                     : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
@@ -260,7 +259,6 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     const int used = (report_.iterations - before) / rounds_;  // those for new normal forces are as many each
     way_.advance *= lengthened(used);
     if (unstable) way_.advance = std::min(way_.advance, follow_below);
-    if (near_fold()) return limit(way_.done, "beyond this point no equilibrium follows" + instead_of_loads(), at);
     if (leads_beyond(at)) {
       take_beyond(at);
     } else if (way_.beyond && system_.contact()) {  // a step as long would end there again
@@ -312,10 +310,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     report_.reached = whole(way_.done);
   }
   if (loads_at_last(at)) return std::nullopt;
-  way_.failed = std::min(way_.failed, way_.done + length);
   way_.advance = 0.4 * length;
-  if (near_fold()) way_.advance = 0;
-  way_.advance = std::max(way_.advance, way_.advance > 0 ? 0.1 * length : 0);
   if (way_.beyond && way_.advance < finest) {
     tell_snap(way_.beyond->jump_mm, whole(way_.done));
     take_beyond(at);
@@ -362,7 +357,7 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
   } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= patience) {
     return limit(way_.done,
                  "the way there goes on in ever smaller steps: " + std::to_string(patience) +
-                     " iterations brought less than 2 % of it",
+                     " iterations brought less than 1 % of it",
                  at);
   }
   if (way_.done == 1 || report_.iterations < max_iterations_) return std::nullopt;

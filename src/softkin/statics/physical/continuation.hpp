@@ -75,13 +75,9 @@ class Continuation {
     bool releases = false;    // a body, which hardly moves until it is nearly free
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
-    std::optional<Demand> then{};                                  // where the next way leads
-    double before = 0;                                             // share of all that was asked, gone on ways before
-    double failed = std::numeric_limits<double>::infinity();       // the first share to which no step led
-    double fold = std::numeric_limits<double>::infinity();         // where loads come to their maximum, as paces tell
-    double fold_before = std::numeric_limits<double>::infinity();  // as they told before
-    double paced_at = -1, pace = 0;  // how fast the shape moves there [mm], of the last two
-    double marked = 0;               // the last share at which it was getting on
+    std::optional<Demand> then{};  // where the next way leads
+    double before = 0;             // share of all that was asked, gone on ways before
+    double marked = 0;             // the last share at which it was getting on
     int marked_iterations = 0;
   };
 
@@ -134,8 +130,6 @@ class Continuation {
   void tell_balance();
   Status limit(double done, const std::string& why, const Iterate& at);
   std::optional<Status> go_on(Iterate& at);
-  void note_pace(double length);
-  [[nodiscard]] bool near_fold();
   std::optional<Status> shorten(double length, Iterate& at);
   bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
   void pass(const Demand& demand, double done);

@@ -90,7 +90,8 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
   return found;
 }
 
-/// Adds to a first-order prediction what one back to another equilibrium misses, which grows with the square of the way.
+/// Adds to a first-order prediction what one back to another equilibrium misses, which grows with the square of the
+/// way.
 void Continuation::bend(Index a, const Demand& here, const Demand& there, const Measured& from, const Measured& beside,
                         Iterate& trial) {
   constexpr double farthest = 3, most = 0.5;  // over the way back, and of the first order
