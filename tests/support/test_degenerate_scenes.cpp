@@ -47,7 +47,9 @@ TEST(DegenerateScenes, CompileToTwoBodiesThatAreHeld) {
     }
     for (const Tetrahedron& t : model.tetrahedra) EXPECT_EQ(t[0] < scene.upper, t[3] < scene.upper);
     scene.robot.quadratic = true;
-    EXPECT_EQ(compile(scene.robot).warnings, std::vector<std::string>());
+    // wedges and spikes of few elements may be round ones
+    for (const std::string& warning : compile(scene.robot).warnings)
+      EXPECT_EQ(warning.rfind("The edges are straight", 0), 0u) << warning;
   }
   EXPECT_EQ(names.size(), 11u);
 }
