@@ -73,7 +73,7 @@ bool is_own_table(std::string_view text) {
                                Header{"waypoint,", ",error_mm,reached,inserted,equilibria"},
                                Header{"cycle,", ",sliding"},
                                Header{"direction,force_N,moved_mm,normal_N,", ",end"},
-                               Header{"track,waypoint,place,reference_", ",error_mm"},
+                               Header{"track,waypoint,place,reference_", ",error_mm,file"},
                                Header{"p_gauge_kpa,p_abs_kpa,ratio,unloading,", ",line"},
                                Header{"run,line,t_s,stretch,stress_mpa,", ",off"},
                                Header{"line,strain,stress_mpa,linear_mpa,", ",yeoh_mpa"},

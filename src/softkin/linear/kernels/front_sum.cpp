@@ -69,7 +69,14 @@ class SpreadOf {
   Vector<Number> operator()(const Number* from) const {
     Places rows;
     std::memcpy(&rows, from, sizeof rows);
-    if constexpr (lanes_of < Number >> 2) rows = __builtin_shuffle(rows, from_);
+    if constexpr (lanes_of < Number >> 2) {
+#ifdef __clang__
+      const Places in_order = rows;
+      for (int i = 0; i < moved; ++i) rows[i] = in_order[from_[i] & (moved - 1)];
+#else
+      rows = __builtin_shuffle(rows, from_);
+#endif
+    }
     rows &= keep_;
     Vector<Number> spread;
     std::memcpy(&spread, &rows, sizeof spread);
