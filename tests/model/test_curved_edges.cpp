@@ -247,6 +247,11 @@ TEST(CurvedEdges, NoElementOfRandomBodiesFolds) {
 }
 
 TEST(CurvedEdges, NoElementOfAThousandRandomBodiesFolds) {
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  GTEST_SKIP() << "the short one is enough for the sanitizers";
+#endif
+#endif
   check_random_bodies(1000, 1000);
 }
 
