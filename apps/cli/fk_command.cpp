@@ -267,8 +267,7 @@ void check_beyond(const Model& model, const FkOptions& options) {
   if (model.formulation != Formulation::physical || std::none_of(model.actuators.begin(), model.actuators.end(), loads))
     throw InvalidInput(
         "--beyond goes on beyond the maximum of a pressure or tension, and no actuator of this robot is commanded by "
-        "one "
-        "(control: pressure, control: tension): leave it out");
+        "one (control: pressure, control: tension): leave it out");
   if (!options.map.empty() && !options.polish)
     throw InvalidInput("--beyond is for the solver, not for a map: it needs --polish, or no --map");
 }

@@ -297,6 +297,12 @@ bool push_before(const ContactPush& a, const ContactPush& b) {
   return std::tie(a.edges, a.first, a.second) < std::tie(b.edges, b.first, b.second);
 }
 
+/// Of one vertex and part, or two edges, the one that pushes most comes first.
+bool strongest_first(const ContactPush& a, const ContactPush& b) {
+  if (push_before(a, b) || push_before(b, a)) return push_before(a, b);
+  return a.push > b.push;
+}
+
 /// The one of the same vertex and part, or edges; none: null.
 ContactPush* same_push(std::vector<ContactPush>& sorted, const ContactPush& as) {
   const auto found = std::lower_bound(sorted.begin(), sorted.end(), as, push_before);
@@ -312,10 +318,7 @@ std::vector<ContactPush> ContactPotential::pushes(const std::vector<Term>& terms
     all.push_back(push_of(terms[i]));
     all.back().term = static_cast<Index>(i);
   }
-  std::sort(all.begin(), all.end(), [&](const ContactPush& a, const ContactPush& b) {
-    if (push_before(a, b) || push_before(b, a)) return push_before(a, b);
-    return a.push > b.push;
-  });
+  std::sort(all.begin(), all.end(), strongest_first);
   for (const ContactPush& push : all) {
     if (!nearest.empty() && !push_before(nearest.back(), push)) continue;
     nearest.push_back(push);
@@ -347,10 +350,7 @@ void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactP
               terms[i].separation.squared < terms[static_cast<std::size_t>(known->term)].separation.squared))
       known->term = as.term;
   }
-  std::sort(fresh.begin(), fresh.end(), [&](const ContactPush& a, const ContactPush& b) {
-    if (push_before(a, b) || push_before(b, a)) return push_before(a, b);
-    return a.push > b.push;
-  });
+  std::sort(fresh.begin(), fresh.end(), strongest_first);
   fresh.erase(std::unique(fresh.begin(), fresh.end(),
                           [](const ContactPush& a, const ContactPush& b) { return !push_before(a, b); }),
               fresh.end());
