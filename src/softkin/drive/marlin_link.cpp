@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <softkin/core/text.hpp>
 #include <softkin/drive/marlin_answer.hpp>
@@ -10,6 +11,7 @@ namespace {
 using Kind = MarlinAnswer::Kind;
 
 constexpr long base = 10000;             // number that M110 sets
+constexpr double write_s = 1;            // for which a port may take nothing, however soon answers are due
 constexpr double slice_s = 0.05;         // between two looks at the user's order
 constexpr double report_step_mm = 0.01;  // M114 prints two decimals
 constexpr int foreign_limit = 3;         // requests for a number that is not of the stream: a damaged one comes alone
@@ -76,7 +78,7 @@ class Session {
 
   void write(const std::string& line) {
     log('>', line);
-    if (!port_.write(line + "\n", options_.timeout_s))
+    if (!port_.write(line + "\n", std::max(options_.timeout_s, write_s)))
       throw Ended{StreamEnd::port_lost, "the port takes nothing more: the position is unknown"};
   }
 

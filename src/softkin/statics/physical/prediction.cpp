@@ -78,8 +78,7 @@ double predict(const System& system, const Demand& here, const Demand& there, co
                System::Workspace& work, Team& team, Iterate& at) {
   const Tangent tangent(system, here, there, active, work, team, at);
   const Points before = at.positions;
-  system.advance(tangent.step, 1, work, at.positions, team);
-  system.hold(there, at.positions);
+  system.advance(tangent.step, 1, work, at.positions, team, &there);
   follow(tangent, 1, system, there, active, at.multipliers);
   return largest_move(before, at.positions);
 }
@@ -95,9 +94,9 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   // what is held comes to its place whatever is left of the way
   double held = 1;
   const System::Way way = [&](double share, Points& out) {
+    const Demand to = between(here, there, share / held);
     out = from;
-    system.advance(tangent.step, share, work, out, team);
-    system.hold(between(here, there, share / held), out);
+    system.advance(tangent.step, share, work, out, team, &to);
   };
   double end = 1;
   for (bool first = true;; first = false) {
@@ -172,8 +171,7 @@ bool follow_foreseen(const System& system, const Demand& here, const Demand& the
   // what is left of the way, along the tangents that were known before it
   const Tangent tangent(slopes, foreseen, there);
   at = slopes.foreseen;
-  system.advance(tangent.step, 1, work, at.positions, team);
-  system.hold(there, at.positions);
+  system.advance(tangent.step, 1, work, at.positions, team, &there);
   follow(tangent, 1, system, there, active, at.multipliers);
   return true;
 }

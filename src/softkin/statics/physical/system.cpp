@@ -323,6 +323,11 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   } else {
     work.layout->pattern.gather(work.slots, work.blocks, team);
     work.layout->pattern.multiply(work.blocks, moves, force, team);
+    for (Index a = 0; a < actuators(); ++a) {
+      if (!active[a]) continue;
+      (void)measures_.value(a, at.positions, &work.slopes[a]);
+      balance.constraint[a] = work.slopes[a].cwiseProduct(moves).sum();
+    }
   }
   bool layers = from.share != to.share && elastic_.prestretched();
   bool fields = magnets_ && magnets_->any_dipole() && from.share != to.share;
@@ -330,7 +335,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0) continue;
     if (active[a]) {
-      balance.constraint[a] = target(a, from) - target(a, to);
+      balance.constraint[a] += target(a, from) - target(a, to);
     } else if (under_voltage(model_.actuators[a])) {
       Points per_square;
       elastic_.field_force(a, 1, at.positions, work.elastic, per_square, team);
@@ -389,12 +394,22 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
   }
 }
 
-void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const {
+void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team,
+                     const Demand* held) const {
   freedoms_->expand(scale * step, positions, work.moves);
+  if (held) {
+    Points there = positions;
+    hold(*held, there);
+    work.moves += there - positions;
+  }
+  const auto move = [&] {
+    freedoms_->move(step, scale, positions);
+    if (held) hold(*held, positions);
+  };
   const double length = work.moves.cwiseAbs().maxCoeff();
-  if (length < least_turning * model_.diagonal_mm) return freedoms_->move(step, scale, positions);
+  if (length < least_turning * model_.diagonal_mm) return move();
   elastic_.turning(positions, work.moves, work.elastic, work.lacking, team);
-  freedoms_->move(step, scale, positions);
+  move();
   const Points straight = contacts_ ? positions : Points();
   std::vector<supports::Pose> poses = turning_->poses(positions);
   turning_->step(work.lacking, positions, poses, team);

@@ -165,7 +165,9 @@ class System {
 
   /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first
   /// order, and far better where a step bends the robot.
-  void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team) const;
+  /// held  what is fixed or commanded to move comes to where this has it
+  void advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team,
+               const Demand* held = nullptr) const;
 
   /// Puts what is fixed or commanded to move where a demand has it, and rigid regions into the pose that fits best.
   void hold(const Demand& demand, Points& positions) const;
