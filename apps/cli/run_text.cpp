@@ -197,7 +197,7 @@ void RunProgress::begin(std::size_t record) {
 }
 
 void RunProgress::show(const std::string& detail, double share) {
-  share_ = std::clamp(share, share_, 1.0);
+  share_ = std::clamp(share, 0.0, 1.0);
   const double done = static_cast<double>(at_ - first_) + share_, all = static_cast<double>(all_ - first_);
   const double elapsed = seconds_now() - start_;
   std::string text = std::to_string(at_) + "/" + std::to_string(all_) + " " + what_ + "s, " + duration(elapsed);
@@ -208,10 +208,14 @@ void RunProgress::show(const std::string& detail, double share) {
 /// Before the first equilibrium on the way moves tell: they shrink by about the same factor each iteration, so that
 /// their logarithm tells how far a step is that leads there at once, as most do.
 double EquilibriumProgress::share(const Progress& p) {
-  if (p.iteration == 1) first_move_ = p.step_mm;
+  if (p.iteration == 1) {
+    first_move_ = p.step_mm;
+    guess_ = 0;
+  }
   if (p.share > 0) return p.share;
   const double gone = std::log(p.step_mm / first_move_) / std::log(p.tolerance_mm / first_move_);
-  return std::isfinite(gone) ? std::clamp(gone, 0.0, 1.0) : 0;
+  if (std::isfinite(gone)) guess_ = std::clamp(gone, guess_, 1.0);
+  return guess_;
 }
 
 std::string EquilibriumProgress::text(const Progress& p) {

@@ -87,7 +87,7 @@ class RunProgress {
   RunProgress(std::size_t first, std::size_t all, std::string what);
 
   void begin(std::size_t record);
-  /// detail: of the record that is being made. share: how much of it is done, 0 to 1; it does not go back
+  /// detail: of the record that is being made. share: how much of it is done, 0 to 1
   void show(const std::string& detail, double share = 0);
   void clear() { line_.clear(); }
 
@@ -108,6 +108,7 @@ class EquilibriumProgress {
 
  private:
   double first_move_ = 0;  // [mm]
+  double guess_ = 0;       // does not fall
 };
 
 using runs::ActuatorRecord;
@@ -135,7 +136,8 @@ runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std:
     const runs::Advance end = over ? runs::Advance::interrupted : run.advance(go_on);
     if (end != runs::Advance::made) return end;
     line.clear();
-    if (!quiet) print(fits ? table.line(row()) + "\n" : joined(table.turned(row()), "") + "\n");
+    const auto made = row();
+    if (!quiet) print(fits ? table.line(made) + "\n" : joined(table.turned(made), "") + "\n");
   }
   return runs::Advance::made;
 }

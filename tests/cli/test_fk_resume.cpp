@@ -428,6 +428,9 @@ TEST(FkTrace, IsATableOfSteps) {
   const std::string file = folder / "trace.csv", path = folder.write("path.csv", "air\n1.1\n1.2\n");
   const ProgramResult result = run_fk(folder.scene, {"--path", path, "--trace", file, "--report", folder / "r.json"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const std::string quiet = folder / "quiet.csv";
+  EXPECT_EQ(run_fk(folder.scene, {"--path", path, "--trace", quiet, "--json"}).exit_code, 0);
+  EXPECT_EQ(read_text(quiet), read_text(file));
   std::istringstream lines(read_text(file));
   std::string line;
   std::getline(lines, line);
