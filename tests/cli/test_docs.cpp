@@ -228,7 +228,7 @@ bool number_in(const std::string& word, double& value, double& tolerance) {
   const double decimals = point == std::string::npos ? 0 : static_cast<double>(digits.size() - point - 1);
   // a solve ends some hundredths of a mm from the equilibrium, and where depends on rounding; so does what is left of
   // an error, 6e-08 or 4.6e-08
-  tolerance = decimals == 0 ? 0 : std::min(0.1, 100 * std::pow(10, -decimals));
+  tolerance = decimals == 0 ? 0 : std::min(0.1 + 1e-9, 100 * std::pow(10, -decimals));  // 35.6 to 35.7, too
   if (digits.find("e-") != std::string::npos) tolerance = 1e-3;
   char* end = nullptr;
   value = std::strtod(digits.c_str(), &end);
