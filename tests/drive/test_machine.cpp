@@ -138,7 +138,7 @@ TEST(Machine, DrumsTurn) {
   EXPECT_DOUBLE_EQ(a.wound_mm(30), 13);  // 40 at rest, 3 slack
   const double turn_mm = 2 * std::numbers::pi * 6;
   EXPECT_NEAR(a.steps(turn_mm), -3200, 1e-9);  // whatever the board calls a mm
-  EXPECT_NEAR(a.axis_mm_per_cable_mm * turn_mm * 25, 3200, 1e-9);
+  EXPECT_NEAR(a.axis_mm_per_mm * turn_mm * 25, 3200, 1e-9);
 }
 
 TEST(Machine, RefusesWhatDoesNotFit) {
