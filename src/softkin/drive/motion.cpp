@@ -164,7 +164,7 @@ class Planner {
     const double place = syringe.plunger_mm(ratio, gauge_kpa);
     const double slack = slack_of_limits * std::max(std::abs(syringe.lowest_mm), std::abs(syringe.highest_mm));
     const bool low = place < syringe.lowest_mm - slack;
-    if (low || place > syringe.highest_mm + slack)
+    if (low || !(place <= syringe.highest_mm + slack) || !std::isfinite(place))
       fail(row, motor,
            "plunger " + number(place, 6) + " mm from home (ratio " + number(ratio, 6) + " at " + number(gauge_kpa, 6) +
                " kPa) is " + (low ? "below" : "above") + " its limit of " +
