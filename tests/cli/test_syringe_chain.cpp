@@ -21,7 +21,7 @@ using testing::TemporaryFolder;
 
 const std::string chamber_folder = SOFTKIN_SOURCE_DIR "/examples/three_chamber_actuator/";
 constexpr double plunger_ml_per_mm = 0.9, plunger_steps_per_mm = 400;  // of plunger
-const ClosedAir closed_air{21.104692680065, 1.5, 100, 101.3};  // mL; the chamber's by its mesh
+const ClosedAir closed_air{21.104692680065, 1.5, 100, 101.3};          // mL; the chamber's by its mesh
 
 /// Three syringes as air has them.
 std::string three_syringes() {
