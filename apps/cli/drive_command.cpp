@@ -79,9 +79,10 @@ void add_options(CLI::App& command, DriveOptions& options) {
   add_value(command, "--hardware", options.hardware, "F.yaml",
             "Motors and regulators (docs/drive.md); default: that of the\nscene's name, finger.hardware.yaml beside "
             "finger.yaml");
-  add_value(
-      command, "--pressures", options.pressures, "F.json",
-      "Report of the run that made the commands (follow, fk): the\npressures of chambers that are commanded by volume");
+  add_value(command, "--pressures", options.pressures, "F",
+            "The pressures of chambers that are commanded by volume: F.json,\nreport of the run that made the commands "
+            "(follow, "
+            "fk), or F.csv,\nmeasured ratios of coupled chambers by all their pressures");
   add_value(command, "--map", options.map, "F.skmap",
             "Kinematic map of the robot (softkin map), which knows these\npressures; rows outside it are refused");
   command.add_flag("--return", options.return_home, "After the last row go back home, for the next run");

@@ -193,8 +193,8 @@ def plan(
     commands   a CSV file (what `softkin follow` writes), a FollowRun, or (k, m) in the order of `robot.actuators`
     hardware   motors, syringes and regulators (docs/drive.md); None: beside the robot's scene, finger.hardware.yaml of finger.yaml
     times      (k,) of an array of commands [s], ascending; without, motors go at the hardware's approach speed
-    pressures  of chambers that are commanded by volume: the report of the run that made the commands, or by
-               actuator (k,) gauge [kPa]; those that it has not are of measured curves, where there are any
+    pressures  of chambers that are commanded by volume: the report of the run that made the commands, a
+               measured table of coupled chambers (.csv; docs/pressure.md), or by actuator (k,) gauge [kPa]; those that it has not are of measured curves, where there are any
     raises     InvalidInput naming row, tendon, syringe or chamber, value and limit
     """
     board = Path(robot.name).with_suffix(".hardware.yaml") if hardware is None else Path(hardware)
@@ -204,7 +204,7 @@ def plan(
         if times is not None:
             raise ValueError("times: a file of commands has its own, in column t_s")
         if isinstance(pressures, Mapping):
-            raise ValueError("pressures: of a file of commands they come from a report")
+            raise ValueError("pressures: of a file of commands they come from a report or a table")
         report = "" if pressures is None else os.fspath(pressures)
         core = _core.Plan.of_file(robot._core, os.fspath(commands), report, os.fspath(board), return_home)
         return Plan(core)

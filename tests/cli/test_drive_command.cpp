@@ -289,6 +289,44 @@ TEST(DriveCommand, CurvesComeBeforeAMap) {
   EXPECT_TRUE(has(result.output, "t_s,air_kPa\n0,10\n1,20\n")) << result.output << result.errors;
 }
 
+/// Ratios 1 + 0.002 p - 0.0005 q and 1 + 0.002 q - 0.0005 p, on a grid: 1.06 and 1.135 by Cramer's rule.
+TEST(DriveCommand, TakesThePressuresOfCoupledChambers) {
+  const std::string example = SOFTKIN_SOURCE_DIR "/examples/three_chamber_actuator/three_chamber_actuator";
+  const testing::TemporaryFolder work;
+  std::string table = "air1_pressure_kPa,air2_pressure_kPa,air1,air2\n";
+  for (const double p : {0.0, 50.0, 120.0})
+    for (const double q : {0.0, 60.0, 120.0}) {
+      std::ostringstream row;
+      row << p << "," << q << "," << 1 + 0.002 * p - 0.0005 * q << "," << 1 + 0.002 * q - 0.0005 * p << "\n";
+      table += row.str();
+    }
+  const std::string measured = work.write("measured.csv", table);
+  const auto drive = [&](const std::string& commands, const std::string& pressures) {
+    return run_program({"drive", example + ".yaml", work.write("commands.csv", commands), "--hardware",
+                        example + ".hardware.yaml", "--pressures", pressures, "--schedule", work / "schedule.csv"});
+  };
+  const double left = (0.06 * 0.002 + 0.135 * 0.0005) / (0.002 * 0.002 - 0.0005 * 0.0005);
+  const double right = (0.135 * 0.002 + 0.06 * 0.0005) / (0.002 * 0.002 - 0.0005 * 0.0005);
+  ProgramResult result = drive("t_s,air1,air2\n0,1,1\n1,1.06,1.135\n", measured);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const std::vector<std::string> rows = testing::lines_of(read_text(work / "schedule.csv"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[1].rfind("0,", 0), 0u);
+  double time = 0, p = 0, q = 0;
+  ASSERT_EQ(std::sscanf(rows[2].c_str(), "%lf,%lf,%lf", &time, &p, &q), 3) << rows[2];
+  EXPECT_NEAR(p, left, 1e-6);
+  EXPECT_NEAR(q, right, 1e-6);
+  const auto refused = [&](const std::string& commands, const std::string& message) {
+    result = drive(commands, measured);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(has(result.errors, message)) << result.errors;
+  };
+  refused("t_s,air1,air2\n0,1,1\n1,1.3,1\n", "commands.csv:3: no pressures within " + measured + " lead to its ratios");
+  refused("t_s,air1,air2,air3\n0,1,1,1\n", measured + ": it is of chambers 'air1', 'air2', but " +
+                                               (work / "commands.csv") + " commands 'air1', 'air2', 'air3' by volume");
+  refused("t_s,air1,air1_pressure_kPa\n0,1,0\n", "its pressures are of no use");
+}
+
 TEST(DriveCommand, RowsOutsideTheMapAreRefused) {
   const DriveFolder folder(one_motor + "chambers: [{actuator: air, limits_kPa: [0, 5000]}]\n", testing::scene_to_map());
   const std::string map = folder / "block.skmap";
