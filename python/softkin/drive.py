@@ -191,10 +191,12 @@ def plan(
     """Moves and pressures for commands, checked against all limits.
 
     commands   a CSV file (what `softkin follow` writes), a FollowRun, or (k, m) in the order of `robot.actuators`
-    hardware   motors, syringes and regulators (docs/drive.md); None: beside the robot's scene, finger.hardware.yaml of finger.yaml
+    hardware   motors, syringes and regulators (docs/drive.md); None: beside the robot's scene, finger.hardware.yaml of
+               finger.yaml
     times      (k,) of an array of commands [s], ascending; without, motors go at the hardware's approach speed
-    pressures  of chambers that are commanded by volume: the report of the run that made the commands, a
-               measured table of coupled chambers (.csv; docs/pressure.md), or by actuator (k,) gauge [kPa]; those that it has not are of measured curves, where there are any
+    pressures  of chambers that are commanded by volume: the report of the run that made the commands, a measured
+               table of coupled chambers (.csv; docs/pressure.md), or by actuator (k,) gauge [kPa]; what they lack is
+               of measured curves, where there are any
     raises     InvalidInput naming row, tendon, syringe or chamber, value and limit
     """
     board = Path(robot.name).with_suffix(".hardware.yaml") if hardware is None else Path(hardware)

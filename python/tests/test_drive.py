@@ -114,7 +114,8 @@ def test_syringes(examples: Path, tmp_path: Path) -> None:
     hardware.write_text(
         "softkin_hardware: 1\nsyringes:\n"
         + "".join(
-            f"  - {{actuator: air{i}, axis: {axis}, syringe_mL: 60, dead_volume_mL: 1.5, mL_per_mm: 0.66, max_speed_mm_per_s: 10}}\n"
+            f"  - {{actuator: air{i}, axis: {axis}, syringe_mL: 60, dead_volume_mL: 1.5, mL_per_mm: 0.66, "
+            "max_speed_mm_per_s: 10}\n"
             for i, axis in ((1, "X"), (2, "Y"), (3, "Z"))
         )
     )
@@ -131,7 +132,8 @@ def test_syringes(examples: Path, tmp_path: Path) -> None:
     assert told["air1"][1]["pressure_kPa"] == pytest.approx(given, abs=1e-6)
     assert plan.lines == 2 and plan.gcode.count("\nG1 X") == 2 and plan.schedule == ""
     with pytest.raises(softkin.InvalidInput, match="the commands:2: chamber 'air1': the loading branch"):
-        drive.plan(robot, [[1, 1, 1], [1.5, 1, 1]], times=[0, 9], hardware=hardware, pressures={"air2": [0, 0], "air3": [0, 0]})
+        shut = {"air2": [0, 0], "air3": [0, 0]}
+        drive.plan(robot, [[1, 1, 1], [1.5, 1, 1]], times=[0, 9], hardware=hardware, pressures=shut)
 
 
 def test_send(short: drive.Plan, board: Board, tmp_path: Path) -> None:
