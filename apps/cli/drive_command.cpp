@@ -58,7 +58,7 @@ CLI::Validator seconds() {
 
 void add_outputs(CLI::App& command, DriveOptions& options) {
   command.add_flag("--dry-run", options.dry_run, "Print what would be sent, and send nothing");
-  add_value(command, "--gcode", options.gcode, "F.gcode", "Write the tendons' moves for Marlin");
+  add_value(command, "--gcode", options.gcode, "F.gcode", "Write the moves of tendons and plungers for Marlin");
   add_value(command, "--schedule", options.schedule, "F.csv", "Write the chambers' pressures over time (t_s, air_kPa)");
   add_value(command, "--port", options.port, "/dev/ttyUSB0", "Send the moves to the board at this serial port");
   add_value(command, "--baud", options.baud, "N", "Rate of the port (default: 115200; many boards have 250000)",
@@ -79,9 +79,10 @@ void add_options(CLI::App& command, DriveOptions& options) {
   add_value(command, "--hardware", options.hardware, "F.yaml",
             "Motors and regulators (docs/drive.md); default: that of the\nscene's name, finger.hardware.yaml beside "
             "finger.yaml");
-  add_value(
-      command, "--pressures", options.pressures, "F.json",
-      "Report of the run that made the commands (follow, fk): the\npressures of chambers that are commanded by volume");
+  add_value(command, "--pressures", options.pressures, "F",
+            "The pressures of chambers that are commanded by volume: F.json,\nreport of the run that made the commands "
+            "(follow, "
+            "fk), or F.csv,\nmeasured ratios of coupled chambers by all their pressures");
   add_value(command, "--map", options.map, "F.skmap",
             "Kinematic map of the robot (softkin map), which knows these\npressures; rows outside it are refused");
   command.add_flag("--return", options.return_home, "After the last row go back home, for the next run");
@@ -105,13 +106,15 @@ std::string plan_text(const drive::Plan& plan) {
   std::string text = "hardware: " + plan.machine.file + "\n";
   for (const std::string& line : plan.machine.defaults) text += "default: " + printable(line) + "\n";
   if (!plan.machine.tendons.empty()) text += table_text(runs::tendon_table(plan));
+  if (!plan.machine.syringes.empty()) text += table_text(runs::syringe_table(plan));
   if (!plan.machine.chambers.empty()) text += table_text(runs::chamber_table(plan));
   return text + runs::times_text(plan) + "\n";
 }
 
 std::string dry_text(const drive::Plan& plan) {
   std::string text;
-  if (!plan.machine.tendons.empty()) text += "\n" + drive::gcode_text(plan.machine, plan.program);
+  if (!plan.machine.syringes.empty()) text += "\n" + table_text(runs::plunger_table(plan));
+  if (plan.has_motors()) text += "\n" + drive::gcode_text(plan.machine, plan.program);
   if (!plan.machine.chambers.empty()) text += "\n" + drive::schedule_csv(plan.schedule);
   return text;
 }
@@ -198,11 +201,13 @@ drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs, 
 }
 
 void check_asked(const DriveOptions& options, const drive::Plan& plan) {
-  if (plan.machine.tendons.empty())
+  if (!plan.has_motors())
     for (const auto& [option, value] : {std::pair{"--gcode", options.gcode}, std::pair{"--port", options.port}})
-      if (!value.empty()) throw InvalidInput(std::string(option) + " " + value + ": there is no tendon to move");
+      if (!value.empty())
+        throw InvalidInput(std::string(option) + " " + value + ": there is no tendon or plunger to move");
   if (!options.schedule.empty() && plan.machine.chambers.empty())
-    throw InvalidInput("--schedule " + options.schedule + ": " + options.commands + " commands no chamber");
+    throw InvalidInput("--schedule " + options.schedule + ": " + options.commands +
+                       " commands no chamber of a regulator");
 }
 
 /// A schedule says nothing of softkin, as what plays it may know no comments: only the same one is replaced.

@@ -30,12 +30,12 @@ class Plan:
 
     @property
     def gcode(self) -> str:
-        """The moves of the tendons' motors for Marlin, as a file; '' where there is no tendon."""
-        return self._core.gcode if self._core.has_tendons else ""
+        """The moves of tendons and plungers for Marlin, as a file; '' where there is none."""
+        return self._core.gcode if self._core.has_motors else ""
 
     @property
     def schedule(self) -> str:
-        """The chambers' gauge pressures over time, as a CSV file: t_s, air_kPa; '' where there is no chamber."""
+        """The regulators' gauge pressures over time, as a CSV file: t_s, air_kPa; '' where there is none."""
         return self._core.schedule if self._core.has_chambers else ""
 
     @property
@@ -142,7 +142,7 @@ class Marlin:
         progress  called with the lines that were acknowledged
         """
         if plan.lines == 0:
-            raise ValueError("plan has no moves of motors: there is no tendon")
+            raise ValueError("plan has no moves of motors: there is no tendon and no syringe")
         return Sent(self._core.send(plan._core, "" if log is None else os.fspath(log), progress))
 
     @property
@@ -191,11 +191,13 @@ def plan(
     """Moves and pressures for commands, checked against all limits.
 
     commands   a CSV file (what `softkin follow` writes), a FollowRun, or (k, m) in the order of `robot.actuators`
-    hardware   motors and regulators (docs/drive.md); None: beside the robot's scene, finger.hardware.yaml of finger.yaml
+    hardware   motors, syringes and regulators (docs/drive.md); None: beside the robot's scene, finger.hardware.yaml of
+               finger.yaml
     times      (k,) of an array of commands [s], ascending; without, motors go at the hardware's approach speed
-    pressures  of chambers that are commanded by volume: the report of the run that made the commands, or by
-               actuator (k,) gauge [kPa]
-    raises     InvalidInput naming row, tendon or chamber, value and limit
+    pressures  of chambers that are commanded by volume: the report of the run that made the commands, a measured
+               table of coupled chambers (.csv; docs/pressure.md), or by actuator (k,) gauge [kPa]; what they lack is
+               of measured curves, where there are any
+    raises     InvalidInput naming row, tendon, syringe or chamber, value and limit
     """
     board = Path(robot.name).with_suffix(".hardware.yaml") if hardware is None else Path(hardware)
     if hardware is None and not board.exists():
@@ -204,7 +206,7 @@ def plan(
         if times is not None:
             raise ValueError("times: a file of commands has its own, in column t_s")
         if isinstance(pressures, Mapping):
-            raise ValueError("pressures: of a file of commands they come from a report")
+            raise ValueError("pressures: of a file of commands they come from a report or a table")
         report = "" if pressures is None else os.fspath(pressures)
         core = _core.Plan.of_file(robot._core, os.fspath(commands), report, os.fspath(board), return_home)
         return Plan(core)
@@ -215,7 +217,9 @@ def plan(
         if steps and steps[0].get("time_s") is not None:
             times = [step["time_s"] for step in steps]
         for info in robot.actuator_infos:
-            if info.kind == "pneumatic" and steps and "pressure_kPa" in steps[0]["actuators"][info.name]:
+            told = steps[0]["actuators"][info.name] if steps else {}
+            # a measured curve comes before the model, and the plan takes its pressures itself
+            if info.kind == "pneumatic" and "pressure_kPa" in told and "curve_pressure_kPa" not in told:
                 given[info.name] = [step["actuators"][info.name]["pressure_kPa"] for step in steps]
     rows = floats("commands", commands, (None, len(robot.actuators)))
     if isinstance(pressures, Mapping):

@@ -150,7 +150,7 @@ void bind_drive(nb::module_& module) {
           nb::arg("return_home"))
       .def_prop_ro("gcode", [](const PlanOf& of) { return drive::gcode_text(of.plan.machine, of.plan.program); })
       .def_prop_ro("schedule", [](const PlanOf& of) { return drive::schedule_csv(of.plan.schedule); })
-      .def_prop_ro("has_tendons", [](const PlanOf& of) { return !of.plan.machine.tendons.empty(); })
+      .def_prop_ro("has_motors", [](const PlanOf& of) { return of.plan.has_motors(); })
       .def_prop_ro("has_chambers", [](const PlanOf& of) { return !of.plan.machine.chambers.empty(); })
       .def_prop_ro("lines", [](const PlanOf& of) { return of.plan.program.lines.size(); })
       .def_prop_ro("seconds", [](const PlanOf& of) { return of.plan.motion.seconds; })

@@ -108,6 +108,34 @@ def test_wrong_plans(finger: softkin.Robot, robot: softkin.Robot, tmp_path: Path
     assert plan.schedule.startswith("t_s,air1_kPa") and plan.gcode == "" and plan.lines == 0
 
 
+def test_syringes(examples: Path, tmp_path: Path) -> None:
+    robot = softkin.load(examples / "three_chamber_actuator/measured/actuator.yaml")  # air1 has a curve
+    hardware = tmp_path / "h.yaml"
+    hardware.write_text(
+        "softkin_hardware: 1\nsyringes:\n"
+        + "".join(
+            f"  - {{actuator: air{i}, axis: {axis}, syringe_mL: 60, dead_volume_mL: 1.5, mL_per_mm: 0.66, "
+            "max_speed_mm_per_s: 10}\n"
+            for i, axis in ((1, "X"), (2, "Y"), (3, "Z"))
+        )
+    )
+    commands = [[1, 1, 1], [1.1, 1, 1.05], [1.2, 1, 1.1]]
+    pressures = {"air2": [0, 0, 0], "air3": [0, 20, 40]}
+    plan = drive.plan(robot, commands, times=[0, 8, 16], hardware=hardware, pressures=pressures)
+    told = {name: syringe["rows"] for name, syringe in plan.report["syringes"].items()}
+    assert [row["pressure_kPa"] for row in told["air3"]] == [0, 20, 40]
+    for row, (ratio, gauge) in zip(told["air3"], ((1, 0), (1.05, 20), (1.1, 40))):
+        air = (21.1046927 + 61.5) * 100 / (100 + gauge)
+        assert row["plunger_mm"] == pytest.approx((ratio * 21.1046927 + 61.5 - air) / 0.66, abs=0.51 / 80)
+        assert row["leads_to"] == pytest.approx(ratio, abs=1e-3)
+    given = robot.solve(air1=1.1).report["steps"][0]["actuators"]["air1"]["curve_pressure_kPa"]
+    assert told["air1"][1]["pressure_kPa"] == pytest.approx(given, abs=1e-6)
+    assert plan.lines == 2 and plan.gcode.count("\nG1 X") == 2 and plan.schedule == ""
+    with pytest.raises(softkin.InvalidInput, match="the commands:2: chamber 'air1': the loading branch"):
+        shut = {"air2": [0, 0], "air3": [0, 0]}
+        drive.plan(robot, [[1, 1, 1], [1.5, 1, 1]], times=[0, 9], hardware=hardware, pressures=shut)
+
+
 def test_send(short: drive.Plan, board: Board, tmp_path: Path) -> None:
     counts: list[int] = []
     with drive.Marlin(board.port, boot_wait_s=0) as link:

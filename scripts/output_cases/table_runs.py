@@ -132,6 +132,10 @@ def drive():
     yield case("drum", "--dry-run --gcode a.gcode", s.driven(
         "softkin_hardware: 1\nboard: {configure: false}\ntendons:\n  - {actuator: tendon, axis: Y, drum_radius_mm: 6, "
         "steps_per_mm: 400, direction: -1, slack_offset_mm: 2, length_limits_mm: [10, 24], max_speed_mm_per_s: 12}\n"))
+    yield case("syringe", "--dry-run --gcode a.gcode --return", s.driven(
+        "softkin_hardware: 1\natmosphere_kPa: 101.3\nsyringes:\n  - {actuator: air, axis: X, syringe_mL: 2, dead_volume_mL: "
+        "0.25, plunger_area_mm2: 40, lead_mm: 8, backlash_mm: 0.1, max_speed_mm_per_s: 20}\n",
+        "t_s,air,air_pressure_kPa\n0,1,0\n2,1.2,35\n4,1.1,20\n"))
     yield case("other hardware", "--dry-run --hardware h.yaml",
                s.driven(**{"h.yaml": s.HARDWARE.replace("axis: X", "axis: A")}))
     pump = "softkin_hardware: 1\nchambers: [{actuator: air, channel: pump, limits_kPa: [0, 500]}]\n"

@@ -174,14 +174,17 @@ TEST(DriveCommand, TakesThePressuresOfCurves) {
     for (std::size_t i = 0; i < steps.size(); ++i)
       rows += std::to_string(i) + "," + steps[i]["actuation"]["air1"].dump() + "\n";
     const std::string by_volume = work.write("volumes.csv", rows);
-    const std::string text = schedule_of(by_volume, {"--pressures", report});
-    std::istringstream lines(text);
-    std::string line;
-    std::getline(lines, line);
-    EXPECT_EQ(line, "t_s,regulator1_kPa");
-    for (const double kpa : {0.0, 60.0, 120.0}) {
-      ASSERT_TRUE(std::getline(lines, line));
-      EXPECT_NEAR(std::stod(line.substr(line.find(',') + 1)), kpa, 1e-6) << formulation << ": " << text;
+    for (const bool told : {true, false}) {  // the curve of the scene knows them without a report
+      const std::string text =
+          schedule_of(by_volume, told ? std::vector<std::string>{"--pressures", report} : std::vector<std::string>{});
+      std::istringstream lines(text);
+      std::string line;
+      std::getline(lines, line);
+      EXPECT_EQ(line, "t_s,regulator1_kPa");
+      for (const double kpa : {0.0, 60.0, 120.0}) {
+        ASSERT_TRUE(std::getline(lines, line));
+        EXPECT_NEAR(std::stod(line.substr(line.find(',') + 1)), kpa, 1e-6) << formulation << ": " << text;
+      }
     }
     const ProgramResult twice =
         run_program({"drive", scene, by_pressure, "--hardware", hardware, "--pressures", report, "--dry-run"});
@@ -193,6 +196,55 @@ TEST(DriveCommand, TakesThePressuresOfCurves) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.errors.find("columns 'air1_pressure_kPa' and 'air1_kPa' both say its pressure"), std::string::npos)
       << refused.errors;
+}
+
+/// 2,000 mm^3 of syringe on the chamber of the block: by hand.
+TEST(DriveCommand, PushesPlungers) {
+  const std::string syringes =
+      "softkin_hardware: 1\n"
+      "atmosphere_kPa: 101.3\n"
+      "syringes:\n"
+      "  - {actuator: air, axis: X, syringe_mL: 2, dead_volume_mL: 0.25, plunger_area_mm2: 40, max_speed_mm_per_s: "
+      "20,\n"
+      "     max_acceleration_mm_per_s2: 200}\n";
+  const DriveFolder folder(syringes);
+  folder.write("commands.csv", "t_s,air,air_pressure_kPa\n0,1,0\n2,1.2,35\n4,1.2,35\n");
+  const json report = json::parse(folder.drive({"--dry-run", "--json"}).output);
+  const json syringe = report["syringes"]["air"];
+  const double chamber = syringe["chamber_mm3"];
+  EXPECT_NEAR(chamber, 3 * 4 * 4 * 4, 1e-9);
+  // what is left of the air in the syringe under 136.3 kPa
+  const double left = (chamber + 2250) * 101.3 / 136.3 - 1.2 * chamber - 250;
+  const double plunger = (2000 - left) / 40;
+  ASSERT_EQ(syringe["rows"].size(), 3u);
+  EXPECT_NEAR(syringe["rows"][1]["plunger_mm"].get<double>(), plunger, 0.5 / 80 + 1e-9);  // whole steps
+  EXPECT_NEAR(syringe["rows"][1]["leads_to"].get<double>(), 1.2, 40 * 0.5 / 80 / chamber + 1e-9);
+  EXPECT_EQ(syringe["steps"], (json{0, std::llround(80 * plunger)}));
+  const ProgramResult dry = folder.drive({"--dry-run"});
+  EXPECT_TRUE(has(dry.output, "default: syringe 'air': chamber_mL ")) << dry.output;
+  EXPECT_TRUE(
+      has(dry.output, "row  t [s]  air [-]  pressure [kPa]  out of the syringe [mL]  plunger [mm]  leads to [-]"))
+      << dry.output;
+  EXPECT_TRUE(has(dry.output, "; X: syringe 'air', 1 mm of axis per mm of plunger")) << dry.output;
+  const std::string gcode = folder / "out/block.gcode";
+  EXPECT_EQ(folder.drive({"--gcode", gcode, "--return"}).exit_code, 0);
+  EXPECT_EQ(folder.drive({"--gcode", gcode, "--return"}).exit_code, 0);  // it knows its own file
+  EXPECT_TRUE(has(read_text(gcode), "G4 P2000\nG1 X0 F")) << read_text(gcode);
+  folder.refused({"--schedule", folder / "a.csv"}, "commands no chamber of a regulator");
+}
+
+TEST(DriveCommand, RefusesPlungersByLine) {
+  const std::string head = "softkin_hardware: 1\nsyringes:\n  - {actuator: air, axis: X, syringe_mL: 2, ";
+  const DriveFolder folder(head + "mL_per_mm: 0.04, travel_limits_mm: [0, 9]}\n");
+  folder.refused_rows(
+      "t_s,air\n0,1\n1,1.2\n",
+      ": chamber 'air' is commanded by its volume, and its plunger's place depends on its pressure, too");
+  folder.refused_rows("t_s,air,air_pressure_kPa\n0,1,0\n9,1.2,500\n", ":3: syringe 'air': plunger ");
+  folder.refused_rows("t_s,air,air_pressure_kPa\n0,1,-100\n", ":2: syringe 'air': pressure -100 kPa (gauge) is not");
+  folder.write("commands.csv", "t_s,air,air_pressure_kPa\n0,1,0\n9,1.02,5\n");
+  folder.refused_hardware(head + "mL_per_mm: 0.04, travel_limits_mm: [0, 90]}\n",
+                          ":3: syringe 'air': a plunger at 90 mm would have pushed out more than the 2 mL");
+  folder.refused_hardware(head + "plunger_area_cm2: 0.4}\n", ":3: unknown key 'plunger_area_cm2'");
 }
 
 /// Pressures of a map are those of the solver; what it was not made for is refused.
@@ -222,6 +274,57 @@ TEST(DriveCommand, TakesThePressuresOfAMap) {
   folder.refused({"--map", map, "--dry-run"}, "its pressures are of no use: " + folder.commands);
   folder.write("commands.csv", "t_s,air,air_pressure_kPa\n0,1.1,0\n1,1.2,33\n");
   folder.refused({"--map", map, "--dry-run"}, "has the column 'air_pressure_kPa' already");
+}
+
+/// A curve of 0.01 a kPa is asked before the map's model.
+TEST(DriveCommand, CurvesComeBeforeAMap) {
+  const std::string scene =
+      testing::replaced(testing::scene_to_map(), "control: volume, ", "control: volume, curve: air.yaml, ");
+  const DriveFolder folder(one_motor + "chambers: [{actuator: air, limits_kPa: [0, 5000]}]\n", scene);
+  folder.write("air.yaml", "softkin_curve: 1\ninput: gauge_pressure_kPa\nloading: [[0, 1], [50, 1.5], [100, 2]]\n");
+  const std::string map = folder / "block.skmap";
+  ASSERT_EQ(run_program({"map", folder.scene, "-o", map, "--check", "5", "--shape-accuracy", "0"}).exit_code, 0);
+  folder.write("commands.csv", "t_s,air\n0,1.1\n1,1.2\n");
+  const ProgramResult result = folder.drive({"--map", map, "--dry-run"});
+  EXPECT_TRUE(has(result.output, "t_s,air_kPa\n0,10\n1,20\n")) << result.output << result.errors;
+}
+
+/// Ratios 1 + 0.002 p - 0.0005 q and 1 + 0.002 q - 0.0005 p, on a grid: 1.06 and 1.135 by Cramer's rule.
+TEST(DriveCommand, TakesThePressuresOfCoupledChambers) {
+  const std::string example = SOFTKIN_SOURCE_DIR "/examples/three_chamber_actuator/three_chamber_actuator";
+  const testing::TemporaryFolder work;
+  std::string table = "air1_pressure_kPa,air2_pressure_kPa,air1,air2\n";
+  for (const double p : {0.0, 50.0, 120.0})
+    for (const double q : {0.0, 60.0, 120.0}) {
+      std::ostringstream row;
+      row << p << "," << q << "," << 1 + 0.002 * p - 0.0005 * q << "," << 1 + 0.002 * q - 0.0005 * p << "\n";
+      table += row.str();
+    }
+  const std::string measured = work.write("measured.csv", table);
+  const auto drive = [&](const std::string& commands, const std::string& pressures) {
+    return run_program({"drive", example + ".yaml", work.write("commands.csv", commands), "--hardware",
+                        example + ".hardware.yaml", "--pressures", pressures, "--schedule", work / "schedule.csv"});
+  };
+  const double left = (0.06 * 0.002 + 0.135 * 0.0005) / (0.002 * 0.002 - 0.0005 * 0.0005);
+  const double right = (0.135 * 0.002 + 0.06 * 0.0005) / (0.002 * 0.002 - 0.0005 * 0.0005);
+  ProgramResult result = drive("t_s,air1,air2\n0,1,1\n1,1.06,1.135\n", measured);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const std::vector<std::string> rows = testing::lines_of(read_text(work / "schedule.csv"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[1].rfind("0,", 0), 0u);
+  double time = 0, p = 0, q = 0;
+  ASSERT_EQ(std::sscanf(rows[2].c_str(), "%lf,%lf,%lf", &time, &p, &q), 3) << rows[2];
+  EXPECT_NEAR(p, left, 1e-6);
+  EXPECT_NEAR(q, right, 1e-6);
+  const auto refused = [&](const std::string& commands, const std::string& message) {
+    result = drive(commands, measured);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(has(result.errors, message)) << result.errors;
+  };
+  refused("t_s,air1,air2\n0,1,1\n1,1.3,1\n", "commands.csv:3: no pressures within " + measured + " lead to its ratios");
+  refused("t_s,air1,air2,air3\n0,1,1,1\n", measured + ": it is of chambers 'air1', 'air2', but " +
+                                               (work / "commands.csv") + " commands 'air1', 'air2', 'air3' by volume");
+  refused("t_s,air1,air1_pressure_kPa\n0,1,0\n", "its pressures are of no use");
 }
 
 TEST(DriveCommand, RowsOutsideTheMapAreRefused) {

@@ -52,7 +52,14 @@ TEST_F(HardwareFile, IsReadWhole) {
       "     steps_per_mm: 100, direction: -1, slack_offset_mm: 2, backlash_mm: 0.3, length_limits_mm: [20, 40],\n"
       "     max_speed_mm_per_s: 12, max_acceleration_mm_per_s2: 90}\n"
       "  - {actuator: b, axis: A}\n"
-      "chambers: [{actuator: air, channel: pump1, limits_kPa: [-20, 80]}]\n");
+      "chambers: [{actuator: air, channel: pump1, limits_kPa: [-20, 80]}]\n"
+      "atmosphere_kPa: 98.5\n"
+      "syringes:\n"
+      "  - {actuator: c, axis: B, chamber_mL: 19, syringe_mL: 60, dead_volume_mL: 1.5, plunger_area_mm2: 660,\n"
+      "     lead_mm: 8, steps_per_revolution: 1600, steps_per_mm: 90, direction: -1, backlash_mm: 0.1,\n"
+      "     travel_limits_mm: [-9, 80], limits_kPa: [-30, 150], max_speed_mm_per_s: 6, max_acceleration_mm_per_s2: "
+      "70}\n"
+      "  - {actuator: d, axis: C, syringe_mL: 20, mL_per_mm: 0.3}\n");
   EXPECT_EQ(spec.configure, false);
   EXPECT_EQ(spec.approach_speed_mm_per_s, 3);
   ASSERT_EQ(spec.tendons.size(), 2u);
@@ -74,6 +81,55 @@ TEST_F(HardwareFile, IsReadWhole) {
   ASSERT_EQ(spec.chambers.size(), 1u);
   EXPECT_EQ(spec.chambers[0].channel, "pump1");
   EXPECT_EQ((*spec.chambers[0].limits_kpa)[0], -20);
+  EXPECT_EQ(spec.atmosphere_kPa, 98.5);
+  ASSERT_EQ(spec.syringes.size(), 2u);
+  const SyringeSpec& c = spec.syringes[0];
+  EXPECT_EQ(c.actuator, "c");
+  EXPECT_EQ(c.origin.line, 11u);
+  EXPECT_EQ(c.axis, 'B');
+  EXPECT_EQ(c.chamber_mL, 19);
+  EXPECT_EQ(c.syringe_mL, 60);
+  EXPECT_EQ(c.dead_volume_mL, 1.5);
+  EXPECT_DOUBLE_EQ(c.mL_per_mm, 0.66);
+  EXPECT_EQ(c.lead_mm, 8);
+  EXPECT_EQ(c.steps_per_revolution, 1600);
+  EXPECT_EQ(c.steps_per_mm, 90);
+  EXPECT_EQ(c.direction, -1);
+  EXPECT_EQ(c.backlash_mm, 0.1);
+  EXPECT_EQ((*c.travel_limits_mm)[0], -9);
+  EXPECT_EQ((*c.limits_kpa)[1], 150);
+  EXPECT_EQ(c.max_speed_mm_per_s, 6);
+  EXPECT_EQ(c.max_acceleration_mm_per_s2, 70);
+  EXPECT_EQ(spec.syringes[1].mL_per_mm, 0.3);
+  EXPECT_FALSE(spec.syringes[1].dead_volume_mL.has_value());
+}
+
+TEST_F(HardwareFile, RefusesSyringesByLine) {
+  const std::string head = "softkin_hardware: 1\nsyringes:\n  - ";
+  const auto syringe = [&](const std::string& more, const std::string& message) {
+    refused(head + "{actuator: a, axis: X, " + more + "}\n", 3, message);
+  };
+  const std::string whole = "syringe_mL: 60, mL_per_mm: 0.6, ";
+  syringe("mL_per_mm: 0.6", "needs key 'syringe_mL'");
+  syringe("syringe_mL: 60", "needs key 'plunger_area_mm2' or 'mL_per_mm'");
+  syringe(whole + "plunger_area_mm2: 600", "has both 'plunger_area_mm2' and 'mL_per_mm': give one of them");
+  syringe("syringe_mL: 0, mL_per_mm: 0.6", "must be greater than 0");
+  syringe("syringe_mL: 60, plunger_area_mm2: -3", "must be greater than 0");
+  syringe(whole + "dead_volume_mL: -1", "must not be negative: -1");
+  syringe(whole + "dead_volume_ml: 1", "did you mean 'dead_volume_mL'?");
+  syringe(whole + "steps_per_revolution: 3200", "steps_per_revolution needs lead_mm beside it");
+  syringe(whole + "lead_mm: 0", "must be greater than 0");
+  syringe(whole + "travel_limits_mm: [9, 0]", "must be [low, high], but 9 is above 0");
+  syringe(whole + "limits_kPa: [9, 0]", "9 is above 0");
+  syringe(whole + "chamber_mL: .inf", "must be a finite number");
+  refused("softkin_hardware: 1\natmosphere_kPa: 0\n", 2, "must be greater than 0");
+  refused("softkin_hardware: 1\ntendons: [{actuator: a, axis: X}]\nsyringes: [{actuator: b, axis: X, " + whole + "}]\n",
+          3, "the name 'X' is taken; it is given in line 2");
+  refused("softkin_hardware: 1\nchambers: [{actuator: a}]\nsyringes: [{actuator: b, axis: U, " + whole +
+              "}, {actuator: c, axis: A, " + whole + "}]\n",
+          3, "axes A and U");
+  refused("softkin_hardware: 1\nsyringes: [{actuator: a, axis: X, " + whole + "}]\nchambers: [{actuator: a}]\n", 3,
+          "the name 'a' is taken; it is given in line 2");
 }
 
 TEST_F(HardwareFile, RefusesByLine) {
@@ -138,7 +194,7 @@ TEST(Machine, DrumsTurn) {
   EXPECT_DOUBLE_EQ(a.wound_mm(30), 13);  // 40 at rest, 3 slack
   const double turn_mm = 2 * std::numbers::pi * 6;
   EXPECT_NEAR(a.steps(turn_mm), -3200, 1e-9);  // whatever the board calls a mm
-  EXPECT_NEAR(a.axis_mm_per_cable_mm * turn_mm * 25, 3200, 1e-9);
+  EXPECT_NEAR(a.axis_mm_per_mm * turn_mm * 25, 3200, 1e-9);
 }
 
 TEST(Machine, RefusesWhatDoesNotFit) {

@@ -1,4 +1,5 @@
 #include <softkin/drive/plan.hpp>
+#include <softkin/drive/use.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/scene/hardware.hpp>
 #include <softkin/io/scene/scene.hpp>
@@ -132,14 +133,14 @@ void run_curve(const Input& input) {
   require(again.atmosphere_kPa == curve.atmosphere_kPa && again.end == curve.end, "a written curve reads otherwise");
 }
 
-/// Two cables of 40 and 60 mm and a chamber under pressure, and what they are to do.
-Model driven_model() {
+/// Two cables of 40 and 60 mm and a chamber under pressure, or of a volume for a syringe, and what they are to do.
+Model driven_model(bool by_volume) {
   Model model;
   for (const auto& [name, length] : {std::pair("a", 40.0), std::pair("b", 60.0), std::pair("air", 1000.0)}) {
     Actuator actuator;
     actuator.name = name;
     actuator.kind = length < 100 ? ActuatorKind::cable : ActuatorKind::pneumatic;
-    if (length > 100) actuator.control = Control::load;
+    if (length > 100 && !by_volume) actuator.control = Control::load;
     actuator.low = 0.5;
     actuator.high = length < 100 ? 1 : 50;
     actuator.rest_measure = length;
@@ -148,12 +149,12 @@ Model driven_model() {
   return model;
 }
 
-Commands commands_of(bool timed) {
-  Commands commands{"commands.csv", {true, true, true}, {false, false, false}, {}};
+Commands commands_of(bool timed, bool by_volume) {
+  Commands commands{"commands.csv", {true, true, true}, {false, false, by_volume}, {}};
   for (int i = 0; i < 4; ++i) {
     CommandRow row;
-    row.actuation = Eigen::Vector3d(1 - 0.02 * i, 0.9 + 0.01 * (i % 2), 1.0 + i);
-    row.pressures_kpa = Eigen::VectorXd::Zero(3);
+    row.actuation = Eigen::Vector3d(1 - 0.02 * i, 0.9 + 0.01 * (i % 2), 1.0 + (by_volume ? 0.1 : 1) * i);
+    row.pressures_kpa = Eigen::Vector3d(0, 0, 10.0 * i);
     if (timed) row.time_s = 2.0 * i;
     row.line = static_cast<std::size_t>(i) + 2;
     commands.rows.push_back(row);
@@ -162,16 +163,20 @@ Commands commands_of(bool timed) {
 }
 
 void run_hardware(const Input& input) {
-  static const Model model = driven_model();
   const HardwareSpec hardware = read_hardware(input.file("hardware.yaml"));
+  const bool by_volume = !hardware.syringes.empty();
+  const Model model = driven_model(by_volume);
   for (const bool timed : {true, false}) {
     try {
-      const drive::Plan plan = drive::make_plan(model, hardware, commands_of(timed), timed);
+      const drive::Plan plan = drive::make_plan(model, hardware, commands_of(timed, by_volume), timed);
       require_finite(plan.motion.seconds, "a motion without end");
       for (const drive::GcodeLine& line : plan.program.lines)
         for (const double position : line.position) require_finite(position, "a motor goes nowhere");
       for (const auto& row : plan.schedule.rows)
         for (const double kpa : row.kpa) require_finite(kpa, "a pressure is not finite");
+      for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i)
+        for (const drive::PlungerRow& row : drive::plunger_rows(plan, i))
+          require_finite(row.reached, "a plunger leads nowhere");
       const std::string text = drive::gcode_text(plan.machine, plan.program);
       require(text.find("nan") == std::string::npos && text.find("inf") == std::string::npos, "a number is not finite");
     } catch (const InvalidInput&) {  // with times too fast, perhaps, without them not

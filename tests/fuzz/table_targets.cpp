@@ -1,4 +1,5 @@
 #include <softkin/io/table/commands.hpp>
+#include <softkin/io/table/coupled_curves_file.hpp>
 #include <softkin/io/table/csv.hpp>
 #include <softkin/io/table/marker_path.hpp>
 #include <softkin/io/table/measurements.hpp>
@@ -48,6 +49,28 @@ void run_commands(const Input& input) {
     check(finger(), row.actuation);
     require(row.pressures_kpa.allFinite(), "a pressure is not finite");
   }
+}
+
+Model squeezing_chambers() {
+  Model model;
+  for (const char* name : {"air", "tail"}) {
+    Actuator actuator;
+    actuator.name = name;
+    actuator.kind = ActuatorKind::pneumatic;
+    model.actuators.push_back(actuator);
+  }
+  return model;
+}
+
+void run_coupled(const Input& input) {
+  static const Model model = squeezing_chambers();
+  const CoupledCurves curves = read_coupled_curves(model, input.file("coupled.csv"));
+  require(curves.pressures_kPa.size() == curves.chambers.size(), "a chamber without pressures");
+  std::size_t nodes = 1;
+  for (const std::vector<double>& axis : curves.pressures_kPa) nodes *= axis.size();
+  require(curves.ratios.size() == nodes, "a grid with holes");
+  for (const Eigen::VectorXd& found : curves.pressures_for(curves.ratios.front()))
+    require(found.allFinite(), "a pressure is not finite");
 }
 
 void run_marker_path(const Input& input) {
@@ -150,6 +173,7 @@ std::vector<Target> table_targets() {
           {"path", "tables.dict", run_path<finger>},
           {"voltage_path", "tables.dict", run_path<sheet>},
           {"commands", "tables.dict", run_commands},
+          {"coupled", "tables.dict", run_coupled},
           {"marker_path", "tables.dict", run_marker_path},
           {"track", "tables.dict", run_track},
           {"stretched", "tables.dict", run_stretched},

@@ -170,18 +170,6 @@ std::vector<Sweep> sweeps_of(const std::vector<double>& drive) {
   return sweeps;
 }
 
-double chamber_ratio(const SyringeSetup& setup, double absolute_kPa, double syringe_mm3) {
-  const double atmosphere = setup.atmosphere_kPa;
-  return (atmosphere * setup.chamber_mm3 + absolute_kPa * syringe_mm3 -
-          (absolute_kPa - atmosphere) * (setup.syringe_mm3 + setup.tube_mm3)) /
-         (absolute_kPa * setup.chamber_mm3);
-}
-
-double syringe_volume(const SyringeSetup& setup, double absolute_kPa, double ratio) {
-  const double rest = setup.syringe_mm3 + setup.tube_mm3;
-  return ratio * setup.chamber_mm3 + rest - setup.atmosphere_kPa * (setup.chamber_mm3 + rest) / absolute_kPa;
-}
-
 std::optional<double> rest_pressure(const SyringeSetup& setup, const SyringeRun& run) {
   const std::optional<double> given = given_at_rest(run);
   return given ? std::optional(absolute(setup, run.scale, *given)) : std::nullopt;

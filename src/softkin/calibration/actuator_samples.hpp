@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <softkin/calibration/actuator_curves.hpp>
 #include <softkin/model/actuator_curve.hpp>
+#include <softkin/model/gas_law.hpp>
 #include <softkin/model/measurements.hpp>
 #include <vector>
 
@@ -21,22 +22,9 @@ struct Sweep {
 /// returns  none where the drive does not change
 [[nodiscard]] std::vector<Sweep> sweeps_of(const std::vector<double>& drive);
 
-/// Volumes of the closed air of a syringe test at its start, under atmospheric pressure.
-struct SyringeSetup {
-  double chamber_mm3 = 0;       // V_c^0, > 0
-  double tube_mm3 = 0;          // V_t, >= 0
-  double syringe_mm3 = 0;       // V_sy^0, > 0
-  double atmosphere_kPa = 100;  // absolute, > 0; the paper's value for one atmosphere
-};
-
-/// alpha = V_c / V_c^0 of the chamber of a syringe test [-].
-///
-/// absolute_kPa  > 0
-/// source        Fang et al. 2020, Eq. (19)
-[[nodiscard]] double chamber_ratio(const SyringeSetup& setup, double absolute_kPa, double syringe_mm3);
-
-/// Delta V_sy [mm^3] that brings the chamber to a ratio under a pressure: Eq. (18) the other way round.
-[[nodiscard]] double syringe_volume(const SyringeSetup& setup, double absolute_kPa, double ratio);
+using softkin::chamber_ratio;
+using softkin::syringe_volume;
+using softkin::SyringeSetup;
 
 /// A row of a test after Eq. (19).
 struct SyringeSample {

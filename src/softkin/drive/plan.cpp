@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <softkin/core/text.hpp>
+#include <softkin/drive/curve_pressures.hpp>
 #include <softkin/drive/plan.hpp>
 
 namespace softkin::drive {
@@ -24,11 +24,12 @@ std::string significant(double value) {
 
 class Writer {
  public:
-  Writer(const Machine& machine, const Motion& motion) : machine_(machine), motion_(motion) {}
+  Writer(const Machine& machine, const Motion& motion)
+      : machine_(machine), motors_(machine.motors()), motion_(motion) {}
 
   GcodeProgram write() {
-    for (const Tendon& tendon : machine_.tendons) program_.axes += tendon.axis;
-    here_.assign(machine_.tendons.size(), 0);
+    for (const Motor* motor : motors_) program_.axes += motor->axis;
+    here_.assign(motors_.size(), 0);
     program_.start.assign(here_.size(), 0.0);
     write_setup();
     for (const Move& move : motion_.approach) add(move);
@@ -44,27 +45,27 @@ class Writer {
     auto& setup = program_.setup;
     setup = {"G21", "G90"};
     if (machine_.configure) {
-      setup.push_back("M92" + per_axis([](const Tendon& t) { return t.steps_per_mm; }));
+      setup.push_back("M92" + per_axis([](const Motor& m) { return m.steps_per_mm; }));
       setup.push_back("M201" +
-                      per_axis([](const Tendon& t) { return t.max_acceleration_mm_per_s2 * t.axis_mm_per_cable_mm; }));
-      setup.push_back("M203" + per_axis([](const Tendon& t) { return t.max_speed_mm_per_s * t.axis_mm_per_cable_mm; }));
+                      per_axis([](const Motor& m) { return m.max_acceleration_mm_per_s2 * m.axis_mm_per_mm; }));
+      setup.push_back("M203" + per_axis([](const Motor& m) { return m.max_speed_mm_per_s * m.axis_mm_per_mm; }));
       setup.push_back("M211 S0");
       setup.push_back("M84 S0");
     }
-    setup.push_back("G92" + per_axis([](const Tendon&) { return 0.0; }));
+    setup.push_back("G92" + per_axis([](const Motor&) { return 0.0; }));
   }
 
   template <class Value>
   std::string per_axis(const Value& value) const {
     std::string text;
-    for (const Tendon& tendon : machine_.tendons) text += std::string(" ") + tendon.axis + significant(value(tendon));
+    for (const Motor* motor : motors_) text += std::string(" ") + motor->axis + significant(value(*motor));
     return text;
   }
 
   [[nodiscard]] std::vector<double> position() const {
     std::vector<double> result;
     for (std::size_t i = 0; i < here_.size(); ++i)
-      result.push_back(static_cast<double>(here_[i]) / machine_.tendons[i].steps_per_mm);
+      result.push_back(static_cast<double>(here_[i]) / motors_[i]->steps_per_mm);
     return result;
   }
 
@@ -72,9 +73,8 @@ class Writer {
   [[nodiscard]] double feed_length(const Steps& target) const {
     double primary = 0, secondary = 0;
     for (std::size_t i = 0; i < target.size(); ++i) {
-      const Tendon& tendon = machine_.tendons[i];
-      const double length = static_cast<double>(target[i] - here_[i]) / tendon.steps_per_mm;
-      const bool is_primary = std::string("XYZ").find(tendon.axis) != std::string::npos;
+      const double length = static_cast<double>(target[i] - here_[i]) / motors_[i]->steps_per_mm;
+      const bool is_primary = std::string("XYZ").find(motors_[i]->axis) != std::string::npos;
       (is_primary ? primary : secondary) += length * length;
     }
     return std::sqrt(primary > 0 ? primary : secondary);
@@ -105,7 +105,7 @@ class Writer {
   void add_line(std::string text, double patience, std::size_t row) {
     if (text.size() > longest_command)
       throw InvalidInput("a line of G-code is longer than Marlin reads: " + text +
-                         ": use fewer axes, or more mm of cable per mm of axis (steps_per_mm)");
+                         ": use fewer axes, or more mm of cable or plunger per mm of axis (steps_per_mm)");
     program_.lines.push_back({std::move(text), patience, position(), row});
   }
 
@@ -121,12 +121,18 @@ class Writer {
   }
 
   const Machine& machine_;
+  const std::vector<const Motor*> motors_;
   const Motion& motion_;
   GcodeProgram program_;
   Steps here_;
   std::vector<double> durations_;  // [s]
   double rest_left_ = 0;           // [s]
 };
+
+std::string gear_text(const char* kind, const char* what, const Motor& motor) {
+  return std::string("; ") + motor.axis + ": " + kind + " '" + motor.name + "', " + significant(motor.axis_mm_per_mm) +
+         " mm of axis per mm of " + what + ", " + significant(motor.steps_per_mm) + " steps per mm of axis\n";
+}
 
 }  // namespace
 
@@ -136,10 +142,10 @@ GcodeProgram make_gcode(const Machine& machine, const Motion& motion) {
 
 std::string gcode_text(const Machine& machine, const GcodeProgram& program) {
   std::string text = "; Before this program the motors stand at home: cables at their length at rest plus slack.\n";
-  for (const Tendon& tendon : machine.tendons)
-    text += std::string("; ") + tendon.axis + ": tendon '" + tendon.name + "', " +
-            significant(tendon.axis_mm_per_cable_mm) + " mm of axis per mm of cable, " +
-            significant(tendon.steps_per_mm) + " steps per mm of axis\n";
+  for (const Tendon& tendon : machine.tendons) text += gear_text("tendon", "cable", tendon);
+  if (!machine.syringes.empty())
+    text += "; Home of a plunger: its chamber at rest, the air under the pressure around it.\n";
+  for (const Syringe& syringe : machine.syringes) text += gear_text("syringe", "plunger", syringe);
   for (const std::string& line : program.setup) text += line + "\n";
   for (const GcodeLine& line : program.lines) text += line.text + "\n";
   return text + "M400\n";
@@ -184,38 +190,13 @@ std::string schedule_csv(const PressureSchedule& schedule) {
 Plan make_plan(const Model& model, const HardwareSpec& hardware, Commands commands, bool return_home) {
   Plan plan;
   plan.commands = std::move(commands);
+  take_curve_pressures(model, plan.commands);
   plan.machine = assemble(model, hardware, plan.commands);
   plan.schedule = plan_pressures(plan.machine, plan.commands);
-  if (plan.machine.tendons.empty()) return plan;
+  if (!plan.has_motors()) return plan;
   plan.motion = plan_motion(plan.machine, plan.commands, return_home);
   plan.program = make_gcode(plan.machine, plan.motion);
   return plan;
-}
-
-TendonUse use_of(const Plan& plan, std::size_t index) {
-  const Tendon& tendon = plan.machine.tendons[index];
-  TendonUse use;
-  use.shortest_mm = tendon.longest_mm;
-  for (const CommandRow& row : plan.commands.rows) {
-    const double length = row.actuation[tendon.actuator] * tendon.rest_length_mm;
-    use.shortest_mm = std::min(use.shortest_mm, length);
-    use.longest_mm = std::max(use.longest_mm, length);
-  }
-  const auto cable_mm = [&](std::int64_t steps) {
-    return static_cast<double>(std::abs(steps)) / (tendon.steps_per_mm * tendon.axis_mm_per_cable_mm);
-  };
-  std::int64_t here = 0;
-  for (const auto* moves : {&plan.motion.approach, &plan.motion.moves, &plan.motion.back})
-    for (const Move& move : *moves) {
-      use.fastest_mm_per_s = std::max(use.fastest_mm_per_s, cable_mm(move.target[index] - here) / move.seconds);
-      here = move.target[index];
-      use.lowest = std::min(use.lowest, here);
-      use.highest = std::max(use.highest, here);
-    }
-  if (tendon.drum_radius_mm)
-    use.turns = cable_mm(std::max(std::abs(use.lowest), std::abs(use.highest))) /
-                (2 * std::numbers::pi * *tendon.drum_radius_mm);
-  return use;
 }
 
 std::pair<double, double> pressure_range(const Plan& plan, std::size_t chamber) {
@@ -223,12 +204,6 @@ std::pair<double, double> pressure_range(const Plan& plan, std::size_t chamber) 
       std::minmax_element(plan.schedule.rows.begin(), plan.schedule.rows.end(),
                           [chamber](const auto& a, const auto& b) { return a.kpa[chamber] < b.kpa[chamber]; });
   return {low->kpa[chamber], high->kpa[chamber]};
-}
-
-double seconds_of(const std::vector<Move>& moves) {
-  double seconds = 0;
-  for (const Move& move : moves) seconds += move.seconds;
-  return seconds;
 }
 
 }  // namespace softkin::drive

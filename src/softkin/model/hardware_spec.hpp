@@ -8,21 +8,36 @@
 
 namespace softkin {
 
-/// The motor of a cable as the user describes it; what is empty takes the default of drive/machine.hpp.
-struct TendonSpec {
+/// A stepper as the user describes it; what is empty takes the default of drive/machine.hpp.
+struct MotorSpec {
   Origin origin;
   std::string actuator;
   char axis = 'X';                             // letter in G-code
-  std::optional<double> rest_length_mm;        // measured; > 0
-  std::optional<double> drum_radius_mm;        // to the cable's centre line; > 0
-  std::optional<double> steps_per_revolution;  // of the drum: motor, microsteps and gear; > 0
+  std::optional<double> steps_per_revolution;  // motor, microsteps and gear; > 0
   std::optional<double> steps_per_mm;          // of the axis, as the board has it (M92); > 0
-  std::optional<int> direction;                // 1, -1: the axis' sense that shortens the cable
-  std::optional<double> slack_offset_mm;       // cable to wind up before it is taut at rest; >= 0
-  std::optional<double> backlash_mm;           // of cable; >= 0
-  std::optional<std::array<double, 2>> length_limits_mm;
-  std::optional<double> max_speed_mm_per_s;          // > 0
+  std::optional<int> direction;                // 1, -1: the axis' sense that shortens the cable, pushes the plunger
+  std::optional<double> backlash_mm;           // of cable or plunger, as what follows; >= 0
+  std::optional<double> max_speed_mm_per_s;    // > 0
   std::optional<double> max_acceleration_mm_per_s2;  // > 0
+};
+
+/// The motor of a cable.
+struct TendonSpec : MotorSpec {
+  std::optional<double> rest_length_mm;   // measured; > 0
+  std::optional<double> drum_radius_mm;   // to the cable's centre line; > 0
+  std::optional<double> slack_offset_mm;  // cable to wind up before it is taut at rest; >= 0
+  std::optional<std::array<double, 2>> length_limits_mm;
+};
+
+/// The syringe that a chamber stands on, with the motor of its plunger.
+struct SyringeSpec : MotorSpec {
+  std::optional<double> chamber_mL;                       // at rest; > 0
+  double syringe_mL = 0;                                  // air in it at home; > 0
+  std::optional<double> dead_volume_mL;                   // tubes, fittings and sensor; >= 0
+  double mL_per_mm = 0;                                   // of plunger; > 0
+  std::optional<double> lead_mm;                          // plunger in a revolution of the motor; > 0
+  std::optional<std::array<double, 2>> travel_limits_mm;  // from home, pushed in
+  std::optional<std::array<double, 2>> limits_kpa;        // gauge
 };
 
 /// The regulator of a chamber as the user describes it.
@@ -37,8 +52,10 @@ struct ChamberSpec {
 struct HardwareSpec {
   std::string file;
   std::optional<bool> configure;                  // send the board its steps, limits and switches
-  std::optional<double> approach_speed_mm_per_s;  // of cable, where the commands have no times; > 0
+  std::optional<double> approach_speed_mm_per_s;  // of cable or plunger, where the commands have no times; > 0
+  std::optional<double> atmosphere_kPa;           // absolute; > 0
   std::vector<TendonSpec> tendons;
+  std::vector<SyringeSpec> syringes;
   std::vector<ChamberSpec> chambers;
 };
 

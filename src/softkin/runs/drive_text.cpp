@@ -1,4 +1,5 @@
 #include <softkin/core/text.hpp>
+#include <softkin/drive/use.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/runs/drive_text.hpp>
 
@@ -33,6 +34,48 @@ Table tendon_table(const drive::Plan& plan) {
   return table;
 }
 
+Table syringe_table(const drive::Plan& plan) {
+  Table table{{drive_column("syringe", true), drive_column("axis", true), drive_column("ratio [-]", false),
+               drive_column("pressure [kPa]", false), drive_column("plunger [mm]", false),
+               drive_column("limits [mm]", false), drive_column("steps from home", false),
+               drive_column("speed [mm/s]", false), drive_column("limit [mm/s]", false)}};
+  for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i) {
+    const drive::Syringe& syringe = plan.machine.syringes[i];
+    const drive::SyringeUse use = drive::use_of_syringe(plan, i);
+    table.rows.push_back({printable(syringe.name), std::string(1, syringe.axis),
+                          decimal(use.lowest_ratio, 4) + " to " + decimal(use.highest_ratio, 4),
+                          range_text(use.lowest_kpa, use.highest_kpa), range_text(use.lowest_mm, use.highest_mm),
+                          range_text(syringe.lowest_mm, syringe.highest_mm),
+                          std::to_string(use.lowest) + " to " + std::to_string(use.highest),
+                          decimal(use.fastest_mm_per_s, 2), decimal(syringe.max_speed_mm_per_s, 2)});
+  }
+  return table;
+}
+
+Table plunger_table(const drive::Plan& plan) {
+  Table table{{drive_column("row", false)}};
+  if (plan.motion.timed) table.columns.push_back(drive_column("t [s]", false));
+  for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i) {
+    const std::string name = printable(plan.machine.syringes[i].name);
+    for (const char* title : {" [-]", "pressure [kPa]", "out of the syringe [mL]", "plunger [mm]", "leads to [-]"})
+      table.columns.push_back(drive_column(title[0] == ' ' ? name + title : title, false));
+  }
+  for (const CommandRow& row : plan.commands.rows) {
+    table.rows.push_back({std::to_string(row.line)});
+    if (plan.motion.timed) table.rows.back().push_back(number(*row.time_s, 6));
+  }
+  constexpr double mm3_per_ml = 1000;
+  for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i) {
+    const std::vector<drive::PlungerRow> rows = drive::plunger_rows(plan, i);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      for (const std::string& cell :
+           {decimal(rows[k].ratio, 5), decimal(rows[k].gauge_kpa, 3), decimal(rows[k].volume_mm3 / mm3_per_ml, 4),
+            decimal(rows[k].plunger_mm, 4), decimal(rows[k].reached, 5)})
+        table.rows[k].push_back(cell);
+  }
+  return table;
+}
+
 Table chamber_table(const drive::Plan& plan) {
   Table table{{drive_column("chamber", true), drive_column("channel", true), drive_column("pressure [kPa]", false),
                drive_column("limits [kPa]", false)}};
@@ -49,10 +92,10 @@ std::string times_text(const drive::Plan& plan) {
   std::string text = counted(plan.commands.rows.size(), "row");
   if (plan.motion.timed)
     text += ", " + number(*plan.commands.rows.back().time_s - *plan.commands.rows.front().time_s, 6) + " s";
-  else if (!plan.machine.tendons.empty())
+  else if (plan.has_motors())
     text += " without times: " + number(plan.motion.seconds, 4) + " s at the approach speed of " +
             number(plan.machine.approach_speed_mm_per_s) + " mm/s";
-  if (plan.machine.tendons.empty()) return text;
+  if (!plan.has_motors()) return text;
   text += ", after an approach of " + number(drive::seconds_of(plan.motion.approach), 4) + " s from home";
   if (!plan.motion.back.empty())
     text += "; the way back home takes " + number(drive::seconds_of(plan.motion.back), 4) + " s";

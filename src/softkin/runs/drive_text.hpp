@@ -9,9 +9,13 @@ namespace softkin::runs {
 
 // What softkin drive says.
 
-/// A line each of the tendons and the chambers that are driven: what is asked of them, and their limits.
+/// A line each of the tendons, syringes and chambers that are driven: what is asked of them, and their limits.
 [[nodiscard]] Table tendon_table(const drive::Plan& plan);
+[[nodiscard]] Table syringe_table(const drive::Plan& plan);
 [[nodiscard]] Table chamber_table(const drive::Plan& plan);
+
+/// A line for each row of the commands: where the plungers stand, and the ratios that follow from that.
+[[nodiscard]] Table plunger_table(const drive::Plan& plan);
 
 /// "9 rows, 12 s, after an approach of 0.5 s from home; 10 lines of G-code".
 [[nodiscard]] std::string times_text(const drive::Plan& plan);

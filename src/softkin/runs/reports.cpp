@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <softkin/core/target.hpp>
+#include <softkin/drive/use.hpp>
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
@@ -225,6 +226,34 @@ Json tendon_json(const drive::Plan& plan, std::size_t index) {
           {"backlash_mm", tendon.backlash_mm}};
 }
 
+Json syringe_json(const drive::Plan& plan, std::size_t index, bool whole) {
+  const drive::Syringe& syringe = plan.machine.syringes[index];
+  const drive::SyringeUse use = drive::use_of_syringe(plan, index);
+  Json json = {{"axis", std::string(1, syringe.axis)},
+               {"chamber_mm3", syringe.air.chamber_mm3},
+               {"syringe_mm3", syringe.air.syringe_mm3},
+               {"dead_volume_mm3", syringe.air.tube_mm3},
+               {"atmosphere_kPa", syringe.air.atmosphere_kPa},
+               {"plunger_mm3_per_mm", syringe.mm3_per_mm},
+               {"plunger_mm", {use.lowest_mm, use.highest_mm}},
+               {"travel_limits_mm", {syringe.lowest_mm, syringe.highest_mm}},
+               {"steps", {use.lowest, use.highest}},
+               {"speed_mm_per_s", use.fastest_mm_per_s},
+               {"max_speed_mm_per_s", syringe.max_speed_mm_per_s},
+               {"max_acceleration_mm_per_s2", syringe.max_acceleration_mm_per_s2},
+               {"backlash_mm", syringe.backlash_mm},
+               {"ratio_error", use.error}};
+  if (!whole) return json;
+  for (const drive::PlungerRow& row : drive::plunger_rows(plan, index))
+    json["rows"].push_back({{"line", row.line},
+                            {"ratio", row.ratio},
+                            {"pressure_kPa", row.gauge_kpa},
+                            {"plunger_mm", row.plunger_mm},
+                            {"volume_mm3", row.volume_mm3},
+                            {"leads_to", row.reached}});
+  return json;
+}
+
 Json stream_json(const drive::GcodeProgram& program, const drive::StreamReport& report) {
   Json json = {{"end", drive::name_of(report.end)},
                {"message", report.message},
@@ -315,6 +344,8 @@ std::string drive_report(const std::string& scene, const drive::Plan& plan, bool
   if (map != nullptr) json["pressures_by_map"] = map_json(*map);
   for (std::size_t i = 0; i < machine.tendons.size(); ++i)
     json["tendons"][machine.tendons[i].name] = tendon_json(plan, i);
+  for (std::size_t i = 0; i < machine.syringes.size(); ++i)
+    json["syringes"][machine.syringes[i].name] = syringe_json(plan, i, whole);
   for (std::size_t i = 0; i < machine.chambers.size(); ++i) {
     const drive::Chamber& chamber = machine.chambers[i];
     const auto [low, high] = drive::pressure_range(plan, i);
@@ -323,7 +354,7 @@ std::string drive_report(const std::string& scene, const drive::Plan& plan, bool
                                       {"limits_kPa", {chamber.low_kpa, chamber.high_kpa}}};
   }
   json["rows"] = plan.commands.rows.size();
-  if (!machine.tendons.empty()) {
+  if (plan.has_motors()) {
     json["approach_s"] = drive::seconds_of(plan.motion.approach);
     json["motion_s"] = plan.motion.seconds;
     json["lines"] = plan.program.lines.size();

@@ -57,28 +57,66 @@ char axis(const Node& node) {
   return letter[0];
 }
 
+const scene::Keys motor_keys{"actuator",  "axis",        "steps_per_revolution", "steps_per_mm",
+                             "direction", "backlash_mm", "max_speed_mm_per_s",   "max_acceleration_mm_per_s2"};
+
+scene::Keys with_motor_keys(std::initializer_list<const char*> more) {
+  scene::Keys keys = motor_keys;
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+/// turn: the key that says what a revolution of the motor moves.
+void read_motor(const Map& map, const char* turn, scene::Names& actuators, scene::Names& axes, MotorSpec& motor) {
+  motor.actuator = actuators.add(map.at("actuator"));
+  motor.axis = axis(map.at("axis"));
+  (void)axes.add(map.at("axis"));
+  motor.steps_per_revolution = optional<double>(map, "steps_per_revolution", scene::positive);
+  if (motor.steps_per_revolution && map.find(turn) == nullptr)
+    scene::fail(map.at("steps_per_revolution"), std::string("steps_per_revolution needs ") + turn + " beside it");
+  motor.steps_per_mm = optional<double>(map, "steps_per_mm", scene::positive);
+  motor.direction = optional<int>(map, "direction", direction);
+  motor.backlash_mm = optional<double>(map, "backlash_mm", not_negative);
+  motor.max_speed_mm_per_s = optional<double>(map, "max_speed_mm_per_s", scene::positive);
+  motor.max_acceleration_mm_per_s2 = optional<double>(map, "max_acceleration_mm_per_s2", scene::positive);
+}
+
 TendonSpec read_tendon(const Node& node, scene::Names& actuators, scene::Names& axes) {
-  const Map map(node, {"actuator", "axis", "rest_length_mm", "drum_radius_mm", "steps_per_revolution", "steps_per_mm",
-                       "direction", "slack_offset_mm", "backlash_mm", "length_limits_mm", "max_speed_mm_per_s",
-                       "max_acceleration_mm_per_s2"});
+  const Map map(node, with_motor_keys({"rest_length_mm", "drum_radius_mm", "slack_offset_mm", "length_limits_mm"}));
   TendonSpec tendon;
   tendon.origin = node.origin;
-  tendon.actuator = actuators.add(map.at("actuator"));
-  tendon.axis = axis(map.at("axis"));
-  (void)axes.add(map.at("axis"));
+  read_motor(map, "drum_radius_mm", actuators, axes, tendon);
   tendon.rest_length_mm = optional<double>(map, "rest_length_mm", scene::positive);
   tendon.drum_radius_mm = optional<double>(map, "drum_radius_mm", scene::positive);
-  tendon.steps_per_revolution = optional<double>(map, "steps_per_revolution", scene::positive);
-  if (tendon.steps_per_revolution && !tendon.drum_radius_mm)
-    scene::fail(map.at("steps_per_revolution"), "steps_per_revolution needs drum_radius_mm beside it");
-  tendon.steps_per_mm = optional<double>(map, "steps_per_mm", scene::positive);
-  tendon.direction = optional<int>(map, "direction", direction);
   tendon.slack_offset_mm = optional<double>(map, "slack_offset_mm", not_negative);
-  tendon.backlash_mm = optional<double>(map, "backlash_mm", not_negative);
   tendon.length_limits_mm = optional<std::array<double, 2>>(map, "length_limits_mm", length_limits);
-  tendon.max_speed_mm_per_s = optional<double>(map, "max_speed_mm_per_s", scene::positive);
-  tendon.max_acceleration_mm_per_s2 = optional<double>(map, "max_acceleration_mm_per_s2", scene::positive);
   return tendon;
+}
+
+/// By one of two keys.
+double ml_per_mm(const Map& map, const Node& node) {
+  const Node *area = map.find("plunger_area_mm2"), *volume = map.find("mL_per_mm");
+  if ((area == nullptr) == (volume == nullptr))
+    scene::fail(node, node.name + (area != nullptr ? " has both 'plunger_area_mm2' and 'mL_per_mm': give one of them"
+                                                   : " needs key 'plunger_area_mm2' or 'mL_per_mm'"));
+  constexpr double ml_per_mm3 = 1e-3;
+  return area != nullptr ? scene::positive(*area) * ml_per_mm3 : scene::positive(*volume);
+}
+
+SyringeSpec read_syringe(const Node& node, scene::Names& actuators, scene::Names& axes) {
+  const Map map(node, with_motor_keys({"chamber_mL", "syringe_mL", "dead_volume_mL", "plunger_area_mm2", "mL_per_mm",
+                                       "lead_mm", "travel_limits_mm", "limits_kPa"}));
+  SyringeSpec syringe;
+  syringe.origin = node.origin;
+  read_motor(map, "lead_mm", actuators, axes, syringe);
+  syringe.chamber_mL = optional<double>(map, "chamber_mL", scene::positive);
+  syringe.syringe_mL = scene::positive(map.at("syringe_mL"));
+  syringe.dead_volume_mL = optional<double>(map, "dead_volume_mL", not_negative);
+  syringe.mL_per_mm = ml_per_mm(map, node);
+  syringe.lead_mm = optional<double>(map, "lead_mm", scene::positive);
+  syringe.travel_limits_mm = optional<std::array<double, 2>>(map, "travel_limits_mm", limits);
+  syringe.limits_kpa = optional<std::array<double, 2>>(map, "limits_kPa", limits);
+  return syringe;
 }
 
 ChamberSpec read_chamber(const Node& node, scene::Names& actuators, scene::Names& channels) {
@@ -92,12 +130,14 @@ ChamberSpec read_chamber(const Node& node, scene::Names& actuators, scene::Names
 }
 
 /// Which length a feed rate is of: the board's own settings decide it where both families move.
-void check_families(const Node& node, const std::vector<TendonSpec>& tendons) {
+void check_families(const Node& node, const HardwareSpec& spec) {
   char first = 0, second = 0;
-  for (const TendonSpec& tendon : tendons) {
-    if (std::string("ABC").find(tendon.axis) != std::string::npos) first = tendon.axis;
-    if (std::string("UVW").find(tendon.axis) != std::string::npos) second = tendon.axis;
-  }
+  const auto look = [&](const MotorSpec& motor) {
+    if (std::string("ABC").find(motor.axis) != std::string::npos) first = motor.axis;
+    if (std::string("UVW").find(motor.axis) != std::string::npos) second = motor.axis;
+  };
+  for (const TendonSpec& tendon : spec.tendons) look(tendon);
+  for (const SyringeSpec& syringe : spec.syringes) look(syringe);
   if (first && second)
     scene::fail(node, std::string("axes ") + first + " and " + second +
                           ": beside X, Y, Z use A, B, C or U, V, W, not both; how fast a board moves both together "
@@ -111,7 +151,7 @@ HardwareSpec read_hardware(const std::filesystem::path& path) {
   scene::check_version(*root, "softkin_hardware", "hardware",
                        "a hardware file must be a map that begins with 'softkin_hardware: 1'",
                        "a hardware file needs key 'softkin_hardware', its version: 'softkin_hardware: 1'");
-  const Map map(*root, {"softkin_hardware", "board", "tendons", "chambers"});
+  const Map map(*root, {"softkin_hardware", "board", "atmosphere_kPa", "tendons", "syringes", "chambers"});
   HardwareSpec spec;
   spec.file = path.string();
   scene::Names actuators, axes, channels;
@@ -122,8 +162,13 @@ HardwareSpec read_hardware(const std::filesystem::path& path) {
   }
   if (const Node* node = map.find("tendons")) {
     for (const auto& item : scene::list(*node)) spec.tendons.push_back(read_tendon(*item, actuators, axes));
-    check_families(*node, spec.tendons);
+    check_families(*node, spec);
   }
+  if (const Node* node = map.find("syringes")) {
+    for (const auto& item : scene::list(*node)) spec.syringes.push_back(read_syringe(*item, actuators, axes));
+    check_families(*node, spec);
+  }
+  spec.atmosphere_kPa = optional<double>(map, "atmosphere_kPa", scene::positive);
   if (const Node* node = map.find("chambers"))
     for (const auto& item : scene::list(*node)) spec.chambers.push_back(read_chamber(*item, actuators, channels));
   return spec;

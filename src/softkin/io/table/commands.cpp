@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
@@ -7,6 +8,7 @@
 #include <softkin/io/json_text.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/table/commands.hpp>
+#include <softkin/io/table/coupled_curves_file.hpp>
 #include <softkin/io/table/csv.hpp>
 #include <softkin/model/names.hpp>
 #include <utility>
@@ -158,7 +160,10 @@ class CommandReader {
           pressures_.empty() ? Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size())) : pressures_[row];
       commands_.rows.push_back({steps[row].actuation, pressures, steps[row].time, steps[row].line});
     }
-    if (!report.empty()) take_report(report);
+    if (std::filesystem::path(report).extension() == ".csv")
+      take_coupled(report);
+    else if (!report.empty())
+      take_report(report);
     return std::move(commands_);
   }
 
@@ -204,6 +209,33 @@ class CommandReader {
     for (std::size_t a = 0; a < model_.actuators.size(); ++a)
       if (is_commanded_by_volume(model_.actuators[a]) && column == model_.actuators[a].name + pressure_end) return a;
     return std::nullopt;
+  }
+
+  /// Pressures of a measured table, of which each chamber's ratio is a function of all.
+  void take_coupled(const std::string& file) {
+    const std::vector<std::size_t> chambers = chambers_without_pressures(model_, commands_, file);
+    const CoupledCurves curves = read_coupled_curves(model_, file);
+    if (curves.chambers != chambers)
+      throw InvalidInput({file}, "it is of chambers " + names_of(curves.chambers) + ", but " + commands_.file +
+                                     " commands " + names_of(chambers) + " by volume");
+    for (CommandRow& row : commands_.rows) {
+      Eigen::VectorXd asked(static_cast<Index>(chambers.size()));
+      for (std::size_t k = 0; k < chambers.size(); ++k)
+        asked[static_cast<Index>(k)] = row.actuation[static_cast<Index>(chambers[k])];
+      const std::vector<Eigen::VectorXd> found = curves.pressures_for(asked);
+      if (found.size() != 1)
+        throw InvalidInput({commands_.file, row.line}, (found.empty() ? "no pressures" : "several pressures") +
+                                                           std::string(" within ") + file + " lead to its ratios");
+      for (std::size_t k = 0; k < chambers.size(); ++k)
+        row.pressures_kpa[static_cast<Index>(chambers[k])] = found.front()[static_cast<Index>(k)];
+    }
+    for (const std::size_t a : chambers) commands_.pressure_known[a] = true;
+  }
+
+  [[nodiscard]] std::string names_of(const std::vector<std::size_t>& chambers) const {
+    std::string text;
+    for (const std::size_t a : chambers) text += (text.empty() ? "'" : ", '") + model_.actuators[a].name + "'";
+    return text;
   }
 
   void take_report(const std::string& file) {

@@ -30,7 +30,8 @@ struct ActuationStep {
 
 /// Reads a file of commands, and the pressures of chambers that are commanded by volume: from columns air_pressure_kPa,
 /// from columns that command by a measured curve (air_kPa), or from the report of the run that made the commands
-/// (empty: none), where a measured curve's comes before the model's.
+/// (empty: none), where a measured curve's comes before the model's; or, where that ends in .csv, from a measured table
+/// of coupled chambers (coupled_curves_file.hpp).
 ///
 /// throws  InvalidInput naming file and line: what fk --path refuses; pressures of other actuators or given twice; a
 ///         report of other commands
