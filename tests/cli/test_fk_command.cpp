@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <softkin/io/mesh/vtk.hpp>
@@ -228,56 +227,6 @@ TEST(FkCommand, AndersonChangesTheWayNotTheShape) {
   for (int axis = 0; axis < 3; ++axis)
     for (const json& other : {printed, fast})
       EXPECT_NEAR(other["markers"]["tip"][axis], newton["markers"]["tip"][axis], 1e-3);
-}
-
-TEST(FkCommand, StopsAsPublished) {
-  const BlockFolder folder;
-  const std::string report = folder / "r.json";
-  const ProgramResult told =
-      run_fk(folder.scene, {"--set", "air=1.5", "--solver", "local-global", "--as-published", "--report", report});
-  EXPECT_EQ(told.exit_code, 0) << told.errors;
-  EXPECT_NE(told.output.find("\nstopped as published: no marker moved by 0.032 mm in the last iteration; this is no "
-                             "equilibrium\n"),
-            std::string::npos)
-      << told.output;
-  const json stopped = json::parse(read_text(report)), step = stopped["steps"][0];
-  EXPECT_EQ(stopped["solver"]["as_published"], true);
-  EXPECT_EQ(stopped["solver"]["anderson"], 0);
-  EXPECT_GE(step["iterations"], 10);
-  EXPECT_EQ(step["tolerance_mm"], 0.032);
-  const json newton = json::parse(run_fk(folder.scene, {"--set", "air=1.5", "--json"}).output);
-  EXPECT_FALSE(newton["solver"].contains("as_published"));
-  double off = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    off = std::max(off, std::abs(step["markers"]["tip"][axis].get<double>() -
-                                 newton["steps"][0]["markers"]["tip"][axis].get<double>()));
-  EXPECT_GT(off, 0.032);  // the step is no error
-}
-
-/// The paper's authors publish chambers and handle in files beside the mesh; without them the scene has nothing to name.
-TEST(FkCommand, NamesTheSidecarsThatATetMeshLacks) {
-  const TemporaryFolder folder;
-  folder.write("soro_body.tet", "5 vertices\n2 tets\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n10 10 10\n4 0 1 2 3\n4 1 2 3 4\n");
-  const std::string head =
-                        "softkin: 1\nmesh: {file: soro_body.tet}\nmaterials: [{shape_ratio: 1}]\nmarkers: [{name: "
-                        "tip, point: [6, 6, 6]}]\nfixed: [{",
-                    air = "actuators: [{name: air, kind: pneumatic, region: chamber1, range: [1, 2]}]\n",
-                    vertices = "box: [[-1, -1, -1], [11, 11, 0.1]]}]\n";
-  const std::string looked = "there is no soro_body_chamber.txt and no soro_chamber.txt beside it";
-  const ProgramResult refused = run_program({"fk", folder.write("a.yaml", head + vertices + air)});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.errors.find("there is no region 'chamber1'"), std::string::npos) << refused.errors;
-  EXPECT_NE(refused.errors.find(looked), std::string::npos) << refused.errors;
-  const ProgramResult warned = run_program({"fk", folder.write("b.yaml", head + vertices)});
-  EXPECT_EQ(warned.exit_code, 0) << warned.errors;
-  EXPECT_NE(warned.output.find("\nwarning: no chambers of soro_body.tet are known: " + looked), std::string::npos)
-      << warned.output;
-  folder.write("soro_chamber.txt", "0:1:\n1:0:\n");
-  folder.write("soro_rigid_handle.txt", "0:1:0:\n1:1:0:\n2:1:0:\n3:0:0:\n4:0:0:\n");
-  const ProgramResult blown =
-      run_program({"fk", folder.write("c.yaml", head + "region: handle}]\n" + air), "--set", "air=1.2"});
-  EXPECT_EQ(blown.exit_code, 0) << blown.errors;
-  EXPECT_EQ(blown.output.find("warning: no chambers"), std::string::npos) << blown.output;
 }
 
 TEST(FkCommand, NotConvergingIsMarkedEverywhere) {
