@@ -32,6 +32,7 @@ struct FkOptions : SolveOptions, RunOptions, MapUse {
   std::vector<std::string> settings;  // ACTUATOR=VALUE
   std::vector<std::string> turn;      // two markers
   double beyond = 0;                  // volume or length over that at rest; 0: not given
+  bool as_published = false;
 
   [[nodiscard]] bool series() const { return lower_extension(output) == ".pvd"; }
   /// The files to write; a path has so many steps.
@@ -75,12 +76,27 @@ void add_options(CLI::App& command, FkOptions& options) {
       "Where a pressure or tension comes to its maximum, go on beyond\nit, where it falls, to this volume or length "
       "over that at rest;\nphysical (default: end at the maximum)",
       positive_ratio());
+  command.add_flag(
+      "--as-published", options.as_published,
+      "local-global: stop where the program of the paper's authors does,\nfrom the tenth iteration on when "
+      "no marker moves by 0.032 mm,\nwithout acceleration and far from the equilibrium");
   add_map_use(command, options);
   add_force(command, options);
   add_view(command, options.show);
   add_solver(command, options);
   add_run(command, options, "Go on where the same command was interrupted; needs --path,\n--report and -o F.pvd",
           "Print the report instead of the table");
+}
+
+void check_as_published(const FkOptions& options) {
+  if (!options.as_published) return;
+  if (options.solver() != Solver::local_global)
+    throw InvalidInput("--as-published stops Algorithm 1: it needs --solver local-global");
+  if (options.anderson.value_or(0) > 0)
+    throw InvalidInput("--as-published is Algorithm 1 without acceleration: leave --anderson out");
+  if (options.tolerance_mm > 0)
+    throw InvalidInput("--as-published has a tolerance of its own: leave --solver-tolerance out");
+  if (!options.map.empty()) throw InvalidInput("--as-published is for the solver, not for a map: leave --map out");
 }
 
 void check_usage(const FkOptions& options) {
@@ -94,6 +110,7 @@ void check_usage(const FkOptions& options) {
     throw InvalidInput("--plot draws the steps of a path: it needs --path F.csv");
   check_view(options.show);
   check_solver(options);
+  check_as_published(options);
   if (options.resume && (options.path.empty() || !options.series() || options.report.empty()))
     throw InvalidInput("--resume needs the --path, --report and --output F.pvd of the run that was interrupted");
 }
@@ -107,7 +124,7 @@ class FkRun {
         options_(options),
         job_(model, answers.statics(), steps, options.path, solving(options), std::move(start)),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
-             runs::report_head(model, options.scene, options.statics(), answers.map()), {}),
+             runs::report_head(model, options.scene, solving(options), answers.map()), {}),
         page_(options.page, model, runs::kept_command()),
         line_(runs::read_marker_line(model, options.turn)),
         turn_(model, line_),
@@ -140,6 +157,8 @@ class FkRun {
     StaticsOptions statics = options.statics();
     statics.trace = !options.trace.empty();
     statics.beyond = options.beyond;
+    statics.as_published = options.as_published;
+    if (options.as_published) statics.anderson = 0;
     return statics;
   }
 
@@ -197,6 +216,9 @@ class FkRun {
 
   void say_findings() {
     say(findings_text(model_, run_.last()));
+    if (options_.as_published)
+      say("stopped as published: no marker moved by " + number(PublishedStop::move_mm) +
+          " mm in the last iteration; this is no equilibrium");
     if (!options_.output.empty()) say("shapes: " + options_.output + " (open it in ParaView)");
     if (!options_.show.image.empty()) say("picture: " + options_.show.image);
     if (!options_.show.plot.empty()) say("plot: " + options_.show.plot);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
@@ -156,6 +157,7 @@ std::string text_of(const MeshConversion& result) {
 template <class Result>
 void show(const Result& result, const MeshOptions& options) {
   print(options.json ? to_json(result) + "\n" : text_of(result));
+  for (const std::string& warning : result.warnings) std::fprintf(stderr, "softkin: warning: %s\n", warning.c_str());
 }
 
 int run_info(const MeshOptions& options) {

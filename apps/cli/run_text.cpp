@@ -231,6 +231,7 @@ std::string summary(const Model& model, const std::string& solver) {
   if (!model.prisms.empty()) text += ", " + grouped(model.prisms.size()) + " prisms";
   text += std::string("; ") + formulation_name(model.formulation) + " formulation";
   if (model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
+  if (model.weights != ElementWeights::printed) text += std::string(" (weights ") + weights_name(model.weights) + ")";
   if (!solver.empty()) text += ", solver " + solver;
   for (const FreeBody& body : model.bodies)
     text += "\nbody " + body.name + ": " + number(1000 * body.mass_kg) + " g; held while " + body.name +

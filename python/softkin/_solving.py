@@ -52,13 +52,14 @@ def _options(
     stable: bool,
     elapsed_s: float | None = None,
     beyond: float | None = None,
+    as_published: bool = False,
 ) -> _core.SolveOptions:
     if tolerance_mm is not None and not tolerance_mm > 0:
         raise ValueError(f"the tolerance must be a length > 0 in mm, not {tolerance_mm}")
     if beyond is not None and not beyond > 0:
         raise ValueError(f"beyond must be a volume or length > 0 over that at rest, not {beyond}")
     return _core.SolveOptions(
-        solver, tolerance_mm or 0.0, max_iterations, anderson, threads, stable, elapsed_s, beyond or 0.0
+        solver, tolerance_mm or 0.0, max_iterations, anderson, threads, stable, elapsed_s, beyond or 0.0, as_published
     )
 
 
@@ -161,6 +162,7 @@ class Solving:
         threads: int = 0,
         stable: bool = False,
         beyond: float | None = None,
+        as_published: bool = False,
         elapsed_s: float | None = None,
         budget_s: float | None = None,
         progress: ProgressFunction | None = None,
@@ -182,6 +184,8 @@ class Solving:
         stable          physical: leave an unstable equilibrium along its lowest mode for a stable one
         beyond          physical: where a pressure or tension comes to its maximum, the way goes on beyond it, where it
                         falls, to this volume or length over that at rest [-]; None: it ends at the maximum
+        as_published    local-global: stop where the program of the paper's authors does, without acceleration: from the
+                        tenth iteration on when no marker moves by 0.032 mm; no equilibrium
         elapsed_s       viscous: time since the shape `start`, which the material remembers, without one since a long
                         rest [s]; 0: the instant answer; None: the relaxed one, whatever was before
         budget_s        ends after so long, 'not converged', with the last good shape on the way [s]; None: never
@@ -189,7 +193,8 @@ class Solving:
         returns         not converging is its status
         """
         options = _within(
-            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s, beyond), budget_s
+            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s, beyond, as_published),
+            budget_s,
         )
         by = self._by(map, polish, options)
         return self._solve(self._actuation(actuation, commands), start, by, options, progress)

@@ -137,6 +137,7 @@ class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
         obstacles: Entries = (),
         bodies: Entries = (),
         formulation: str | None = None,
+        weights: str | None = None,
         units: str = "mm",
         order: int | None = None,
         curve: bool | Mapping[str, Any] | Sequence[Any] | None = None,
@@ -152,6 +153,7 @@ class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
                      {"prisms": ...}; or a shape: {"box": ((x, y, z), (x, y, z))}, "sphere", "cylinder", "halfspace"
         markers      entries, or by name: a point, or a region's name
         formulation  'physical' or 'target-shape'; None: physical where a material has elastic constants
+        weights      of target shapes: 'printed' (None) or 'mesh-independent'
         units        of every length given here: mm, cm, m, um or in
         order        2: tetrahedra of order 1 get nodes on their edges
         curve        of order 2: True moves the nodes on the surface's edges onto a smooth surface through the vertices;
@@ -170,6 +172,7 @@ class Robot(_Walks, _Grasps, _Workspaces, _Maps, _Pages):
             "units": {"length": units},
             "mesh": {"order": order, "curve": curve, "accept_errors": accept_errors},
             "formulation": formulation,
+            "weights": weights,
             "regions": [shape for shape in shapes if shape is not None],
             "materials": materials,
             "void": void,

@@ -66,6 +66,7 @@ class Session(Solving):
         threads: int = 0,
         stable: bool = False,
         beyond: float | None = None,
+        as_published: bool = False,
         elapsed_s: float | None = None,
         budget_s: float | None = None,
         progress: ProgressFunction | None = None,
@@ -73,7 +74,8 @@ class Session(Solving):
     ) -> Shape:
         """As Robot.solve, from the last equilibrium where no start is given."""
         options = _within(
-            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s, beyond), budget_s
+            _options(solver, tolerance_mm, max_iterations, anderson, threads, stable, elapsed_s, beyond, as_published),
+            budget_s,
         )
         by = self._by(map, polish, options)
         found = self._solve(

@@ -47,7 +47,7 @@ void members(A& archive, Equilibrium& e) {
 template <class A>
 void members(A& archive, StaticsOptions& o) {
   archive(o.solver, o.step_tolerance_mm, o.max_iterations, o.anderson, o.threads, o.keep_history, o.stable,
-          o.reuse_factor, o.elapsed_s);
+          o.reuse_factor, o.elapsed_s, o.as_published);
   remembered(archive, o.history);
 }
 

@@ -69,7 +69,7 @@ void bind_solve(nb::module_& module) {
       .def(
           "__init__",
           [](StaticsOptions* self, const std::string& solver, double tolerance_mm, int max_iterations, int anderson,
-             int threads, bool stable, std::optional<double> elapsed_s, double beyond) {
+             int threads, bool stable, std::optional<double> elapsed_s, double beyond, bool as_published) {
             if (solver != "newton" && solver != "local-global")
               throw InvalidInput("solver must be 'newton' or 'local-global', not '" + solver + "'");
             auto* options = new (self) StaticsOptions();
@@ -80,10 +80,12 @@ void bind_solve(nb::module_& module) {
             options->threads = threads;
             options->stable = stable;
             options->beyond = beyond;
+            options->as_published = as_published;
             options->elapsed_s = elapsed_s.value_or(options->elapsed_s);
           },
           nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations"), nb::arg("anderson"),
-          nb::arg("threads"), nb::arg("stable"), nb::arg("elapsed_s").none(), nb::arg("beyond"))
+          nb::arg("threads"), nb::arg("stable"), nb::arg("elapsed_s").none(), nb::arg("beyond"),
+          nb::arg("as_published"))
       .def(
           "within",
           [](StaticsOptions options, double budget_s) {
@@ -97,7 +99,7 @@ void bind_solve(nb::module_& module) {
             const StaticsOptions usual;
             return options.solver != usual.solver || options.step_tolerance_mm != usual.step_tolerance_mm ||
                    options.max_iterations != usual.max_iterations || options.stable || options.beyond > 0 ||
-                   options.elapsed_s != usual.elapsed_s;
+                   options.as_published || options.elapsed_s != usual.elapsed_s;
           },
           "Is something asked that only the solver can do?");
   module.def("solve", &solve, nb::arg("robot"), nb::arg("session").none(), nb::arg("actuation"),

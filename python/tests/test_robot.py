@@ -152,6 +152,19 @@ def test_wrong_scenes(tmp_path: Path) -> None:
         softkin.load(scene, formulation="x")
 
 
+def test_weights() -> None:
+    vertices, tetrahedra = block((2, 2, 2), (10, 10, 10))
+
+    def made(weights: str | None) -> softkin.Robot:
+        return softkin.Robot(
+            vertices, tetrahedra, materials=[{"shape_ratio": 1}], fixed=[{"box": [[-1, -1, -1], [1, 11, 11]]}], weights=weights
+        )
+
+    assert made(None).fingerprint == made("printed").fingerprint != made("mesh-independent").fingerprint
+    with pytest.raises(softkin.InvalidInput, match="must be one of 'printed', 'mesh-independent', not 'even'"):
+        made("even")
+
+
 def test_formulation_and_forces_of_a_scene(examples: Path) -> None:
     scene = examples / "three_tendon_finger/three_tendon_finger.yaml"
     assert softkin.load(scene).formulation == "physical"

@@ -222,6 +222,7 @@ def test_target_shapes() -> None:
         materials=[{"shape_ratio": 0.5}],
         fixed=[{"halfspace": {"point": (0, 0, 0), "normal": (-1, 0, 0)}}],
         actuators=[{"name": "t", "kind": "cable", "points": [(0, 10, 20), (80, 10, 20)], "range": (0.5, 1)}],
+        markers={"tip": (80, 10, 10)},
     )
     shape = robot.solve(t=0.9)
     assert robot.formulation == "target-shape" and shape.converged
@@ -232,6 +233,13 @@ def test_target_shapes() -> None:
     np.testing.assert_allclose(algorithm.positions, shape.positions, atol=0.01)
     lazy = robot.solve(t=0.9, solver="local-global", max_iterations=1, anderson=0)
     assert lazy.status == "not converged" and lazy.iterations == 1
+    stopped = robot.solve(t=0.9, solver="local-global", as_published=True)
+    assert stopped.converged and stopped.iterations >= 10
+    assert np.abs(stopped.markers["tip"] - shape.markers["tip"]).max() > np.abs(
+        algorithm.markers["tip"] - shape.markers["tip"]
+    ).max()
+    with pytest.raises(softkin.InvalidInput, match="to stop as published is for solver local-global"):
+        robot.solve(t=0.9, as_published=True)
     with pytest.raises(softkin.NotConverged, match="not converged at") as caught:
         lazy.require()
     assert caught.value.shape is lazy

@@ -39,8 +39,9 @@ std::vector<fs::path> documents() {
   for (const auto& entry : fs::directory_iterator(source / "docs"))
     if (entry.path().extension() == ".md" && !entry.path().stem().string().starts_with("python"))
       found.push_back(entry.path());
-  for (const auto& entry : fs::directory_iterator(source / "examples"))
-    if (fs::exists(entry.path() / "README.md")) found.push_back(entry.path() / "README.md");
+  for (const fs::path& folder : {source / "examples", source / "examples" / "paper"})
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (fs::exists(entry.path() / "README.md")) found.push_back(entry.path() / "README.md");
   std::sort(found.begin(), found.end());
   return found;
 }

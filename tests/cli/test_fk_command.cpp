@@ -113,6 +113,16 @@ TEST(FkCommand, RefusesOptions) {
   refused({"--max-iterations", "1e5"}, "--max-iterations: must be an integer");
   refused({"--anderson", "21"}, "--anderson: must be an integer from 0 to 20, not 21");
   refused({"--anderson", "6"}, "--anderson accelerates Algorithm 1: it needs --solver local-global");
+  refused({"--as-published"}, "--as-published stops Algorithm 1: it needs --solver local-global");
+  const auto published_too = [&](const std::vector<std::string>& more, const std::string& message) {
+    std::vector<std::string> options{"--solver", "local-global", "--as-published"};
+    options.insert(options.end(), more.begin(), more.end());
+    refused(options, message);
+  };
+  published_too({"--anderson", "2"}, "--as-published is Algorithm 1 without acceleration: leave --anderson out");
+  published_too({"--solver-tolerance", "0.1"},
+                "--as-published has a tolerance of its own: leave --solver-tolerance out");
+  published_too({"--map", "a.skmap"}, "--as-published is for the solver, not for a map: leave --map out");
   refused({"--solver", "gauss"}, "--solver: gauss not in {newton,local-global}");
   refused({"--formulation", "elastic"}, "--formulation: elastic not in {physical,target-shape}");
   refused({"--formulation", "physical"}, "the material of region 'body' needs elastic constants");

@@ -214,6 +214,27 @@ void expect_same_elements(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.prisms, b.prisms);
 }
 
+TEST(MeshConvert, WarnsWhereATetHasNoSidecar) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.write("a.tet", "4 vertices\n1 tets\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n4 0 1 2 3\n");
+  const std::string warnings =
+      "softkin: warning: no chambers of a.tet are known: there is no a_chamber.txt beside it\n"
+      "softkin: warning: no handle and rigid part of a.tet are known: there is no a_rigid_handle.txt beside it\n";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", mesh}, {"check", mesh}, {"convert", mesh, folder / "a.vtu"}}) {
+    std::vector<std::string> arguments{"mesh"};
+    arguments.insert(arguments.end(), command.begin(), command.end());
+    EXPECT_EQ(run_program(arguments).errors, warnings) << command[0];
+    arguments.insert(arguments.end(), {"--json", "--force-overwrite"});
+    if (command[0] != "convert") arguments.pop_back();
+    EXPECT_EQ(json::parse(run_program(arguments).output)["warnings"].size(), 2u) << command[0];
+  }
+  folder.write("a_chamber.txt", "1\n");
+  const ProgramResult found = run_program({"mesh", "info", mesh});
+  EXPECT_EQ(found.errors, "");
+  EXPECT_FALSE(json::parse(run_program({"mesh", "info", mesh, "--json"}).output).contains("warnings"));
+}
+
 TEST(MeshConvert, GmshKeepsEverything) {
   const TemporaryFolder folder;
   for (const GmshText& sample : {cube(), prism(), quadratic(cube())}) {

@@ -248,6 +248,12 @@ TEST(Scene, FormulationFollowsTheMaterialsUnlessItIsGiven) {
   EXPECT_EQ(formulation("formulation: physical\n" + soft), Formulation::physical);
 }
 
+TEST(Scene, Weights) {
+  EXPECT_EQ(parse_body("").weights, ElementWeights::printed);
+  EXPECT_EQ(parse_body("weights: printed\n").weights, ElementWeights::printed);
+  EXPECT_EQ(parse_body("weights: mesh-independent\n").weights, ElementWeights::mesh_independent);
+}
+
 TEST(Scene, KeysOfThePhysicalFormulationAreAllowedInTheOther) {
   const RobotSpec spec = parse(
       "softkin: 1\nformulation: target-shape\nmesh: {file: quadratic.msh, order: 2}\ngravity: [0, 0, 1]\n"

@@ -115,6 +115,7 @@ TEST(SceneRefusals, KeysAndUnits) {
       {"units: {lenght: m}\n", "did you mean 'length'?", 1},
       {"units: mm\n", "'units' must be a map", 1},
       {"formulation: fem\n", "'formulation' must be one of 'target-shape', 'physical', not 'fem'", 1},
+      {"weights: even\n", "'weights' must be one of 'printed', 'mesh-independent', not 'even'", 1},
       {"markers:\n", "'markers' must be a list, not empty", 1},
       {"materials: {shape_ratio: 1}\n", "'materials' must be a list, not a map", 1},
   });

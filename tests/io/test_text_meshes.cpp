@@ -241,6 +241,46 @@ TEST(TextMeshes, TetWithSidecars) {
   EXPECT_EQ(region_of_dimension(read_tet(path), "chamber", 3).tetrahedra, Indices{1});
 }
 
+TEST(TextMeshes, TetWithSidecarsAsPublished) {
+  TemporaryFolder folder;
+  const auto path = folder.write("soro_body.tet", tet_file);
+  folder.write("soro_chamber.txt", "0:1:0:0:\n1:0:0:1:\n");
+  folder.write("soro_rigid_handle.txt", "0:1:0:\n1:1:0:\n2:0:0:\n3:0:1:\n4:0:0:\n");
+  const Mesh mesh = read_tet(path);
+  EXPECT_EQ(region_of_dimension(mesh, "chamber1", 3).tetrahedra, Indices{0});
+  EXPECT_EQ(region_of_dimension(mesh, "chamber3", 3).tetrahedra, Indices{1});
+  EXPECT_EQ(region_of_dimension(mesh, "handle", 0).vertices, (Indices{0, 1}));
+  EXPECT_EQ(region_of_dimension(mesh, "rigid", 0).vertices, Indices{3});
+  EXPECT_TRUE(mesh.missing.empty());
+
+  folder.write("soro_body_chamber.txt", "0\n1\n");
+  try {
+    (void)read_tet(path);
+    ADD_FAILURE() << "one of two sidecars was taken";
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.what(), path.string() + ": soro_body_chamber.txt and soro_chamber.txt are both there: remove one");
+  }
+  std::filesystem::remove(folder / "soro_chamber.txt");
+  EXPECT_EQ(region_of_dimension(read_tet(path), "chamber", 3).tetrahedra, Indices{1});
+}
+
+TEST(TextMeshes, TetSaysWhichSidecarsItLookedFor) {
+  TemporaryFolder folder;
+  const auto plain = folder.write("finger.tet", tet_file), body = folder.write("soro_body.tet", tet_file);
+  const Mesh alone = read_tet(plain);
+  EXPECT_TRUE(alone.no_sidecars);
+  EXPECT_EQ(alone.missing,
+            (std::vector<std::string>{
+                "no chambers of finger.tet are known: there is no finger_chamber.txt beside it",
+                "no handle and rigid part of finger.tet are known: there is no finger_rigid_handle.txt beside it"}));
+  EXPECT_EQ(
+      read_tet(body).missing.at(0),
+      "no chambers of soro_body.tet are known: there is no soro_body_chamber.txt and no soro_chamber.txt beside it");
+  folder.write("soro_chamber.txt", "0\n1\n");
+  EXPECT_FALSE(read_tet(body).no_sidecars);
+  EXPECT_EQ(read_tet(body).missing.size(), 1u);
+}
+
 TEST(TextMeshes, Sidecar) {
   TemporaryFolder folder;
   const Sidecar numbered = read_sidecar(folder.write("a.txt", "0:0:1:\n1:1:1:\n2:0:0:\n"));

@@ -255,6 +255,14 @@ TEST(Joined, WhatDiffersIsRefused) {
             "pair.yaml:4: robot 'right' (target.yaml) is of the formulation 'target-shape', robot 'left' (block.yaml) "
             "of 'physical': give 'formulation' in this scene");
   EXPECT_EQ(pair(good, target, {"pair.yaml", Formulation::physical, {}, {}}).formulation, Formulation::physical);
+  RobotSpec other = good;
+  other.name = "other.yaml";
+  other.weights = ElementWeights::mesh_independent;
+  EXPECT_EQ(refusal_of_pair(good, other),
+            "pair.yaml:4: robot 'right' (other.yaml) has weights 'mesh-independent', robot 'left' (block.yaml) "
+            "'printed': give 'weights' in this scene");
+  EXPECT_EQ(pair(other, other).weights, ElementWeights::mesh_independent);
+  EXPECT_EQ(pair(good, other, {"pair.yaml", {}, {}, {}, ElementWeights::printed}).weights, ElementWeights::printed);
   quadratic.quadratic = true;
   EXPECT_EQ(refusal_of_pair(quadratic, good),
             "pair.yaml:4: robot 'right' (block.yaml) is of order 1, robot 'left' (block.yaml) of order 2: give both "

@@ -101,6 +101,18 @@ Shape actuated(ActuatorKind kind, const Shape& rest, double ratio) {
   return kind == ActuatorKind::pneumatic ? Shape(std::cbrt(ratio) * rest) : layer_target(rest, ratio);
 }
 
+/// A third of the squared distances of the corners from their centre, by those from each other.
+double squared_size(const Shape& rest) {
+  double sum = 0;
+  for (Index i = 0; i < rest.rows(); ++i)
+    for (Index j = 0; j < i; ++j) sum += (rest.row(i) - rest.row(j)).squaredNorm();
+  return sum / (3.0 * static_cast<double>(rest.rows()));
+}
+
+double weight_of(const Model& model, const Shape& rest, double by_volume) {
+  return model.weights == ElementWeights::printed ? by_volume : by_volume / squared_size(rest);
+}
+
 struct Elements {
   std::vector<Element> all;
 
@@ -108,7 +120,7 @@ struct Elements {
                 const Material& material) {
     Element element{nodes, centred(shape_at(nodes, positions)), centred(shape_at(nodes, model.rest))};
     const double at_rest = volume(element.target), ratio = volume(element.current) / at_rest;
-    element.weight = material.weight * at_rest;
+    element.weight = weight_of(model, element.target, material.weight * at_rest);
     const double soft = 1 - material.shape_ratio;
     // below an eighth of its volume the soft target turns into the rigid one
     const double whole = std::clamp(8 * ratio, 0.0, 1.0);
@@ -120,23 +132,26 @@ struct Elements {
 
   void add_actuator(const Model& model, const Points& positions, const Actuator& actuator, double command,
                     const std::vector<std::vector<EmbeddedPoint>>& parts, const std::vector<double>& weights) {
-    double sum = 0, squares = 0, now = 0;
+    double sum = 0, shares = 0, now = 0;
+    // alike where the mesh must not matter; how many gaps a cable has does not depend on the mesh
+    const bool alike = model.weights == ElementWeights::mesh_independent && actuator.kind != ActuatorKind::cable;
+    const auto share = [alike](double measure) { return alike ? 1 : measure; };
     std::vector<double> at_rest, ratios;
     for (const auto& nodes : parts) {
       at_rest.push_back(measure(actuator.kind, shape_at(nodes, model.rest)));
       const double current = measure(actuator.kind, shape_at(nodes, positions));
       ratios.push_back(current / at_rest.back());
       sum += at_rest.back();
-      squares += at_rest.back() * at_rest.back();
+      shares += share(at_rest.back()) * at_rest.back();
       now += current;
     }
     // a cable's pieces inside the body keep their length
     const double asked = command * actuator.rest_measure - (actuator.rest_measure - sum);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const double free = actuator.least_norm ? ratios[i] + at_rest[i] * (asked - now) / squares : asked / sum;
+      const double free = actuator.least_norm ? ratios[i] + share(at_rest[i]) * (asked - now) / shares : asked / sum;
       Element element{parts[i], centred(shape_at(parts[i], positions)),
                       actuated(actuator.kind, centred(shape_at(parts[i], model.rest)), std::max(least_ratio, free))};
-      element.weight = actuator.weight * weights[i];
+      element.weight = weight_of(model, shape_at(parts[i], model.rest), actuator.weight * weights[i]);
       all.push_back(std::move(element));
     }
   }
@@ -168,7 +183,10 @@ Elements elements_of(const Model& model, const Equilibrium& found) {
     std::vector<double> weights;
     for (const CableGap& gap : actuator.gaps) {
       parts.push_back({actuator.points[gap.segment], actuator.points[gap.segment + 1], gap.apex});
-      weights.push_back(mean_body_volume(model));
+      const double edge =
+          std::sqrt(3 * squared_size(shape_at(parts.back(), model.rest)));  // of as large an equilateral one
+      weights.push_back(model.weights == ElementWeights::printed ? mean_body_volume(model)
+                                                                 : edge * edge * edge / (6 * std::sqrt(2.0)));
     }
     for (const Index e : actuator.tetrahedra) {
       parts.push_back(vertices(model.tetrahedra[e]));

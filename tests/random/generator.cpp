@@ -74,6 +74,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_magnetism(m);
   make_stiff(m);
   make_floor(m);
+  make_weights(m);
   spoil_number(m);
   return std::move(m.made);
 }

@@ -65,5 +65,7 @@ void make_magnetism(Making& m);
 void make_stiff(Making& m);
 /// Some physical robots come to rest on a floor; after all that changes the mesh.
 void make_floor(Making& m);
+/// Some target shapes have weights that do not depend on the mesh.
+void make_weights(Making& m);
 
 }  // namespace softkin::random_robots

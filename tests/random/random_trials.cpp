@@ -5,7 +5,8 @@ namespace softkin::random_robots {
 namespace {
 
 /// Draws of their own, so that robots of the same seed are otherwise what they were.
-constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72;
+constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72,
+                        draws_of_weights = 0x77656967687473;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -30,6 +31,11 @@ void make_stiff(Making& m) {
     materials.push_back(std::move(stiff));
     return;
   }
+}
+
+void make_weights(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_weights);
+  if (!m.physical && draw.chance(0.3)) m.made.spec.weights = ElementWeights::mesh_independent;
 }
 
 void make_floor(Making& m) {

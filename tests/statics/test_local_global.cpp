@@ -104,6 +104,61 @@ TEST(LocalGlobal, EstimatedErrorBoundsTheTrueOne) {
   }
 }
 
+/// Counted by hand: the iterations of Algorithm 1, one by one, until no marker has moved by 0.032 mm, ten at least.
+TEST(LocalGlobal, StopsAsPublishedWhereMarkersHardlyMove) {
+  RobotSpec spec = mixed_robot(true);
+  spec.markers = {{"tip", {Vec3(60, 10, 12), {}}}, {"middle", {Vec3(30, 10, 12), {}}}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions published = local_global();
+  published.as_published = true;
+  StaticsOptions single = local_global();
+  single.anderson = 0;
+  single.max_iterations = 1;
+  std::vector<int> counts;
+  for (const Actuation& asked : {testing::values({1, 1.01, 1}), testing::values({1.9, 2.9, 0.55})}) {
+    const Equilibrium stopped = statics.solve(asked, statics.rest(), published);
+    EXPECT_EQ(stopped.report.status, Status::converged);
+    EXPECT_EQ(stopped.report.tolerance_mm, 0.032);
+    State shape = statics.rest();
+    int iterations = 0;
+    double moved = 1;
+    while (iterations < 10 || moved >= 0.032) {
+      const Points before = shape.positions;
+      shape.positions = statics.solve(asked, shape, single).state.positions;
+      ++iterations;
+      moved = 0;
+      for (const Marker& marker : model.markers)
+        moved = std::max(moved, (marker.point.at(shape.positions) - marker.point.at(before)).norm());
+    }
+    EXPECT_EQ(stopped.report.iterations, iterations);
+    EXPECT_LT(largest_move(stopped.state.positions, shape.positions), 1e-6);  // rotations begin warm there
+    counts.push_back(iterations);
+  }
+  EXPECT_EQ(counts[0], 10);
+  EXPECT_GT(counts[1], 20);
+}
+
+TEST(LocalGlobal, StoppingAsPublishedNeedsMarkersAndAlgorithmOne) {
+  const auto refusal = [](bool marker, Solver solver) -> std::string {
+    RobotSpec spec = finger_robot(true);
+    if (marker) spec.markers = {{"tip", {Vec3(50, 6, 6), {}}}};
+    const Model model = compile(spec);
+    const Statics statics(model);
+    StaticsOptions options;
+    options.solver = solver;
+    options.as_published = true;
+    try {
+      (void)statics.solve(one(1.1), statics.rest(), options);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(true, Solver::newton), "to stop as published is for solver local-global");
+  EXPECT_EQ(refusal(false, Solver::local_global), "to stop as published watches the robot's markers, and it has none");
+}
+
 TEST(LocalGlobal, RigidMotionOfTheSceneMovesTheResult) {
   const RobotSpec spec = mixed_robot(true, 0.5);
   const Mat3 turn = Eigen::AngleAxisd(2.3, Vec3(1, 2, -1).normalized()).toRotationMatrix();

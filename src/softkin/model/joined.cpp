@@ -58,6 +58,17 @@ Formulation common_formulation(const std::vector<PlacedRobot>& robots, const Com
   return first.robot.formulation;
 }
 
+ElementWeights common_weights(const std::vector<PlacedRobot>& robots, const CommonSpec& common) {
+  if (common.weights) return *common.weights;
+  const PlacedRobot& first = robots[0];
+  for (const PlacedRobot& placed : robots)
+    if (placed.robot.weights != first.robot.weights)
+      throw InvalidInput(placed.origin, robot_label(placed) + " has weights '" + weights_name(placed.robot.weights) +
+                                            "', " + robot_label(first) + " '" + weights_name(first.robot.weights) +
+                                            "': give 'weights' in this scene");
+  return first.robot.weights;
+}
+
 void check_orders(const std::vector<PlacedRobot>& robots) {
   const PlacedRobot& first = robots[0];
   for (const PlacedRobot& placed : robots) {
@@ -233,6 +244,7 @@ RobotSpec joined(std::vector<PlacedRobot> robots, const CommonSpec& common) {
   RobotSpec all;
   all.name = common.name;
   all.formulation = common_formulation(robots, common);
+  all.weights = common_weights(robots, common);
   all.gravity = common_gravity(robots, common);
   const auto each = [&](const auto& act) {
     for (PlacedRobot& placed : robots) {

@@ -25,6 +25,7 @@ struct CommonSpec {
   std::optional<Formulation> formulation;
   std::optional<Vec3> gravity;  // [m/s^2]
   Origin gravity_origin;
+  std::optional<ElementWeights> weights{};
 };
 
 /// Several robots, each where it stands, as one.
@@ -33,7 +34,7 @@ struct CommonSpec {
 /// become their members. Meshes that are to be of order 2 are elevated.
 /// robots  in the order of the mesh that is made of theirs
 /// throws  InvalidInput at the robot's origin, with its name and the place in its own scene: contact, formulations,
-///         gravities or orders that differ, supports along some axes that the turn takes to no axes, what
+///         weights, gravities or orders that differ, supports along some axes that the turn takes to no axes, what
 ///         RegionTable refuses
 [[nodiscard]] RobotSpec joined(std::vector<PlacedRobot> robots, const CommonSpec& common);
 

@@ -201,6 +201,7 @@ std::string fingerprint_of(const Model& model) {
   hash.add(model.formulation, model.rest, model.tetrahedra, model.edge_nodes, model.prisms, model.tetrahedron_roles,
            model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
            model.fixed, model.held, model.dead_load);
+  if (model.weights != ElementWeights::printed) hash.add(model.weights);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {
     hash.add(model.magnetism->remanence, model.magnetism->sources);

@@ -115,6 +115,7 @@ struct ElementRole {
 struct Model {
   std::string name;
   Formulation formulation = Formulation::target_shape;
+  ElementWeights weights = ElementWeights::printed;  // target-shape
   Points rest;                          // #V by 3 [mm], every vertex of the mesh, then those of bodies and obstacles
   std::vector<Tetrahedron> tetrahedra;  // without void elements (physical: nor those of chambers); positive volume
   std::vector<EdgeNodes> edge_nodes;    // order 2: of every tetrahedron; order 1: empty

@@ -113,6 +113,10 @@ const char* formulation_name(Formulation formulation) {
   return formulation == Formulation::physical ? "physical" : "target-shape";
 }
 
+const char* weights_name(ElementWeights weights) {
+  return weights == ElementWeights::printed ? "printed" : "mesh-independent";
+}
+
 const char* name_of(Status status) {
   constexpr const char* names[] = {"converged", "not converged", "interrupted", "limit"};
   return names[static_cast<std::size_t>(status)];

@@ -44,6 +44,8 @@ namespace softkin {
 
 [[nodiscard]] const char* law_name(Law law);
 [[nodiscard]] const char* formulation_name(Formulation formulation);
+/// "printed" or "mesh-independent".
+[[nodiscard]] const char* weights_name(ElementWeights weights);
 /// "converged", "not converged", "interrupted" or "limit".
 [[nodiscard]] const char* name_of(Status status);
 

@@ -51,6 +51,10 @@ struct RegionSpec {
 
 enum class Formulation { target_shape, physical };
 
+/// What an element's energy, Eq. (2), is multiplied by beside w. printed: its volume, so that it grows with the square of
+/// the element's size, too; mesh_independent: its volume over that square. Target shapes.
+enum class ElementWeights { printed, mesh_independent };
+
 /// Elastic constants as the user gives them: E and nu for the first three laws; the law's own c10, ... for the others,
 /// with the bulk modulus, or nu in its place (bulk from the small-strain shear modulus, such as 2 (c10 + c01)).
 struct ElasticSpec {
@@ -168,6 +172,7 @@ struct RobotPart {
 struct RobotSpec {
   std::string name;  // the scene's file name, for messages
   Formulation formulation = Formulation::target_shape;
+  ElementWeights weights = ElementWeights::printed;
   Mesh mesh;                        // in mm
   Origin mesh_origin;               // of the entry that names it
   bool accept_mesh_errors = false;  // take doubled or overlapping elements, with a note

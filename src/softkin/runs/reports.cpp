@@ -67,12 +67,17 @@ Json actuators_json(const Model& model) {
 
 Json units_json(const Model& model) {
   const bool physical = model.formulation == Formulation::physical;
+  const bool printed = model.weights == ElementWeights::printed;
   return {{"markers", "mm"},
           {"requested", "the unit of each actuator"},
           {"achieved", "ratio to rest"},
           {"strain", "stretch minus 1"},
-          {"energy", physical ? "mJ" : "mm^5"},
-          {"residual", physical ? "N" : "mm^4"}};
+          {"energy", physical  ? "mJ"
+                     : printed ? "mm^5"
+                               : "mm^3"},
+          {"residual", physical  ? "N"
+                       : printed ? "mm^4"
+                                 : "mm^2"}};
 }
 
 /// What is known of the errors of a map.
@@ -96,6 +101,7 @@ Json solver_json(const StaticsOptions& options, const UsedMap* map) {
                {"tolerance_mm", options.step_tolerance_mm},
                {"max_iterations", options.max_iterations}};
   if (options.solver == Solver::local_global) json["anderson"] = options.anderson;
+  if (options.as_published) json["as_published"] = true;
   if (options.stable) json["stable"] = true;
   if (map != nullptr) json["begun_from_map"] = map_json(*map);
   return json;
@@ -103,22 +109,24 @@ Json solver_json(const StaticsOptions& options, const UsedMap* map) {
 
 Json head_json(const Model& model, const std::string& scene, const StaticsOptions& options,
                const UsedMap* map = nullptr) {
-  return {{"softkin", SOFTKIN_VERSION},
-          {"instruction_set", name_of(target())},
-          {"scene", scene},
-          {"robot_fingerprint", fingerprint_of(model)},
-          {"formulation", formulation_name(model.formulation)},
-          {"materials", materials_json(model)},
-          {"actuators", actuators_json(model)},
-          {"solver", solver_json(options, map)},
-          {"units", units_json(model)},
-          {"mesh",
-           {{"order", model.edge_nodes.empty() ? 1 : 2},
-            {"vertices", model.robot_vertices()},
-            {"tetrahedra", model.tetrahedra.size()},
-            {"prisms", model.prisms.size()}}},
-          {"notes", model.notes},
-          {"warnings", model.warnings}};
+  Json json = {{"softkin", SOFTKIN_VERSION},
+               {"instruction_set", name_of(target())},
+               {"scene", scene},
+               {"robot_fingerprint", fingerprint_of(model)},
+               {"formulation", formulation_name(model.formulation)},
+               {"materials", materials_json(model)},
+               {"actuators", actuators_json(model)},
+               {"solver", solver_json(options, map)},
+               {"units", units_json(model)},
+               {"mesh",
+                {{"order", model.edge_nodes.empty() ? 1 : 2},
+                 {"vertices", model.robot_vertices()},
+                 {"tetrahedra", model.tetrahedra.size()},
+                 {"prisms", model.prisms.size()}}},
+               {"notes", model.notes},
+               {"warnings", model.warnings}};
+  if (model.weights != ElementWeights::printed) json["weights"] = weights_name(model.weights);
+  return json;
 }
 
 Json asked_json(const Goal& goal) {

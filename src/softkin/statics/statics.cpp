@@ -47,6 +47,10 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
       options.anderson > 20 || options.threads < 0)
     throw InvalidInput(
         "solver options out of range: tolerance >= 0 mm, iterations >= 1, anderson 0 to 20, threads >= 0");
+  if (options.as_published && options.solver != Solver::local_global)
+    throw InvalidInput("to stop as published is for solver local-global");
+  if (options.as_published && model.markers.empty())
+    throw InvalidInput("to stop as published watches the robot's markers, and it has none");
 }
 
 /// Waking a thread for every loop costs as much as some hundred elements.
@@ -256,7 +260,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     if (options.solver == Solver::newton)
       parts.newton.solve(begun.actuation, options, progress, *team, result);
     else
-      target_shape::solve_local_global(parts.system, parts.global, options, progress, *team, result);
+      target_shape::solve_local_global(model, parts.system, parts.global, options, progress, *team, result);
     if (result.report.status == Status::converged) result.state.actuation = actuation;
     result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
   }

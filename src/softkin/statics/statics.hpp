@@ -17,6 +17,13 @@ enum class Solver { newton, local_global };
 /// "newton" or "local-global".
 [[nodiscard]] const char* name_of(Solver solver);
 
+/// Where the program that the paper's authors publish ends Algorithm 1: from this iteration on, once no marker has moved
+/// farther in an iteration. No equilibrium is reached then.
+struct PublishedStop {
+  static constexpr int first_iteration = 10;
+  static constexpr double move_mm = 0.032;
+};
+
 struct StaticsOptions {
   Solver solver = Solver::newton;
   /// Largest move of a vertex in one iteration at which a solver stops [mm], > 0. 0: the paper's 1e-5 mm on a robot
@@ -24,6 +31,7 @@ struct StaticsOptions {
   double step_tolerance_mm = 0;
   int max_iterations = 50000;  // >= 1
   int anderson = 6;            // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
+  bool as_published = false;   // local_global: without acceleration, to PublishedStop; for what ends there, not for use
   int threads = 0;             // 0: as many as the machine has and the robot is worth; the result is the same
   bool keep_history = true;    // SolveReport::history
   bool trace = false;          // SolveReport::trace; physical

@@ -69,7 +69,8 @@ void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary
 [[nodiscard]] Mesh read_abaqus(const std::filesystem::path& path);
 
 /// The form that the paper's authors publish: "N vertices", "M tets", coordinates, "4 a b c d" from 0. Sidecars beside
-/// it, where present: NAME_chamber.txt -> regions chamber1.., NAME_rigid_handle.txt -> handle, rigid.
+/// it, where present: NAME_chamber.txt -> regions chamber1.., NAME_rigid_handle.txt -> handle, rigid. Beside
+/// ROBOT_body.tet they may be called ROBOT_chamber.txt and ROBOT_rigid_handle.txt, as theirs are.
 [[nodiscard]] Mesh read_tet(const std::filesystem::path& path);
 
 /// A sidecar's column as indices of the rows that hold 1. Rows "id:c1:c2:...:" (matched by position; ids are checked to

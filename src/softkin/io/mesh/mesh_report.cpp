@@ -30,6 +30,11 @@ Mesh read_mesh_in_mm(const std::string& file, const std::string& unit) {
   return mesh;
 }
 
+/// Regions that stand in files of their own, of which there is none, are lost without a word in the mesh's file.
+std::vector<std::string> warnings_of(const Mesh& mesh) {
+  return mesh.no_sidecars ? mesh.missing : std::vector<std::string>{};
+}
+
 MeshVerdict verdict_of(const Mesh& mesh, const std::string& file) {
   const MeshCheck check = check_mesh(mesh);
   return {file,
@@ -40,7 +45,8 @@ MeshVerdict verdict_of(const Mesh& mesh, const std::string& file) {
           findings_of(mesh, check),
           measure_parts(mesh, check),
           {},
-          std::nullopt};
+          std::nullopt,
+          warnings_of(mesh)};
 }
 
 /// Adds what compile() says of the scene, and the empty spaces of its body, or of the mesh where it is refused.
@@ -173,6 +179,7 @@ MeshInfo mesh_info(const std::string& file, const std::string& unit) {
   const Mesh& mesh = spec.mesh;
   MeshInfo info{file, unit, measure_mesh(mesh, check_mesh(mesh)),
                 empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms)};
+  info.warnings = warnings_of(mesh);
   info.curved = curved_info(spec);
   return info;
 }
@@ -209,6 +216,7 @@ MeshConversion convert_mesh(const std::string& input, const std::string& output,
   else
     write_mesh(output, mesh);
   MeshConversion result{input, output};
+  result.warnings = warnings_of(mesh);
   if (lower_extension(output) == ".stl")
     review_surface(mesh, result);
   else
@@ -233,25 +241,27 @@ std::string to_json(const MeshInfo& info) {
     if (info.curved && info.curved->measures.regions[r] > 0)
       region[m.regions[r].dimension == 3 ? "curved_volume_mm3" : "curved_area_mm2"] = info.curved->measures.regions[r];
   }
-  return json_text(
-      {{"file", info.file},
-       {"form", is_scene(info.file) ? "scene" : mesh_form(info.file)},
-       {"unit", info.unit},
-       {"vertices", m.vertices},
-       {"order", m.order},
-       {"tetrahedra", m.tetrahedra},
-       {"prisms", m.prisms},
-       {"parts", m.parts},
-       {"surface_cells", {{"triangles", m.triangles}, {"quads", m.quads}}},
-       {"bounding_box_mm", {{"low", json_of(m.low)}, {"high", json_of(m.high)}}},
-       {"size_mm", json_of(Vec3(m.high - m.low))},
-       {"volume_mm3", m.volume},
-       {"boundary_area_mm2", m.boundary},
-       {"curved", info.curved ? curved_json(*info.curved) : Json(nullptr)},
-       {"quality", {{"min", m.quality[0]}, {"percentile_1", m.quality[1]}, {"median", m.quality[2]}}},
-       {"edge_lengths_mm", {{"min", m.edge_length[0]}, {"median", m.edge_length[1]}, {"max", m.edge_length[2]}}},
-       {"empty_spaces", spaces_json(info.empty_spaces)},
-       {"regions", regions}});
+  Json json = {
+      {"file", info.file},
+      {"form", is_scene(info.file) ? "scene" : mesh_form(info.file)},
+      {"unit", info.unit},
+      {"vertices", m.vertices},
+      {"order", m.order},
+      {"tetrahedra", m.tetrahedra},
+      {"prisms", m.prisms},
+      {"parts", m.parts},
+      {"surface_cells", {{"triangles", m.triangles}, {"quads", m.quads}}},
+      {"bounding_box_mm", {{"low", json_of(m.low)}, {"high", json_of(m.high)}}},
+      {"size_mm", json_of(Vec3(m.high - m.low))},
+      {"volume_mm3", m.volume},
+      {"boundary_area_mm2", m.boundary},
+      {"curved", info.curved ? curved_json(*info.curved) : Json(nullptr)},
+      {"quality", {{"min", m.quality[0]}, {"percentile_1", m.quality[1]}, {"median", m.quality[2]}}},
+      {"edge_lengths_mm", {{"min", m.edge_length[0]}, {"median", m.edge_length[1]}, {"max", m.edge_length[2]}}},
+      {"empty_spaces", spaces_json(info.empty_spaces)},
+      {"regions", regions}};
+  if (!info.warnings.empty()) json["warnings"] = info.warnings;
+  return json_text(json);
 }
 
 std::string to_json(const MeshVerdict& verdict) {
@@ -270,6 +280,7 @@ std::string to_json(const MeshVerdict& verdict) {
     json["scene"]["error"] = verdict.scene->error ? Json(*verdict.scene->error) : Json(nullptr);
   }
   json["usable"] = verdict.usable();
+  if (!verdict.warnings.empty()) json["warnings"] = verdict.warnings;
   return json_text(json);
 }
 
@@ -282,6 +293,7 @@ std::string to_json(const MeshConversion& result) {
     json["order"] = result.order;
   json["regions"] = result.regions;
   json["not_kept"] = result.not_kept;
+  if (!result.warnings.empty()) json["warnings"] = result.warnings;
   return json_text(json);
 }
 

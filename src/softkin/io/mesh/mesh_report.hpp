@@ -26,6 +26,7 @@ struct MeshInfo {
   MeshMeasures measures;
   std::vector<EmptySpace> empty_spaces;  // that the elements enclose
   std::optional<CurvedInfo> curved{};    // none: of prisms, or nothing would curve
+  std::vector<std::string> warnings{};   // a sentence each
 };
 
 /// file    a mesh, or a scene, whose mesh it is then, or its meshes as one
@@ -49,6 +50,7 @@ struct MeshVerdict {
   std::vector<PartMeasures> parts;
   std::vector<EmptySpace> empty_spaces;  // that the elements enclose; of a scene that compiles those of the body
   std::optional<SceneVerdict> scene;
+  std::vector<std::string> warnings{};  // a sentence each
 
   [[nodiscard]] bool usable() const;
   /// Does the scene compile in spite of the mesh's errors?
@@ -65,6 +67,7 @@ struct MeshConversion {
   int order = 1;
   std::size_t vertices = 0, tetrahedra = 0, prisms = 0, facets = 0;  // facets: of an .stl
   std::vector<std::string> regions{}, not_kept{};
+  std::vector<std::string> warnings{};  // a sentence each
 };
 
 /// Writes the mesh in the form that output's extension names. ascii: a .msh as text. Throws InvalidInput.

@@ -1,3 +1,4 @@
+#include <optional>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <string>
@@ -49,10 +50,37 @@ void read_flags(const Scanner& scanner, const std::vector<std::string_view>& cel
   }
 }
 
-/// The sidecar, or one without rows where there is no such file. Its rows must be `rows` in number.
-Sidecar sidecar_if_present(const fs::path& path, Index rows, const char* items) {
-  std::error_code failure;
-  if (!fs::exists(path, failure)) return {};
+/// Names of a file beside NAME.tet: NAME_chamber.txt; beside ROBOT_body.tet also ROBOT_chamber.txt, as the paper's authors
+/// publish theirs.
+std::vector<std::string> names_beside(const fs::path& path, const std::string& suffix) {
+  constexpr std::string_view body = "_body";
+  const std::string stem = path.stem().string();
+  std::vector<std::string> names{stem + suffix};
+  if (stem.size() > body.size() && stem.ends_with(body))
+    names.push_back(stem.substr(0, stem.size() - body.size()) + suffix);
+  return names;
+}
+
+/// Which of these files is there; none: it is noted as missing.
+std::optional<fs::path> find_sidecar(const fs::path& path, const std::string& suffix, const std::string& holds,
+                                     Mesh& mesh) {
+  std::optional<fs::path> found;
+  const std::vector<std::string> names = names_beside(path, suffix);
+  for (const std::string& name : names) {
+    const fs::path file = path.parent_path() / name;
+    std::error_code failure;
+    if (!fs::exists(file, failure)) continue;
+    if (found) throw InvalidInput({path.string()}, names[0] + " and " + names[1] + " are both there: remove one");
+    found = file;
+  }
+  if (!found)
+    mesh.missing.push_back("no " + holds + " of " + path.filename().string() + " are known: there is no " + names[0] +
+                           (names.size() > 1 ? " and no " + names[1] : "") + " beside it");
+  return found;
+}
+
+/// Its rows must be `rows` in number.
+Sidecar read_rows(const fs::path& path, Index rows, const char* items) {
   Sidecar sidecar = read_sidecar(path);
   if (sidecar.rows != rows)
     throw InvalidInput({path.string()},
@@ -60,12 +88,8 @@ Sidecar sidecar_if_present(const fs::path& path, Index rows, const char* items) 
   return sidecar;
 }
 
-fs::path beside(const fs::path& path, const char* suffix) {
-  return path.parent_path() / (path.stem().string() + suffix);
-}
-
 void add_chambers(const fs::path& path, Mesh& mesh) {
-  Sidecar sidecar = sidecar_if_present(path, static_cast<Index>(mesh.tetrahedra.size()), "tets");
+  Sidecar sidecar = read_rows(path, static_cast<Index>(mesh.tetrahedra.size()), "tets");
   for (std::size_t i = 0; i < sidecar.columns.size(); ++i) {
     if (sidecar.columns[i].empty()) continue;
     Region region;
@@ -76,8 +100,7 @@ void add_chambers(const fs::path& path, Mesh& mesh) {
 }
 
 void add_handle_and_rigid(const fs::path& path, Mesh& mesh) {
-  Sidecar sidecar = sidecar_if_present(path, static_cast<Index>(mesh.vertices.rows()), "vertices");
-  if (sidecar.rows == 0) return;
+  Sidecar sidecar = read_rows(path, static_cast<Index>(mesh.vertices.rows()), "vertices");
   if (sidecar.bare || sidecar.columns.size() != 2)
     throw InvalidInput({path.string(), 1}, "rows must be id:handle:rigid:");
   const char* const names[2] = {"handle", "rigid"};
@@ -135,8 +158,10 @@ Mesh read_tet(const fs::path& path) {
     scanner.end_line();
   }
   expect_end(scanner);
-  add_chambers(beside(path, "_chamber.txt"), mesh);
-  add_handle_and_rigid(beside(path, "_rigid_handle.txt"), mesh);
+  if (const auto file = find_sidecar(path, "_chamber.txt", "chambers", mesh)) add_chambers(*file, mesh);
+  if (const auto file = find_sidecar(path, "_rigid_handle.txt", "handle and rigid part", mesh))
+    add_handle_and_rigid(*file, mesh);
+  mesh.no_sidecars = mesh.missing.size() == 2;
   return mesh;
 }
 

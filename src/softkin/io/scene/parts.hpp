@@ -58,6 +58,7 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 /// A turn by the keys `axis` and `degrees`; exact where it takes axes to axes.
 [[nodiscard]] Mat3 read_turn(const Map& map);
 [[nodiscard]] Formulation read_formulation(const Node& node);
+[[nodiscard]] ElementWeights read_weights(const Node& node);
 
 /// The robots of a scene that has several, joined. Key `robots` must be there.
 [[nodiscard]] RobotSpec read_robots(const Context& context, const Map& scene, const std::string& file_name);

@@ -55,6 +55,7 @@ RobotSpec read_robots(const Context& context, const Map& scene, const std::strin
   CommonSpec common;
   common.name = file_name;
   if (const Node* node = scene.find("formulation")) common.formulation = read_formulation(*node);
+  if (const Node* node = scene.find("weights")) common.weights = read_weights(*node);
   if (const Node::Entry* gravity = scene.entry("gravity")) {
     common.gravity = read_vector(*gravity->value);
     common.gravity_origin = gravity->origin;

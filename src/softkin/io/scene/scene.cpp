@@ -98,6 +98,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   each("materials", [&](const Node& item) { spec.materials.push_back(read_material(context, item)); });
   spec.formulation = formulation_of(context, map, spec.materials);
+  if (const Node* node = map.find("weights")) spec.weights = read_weights(*node);
   if (const Node::Entry* gravity = map.entry("gravity")) {
     spec.gravity = read_vector(*gravity->value);
     spec.gravity_origin = gravity->origin;
@@ -130,6 +131,11 @@ Formulation read_formulation(const Node& node) {
   return choice(node, {"target-shape", "physical"}) == 0 ? Formulation::target_shape : Formulation::physical;
 }
 
+ElementWeights read_weights(const Node& node) {
+  return choice(node, {"printed", "mesh-independent"}) == 0 ? ElementWeights::printed
+                                                            : ElementWeights::mesh_independent;
+}
+
 }  // namespace scene
 
 RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name, const SceneFiles& files) {
@@ -139,9 +145,9 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
 RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files) {
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
-  const scene::Map map(
-      root, {"softkin", "units", "mesh", "meshes", "robots", "formulation", "regions", "materials", "void", "fixed",
-             "rigid", "actuators", "gravity", "forces", "markers", "feet", "contact", "obstacles", "bodies"});
+  const scene::Map map(root, {"softkin", "units",     "mesh", "meshes",  "robots",    "formulation", "weights",
+                              "regions", "materials", "void", "fixed",   "rigid",     "actuators",   "gravity",
+                              "forces",  "markers",   "feet", "contact", "obstacles", "bodies"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);

@@ -113,6 +113,8 @@ Model compile(const RobotSpec& spec) {
   c.model.notes = std::move(notes);
   c.model.name = spec.name;
   c.model.formulation = spec.formulation;
+  if (spec.formulation == Formulation::target_shape) c.model.weights = spec.weights;
+  if (spec.mesh.no_sidecars) c.model.warnings = spec.mesh.missing;
   check_contact(c);
   compile_elements(c);
   refuse_mesh_errors(c);

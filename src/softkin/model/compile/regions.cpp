@@ -208,7 +208,9 @@ const Region& RegionTable::find(const std::string& name, const Origin& origin) c
   if (found) return *found;
   std::vector<std::string> names{all_.name};
   for (const Region& region : regions_) names.push_back(region.name);
-  throw InvalidInput(origin, "there is no region '" + name + "'" + suggest_name(name, names));
+  std::string missing;
+  for (const std::string& each : mesh_.missing) missing += "; " + each;
+  throw InvalidInput(origin, "there is no region '" + name + "'" + suggest_name(name, names) + missing);
 }
 
 Region RegionTable::resolve(const RegionRef& reference) const {

@@ -48,6 +48,8 @@ struct Mesh {
   std::vector<Triangle> triangles;  // surface cells that some region names; of order 2 their corners
   std::vector<Quad> quads;
   std::vector<Region> regions;
+  std::vector<std::string> missing;  // files beside its own that name regions and are not there, a sentence each
+  bool no_sidecars = false;          // none of them is there
 };
 
 /// A closed triangle surface (from STL), vertices welded.

@@ -48,6 +48,8 @@ void append(Mesh& all, const Mesh& part) {
     append_indices(found->quads, region.quads);
     append_indices(found->vertices, region.vertices);
   }
+  all.missing.insert(all.missing.end(), part.missing.begin(), part.missing.end());
+  all.no_sidecars = all.no_sidecars || part.no_sidecars;
   const auto first = static_cast<Index>(all.vertices.rows());
   append_cells(all.tetrahedra, part.tetrahedra, first);
   append_cells(all.edge_nodes, part.edge_nodes, first);

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <cmath>
 #include <softkin/statics/target_shape/element_sets.hpp>
 
 namespace softkin::target_shape {
@@ -23,6 +24,21 @@ RestShape<K> rest_shape(const Points& positions, const std::array<Index, K>& nod
   return shape;
 }
 
+/// The square of an element's size, by which Eq. (2) makes large elements stiffer: a third of the squared distances of
+/// its corners from their centre [mm^2]. In an element that strains alike in all directions, whatever its shape, and on
+/// the mean over all ways to turn it, the energy over this is volume times squared strain.
+template <int K>
+double squared_size(const RestShape<K>& rest) {
+  return (rest.rowwise() - rest.colwise().mean()).squaredNorm() / 3;
+}
+
+/// What an element's squared distance from its target is multiplied by.
+template <int K>
+double element_weight(const Model& model, double weight, double volume, const RestShape<K>& rest) {
+  const double of_volume = weight * volume;
+  return model.weights == ElementWeights::printed ? of_volume : of_volume / squared_size<K>(rest);
+}
+
 /// Adds one element; fill(block, lane) writes everything but the nodes.
 template <int K, class Block, class Fill>
 void add_element(ElementSet<K, Block>& set, const std::array<Index, K>& nodes, const Fill& fill) {
@@ -44,22 +60,24 @@ template <int K>
 void add_body(BodySet<K>& set, const Model& model, const std::array<Index, K>& nodes, double volume,
               const Material& material) {
   RestShape<K> rest = rest_shape<K>(model.rest, nodes);
+  const double weight = element_weight<K>(model, material.weight, volume, rest);
   rest.rowwise() -= rest.colwise().mean().eval();
   add_element<K>(set, nodes, [&](BodyBlock<K>& block, int l) {
     if (l == 0) block.blended = false;
     for (int i = 0; i < K; ++i) set_lane(block.rest[i], l, rest.row(i));
     block.volume[l] = volume;
-    block.weight[l] = material.weight * volume;
+    block.weight[l] = weight;
     block.shape_ratio[l] = material.shape_ratio;
     block.blended = block.blended || material.shape_ratio < 1;
   });
 }
 
 template <int K>
-void add_actuation(ActuationSet<K>& set, const std::array<Index, K>& nodes, const TargetSplit<K>& split, double measure,
-                   double weight) {
+void add_actuation(const Model& model, ActuationSet<K>& set, const std::array<Index, K>& nodes,
+                   const TargetSplit<K>& split, double measure, double weight) {
+  set.even = K != 3 && model.weights == ElementWeights::mesh_independent;  // gaps of a cable are none of the mesh
   set.measure_sum += measure;
-  set.measure_squares += measure * measure;
+  set.share_sum += set.even ? measure : measure * measure;
   add_element<K>(set, nodes, [&](ActuationBlock<K>& block, int l) {
     for (int i = 0; i < K; ++i) {
       set_lane(block.constant[i], l, split.constant.row(i));
@@ -79,9 +97,9 @@ double mean_area(const RestShape<6>& p) {
   return 0.5 * (area(0, 1, 2) + area(3, 4, 5));
 }
 
-/// A triangle has no volume: it counts as a body element of mean volume, so that its weight is w times that of its
-/// surroundings. Much heavier ones stop local/global from converging, much lighter ones give way.
-double triangle_volume(const Model& model) {
+/// A triangle has no volume: by the printed weights it counts as a body element of mean volume, so that its weight is w
+/// times that of its surroundings. Much heavier ones stop local/global from converging, much lighter ones give way.
+double mean_volume(const Model& model) {
   double sum = 0, count = 0;
   const auto add = [&](const std::vector<ElementRole>& roles, const std::vector<double>& volumes) {
     for (std::size_t e = 0; e < roles.size(); ++e)
@@ -92,9 +110,17 @@ double triangle_volume(const Model& model) {
   return count > 0 ? sum / count : 1;
 }
 
+/// Where the mesh must not matter, it counts as the regular tetrahedron on an equilateral triangle of its size: one with
+/// edges a has squared distances a^2 of its corners from their centre, and a volume of a^3 / sqrt(72).
+double own_volume(const RestShape<3>& rest) {
+  const double edge = std::sqrt(3 * squared_size<3>(rest));
+  return edge * edge * edge / std::sqrt(72.0);
+}
+
 ActuationSet<3> cable_set(const Model& model, const Actuator& actuator, std::vector<const EmbeddedPoint*>& points) {
   ActuationSet<3> set;
-  const double weight = actuator.weight * triangle_volume(model);
+  const bool printed = model.weights == ElementWeights::printed;
+  const double mean = printed ? mean_volume(model) : 0;
   const auto node = [&](const EmbeddedPoint& point) {
     points.push_back(&point);
     return static_cast<Index>(model.rest.rows() + static_cast<Index>(points.size()) - 1);
@@ -107,8 +133,8 @@ ActuationSet<3> cable_set(const Model& model, const Actuator& actuator, std::vec
     rest.row(1) = actuator.points[gap.segment + 1].at(model.rest).transpose();
     rest.row(2) = gap.apex.at(model.rest).transpose();
     const Index first = node_along(gap.segment), second = node_along(gap.segment + 1);
-    add_actuation<3>(set, {first, second, node(gap.apex)}, split_cable(rest), (rest.row(1) - rest.row(0)).norm(),
-                     weight);
+    add_actuation<3>(model, set, {first, second, node(gap.apex)}, split_cable(rest), (rest.row(1) - rest.row(0)).norm(),
+                     element_weight<3>(model, actuator.weight, printed ? mean : own_volume(rest), rest));
   }
   return set;
 }
@@ -135,16 +161,17 @@ ElementSets make_element_sets(const Model& model) {
       set.actuator = index;
       for (const Index e : actuator.tetrahedra) {
         const double volume = model.tetrahedron_volumes[e];
-        add_actuation<4>(set, model.tetrahedra[e], split_pneumatic(rest_shape<4>(model.rest, model.tetrahedra[e])),
-                         volume, actuator.weight * volume);
+        const RestShape<4> rest = rest_shape<4>(model.rest, model.tetrahedra[e]);
+        add_actuation<4>(model, set, model.tetrahedra[e], split_pneumatic(rest), volume,
+                         element_weight<4>(model, actuator.weight, volume, rest));
       }
     } else {
       ActuationSet<6>& set = sets.dea.emplace_back();
       set.actuator = index;
       for (const Index e : actuator.prisms) {
         const RestShape<6> rest = rest_shape<6>(model.rest, model.prisms[e]);
-        add_actuation<6>(set, model.prisms[e], split_dea(rest), mean_area(rest),
-                         actuator.weight * model.prism_volumes[e]);
+        add_actuation<6>(model, set, model.prisms[e], split_dea(rest), mean_area(rest),
+                         element_weight<6>(model, actuator.weight, model.prism_volumes[e], rest));
       }
     }
   }

@@ -11,11 +11,16 @@ struct ElementSet {
   Index count = 0;       // elements; the last block repeats the last one, without weight, to fill its lanes
   Index first_slot = 0;  // of the pulls that this set writes: element e, node i writes slot first_slot + K e + i
   Index actuator = -1;
-  double measure_sum = 0, measure_squares = 0;  // over the actuation elements' measures at rest: sum u, sum u^2
+  double measure_sum = 0;  // of the actuation elements at rest: sum u
+  double share_sum = 0;    // sum of share times measure
+  bool even = false;       // a change of all is shared alike, whatever an element's measure
   std::vector<Block> blocks;
   std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
 
   [[nodiscard]] Index block_count() const { return static_cast<Index>(blocks.size()); }
+  /// How least-norm ratios share a change: by measure where sum a^2 is least, which gives more to larger elements; alike
+  /// where sum u a^2 is, which does not depend on how the mesh divides a chamber.
+  [[nodiscard]] energy::Pack share(Index block) const { return even ? energy::pack(1) : blocks[block].measure; }
 };
 
 template <int K>
@@ -43,7 +48,7 @@ struct ElementSets {
   }
 };
 
-/// The elements of Eq. (9), weighted by w Vol. model must outlive the result.
+/// The elements of Eq. (9), weighted by w Vol, or as Model::weights says. model must outlive the result.
 [[nodiscard]] ElementSets make_element_sets(const Model& model);
 
 /// Local ratios stay above this, where a target shape would vanish or turn over [-].

@@ -62,6 +62,19 @@ class Stall {
   int count_ = 0;
 };
 
+double largest_marker_move(const Model& model, const Points& before, const Points& after) {
+  double largest = 0;
+  for (const Marker& marker : model.markers)
+    largest = std::max(largest, (marker.point.at(after) - marker.point.at(before)).norm());
+  return largest;
+}
+
+bool has_arrived(const Model& model, const LocalGlobal& iteration, bool as_published, const SolveReport& report) {
+  if (!as_published) return report.step_mm < report.tolerance_mm;
+  return report.iterations >= PublishedStop::first_iteration &&
+         largest_marker_move(model, iteration.before(), iteration.positions()) < PublishedStop::move_mm;
+}
+
 }  // namespace
 
 void accept(const IterationRecord& record, bool keep_history, SolveReport& report) {
@@ -111,11 +124,14 @@ void LocalGlobal::extrapolate() {
   poses_ = global_.project(positions_);
 }
 
-void solve_local_global(const System& system, const supports::GlobalStep& global, const StaticsOptions& options,
-                        const ProgressCallback& progress, Team& team, Equilibrium& result) {
+void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
+                        const StaticsOptions& options, const ProgressCallback& progress, Team& team,
+                        Equilibrium& result) {
   SolveReport& report = result.report;
   report.solver = "local-global";
-  LocalGlobal iteration(system, global, options.anderson, result.state.positions);
+  if (options.as_published) report.tolerance_mm = PublishedStop::move_mm;
+  const int anderson = options.as_published ? 0 : options.anderson;
+  LocalGlobal iteration(system, global, anderson, result.state.positions);
   System::Scratch scratch = system.make_scratch();
   ErrorEstimate estimate;
   Stall stall;
@@ -124,7 +140,7 @@ void solve_local_global(const System& system, const supports::GlobalStep& global
     if (!iteration.iterate(result.actuation, scratch, team, record)) break;
     accept(record, options.keep_history, report);
     estimate.add(iteration.before(), iteration.positions() - iteration.before());
-    if (report.step_mm < report.tolerance_mm) {
+    if (has_arrived(model, iteration, options.as_published, report)) {
       report.status = Status::converged;
       break;
     }

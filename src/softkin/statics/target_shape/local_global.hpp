@@ -41,11 +41,12 @@ class LocalGlobal {
 /// Enters an iteration into a report.
 void accept(const IterationRecord& record, bool keep_history, SolveReport& report);
 
-/// Algorithm 1 from result.state.positions until no vertex moves farther than report.tolerance_mm in an iteration.
-/// Fills state.positions and the report, its seconds aside.
+/// Algorithm 1 from result.state.positions until no vertex moves farther than report.tolerance_mm in an iteration, or to
+/// PublishedStop. Fills state.positions and the report, its seconds aside.
 ///
 /// source  Fang et al. 2020, Alg. 1, Eqs. (9)-(10)
-void solve_local_global(const System& system, const supports::GlobalStep& global, const StaticsOptions& options,
-                        const ProgressCallback& progress, Team& team, Equilibrium& result);
+void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
+                        const StaticsOptions& options, const ProgressCallback& progress, Team& team,
+                        Equilibrium& result);
 
 }  // namespace softkin::target_shape

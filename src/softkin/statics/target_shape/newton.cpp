@@ -22,13 +22,21 @@ constexpr int most_steps = 200, most_idle_steps = 4;
 /// Accelerated local-global iterations at a time, and how many earlier ones each combines.
 constexpr int rescue = 50, rescue_window = 6;
 
-/// Energy of Eq. (9) that the rounding of coordinates alone can make [mm^5].
-double rounding_energy(const Model& model) {
-  double volume = 0;
-  for (const double v : model.tetrahedron_volumes) volume += v;
-  for (const double v : model.prism_volumes) volume += v;
+/// Energy of Eq. (9) that the rounding of coordinates alone can make, in its unit.
+double rounding_energy(const Model& model, const ElementSets& sets) {
+  double weight = 0;
+  const auto add = [&weight](const auto& set) {
+    for (const auto& block : set.blocks) weight += energy::sum(block.weight);
+  };
+  if (model.weights == ElementWeights::printed) {
+    for (const double v : model.tetrahedron_volumes) weight += v;
+    for (const double v : model.prism_volumes) weight += v;
+  } else {
+    add(sets.tetrahedra);
+    add(sets.prisms);
+  }
   const double rounding = 1e-14 * model.diagonal_mm;
-  return volume * rounding * rounding;
+  return weight * rounding * rounding;
 }
 
 using End = NewtonSearch::End;
@@ -255,7 +263,7 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points
   keep_factor_ = false;
   projected_next_ = !tangent_.symmetric();
   least_energy_ = energy_;
-  if (energy_ <= rounding_energy(unknowns_.model)) {  // every element has its target shape
+  if (energy_ <= rounding_energy(unknowns_.model, unknowns_.system.sets())) {  // every element has its target shape
     (void)enter(here());
     return End::converged;
   }
@@ -333,7 +341,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
-    solve_local_global(unknowns_.system, global_, options, progress, team, result);
+    solve_local_global(unknowns_.model, unknowns_.system, global_, options, progress, team, result);
     report.solver = "newton";
     if (report.status != Status::converged)
       report.remark = "neither Newton's method nor Algorithm 1 converged" +

@@ -57,7 +57,8 @@ System::Scratch System::make_scratch() const {
 }
 
 /// The least-norm change from the current ratios that meets Eqs. (6)-(8):
-/// a_i = a_i^cur + u_i (a U - sum_j a_j^cur u_j) / sum_j u_j^2; for a cable, a U counts the gaps only.
+/// a_i = a_i^cur + s_i (a U - sum_j a_j^cur u_j) / sum_j s_j u_j with shares s_i = u_i, or 1 where the mesh must not
+/// matter; for a cable, a U counts the gaps only.
 template <int K>
 void System::local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes, std::vector<Pack>& ratios,
                           Team& team) const {
@@ -77,9 +78,8 @@ void System::local_ratios(const ActuationSet<K>& set, double requested, const Po
   double current = 0;
   for (Index e = 0; e < set.count; ++e)
     current += ratios[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
-  const double change = (asked - current) / set.measure_squares;
-  for (Index b = 0; b < set.block_count(); ++b)
-    ratios[b] = max(pack(least_ratio), ratios[b] + change * set.blocks[b].measure);
+  const double change = (asked - current) / set.share_sum;
+  for (Index b = 0; b < set.block_count(); ++b) ratios[b] = max(pack(least_ratio), ratios[b] + change * set.share(b));
 }
 
 double System::local_step(const Actuation& actuation, const Points& positions, Scratch& scratch, Team& team) const {

@@ -47,9 +47,8 @@ void System::ratio_changes(const ActuationSet<K>& set, const Scratch& local, con
   double moved = 0;
   for (Index e = 0; e < set.count; ++e)
     moved += changes[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
-  const double common = -moved / set.measure_squares;
-  for (Index b = 0; b < set.block_count(); ++b)
-    changes[b] = follows(ratios[b]) * (changes[b] + common * set.blocks[b].measure);
+  const double common = -moved / set.share_sum;
+  for (Index b = 0; b < set.block_count(); ++b) changes[b] = follows(ratios[b]) * (changes[b] + common * set.share(b));
 }
 
 /// kernel(set, index of the set, block, centred shape, its change, pull), over all blocks; out.nodes is the change.
@@ -121,7 +120,7 @@ void System::redistributions(const Scratch& local, Scratch& work, std::vector<Re
               center<K>(shape);
               const Pack& ratio = local.ratios[index][b];
               ratio_coupling<K>(set.blocks[b], ratio, shape, local.rotations[index][b], coupling);
-              value_of(coupling, set.blocks[b].measure, follows(ratio), value);
+              value_of(coupling, b, follows(ratio), value);
               store<K>(value, set.first_slot + K * lanes * b, elements_of_block(set, b), work.pulls.data());
             }
           });
@@ -130,13 +129,13 @@ void System::redistributions(const Scratch& local, Scratch& work, std::vector<Re
         part.source.resize(model_.rest.rows(), 3);
         part.target.resize(model_.rest.rows(), 3);
         collect(
-            [&](const RatioCoupling<K>& coupling, const Pack& measure, const Pack& free, Shape<K>& value) {
-              for (int i = 0; i < K; ++i) value[i] = (free * measure / set.measure_squares) * coupling.pull_slope[i];
+            [&](const RatioCoupling<K>& coupling, Index b, const Pack& free, Shape<K>& value) {
+              for (int i = 0; i < K; ++i) value[i] = (free * set.share(b) / set.share_sum) * coupling.pull_slope[i];
             },
             part.source);
         collect(
-            [&](const RatioCoupling<K>& coupling, const Pack& measure, const Pack&, Shape<K>& value) {
-              for (int i = 0; i < K; ++i) value[i] = measure * coupling.ratio_slope[i];
+            [&](const RatioCoupling<K>& coupling, Index b, const Pack&, Shape<K>& value) {
+              for (int i = 0; i < K; ++i) value[i] = set.blocks[b].measure * coupling.ratio_slope[i];
             },
             part.target);
       }
@@ -152,7 +151,7 @@ void System::command_change(const Scratch& local, Index actuator, Scratch& out, 
   sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
     if constexpr (!std::is_same_v<Block, BodyBlock<K>>) {
       const bool least_norm = redistributes(set.actuator);
-      const double common = rest_measure / (least_norm ? set.measure_squares : set.measure_sum);
+      const double common = rest_measure / (least_norm ? set.share_sum : set.measure_sum);
       team.pieces(set.actuator == actuator ? set.block_count() : 0, [&](Index begin, Index end) {
         Shape<K> shape, still, pull;
         for (Pack3& point : still) point = Pack3{};
@@ -160,7 +159,7 @@ void System::command_change(const Scratch& local, Index actuator, Scratch& out, 
           load<K>(local.nodes, set.nodes[b], shape);
           center<K>(shape);
           const Pack& ratio = local.ratios[index][b];
-          const Pack change = least_norm ? common * set.blocks[b].measure : pack(common);
+          const Pack change = least_norm ? common * set.share(b) : pack(common);
           pull_change_of_actuation<K>(set.blocks[b], ratio, select(ratio > least_ratio, change, pack(0)), shape,
                                       local.rotations[index][b], still, pull);
           store<K>(pull, set.first_slot + K * lanes * b, std::min<Index>(lanes, set.count - lanes * b),
