@@ -126,7 +126,8 @@ TEST(PublishedRobot, FkStopsAsTheProgramDoes) {
   EXPECT_GT(off, 0.032);  // the step is no error
 }
 
-/// The paper's authors publish chambers and handle in files beside the mesh; without them the scene has nothing to name.
+/// The paper's authors publish chambers and handle in files beside the mesh; without them the scene has nothing to
+/// name.
 TEST(PublishedRobot, FkNamesTheSidecarsThatATetMeshLacks) {
   const TemporaryFolder folder;
   folder.write("soro_body.tet", "5 vertices\n2 tets\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n10 10 10\n4 0 1 2 3\n4 1 2 3 4\n");

@@ -74,7 +74,8 @@ TEST(Syringe, StandsWhereTheGasLawSays) {
   EXPECT_NEAR(syringe.plunger_mm(1.2, 25), 50, 1e-9 * 50);
   EXPECT_NEAR(syringe.ratio(50, 25), 1.2, 1e-9);
   EXPECT_EQ(syringe.plunger_mm(1, 0), 0);
-  // 65 mL at 80 kPa are 81.25 mL; 18 in the chamber at 0.9, 5 in the tube: 58.25 in the syringe, 18.25 more than at home
+  // 65 mL at 80 kPa are 81.25 mL; 18 in the chamber at 0.9, 5 in the tube: 58.25 in the syringe, 18.25 more than at
+  // home
   EXPECT_NEAR(syringe.plunger_mm(0.9, -20), -18.25 / 0.34, 1e-9 * 60);
   for (const double atmosphere : {80.0, 101.325})
     for (const double gauge : {-30.0, 7.0, 150.0})

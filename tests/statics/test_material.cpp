@@ -86,7 +86,8 @@ TEST(Material, BlockUnderTensionFollowsTheShapeRatio) {
   }
 }
 
-/// Printed, a mesh of twice the cells is a quarter as stiff. Else the modulus is 6 w R / (2 + R) on both, times what the
+/// Printed, a mesh of twice the cells is a quarter as stiff. Else the modulus is 6 w R / (2 + R) on both, times what
+/// the
 /// shape of the cells leaves of it, as their metric is not isotropic: 0.9 of five tetrahedra, two thirds of six.
 TEST(Material, MeshIndependentWeightsGiveOneModulusToEveryMesh) {
   for (const auto& [split, left] : {std::pair(testing::Split::five, 0.9), std::pair(testing::Split::six, 2.0 / 3)})
@@ -155,7 +156,8 @@ TEST(Material, WeightsAreTheSameWhereAllElementsAreOfOneSize) {
   EXPECT_LT((printed - other).cwiseAbs().maxCoeff(), 1e-7);
 }
 
-/// Every kind of element: twice as large and deformed alike, it has 2^3 times the energy, and 2^5 times the printed one.
+/// Every kind of element: twice as large and deformed alike, it has 2^3 times the energy, and 2^5 times the printed
+/// one.
 TEST(Material, EnergyGrowsWithTheVolumeAlone) {
   const auto energy = [](ElementWeights weights, double scale) {
     RobotSpec spec = testing::mixed_robot(true, 0.5);
@@ -203,7 +205,8 @@ TEST(Material, NewtonAndAlgorithmOneAgreeForMeshIndependentWeights) {
   }
 }
 
-/// Half of the body and half of its chamber in cells of half the size: a chamber's ratio grows alike in both halves, where
+/// Half of the body and half of its chamber in cells of half the size: a chamber's ratio grows alike in both halves,
+/// where
 /// the printed rule gives eight times the change to the elements that are eight times as large.
 TEST(Material, ChangesOfAChamberAreSharedAlikeByLargeAndSmallElements) {
   const auto spread = [](ElementWeights weights) {

@@ -48,7 +48,8 @@ struct State {
 /// limit: there is no equilibrium to be followed as far as was asked; the shape is the last good one.
 enum class Status { converged, not_converged, interrupted, limit };
 
-/// Energies are in mm^5, gradients in mm^4 (target-shape; mm^3 and mm^2 of mesh-independent weights), or in mJ and N (physical).
+/// Energies are in mm^5, gradients in mm^4 (target-shape; mm^3 and mm^2 of mesh-independent weights), or in mJ and N
+/// (physical).
 struct IterationRecord {
   double energy = 0;         // before the step
   double step_mm = 0;        // largest move of a vertex [mm]

@@ -51,7 +51,8 @@ struct RegionSpec {
 
 enum class Formulation { target_shape, physical };
 
-/// What an element's energy, Eq. (2), is multiplied by beside w. printed: its volume, so that it grows with the square of
+/// What an element's energy, Eq. (2), is multiplied by beside w. printed: its volume, so that it grows with the
+/// square of
 /// the element's size, too; mesh_independent: its volume over that square. Target shapes.
 enum class ElementWeights { printed, mesh_independent };
 

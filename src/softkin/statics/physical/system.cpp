@@ -397,7 +397,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
 void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work, Points& positions, Team& team,
                      const Demand* held) const {
   freedoms_->expand(scale * step, positions, work.moves);
-  if (held) {
+  if (held && !contacts_) {  // where things touch the turns that it brings meet more of them
     Points there = positions;
     hold(*held, there);
     work.moves += there - positions;
