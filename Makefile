@@ -21,7 +21,7 @@ sanitized := core model io statics kinematics drive runs view
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))(_deep)?$$
 
-.PHONY: help setup build run python docs bench random fuzz format format-check clean
+.PHONY: help setup build run python docs bench paper random fuzz format format-check clean
 .PHONY: test setup-tests test-release test-page test-python
 .PHONY: test-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep test-arm
 # one after the other: each of them uses every core
@@ -38,6 +38,7 @@ help:
 	@echo 'make fuzz          2 million damaged inputs to every reader (hours; goes on where it was); RUNS=1000 less'
 	@echo 'make bench         build and run the benchmarks (docs/benchmarks.md); BENCH="newton large" runs these alone'
 	@echo 'make random        solve 20,000 random robots and check every answer; RUNS=1000 fewer of them'
+	@echo 'make paper         the tables and figures of the paper beside what softkin gives, out/paper/index.html; PART="fig9 fig13"'
 	@echo 'make format        format the sources; make format-check only looks'
 	@echo 'make clean         remove the build folders'
 
@@ -175,6 +176,11 @@ bench: setup
 	@for name in $(BENCH); do \
 	  echo; echo "bench_$$name $(BENCH_OPTIONS)"; build/bench/bench_$$name $(BENCH_OPTIONS) || exit 1; \
 	done
+
+paper: setup
+	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON
+	cmake --build --preset release --target softkin_cli bench_iteration bench_newton
+	python3 scripts/paper.py $(PART) $(if $(PART),,--table docs/paper_results.md --check)
 
 format:
 	@$(CLANG_FORMAT) -i $(sources)
