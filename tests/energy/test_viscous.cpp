@@ -189,8 +189,8 @@ TYPED_TEST(Viscous, AStepEndsWhereTheNextBegins) {
   EXPECT_LT((pull - gradient).norm(), 1e-12 * gradient.norm());
   // small steps at a held strain; they change the energy by what is lost
   double left = stored, lost = 0;
-  for (int step = 0; step < 200; ++step) {
-    sample.set_time(0.01);
+  for (int step = 0; step < 400; ++step) {
+    sample.set_time(0.005);
     lost += flow<K, Q>(sample.block, sample.viscous(), sample.rate, shape, after.data())[0];
     sample.strains = after;
     sample.set_time(0);
@@ -221,7 +221,7 @@ TEST(Viscous, LosesEnergyOverAnyHistory) {
     const double time = std::pow(10, random.between(-2, 1));  // of a leg, over the relaxation time
     double work = 0, lost = 0;
     Nodes<4> from = sample.rest;
-    constexpr int legs = 4, steps = 25;
+    constexpr int legs = 4, steps = 50;
     for (int leg = 0; leg < legs; ++leg) {
       const Nodes<4> to = leg + 1 < legs ? Nodes<4>(sample.rest * random.deformation(false).transpose()) : sample.rest;
       // a straight way whose elements do not invert: the strain is close to the identity, or the leg is left out
