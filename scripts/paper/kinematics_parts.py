@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-import re
-import subprocess
 from typing import Any
 
 from plots import Curve, plot
-from rows import ROOT, Bench, Failed, example
+from rows import ROOT, Bench, example
 
 PICTURED = "ours: the paper gives no mesh"
 SHAPES = ("--formulation", "target-shape")
@@ -107,11 +105,15 @@ def bend(steps: list[dict[str, Any]]) -> float:
 
 
 def finger(bench: Bench) -> None:
-    """Fig. 9."""
+    """Fig. 9 and Table III."""
     scene, path = example("pneumatic_finger"), example("pneumatic_finger", "path.csv")
     curves = []
     for name, options in (("target shapes", SHAPES), ("physical", ())):
-        steps = bench.report("fk", scene, "--path", path, *options, "--image", bench.picture(f"{name.split()[0]}.png"))["steps"]
+        told = bench.report("fk", scene, "--path", path, *options, "--image", bench.picture(f"{name.split()[0]}.png"))
+        steps = told["steps"]
+        bench.row(f"Table III, {name}", "8.5, 15.2, 23.2 s to 90, 180, 240 degrees (45,802 elements)",
+                  f"{told['seconds']:.1f} s for seven shapes to {bend(steps):.0f} degrees ({told['mesh']['tetrahedra']:,} elements of "
+                  f"order {told['mesh']['order']})", "differs", "another finger, mesh and machine; 45,990 elements: docs/benchmarks.md")
         tips = [step["markers"]["tip"] for step in steps]
         curves.append(Curve(name, [t[0] for t in tips], [t[2] for t in tips]))
         turn = bend(steps)
@@ -120,32 +122,10 @@ def finger(bench: Bench) -> None:
                   "" if turn >= 240 else "with weights of 5 the chamber's elements hold the finger back: docs/formulations.md",
                   conditions=PICTURED, figure=turn, tolerance=2e-3)
     plot(bench.picture("tip.svg"), curves, "x of the tip [mm]", "z of the tip [mm]", even=True)
-    bench.row("Fig. 9, test, Abaqus, SOFA", "tip tracks", "none", "cannot", "measured on their finger, or by programs that are not "
-              "free or not packaged; softkin beside CalculiX: docs/benchmarks.md")
-
-
-def times(bench: Bench) -> None:
-    """Table III."""
-    program = bench.program.parent / "bench/bench_newton"
-    names = {"newton": "target shapes, Newton's method", "anderson": "target shapes, Algorithm 1 with Anderson acceleration",
-             "physical": "physical formulation"}
-    found: dict[str, list[str]] = {name: [] for name in names}
-    for asked in ("newton physical --bends 90 180 240", "anderson --bends 90"):  # the whole of which takes many minutes
-        words = f"--sizes 45000 --repeat 1 --limit 900 --solvers {asked}".split()
-        text = subprocess.run([str(program), *words], capture_output=True, text=True, check=True).stdout
-        bench.result.commands.append("build/bench/bench_newton " + " ".join(words))
-        for line in text.splitlines():
-            row = re.match(r"\s*45990\s+(\d+)\s+(\w+)\s+([\d.]+)\s", line)
-            if row and row[2] in found:
-                found[row[2]].append(f"{float(row[3]):.1f} s to {row[1]} degrees")
-    for name, seconds in found.items():
-        if not seconds:
-            raise Failed(f"bench_newton: {name} has no time")
-        bench.row(f"Table III, {names[name]}", "8.5, 15.2, 23.2 s to 90, 180, 240 degrees (45,802 elements)",
-                  ", ".join(seconds) + " (45,990 elements)", "differs", "another finger and machine, and the whole solution: "
-                  "the tip within 0.1 mm of the converged one", conditions="chamber's weight 0.05, two threads")
     bench.row("Table III, FEM 1, FEM 2, SOFA", "240, 529, 820 s; 288, 636, 1068 s; 3.8 s", "none", "cannot", "Abaqus is not free, "
               "SOFA not packaged; softkin beside CalculiX: docs/benchmarks.md")
+    bench.row("Fig. 9, test, Abaqus, SOFA", "tip tracks", "none", "cannot", "measured on their finger, or by programs that are not "
+              "free or not packaged; softkin beside CalculiX: docs/benchmarks.md")
 
 
 def crawler(bench: Bench) -> None:
