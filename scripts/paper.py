@@ -69,17 +69,19 @@ def run_part(name: str, program: Path, out: Path, key: str) -> Result:
     return bench.result
 
 
+def figured(results: dict[str, Result]) -> dict[str, Row]:
+    """Rows with a figure, by part and item."""
+    return {f"{name}: {row.item}": row for name, result in results.items() for row in result.rows if row.figure is not None}
+
+
 def moved(results: dict[str, Result]) -> list[str]:
     """Rows whose figure is not what it was, or that have none there."""
     known: dict[str, float] = json.loads(FIGURES.read_text())
     faults = []
-    for name, result in results.items():
-        for row in result.rows:
-            if row.figure is None:
-                continue
-            before = known.get(f"{name}: {row.item}")
-            if before is None or not abs(row.figure - before) <= row.tolerance * abs(before):
-                faults.append(f"{name}: {row.item}: {row.figure!r}, and was {before!r} (within {100 * row.tolerance:g} %)")
+    for item, row in figured(results).items():
+        before = known.get(item)
+        if before is None or not abs(row.figure - before) <= row.tolerance * abs(before):
+            faults.append(f"{item}: {row.figure!r}, and was {before!r} (within {100 * row.tolerance:g} %)")
     return faults
 
 
@@ -157,7 +159,7 @@ def main() -> int:
     if options.accept:
         figures = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
         figures = {item: figure for item, figure in figures.items() if item.split(":")[0] not in results}
-        figures |= {f"{name}: {row.item}": row.figure for name, result in results.items() for row in result.rows if row.figure is not None}
+        figures |= {item: row.figure for item, row in figured(results).items()}
         FIGURES.write_text(json.dumps(dict(sorted(figures.items())), indent=1) + "\n")
     if options.check:
         faults = moved(results)

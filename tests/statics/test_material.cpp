@@ -87,8 +87,7 @@ TEST(Material, BlockUnderTensionFollowsTheShapeRatio) {
 }
 
 /// Printed, a mesh of twice the cells is a quarter as stiff. Else the modulus is 6 w R / (2 + R) on both, times what
-/// the
-/// shape of the cells leaves of it, as their metric is not isotropic: 0.9 of five tetrahedra, two thirds of six.
+/// the shape of the cells leaves of it, as their metric is not isotropic: 0.9 of five tetrahedra, two thirds of six.
 TEST(Material, MeshIndependentWeightsGiveOneModulusToEveryMesh) {
   for (const auto& [split, left] : {std::pair(testing::Split::five, 0.9), std::pair(testing::Split::six, 2.0 / 3)})
     for (const double r : {1.0, 0.3}) {
@@ -206,8 +205,7 @@ TEST(Material, NewtonAndAlgorithmOneAgreeForMeshIndependentWeights) {
 }
 
 /// Half of the body and half of its chamber in cells of half the size: a chamber's ratio grows alike in both halves,
-/// where
-/// the printed rule gives eight times the change to the elements that are eight times as large.
+/// where the printed rule gives eight times the change to the elements that are eight times as large.
 TEST(Material, ChangesOfAChamberAreSharedAlikeByLargeAndSmallElements) {
   const auto spread = [](ElementWeights weights) {
     Mesh mesh = testing::block_mesh({3, 3, 3}, {12, 12, 12}, testing::Split::six);

@@ -51,9 +51,8 @@ struct RegionSpec {
 
 enum class Formulation { target_shape, physical };
 
-/// What an element's energy, Eq. (2), is multiplied by beside w. printed: its volume, so that it grows with the
-/// square of
-/// the element's size, too; mesh_independent: its volume over that square. Target shapes.
+/// What an element's energy, Eq. (2), is multiplied by beside w. printed: its volume, so that it grows with the square
+/// of the element's size, too; mesh_independent: its volume over that square. Target shapes.
 enum class ElementWeights { printed, mesh_independent };
 
 /// Elastic constants as the user gives them: E and nu for the first three laws; the law's own c10, ... for the others,

@@ -18,8 +18,7 @@ enum class Solver { newton, local_global };
 [[nodiscard]] const char* name_of(Solver solver);
 
 /// Where the program that the paper's authors publish ends Algorithm 1: from this iteration on, once no marker has
-/// moved
-/// farther in an iteration. No equilibrium is reached then.
+/// moved farther in an iteration. No equilibrium is reached then.
 struct PublishedStop {
   static constexpr int first_iteration = 10;
   static constexpr double move_mm = 0.032;

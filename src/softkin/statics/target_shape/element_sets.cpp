@@ -111,8 +111,7 @@ double mean_volume(const Model& model) {
 }
 
 /// Where the mesh must not matter, it counts as the regular tetrahedron on an equilateral triangle of its size: one
-/// with
-/// edges a has squared distances a^2 of its corners from their centre, and a volume of a^3 / sqrt(72).
+/// with edges a has squared distances a^2 of its corners from their centre, and a volume of a^3 / sqrt(72).
 double own_volume(const RestShape<3>& rest) {
   const double edge = std::sqrt(3 * squared_size<3>(rest));
   return edge * edge * edge / std::sqrt(72.0);
