@@ -10,6 +10,7 @@
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/run_tables.hpp>
 #include <softkin/runs/shape_files.hpp>
+#include <softkin/runs/strain_plot.hpp>
 
 #include "command.hpp"
 #include "map_use.hpp"
@@ -27,7 +28,7 @@ namespace {
 /// What the user asks of `softkin fk`. An empty file name: not given.
 struct FkOptions : SolveOptions, RunOptions, MapUse {
   std::string path, start;
-  std::string output, report, trace;
+  std::string output, report, trace, strains;
   ShowOptions show;
   std::vector<std::string> settings;  // ACTUATOR=VALUE
   std::vector<std::string> turn;      // two markers
@@ -43,6 +44,7 @@ struct FkOptions : SolveOptions, RunOptions, MapUse {
                                        {"--trace", trace},
                                        {"--image", show.image},
                                        {"--plot", show.plot},
+                                       {"--strains", strains},
                                        {"--html", page}}))
       outputs.push_back(std::move(each));
     return outputs;
@@ -64,6 +66,8 @@ void add_options(CLI::App& command, FkOptions& options) {
   add_value(command, "--plot", options.show.plot, "F.svg",
             "With --path: commands, markers, pressures and tensions (under\npressure control volumes) over the steps, "
             "and the markers' ways");
+  add_value(command, "--strains", options.strains, "F.svg",
+            "Histograms of the body's strains, a panel a step (twelve at most),\nwith the linear ranges of its materials");
   add_turn(command, options.turn);
   add_repeated(command, "--set", options.settings, "A=V",
                "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
@@ -106,6 +110,7 @@ void check_usage(const FkOptions& options) {
   check_extension("--trace", options.trace, {{".csv", ""}});
   check_extension("--image", options.show.image, {{".png", ""}});
   check_extension("--plot", options.show.plot, {{".svg", ""}});
+  check_extension("--strains", options.strains, {{".svg", ""}});
   if (!options.show.plot.empty() && options.path.empty())
     throw InvalidInput("--plot draws the steps of a path: it needs --path F.csv");
   check_view(options.show);
@@ -176,6 +181,7 @@ class FkRun {
       show(run_.last(), run_.last_state(), run_.last_deformation());
     if (run_.done() > 0) {
       if (!options_.show.plot.empty()) write_plot();
+      if (!options_.strains.empty()) write_strains();
       page_.write();
     }
     if (!options_.trace.empty()) write_file(options_.trace, runs::table_of_traces(traces_).csv());
@@ -189,9 +195,21 @@ class FkRun {
       step.strain = {};
       steps.push_back(std::move(step));
     });
-    const std::string title = runs::plot_title(model_, options_.scene) + ", " +
-                              (answers_.by_map_alone() ? options_.map : options_.solver_name);
-    write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, title, line_));
+    write_svg(options_.show.plot, runs::plot_of_steps(model_, steps, plot_title(), line_));
+  }
+
+  void write_strains() {
+    std::vector<StepRecord> steps;
+    run_.log().each([&](std::size_t, StepRecord step) {
+      step.history = {};
+      steps.push_back(std::move(step));
+    });
+    write_svg(options_.strains, runs::plot_of_strains(model_, steps, plot_title()));
+  }
+
+  [[nodiscard]] std::string plot_title() const {
+    return runs::plot_title(model_, options_.scene) + ", " +
+           (answers_.by_map_alone() ? options_.map : options_.solver_name);
   }
 
   void show(const StepRecord& step, const State& state, const ElementDeformation& deformation) const {
@@ -202,13 +220,7 @@ class FkRun {
   }
 
   [[nodiscard]] std::string image_title(const StepRecord& step) const {
-    std::string title;
-    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      const Actuator& actuator = model_.actuators[a];
-      title += (title.empty() ? "" : ", ") + actuator.name + " = " +
-               command_text(actuator, step.actuation[static_cast<Index>(a)], 4) +
-               (actuator.control == Control::ratio ? " [-]" : "");
-    }
+    const std::string title = runs::commands_title(model_, step.actuation);
     const std::string status = name_of(step.status);
     if (step.status == Status::converged) return title;
     return title + (title.empty() ? status : ": " + status);
@@ -222,6 +234,7 @@ class FkRun {
     if (!options_.output.empty()) say("shapes: " + options_.output + " (open it in ParaView)");
     if (!options_.show.image.empty()) say("picture: " + options_.show.image);
     if (!options_.show.plot.empty()) say("plot: " + options_.show.plot);
+    if (!options_.strains.empty()) say("strains: " + options_.strains);
     if (!options_.report.empty()) say("report: " + options_.report);
     if (!options_.trace.empty()) say("trace: " + options_.trace);
     if (!options_.page.empty()) say(page_.told());

@@ -117,6 +117,7 @@ std::vector<Written> all_outputs() {
       {"fk", "--trace", fk, "t.csv"},
       {"fk", "--image", fk, "a.png"},
       {"fk", "--plot", fk, "a.svg"},
+      {"fk", "--strains", fk, "s.svg"},
       {"fk", "--html", fk, "a.html"},
       {"ik", "-o", ik, "a.vtu"},
       {"ik", "--report", ik, "b.json"},

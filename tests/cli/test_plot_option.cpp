@@ -86,6 +86,62 @@ TEST(PlotOption, FkMarksWhatDidNotConvergeAndKeepsStepsOfAnInterruptedRun) {
   EXPECT_EQ(read_text(folder / "plot.svg"), before);
 }
 
+/// Heights of the bars of each histogram over that of the highest of all, as they are drawn.
+std::vector<std::vector<double>> drawn_bars(const std::string& file) {
+  pugi::xml_document xml;
+  EXPECT_TRUE(xml.load_string(read_text(file).c_str())) << file;
+  std::vector<std::vector<double>> drawn;
+  double highest = 0;
+  for (const auto& found : xml.select_nodes("//polyline")) {
+    std::string text = found.node().attribute("points").value();
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream stream(text);
+    std::vector<double> y;
+    for (double x = 0, value = 0; stream >> x >> value;) y.push_back(value);
+    if (y.size() < 3) continue;  // the ends of a linear range
+    const double base = y.front();
+    drawn.emplace_back();
+    for (std::size_t i = 1; i + 1 < y.size(); ++i)
+      if (y[i] < base - 1e-9 && y[i] == y[i + 1]) drawn.back().push_back(base - y[i]);
+    for (const double bar : drawn.back()) highest = std::max(highest, bar);
+  }
+  for (auto& bars : drawn)
+    for (double& bar : bars) bar /= highest;
+  return drawn;
+}
+
+TEST(PlotOption, FkDrawsTheStrainsOfItsReport) {
+  const BlockFolder folder;
+  const std::string path = folder.write("path.csv", "air\n1\n1.1\n1.3\n");
+  const ProgramResult result =
+      run_fk(folder.scene, {"--path", path, "--strains", folder / "s.svg", "--report", folder / "r.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("strains: " + (folder / "s.svg")), std::string::npos) << result.output;
+  std::vector<std::vector<double>> shares;
+  double highest = 0;
+  const json report = json::parse(read_text(folder / "r.json"));
+  for (const json& step : report["steps"]) {
+    if (step["actuation"]["air"] == 1) continue;  // at rest there is nothing to see
+    shares.emplace_back();
+    for (const double share : step["strain"]["volume_shares"])
+      if (share > 0) shares.back().push_back(share);
+    for (const double share : shares.back()) highest = std::max(highest, share);
+  }
+  const std::vector<std::vector<double>> bars = drawn_bars(folder / "s.svg");
+  ASSERT_EQ(bars.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(bars[i].size(), shares[i].size());
+    for (std::size_t b = 0; b < bars[i].size(); ++b) EXPECT_NEAR(bars[i][b], shares[i][b] / highest, 0.005);
+  }
+  const PlotText plot(folder / "s.svg");
+  plot.expect({"principal strain [%]", "share of the body's volume [%]"});
+  for (const char* command : {"air = 1.1 [-]", "air = 1.3 [-]"})
+    EXPECT_TRUE(std::any_of(plot.texts.begin(), plot.texts.end(), [&](const std::string& text) {
+      return text.find(command) != std::string::npos;
+    })) << command;
+  expect_refused(folder, {"--strains", folder / "s.png"}, "must end in .svg");
+}
+
 TEST(PlotOption, FkRefusesPlotsThatCannotBe) {
   const BlockFolder folder;
   const std::string path = folder.write("path.csv", "air\n1\n1.2\n");
