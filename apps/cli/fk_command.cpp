@@ -66,8 +66,9 @@ void add_options(CLI::App& command, FkOptions& options) {
   add_value(command, "--plot", options.show.plot, "F.svg",
             "With --path: commands, markers, pressures and tensions (under\npressure control volumes) over the steps, "
             "and the markers' ways");
-  add_value(command, "--strains", options.strains, "F.svg",
-            "Histograms of the body's strains, a panel a step (twelve at most),\nwith the linear ranges of its materials");
+  add_value(
+      command, "--strains", options.strains, "F.svg",
+      "Histograms of the body's strains, a panel a step (twelve at most),\nwith the linear ranges of its materials");
   add_turn(command, options.turn);
   add_repeated(command, "--set", options.settings, "A=V",
                "ACTUATOR=VALUE: length, area or volume over that at rest\n[-] (air=1.5), or its load where it is "
