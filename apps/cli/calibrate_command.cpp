@@ -183,8 +183,13 @@ void add_options(CLI::App& command, DeaOptions& options) {
             "Measured: columns voltage_kv or voltage_v; area_ratio, or stretch\n(of lengths, alike in both "
             "directions); and if you like run, t_s");
   add_value(command, "--law", options.law, "NAME",
-            "In place of TESTS, from the equations of state of an\nequal-biaxial elastomer: neo-hookean or gent",
+            "In place of TESTS, from the equations of state of an\nelastomer: neo-hookean or gent",
             CLI::IsMember({"neo-hookean", "gent"}).description(""));
+  add_value(
+      command, "--loading", options.loading, "HOW",
+      "What pulls at its edges, by constant forces: equal-biaxial (both\ndirections alike, default), uniaxial (one "
+      "direction alone) or\nconstrained (one direction; stiff fibres keep the stretch across)",
+      CLI::IsMember({"equal-biaxial", "uniaxial", "constrained"}).description(""));
   const auto add = [&](const char* name, std::optional<double>& value, const char* what, const char* unit) {
     add_value(command, name, value, unit, what, positive_number());
   };
@@ -192,6 +197,7 @@ void add_options(CLI::App& command, DeaOptions& options) {
   add("--permittivity", options.permittivity, "Relative to vacuum", "NUMBER");
   add("--thickness", options.thickness_mm, "Before any stretch [mm]", "MM");
   add("--prestretch", options.prestretch, "Length without voltage over that without forces (default: 1)", "RATIO");
+  add("--prestretch-across", options.prestretch_across, "constrained: the stretch that the fibres keep", "RATIO");
   add("--stretch-limit", options.stretch_limit, "gent: J_lim, limit of l1^2 + l2^2 + l3^2 - 3", "NUMBER");
   add("--breakdown-field", options.breakdown_kV_mm, "True field at which the curve ends at the latest [kV/mm]",
       "KV_MM");
@@ -204,11 +210,14 @@ void add_options(CLI::App& command, DeaOptions& options) {
 void check(const DeaOptions& options) {
   if (options.tests.empty() == options.law.empty())
     throw CLI::ValidationError("TESTS", "give either measured tests or --law");
-  if (options.law.empty() && (options.permittivity || options.thickness_mm || options.shear_modulus_MPa ||
-                              options.prestretch || options.stretch_limit || options.breakdown_kV_mm))
+  if (options.law.empty() &&
+      (options.permittivity || options.thickness_mm || options.shear_modulus_MPa || options.prestretch ||
+       options.prestretch_across || options.stretch_limit || options.breakdown_kV_mm || !options.loading.empty()))
     throw CLI::ValidationError("TESTS", "a measured curve takes no properties of the elastomer");
   if (options.law == "neo-hookean" && options.stretch_limit)
     throw CLI::ValidationError("--stretch-limit", "belongs to --law gent");
+  if (options.prestretch_across && options.loading != "constrained")
+    throw CLI::ValidationError("--prestretch-across", "belongs to --loading constrained");
 }
 
 struct RelaxationOptions : calibration::RelaxationTask {

@@ -374,29 +374,36 @@ def dea(
     tests: PathLike | Sequence[PathLike] = (),
     *,
     law: str | None = None,
+    loading: str | None = None,
     shear_modulus_MPa: float | None = None,
     permittivity: float | None = None,
     thickness_mm: float | None = None,
     prestretch: float | None = None,
+    prestretch_across: float | None = None,
     stretch_limit: float | None = None,
     breakdown_kV_mm: float | None = None,
 ) -> Curve:
     """Area ratio of a dielectric elastomer by its voltage, measured or computed.
 
     tests            CSV: voltage_kv or voltage_v; area_ratio or stretch; run, t_s
-    law              in place of tests: 'neo-hookean' or 'gent', from the equations of state
-    permittivity     relative to vacuum
-    thickness_mm     before any stretch [mm]
-    prestretch       length without voltage over that without forces [-]
-    stretch_limit    gent: J_lim
-    breakdown_kV_mm  true field at which the curve ends at the latest
+    law                in place of tests: 'neo-hookean' or 'gent', from the equations of state
+    loading            what pulls at its edges by constant forces: 'equal-biaxial' (both directions alike, default),
+                       'uniaxial' (one alone), 'constrained' (one; stiff fibres keep the stretch across)
+    permittivity       relative to vacuum
+    thickness_mm       before any stretch [mm]
+    prestretch         length along the force without voltage over that without forces [-]
+    prestretch_across  constrained: the stretch that the fibres keep [-]
+    stretch_limit      gent: J_lim
+    breakdown_kV_mm    true field at which the curve ends at the latest
     """
     files = _files(tests)
     if bool(files) == (law is not None):
         raise ValueError("give either tests or law")
     if law not in (None, "neo-hookean", "gent"):
         raise ValueError(f"law must be 'neo-hookean' or 'gent', not {law!r}")
-    core = _core.calibrate_dea(
-        files, law or "", shear_modulus_MPa, permittivity, thickness_mm, prestretch, stretch_limit, breakdown_kV_mm
-    )
-    return Curve(core)
+    if loading not in (None, "equal-biaxial", "uniaxial", "constrained"):
+        raise ValueError(f"loading must be 'equal-biaxial', 'uniaxial' or 'constrained', not {loading!r}")
+    if prestretch_across is not None and loading != "constrained":
+        raise ValueError("prestretch_across is for loading='constrained'")
+    properties = (shear_modulus_MPa, permittivity, thickness_mm, prestretch, prestretch_across, stretch_limit, breakdown_kV_mm)
+    return Curve(_core.calibrate_dea(files, law or "", loading or "", *properties))

@@ -111,12 +111,16 @@ std::optional<Prediction> prediction_of(const CurveCalibration& curve) {
   return all;
 }
 
-CurveCalibration dea(const Files& tests, const std::string& law, std::optional<double> shear_modulus_MPa,
-                     std::optional<double> permittivity, std::optional<double> thickness_mm,
-                     std::optional<double> prestretch, std::optional<double> stretch_limit,
+CurveCalibration dea(const Files& tests, const std::string& law, const std::string& loading,
+                     std::optional<double> shear_modulus_MPa, std::optional<double> permittivity,
+                     std::optional<double> thickness_mm, std::optional<double> prestretch,
+                     std::optional<double> prestretch_across, std::optional<double> stretch_limit,
                      std::optional<double> breakdown_kV_mm) {
-  const calibration::DeaTask task{tests,      law,           permittivity,   thickness_mm, shear_modulus_MPa,
-                                  prestretch, stretch_limit, breakdown_kV_mm};
+  const calibration::DeaTask task{tests,         law,
+                                  loading,       permittivity,
+                                  thickness_mm,  shear_modulus_MPa,
+                                  prestretch,    prestretch_across,
+                                  stretch_limit, breakdown_kV_mm};
   auto [fitted, head, computed] = calibration::evaluate(task, "of the elastomer");
   std::string json = calibration::dea_json(tests, fitted, computed ? &*computed : nullptr);
   return told(std::move(fitted), head, std::move(json), "dea", "area ratio by voltage", !computed);
@@ -307,10 +311,10 @@ void bind_calibrate(nb::module_& module) {
       .def_rw("predict", &SyringeTests::predict)
       .def_rw("threads", &SyringeTests::threads);
   module.def("calibrate_pressure", &pressure, nb::arg("tests"));
-  module.def("calibrate_dea", &dea, nb::arg("tests"), nb::arg("law"), nb::arg("shear_modulus_MPa").none(),
-             nb::arg("permittivity").none(), nb::arg("thickness_mm").none(), nb::arg("prestretch").none(),
-             nb::arg("stretch_limit").none(), nb::arg("breakdown_kV_mm").none(),
-             nb::call_guard<nb::gil_scoped_release>());
+  module.def("calibrate_dea", &dea, nb::arg("tests"), nb::arg("law"), nb::arg("loading"),
+             nb::arg("shear_modulus_MPa").none(), nb::arg("permittivity").none(), nb::arg("thickness_mm").none(),
+             nb::arg("prestretch").none(), nb::arg("prestretch_across").none(), nb::arg("stretch_limit").none(),
+             nb::arg("breakdown_kV_mm").none(), nb::call_guard<nb::gil_scoped_release>());
   module.def("volume_mm3", &read_volume, nb::arg("option"), nb::arg("text"));
 }
 

@@ -137,8 +137,19 @@ def test_dea(examples: Path, command: str) -> None:
     assert computed.ratio(0) == pytest.approx(1) and computed.samples.shape == (0, 4)
     with pytest.raises(ValueError, match="give either tests or law"):
         calibrate.dea()
+    stiff = ["--law", "gent", "--shear-modulus", "0.045", "--stretch-limit", "120", "--permittivity", "4.7", "--thickness", "1"]
+    kept = calibrate.dea(
+        law="gent", shear_modulus_MPa=0.045, stretch_limit=120, permittivity=4.7, thickness_mm=1, prestretch=2,
+        loading="constrained", prestretch_across=3,
+    )  # fmt: skip
+    more = ["--prestretch", "2", "--loading", "constrained", "--prestretch-across", "3"]
+    assert kept.report == told(command, "dea", *stiff, *more)
     with pytest.raises(ValueError, match="law must be"):
         calibrate.dea(law="rubber")
+    with pytest.raises(ValueError, match="loading must be"):
+        calibrate.dea(law="gent", loading="shear")
+    with pytest.raises(ValueError, match="^prestretch_across is for loading='constrained'"):
+        calibrate.dea(law="gent", prestretch_across=2)
     with pytest.raises(softkin.InvalidInput, match="^the law gent needs the elastomer's permittivity, relative to vacuum$"):
         calibrate.dea(law="gent", shear_modulus_MPa=0.07)
 

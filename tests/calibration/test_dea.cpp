@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <softkin/calibration/actuator_curves.hpp>
 #include <softkin/calibration/actuator_samples.hpp>
+#include <softkin/calibration/dielectric_elastomer.hpp>
 #include <softkin/core/error.hpp>
 
 namespace softkin {
@@ -27,6 +29,111 @@ double stationary_voltage(const calibration::Dielectric& d, double l) {
   const double force = slope(d.prestretch);                          // dW/dl at rest, which the forces balance
   const double square = (slope(l) - force) / (2 * eps * l * l * l);  // d/dl of eps/2 (l^2 U/H)^2 is 2 eps l^3 (U/H)^2
   return d.thickness_mm * std::sqrt(square);
+}
+
+using calibration::Dielectric;
+using calibration::DielectricLaw;
+using calibration::DielectricLoading;
+
+/// Strain energy per rest volume [MPa] at two stretches in the plane.
+double plane_energy(const Dielectric& d, double l, double m) {
+  const double invariant = l * l + m * m + 1 / (l * l * m * m) - 3;
+  if (d.law == DielectricLaw::neo_hookean) return d.shear_modulus_MPa / 2 * invariant;
+  return -d.shear_modulus_MPa * d.stretch_limit / 2 * std::log(1 - invariant / d.stretch_limit);
+}
+
+/// Gradient of that energy by finite differences.
+std::array<double, 2> plane_stress(const Dielectric& d, double l, double m) {
+  const double h = 1e-5;
+  return {(plane_energy(d, l + h, m) - plane_energy(d, l - h, m)) / (2 * h),
+          (plane_energy(d, l, m + h) - plane_energy(d, l, m - h)) / (2 * h)};
+}
+
+/// In both directions what the elastomer and the edge forces leave is the pull of the charges, eps (U/H)^2 l1 l2 times
+/// the other stretch; of fibres only along the force.
+TEST(Dielectric, BothDirectionsAreInBalance) {
+  for (const DielectricLaw law : {DielectricLaw::neo_hookean, DielectricLaw::gent})
+    for (const DielectricLoading loading : {DielectricLoading::uniaxial, DielectricLoading::constrained})
+      for (const double prestretch : {1.0, 1.5, 3.0}) {
+        const Dielectric d{law, 0.07, 4.4, 0.5, prestretch, 60, loading, 2};
+        const bool free = loading == DielectricLoading::uniaxial;
+        const double across = free ? 1 / std::sqrt(prestretch) : 2, grows = free ? across : prestretch;
+        const std::array<double, 2> rest = plane_stress(d, prestretch, across);
+        EXPECT_NEAR(free ? rest[1] : 0, 0, 1e-9);
+        EXPECT_NEAR(calibration::plane_stretch(d, grows).along, prestretch, 1e-9);
+        EXPECT_NEAR(calibration::plane_stretch(d, grows).across, across, 1e-9);
+        for (const double more : {1.05, 1.3, 1.6}) {
+          const auto [l, m] = calibration::plane_stretch(d, more * grows);
+          const double nominal = calibration::voltage_of(d, more * grows) / d.thickness_mm;  // [kV/mm]
+          const double pull = d.relative_permittivity * 8.8541878128e-6 * nominal * nominal;
+          const std::array<double, 2> stress = plane_stress(d, l, m);
+          EXPECT_NEAR(stress[0] - rest[0], pull * l * m * m, 1e-6 * stress[0]);
+          EXPECT_NEAR(free ? stress[1] - pull * l * l * m : m - 2, 0, 1e-6 * stress[0]);
+        }
+      }
+}
+
+TEST(Dielectric, WithoutForcesOneDirectionIsAsGoodAsBoth) {
+  for (const DielectricLaw law : {DielectricLaw::neo_hookean, DielectricLaw::gent}) {
+    Dielectric both{law, 0.07, 4.4, 0.5, 1, 30}, one = both;
+    one.loading = DielectricLoading::uniaxial;
+    EXPECT_NEAR(calibration::pull_in(one)->voltage_kV, calibration::pull_in(both)->voltage_kV, 1e-9);
+    EXPECT_NEAR(calibration::pull_in(one)->area_ratio, std::pow(calibration::pull_in(both)->stretch, 2), 1e-7);
+  }
+}
+
+/// Of a neo-hookean elastomer eps (U/H)^2 q^2 / mu is 1 - s / l - l^-4 q^-2: it only rises.
+TEST(Dielectric, FibresTakeThePullInAway) {
+  Dielectric d{DielectricLaw::neo_hookean, 0.07, 4.4, 0.5, 1.5, 0, DielectricLoading::constrained, 2};
+  EXPECT_FALSE(calibration::pull_in(d).has_value());
+  const double force = 1.5 - std::pow(1.5, -3) / 4, root = std::sqrt(0.07 / (4.4 * 8.8541878128e-6));
+  const calibration::DielectricCurve curve = calibration::dielectric_curve(d, 20);
+  EXPECT_NEAR(curve.area_ratios.back(), 5, 1e-12);
+  const double end = 5 * 1.5;
+  EXPECT_NEAR(curve.voltages.back(), 0.5 / 2 * root * std::sqrt(1 - force / end - std::pow(end, -4) / 4), 1e-9);
+  d.loading = DielectricLoading::uniaxial;
+  EXPECT_TRUE(calibration::pull_in(d).has_value());
+}
+
+TEST(Dielectric, PullInUnderOneForceIsTheFirstMaximumThatAFineTableHas) {
+  for (const DielectricLaw law : {DielectricLaw::neo_hookean, DielectricLaw::gent})
+    for (const DielectricLoading loading : {DielectricLoading::uniaxial, DielectricLoading::constrained}) {
+      const Dielectric d{law, 0.07, 4.4, 0.5, 1.2, 100, loading, 1};
+      const std::optional<calibration::PullIn> found = calibration::pull_in(d);
+      double highest = 0, at = 0;
+      for (double l = loading == DielectricLoading::uniaxial ? 1 / std::sqrt(1.2) : 1.2; l < 8; l += 1e-4) {
+        const double voltage = calibration::voltage_of(d, l);
+        if (voltage < highest) break;
+        highest = voltage;
+        at = l;
+      }
+      if (at > 7.9) {
+        EXPECT_FALSE(found.has_value());
+        continue;
+      }
+      ASSERT_TRUE(found.has_value());
+      EXPECT_NEAR(found->stretch, at, 3e-4);
+    }
+}
+
+/// The end of a curve without pull-in is where the chains are at 95 % of their limit, in every loading.
+TEST(Dielectric, ChainsEndTheCurveWhateverPulls) {
+  for (const DielectricLoading loading :
+       {DielectricLoading::equal_biaxial, DielectricLoading::uniaxial, DielectricLoading::constrained}) {
+    Dielectric d{DielectricLaw::gent, 0.07, 4.4, 0.5, 3.5, 20, loading, 1.5};
+    if (loading == DielectricLoading::equal_biaxial) d.prestretch = 3;
+    ASSERT_FALSE(calibration::pull_in(d).has_value());
+    const double ratio = calibration::dielectric_curve(d, 5).area_ratios.back();
+    // the stretches of that area by bisection along the balance
+    double low = loading == DielectricLoading::uniaxial ? 1 / std::sqrt(d.prestretch) : d.prestretch, high = 10;
+    const double rest = calibration::plane_stretch(d, low).area();
+    for (int i = 0; i < 100; ++i) {
+      const double l = (low + high) / 2;
+      (calibration::plane_stretch(d, l).area() < ratio * rest ? low : high) = l;
+    }
+    const auto [l, m] = calibration::plane_stretch(d, low);
+    EXPECT_NEAR(l * l + m * m + 1 / (l * l * m * m) - 3, 0.95 * 20, 1e-6);
+  }
 }
 
 TEST(Dielectric, PullInOfANeoHookeanElastomerIsTheAnalyticOne) {
@@ -115,6 +222,7 @@ TEST(Dielectric, RefusesWhatIsNoElastomer) {
   for (const auto& spoil : {+[](calibration::Dielectric& d) { d.shear_modulus_MPa = 0; },
                             +[](calibration::Dielectric& d) { d.thickness_mm = -1; },
                             +[](calibration::Dielectric& d) { d.prestretch = 0.9; },
+                            +[](calibration::Dielectric& d) { d.prestretch_across = 0.9; },
                             +[](calibration::Dielectric& d) { d.relative_permittivity = NAN; },
                             +[](calibration::Dielectric& d) {
                               d.law = calibration::DielectricLaw::gent;

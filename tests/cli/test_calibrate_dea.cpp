@@ -37,6 +37,16 @@ TEST(CalibrateDea, EquationOfStateEndsAtTheAnalyticPullIn) {
   expect_words(with({"--breakdown-field", "20"}).output, {"breakdown field of 20 kV/mm reached at", "before pull-in"});
 }
 
+TEST(CalibrateDea, TellsWhatPulls) {
+  expect_words(with({"--loading", "uniaxial", "--prestretch", "2"}).output,
+               {"in tension along its length alone", "pull-in at", "a constant force along its length"});
+  const ProgramResult kept = with({"--loading", "constrained", "--prestretch-across", "3"});
+  expect_words(kept.output,
+               {"that stiff fibres keep at a stretch of 3 across", "no pull-in", "5 times the prestretch"});
+  EXPECT_EQ(json::parse(with({"--loading", "constrained", "--prestretch-across", "3", "--json"}).output)["end"],
+            "the stretch to which it is computed");
+}
+
 TEST(CalibrateDea, CurveDrivesTheCrawlerInKilovolts) {
   const TemporaryFolder folder;
   ASSERT_EQ(with({"-o", folder / "skin.yaml", "--plot", folder / "skin.svg"}).exit_code, 0);
@@ -104,6 +114,9 @@ TEST(CalibrateDea, RefusesBadRowsUnitsAndOptions) {
   expect_bad(run_program({"calibrate", "dea", "--law", "gent"}), {"needs the elastomer's shear modulus"});
   expect_bad(with({"--stretch-limit", "10"}), {"--stretch-limit", "gent"});
   expect_bad(with({"--prestretch", "0.5"}), {"prestretch"});
+  expect_bad(with({"--loading", "shear"}), {"--loading"});
+  expect_bad(with({"--loading", "constrained"}), {"prestretch across, which its fibres keep"});
+  expect_bad(with({"--prestretch-across", "2"}), {"--prestretch-across", "--loading constrained"});
   expect_bad(with({"--thickness", "-1"}), {"--thickness"});
   expect_bad(with({"-o", folder / "skin.txt"}), {".yaml"});
   expect_bad(run_program({"calibrate"}), {"a subcommand of calibrate"});

@@ -183,32 +183,49 @@ Dielectric elastomer_of(const DeaTask& task) {
   d.relative_permittivity = need(task.permittivity, "permittivity, relative to vacuum");
   d.thickness_mm = need(task.thickness_mm, "thickness before any stretch [mm]");
   d.prestretch = task.prestretch.value_or(1);
+  if (task.loading == "uniaxial") d.loading = DielectricLoading::uniaxial;
+  if (task.loading == "constrained") d.loading = DielectricLoading::constrained;
+  if (d.loading == DielectricLoading::constrained)
+    d.prestretch_across = need(task.prestretch_across, "prestretch across, which its fibres keep");
   if (d.law == DielectricLaw::gent) d.stretch_limit = need(task.stretch_limit, "stretch limit J_lim");
   return d;
 }
 
+std::string loading_text(const Dielectric& d) {
+  if (d.loading == DielectricLoading::equal_biaxial) return "in equal-biaxial tension";
+  if (d.loading == DielectricLoading::uniaxial) return "in tension along its length alone";
+  return "that stiff fibres keep at a stretch of " + number(d.prestretch_across) + " across";
+}
+
 std::string elastomer_text(const DeaTask& task, const Dielectric& d) {
-  std::string text = task.law + " elastomer in equal-biaxial tension: shear modulus " + number(d.shear_modulus_MPa) +
+  std::string text = task.law + " elastomer " + loading_text(d) + ": shear modulus " + number(d.shear_modulus_MPa) +
                      " MPa, relative permittivity " + number(d.relative_permittivity) + ", " + number(d.thickness_mm) +
                      " mm thick before any stretch, prestretch " + number(d.prestretch) +
                      (task.prestretch ? "" : " (default)");
   if (d.law == DielectricLaw::gent) text += ", J_lim " + number(d.stretch_limit);
-  return text + "; constant forces at its edge\n";
+  return text + (d.loading == DielectricLoading::equal_biaxial ? "; constant forces at its edge\n"
+                                                               : "; a constant force along its length\n");
 }
 
 std::string pull_in_text(const Dielectric& d, const PullIn& pull_in) {
-  return "pull-in at " + number(pull_in.voltage_kV, 5) + " kV: stretch " + number(pull_in.stretch, 5) +
-         " (area ratio " + number(std::pow(pull_in.stretch / d.prestretch, 2), 5) +
-         " to that without voltage), field " + number(pull_in.field_kV_mm, 4) +
+  const std::string stretch = number(pull_in.stretch, 5) + (d.loading == DielectricLoading::uniaxial ? " across" : "");
+  return "pull-in at " + number(pull_in.voltage_kV, 5) + " kV: stretch " + stretch + " (area ratio " +
+         number(pull_in.area_ratio, 5) + " to that without voltage), field " + number(pull_in.field_kV_mm, 4) +
          " kV/mm; beyond it no equilibrium follows\n";
+}
+
+std::string no_pull_in_text(const Dielectric& d) {
+  if (d.law == DielectricLaw::gent) return "no pull-in: the voltage rises up to 95 % of the limit of the chains\n";
+  return "no pull-in: the voltage rises with the stretch; this law has no limit of its chains (gent has), and the "
+         "curve ends at " +
+         number(constrained_end) + " times the prestretch\n";
 }
 
 DeaResults computed(const DeaTask& task, const std::string& name) {
   const Dielectric d = elastomer_of(task);
   const DielectricCurve curve = dielectric_curve(d, curve_points, task.breakdown_kV_mm.value_or(0));
   std::string head = elastomer_text(task, d);
-  head += curve.pull_in ? pull_in_text(d, *curve.pull_in)
-                        : "no pull-in: the voltage rises up to 95 % of the limit of the chains\n";
+  head += curve.pull_in ? pull_in_text(d, *curve.pull_in) : no_pull_in_text(d);
   if (curve.broken_down)
     head += "breakdown field of " + number(*task.breakdown_kV_mm) + " kV/mm reached at " +
             number(curve.voltages.back(), 5) + " kV, " + (curve.pull_in ? "before pull-in" : "and") +
@@ -216,7 +233,10 @@ DeaResults computed(const DeaTask& task, const std::string& name) {
   else
     head += "true field at the end of the curve: " + number(curve.end_field_kV_mm, 4) + " kV/mm" +
             (task.breakdown_kV_mm ? "" : " (no breakdown field given: not checked)") + "\n";
-  const std::string end = curve.broken_down ? "breakdown" : curve.pull_in ? "pull-in" : "the limit of the chains";
+  const std::string end = curve.broken_down                     ? "breakdown"
+                          : curve.pull_in                       ? "pull-in"
+                          : d.law == DielectricLaw::neo_hookean ? "the stretch to which it is computed"
+                                                                : "the limit of the chains";
   const CurveBranch branch{MonotoneCurve(curve.voltages, curve.area_ratios), {}};
   return {{{name, CurveInput::voltage, 100, end, branch, std::nullopt}}, head, curve};
 }
@@ -340,7 +360,10 @@ std::string dea_json(const std::vector<std::string>& tests, const FittedCurve& f
   } else {
     json["pull_in"] = Json();
     if (const std::optional<PullIn>& at = computed->pull_in)
-      json["pull_in"] = {{"voltage_kV", at->voltage_kV}, {"stretch", at->stretch}, {"field_kV_mm", at->field_kV_mm}};
+      json["pull_in"] = {{"voltage_kV", at->voltage_kV},
+                         {"stretch", at->stretch},
+                         {"area_ratio", at->area_ratio},
+                         {"field_kV_mm", at->field_kV_mm}};
     json["broken_down"] = computed->broken_down;
     json["end_field_kV_mm"] = computed->end_field_kV_mm;
   }

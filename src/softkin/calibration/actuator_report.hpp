@@ -3,6 +3,7 @@
 #include <optional>
 #include <softkin/calibration/actuator_curves.hpp>
 #include <softkin/calibration/actuator_samples.hpp>
+#include <softkin/calibration/dielectric_elastomer.hpp>
 #include <softkin/calibration/pressure_check.hpp>
 #include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/table/table.hpp>
@@ -61,7 +62,9 @@ struct SyringeResults {
 struct DeaTask {
   std::vector<std::string> tests;  // CSV
   std::string law;                 // in place of tests: "neo-hookean" or "gent"
-  std::optional<double> permittivity, thickness_mm, shear_modulus_MPa, prestretch, stretch_limit, breakdown_kV_mm;
+  std::string loading;             // "uniaxial", "constrained", or that of the default, "equal-biaxial"
+  std::optional<double> permittivity, thickness_mm, shear_modulus_MPa, prestretch, prestretch_across, stretch_limit,
+      breakdown_kV_mm;
 };
 
 struct DeaResults {
