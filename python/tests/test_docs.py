@@ -124,3 +124,15 @@ def test_a_mesh_from_the_shell(tmp_path: Path) -> None:
         run = subprocess.run(shlex.split(line), cwd=tmp_path, env=environment, capture_output=True, text=True)
         assert run.returncode == 0, line + run.stdout + run.stderr
     assert (tmp_path / "finger.yaml").exists()
+
+
+def test_the_layers_that_are_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    (shown,) = [block for block in blocks("python_mesh.md", "python") if "stacked(" in block]
+    monkeypatch.chdir(tmp_path)
+    import softkin.mesh
+
+    names: dict[str, Any] = {"softkin": softkin}
+    exec(compile(shown, "docs/python_mesh.md", "exec"), names)
+    end = [float(word) for word in re.findall(r"-?\d+\.\d+", capsys.readouterr().out)]
+    assert (tmp_path / "sheet.msh").exists() and end[2] < -1  # what stretches on top bends it down
+    assert softkin.mesh.read_msh("sheet.msh").prisms.shape == (2 * 200, 6)

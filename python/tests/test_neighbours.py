@@ -96,7 +96,6 @@ def test_what_is_no_robot() -> None:
         ((softkin.Robot, VolumeMesh), [("triangle", tetrahedra[:, :3])], "no tetrahedra and no wedges, but triangle"),
         ((softkin.Robot, VolumeMesh), [("tetra", tetrahedra), ("tetra10", quadratic)], "of order 1 and of order 2"),
         ((VolumeMesh,), [("tetra10", quadratic)], "has tetrahedra of order 2: a VolumeMesh has tetrahedra of order 1"),
-        ((VolumeMesh,), [("wedge", np.arange(6)[None])], "has wedges: a VolumeMesh"),
     ):
         for reader in readers:
             with pytest.raises(softkin.InvalidInput, match=message):

@@ -4,6 +4,7 @@ from .errors import InvalidInput, MeshWarning
 from .files import check, convert, info
 from .generate import from_surfaces
 from .gmsh_program import mesh_geo
+from .layers import stacked
 from .msh_read import read_msh
 from .quality import Quality
 from .scene import scene_text
@@ -26,5 +27,6 @@ __all__ = [
     "read_msh",
     "read_surface",
     "scene_text",
+    "stacked",
     "write_stl",
 ]

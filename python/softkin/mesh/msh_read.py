@@ -1,4 +1,4 @@
-"""Gmsh .msh 4.1 (text, binary) and 2.2 (text) in: tetrahedra and triangles of order 1, physical groups as regions."""
+"""Gmsh .msh 4.1 (text, binary) and 2.2 (text) in: tetrahedra, prisms and triangles of order 1, physical groups as regions."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import numpy as np
 
 from .arrays import Array
 from .errors import InvalidInput
-from .volume_mesh import VolumeMesh, compacted, positive
+from .volume_mesh import VolumeMesh, positive
 
 CORNERS = {15: 1, 1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5}  # by type of Gmsh, order 1; others are refused
-TRIANGLE, TETRAHEDRON = 2, 4
+TRIANGLE, TETRAHEDRON, PRISM = 2, 4, 6
 
 Cells = dict[int, list[tuple[tuple[int, ...], Array]]]  # by type, of each block its groups and nodes
 
@@ -144,8 +144,8 @@ def _check_kind(kind: int) -> None:
 
 
 def _mesh(path: Path, points: Array, tags: Array, cells: Cells, names: dict[tuple[int, int], str]) -> VolumeMesh:
-    if TETRAHEDRON not in cells:
-        raise InvalidInput(f"{path}: no tetrahedra of order 1")
+    if TETRAHEDRON not in cells and PRISM not in cells:
+        raise InvalidInput(f"{path}: no tetrahedra or prisms of order 1")
     order = np.argsort(tags)
 
     def rows(nodes: Array) -> Array:
@@ -154,31 +154,35 @@ def _mesh(path: Path, points: Array, tags: Array, cells: Cells, names: dict[tupl
             raise InvalidInput(f"{path}: $Elements: a node that is not in $Nodes")
         return order[at]
 
-    tetrahedra = rows(np.concatenate([block for _, block in cells[TETRAHEDRON]]))
+    def elements(kind: int) -> Array:
+        blocks = [block for _, block in cells.get(kind, [])]
+        return rows(np.concatenate(blocks)) if blocks else np.empty((0, CORNERS[kind]), dtype=np.int64)
+
+    tetrahedra, prisms = elements(TETRAHEDRON), elements(PRISM)
     volumes: dict[str, list[Array]] = {}
     faces: dict[str, list[Array]] = {}
     start = 0
-    for groups, block in cells[TETRAHEDRON]:
+    for groups, block in cells.get(TETRAHEDRON, []) + cells.get(PRISM, []):
         for group in groups:
             volumes.setdefault(names.get((3, group), f"physical_3_{group}"), []).append(
                 np.arange(start, start + len(block))
             )
         start += len(block)
-    used = np.unique(tetrahedra)
+    used = np.unique(np.concatenate([tetrahedra.ravel(), prisms.ravel()]))
     number = np.full(len(points), -1)
     number[used] = np.arange(len(used))
     for groups, block in cells.get(TRIANGLE, []):
         for group in groups:
             faces.setdefault(names.get((2, group), f"physical_2_{group}"), []).append(number[rows(block)])
-    vertices, tetrahedra = compacted(points, tetrahedra)
     joined = {name: np.concatenate(blocks) for name, blocks in faces.items()}
     for name, block in joined.items():
         if (block < 0).any():
-            raise InvalidInput(f"{path}: region '{name}' has faces with vertices of no tetrahedron")
+            raise InvalidInput(f"{path}: region '{name}' has faces with vertices of no element")
     joined = {f"{name}_2d" if name in volumes else name: block for name, block in joined.items()}
     return VolumeMesh(
-        vertices,
-        positive(vertices, tetrahedra),
+        points[used],
+        positive(points[used], number[tetrahedra]),
         {name: np.concatenate(blocks) for name, blocks in volumes.items()},
         joined,
+        prisms=number[prisms],
     )

@@ -11,12 +11,12 @@ from .errors import InvalidInput
 from .volume_mesh import VolumeMesh
 
 MARK = b"$Comments\nmade by softkin\n$EndComments\n"  # by which softkin knows the file again
-TRIANGLE, TETRAHEDRON = 2, 4  # types of Gmsh, by their number of dimensions
+KINDS = {3: 2, 4: 4, 6: 6}  # of Gmsh, by corners: triangle, tetrahedron, prism
 
 
 def write_msh(path: str | Path, mesh: VolumeMesh) -> None:
     """Writes .msh 4.1, binary. Elements of the same regions make one entity, whose physical groups these are."""
-    blocks = _blocks(mesh, 2) + _blocks(mesh, 3)
+    blocks = _face_blocks(mesh) + _element_blocks(mesh)
     names = [(2, name) for name in mesh.face_regions] + [(3, name) for name in mesh.volume_regions]
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     entities = [np.array([0, 0, sum(d == 2 for d, _, _ in blocks), sum(d == 3 for d, _, _ in blocks)], "<u8").tobytes()]
@@ -28,7 +28,7 @@ def write_msh(path: str | Path, mesh: VolumeMesh) -> None:
             np.array(groups, "<i4").tobytes(),
             np.array([0], "<u8").tobytes(),
         ]
-        kind = TRIANGLE if dimension == 2 else TETRAHEDRON
+        kind = KINDS[cells.shape[1]]
         tags = np.arange(tag + 1, tag + 1 + len(cells))
         tag += len(cells)
         elements += [np.array([dimension, number, kind], "<i4").tobytes(), np.array([len(cells)], "<u8").tobytes()]
@@ -56,22 +56,35 @@ def write_msh(path: str | Path, mesh: VolumeMesh) -> None:
         raise InvalidInput(f"{path}: {error.strerror}") from None
 
 
-def _blocks(mesh: VolumeMesh, dimension: int) -> list[tuple[int, list[int], Array]]:
-    """Dimension, numbers of physical groups and elements, for every set of regions that elements are in."""
-    faces, volumes = list(mesh.face_regions.values()), list(mesh.volume_regions.values())
-    if dimension == 3:
-        member = np.zeros((len(mesh.tetrahedra), len(volumes)), dtype=bool)
-        for column, region in enumerate(volumes):
-            member[region, column] = True
-        cells, offset = mesh.tetrahedra, len(faces)
-    elif not faces:
+Block = tuple[int, list[int], Array]  # dimension, numbers of physical groups, elements
+
+
+def _element_blocks(mesh: VolumeMesh) -> list[Block]:
+    volumes = list(mesh.volume_regions.values())
+    member = np.zeros((len(mesh.tetrahedra) + len(mesh.prisms), len(volumes)), dtype=bool)
+    for column, region in enumerate(volumes):
+        member[region, column] = True
+    first = len(mesh.tetrahedra)
+    blocks: list[Block] = []
+    for cells, members in ((mesh.tetrahedra, member[:first]), (mesh.prisms, member[first:])):
+        if len(cells):
+            blocks += _blocks(3, cells, members, len(mesh.face_regions))
+    return blocks
+
+
+def _face_blocks(mesh: VolumeMesh) -> list[Block]:
+    faces = list(mesh.face_regions.values())
+    if not faces:
         return []
-    else:
-        every = np.concatenate(faces)
-        _, first, which = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_inverse=True)
-        cells, offset = every[first], 0
-        member = np.zeros((len(cells), len(faces)), dtype=bool)
-        member[which.reshape(-1), np.repeat(np.arange(len(faces)), [len(region) for region in faces])] = True
+    every = np.concatenate(faces)
+    _, first, which = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_inverse=True)
+    member = np.zeros((len(first), len(faces)), dtype=bool)
+    member[which.reshape(-1), np.repeat(np.arange(len(faces)), [len(region) for region in faces])] = True
+    return _blocks(2, every[first], member, 0)
+
+
+def _blocks(dimension: int, cells: Array, member: Array, offset: int) -> list[Block]:
+    """One for every set of regions that elements are in."""
     if member.shape[1] == 0:
         return [(dimension, [], cells)]
     others, which = np.unique(~member, axis=0, return_inverse=True)  # ~: those of the first region come first

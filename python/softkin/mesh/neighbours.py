@@ -1,4 +1,4 @@
-"""Meshes of tetrahedra as meshes of meshio and PyVista, and back."""
+"""Meshes of tetrahedra and prisms as meshes of meshio and PyVista, and back."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from .. import neighbours
 from .arrays import Array
 from .errors import InvalidInput
-from .volume_mesh import VolumeMesh, compacted, positive
+from .volume_mesh import VolumeMesh, positive
 
 if TYPE_CHECKING:
     import meshio
     import pyvista
 
-TETRAHEDRON, TRIANGLE = 10, 5  # cell types of VTK
+TETRAHEDRON, PRISM, TRIANGLE = 10, 13, 5  # cell types of VTK
 
 
 def to_meshio(mesh: VolumeMesh) -> meshio.Mesh:
-    """A meshio.Mesh: a block of triangles (those of face regions) and one of tetrahedra, regions as cell_sets, and as
+    """A meshio.Mesh: a block of triangles (those of face regions), of tetrahedra and of wedges, regions as cell_sets, and as
     gmsh:physical and field_data, of which an element that is in several regions keeps the first. Throws ImportError."""
     faces, members = _unique_faces(mesh)
     cells, sets, numbers = [], {}, []
@@ -28,14 +28,18 @@ def to_meshio(mesh: VolumeMesh) -> meshio.Mesh:
     field_data = {
         name: np.array([number, 2 if name in mesh.face_regions else 3]) for number, name in enumerate(names, 1)
     }
-    for kind, block, regions in (("triangle", faces, members), ("tetra", mesh.tetrahedra, mesh.volume_regions)):
+    first, empty = len(mesh.tetrahedra), np.empty(0, dtype=np.int64)
+    of_kind = {
+        "triangle": members,
+        "tetra": {name: region[region < first] for name, region in mesh.volume_regions.items()},
+        "wedge": {name: region[region >= first] - first for name, region in mesh.volume_regions.items()},
+    }
+    for kind, block in (("triangle", faces), ("tetra", mesh.tetrahedra), ("wedge", mesh.prisms)):
         if len(block):
             cells.append((kind, block))
-            numbers.append(_first_numbers(len(block), regions, field_data))
+            numbers.append(_first_numbers(len(block), of_kind[kind], field_data))
     for name in names:
-        empty = np.empty(0, dtype=np.int64)
-        own = members[name] if name in members else mesh.volume_regions[name]
-        sets[name] = [own if (kind == "triangle") == (name in members) else empty for kind, _ in cells]
+        sets[name] = [of_kind[kind].get(name, empty) for kind, _ in cells]
     return neighbours.package("meshio").Mesh(
         mesh.vertices,
         cells,
@@ -46,20 +50,21 @@ def to_meshio(mesh: VolumeMesh) -> meshio.Mesh:
 
 
 def from_meshio(mesh: meshio.Mesh) -> VolumeMesh:
-    """Tetrahedra of order 1 of a meshio.Mesh; regions of elements and faces from cell_sets and gmsh:physical. Lengths as
+    """Tetrahedra of order 1 and wedges of a meshio.Mesh; regions of elements and faces from cell_sets and gmsh:physical. Lengths as
     they are, taken for mm. Throws InvalidInput."""
     return _made(neighbours.from_meshio(mesh))
 
 
 def to_pyvista(mesh: VolumeMesh) -> pyvista.UnstructuredGrid:
-    """A pyvista.UnstructuredGrid of the tetrahedra and, once for every face region, its triangles. Cell array `region`:
+    """A pyvista.UnstructuredGrid of the tetrahedra, the wedges and, once for every face region, its triangles. Cell array `region`:
     the number of the region, -1: none (of several regions of an element the first); field data `region_NAME`: the
     number of region NAME. As .vtu softkin reads that by name. Throws ImportError."""
     numbers = {name: number for number, name in enumerate([*mesh.volume_regions, *mesh.face_regions])}
-    of_cells = np.full(len(mesh.tetrahedra), -1)
+    of_cells = np.full(len(mesh.tetrahedra) + len(mesh.prisms), -1)
     for name in reversed(list(mesh.volume_regions)):
         of_cells[mesh.volume_regions[name]] = numbers[name]
-    cells = {TETRAHEDRON: mesh.tetrahedra}
+    kinds = ((TETRAHEDRON, mesh.tetrahedra), (PRISM, mesh.prisms))
+    cells = {kind: block for kind, block in kinds if len(block)}
     if mesh.face_regions:
         cells[TRIANGLE] = np.concatenate(list(mesh.face_regions.values()))
         of_faces = np.concatenate([np.full(len(faces), numbers[name]) for name, faces in mesh.face_regions.items()])
@@ -72,25 +77,30 @@ def to_pyvista(mesh: VolumeMesh) -> pyvista.UnstructuredGrid:
 
 
 def from_pyvista(grid: pyvista.UnstructuredGrid) -> VolumeMesh:
-    """Tetrahedra of order 1 of a pyvista.UnstructuredGrid; regions of elements and faces from the cell array `region`,
+    """Tetrahedra of order 1 and wedges of a pyvista.UnstructuredGrid; regions of elements and faces from the cell array `region`,
     named by the field data `region_NAME`, else region_NUMBER. Lengths as they are, taken for mm. Throws InvalidInput."""
     return _made(neighbours.from_pyvista(grid))
 
 
 def _made(read: neighbours.Elements) -> VolumeMesh:
-    if len(read.prisms) or read.tetrahedra.shape[1] != 4:
-        kind = "wedges" if len(read.prisms) else "tetrahedra of order 2"
-        raise InvalidInput(f"the mesh has {kind}: a VolumeMesh has tetrahedra of order 1; softkin.Robot takes others")
-    used = np.unique(read.tetrahedra)
+    if read.tetrahedra.shape[1] != 4:
+        raise InvalidInput(
+            "the mesh has tetrahedra of order 2: a VolumeMesh has those of order 1; softkin.Robot takes others"
+        )
+    used = np.unique(np.concatenate([read.tetrahedra.ravel(), read.prisms.ravel()]))
     number = np.full(len(read.points), -1)
     number[used] = np.arange(len(used))
     faces = {name: number[region["triangles"]] for name, region in read.regions.items() if "triangles" in region}
     for name, triangles in faces.items():
         if (triangles < 0).any():
-            raise InvalidInput(f"region '{name}' has faces with vertices of no tetrahedron")
-    vertices, cells = compacted(read.points, read.tetrahedra)
-    volumes = {name: region["tetrahedra"] for name, region in read.regions.items() if "tetrahedra" in region}
-    return VolumeMesh(vertices, positive(vertices, cells), volumes, faces)
+            raise InvalidInput(f"region '{name}' has faces with vertices of no element")
+    vertices, cells = read.points[used], number[read.tetrahedra]
+    volumes = {}
+    for name, region in read.regions.items():
+        parts = [region[kind] + first for kind, first in (("tetrahedra", 0), ("prisms", len(cells))) if kind in region]
+        if parts:
+            volumes[name] = np.concatenate(parts)
+    return VolumeMesh(vertices, positive(vertices, cells), volumes, faces, prisms=number[read.prisms])
 
 
 def _unique_faces(mesh: VolumeMesh) -> tuple[Array, dict[str, Array]]:

@@ -63,18 +63,16 @@ def scene_text(mesh: VolumeMesh, mesh_file: str, chambers: list[str], fixed: str
 
 def _ends(mesh: VolumeMesh, solids: list[str], fixed: str) -> tuple[str, Array]:
     """The entry of `fixed`, and a vertex of the body in the middle of the other end."""
-    cells = (
-        mesh.tetrahedra[np.concatenate([mesh.volume_regions[name] for name in solids])] if solids else mesh.tetrahedra
-    )
-    points = mesh.vertices[np.unique(cells)]
+    chosen = np.concatenate([mesh.volume_regions[name] for name in solids]) if solids else None
+    points = mesh.vertices[_corners(mesh, chosen)]
     low, high = points.min(axis=0), points.max(axis=0)
     axis = int(np.argmax(high - low))
     upwards = True
     held = f"{{region: {_quoted(fixed)}}}"
     if fixed:
-        region = mesh.regions[fixed]
-        vertices = region if fixed in mesh.face_regions else mesh.tetrahedra[region]
-        middle = mesh.vertices[np.unique(vertices)].mean(axis=0)
+        faces = mesh.face_regions.get(fixed)
+        vertices = _corners(mesh, mesh.volume_regions[fixed]) if faces is None else np.unique(faces)
+        middle = mesh.vertices[vertices].mean(axis=0)
         axis = int(np.argmax(np.maximum(high - middle, middle - low)))
         upwards = bool(high[axis] - middle[axis] >= middle[axis] - low[axis])
     else:
@@ -85,6 +83,14 @@ def _ends(mesh: VolumeMesh, solids: list[str], fixed: str) -> tuple[str, Array]:
     end = points[depth <= NEAR_END * (high - low)[axis]]
     middle = (end.min(axis=0) + end.max(axis=0)) / 2
     return held, end[int(np.argmin(((end - middle) ** 2).sum(axis=1)))]
+
+
+def _corners(mesh: VolumeMesh, elements: Array | None) -> Array:
+    """Vertices of elements, of all where None."""
+    first = len(mesh.tetrahedra)
+    chosen = np.arange(first + len(mesh.prisms)) if elements is None else elements
+    tetrahedra, prisms = mesh.tetrahedra[chosen[chosen < first]], mesh.prisms[chosen[chosen >= first] - first]
+    return np.unique(np.concatenate([tetrahedra.ravel(), prisms.ravel()]))
 
 
 def _list(values: Array) -> str:

@@ -1,4 +1,4 @@
-"""Tetrahedra with named regions, and how good they are."""
+"""Tetrahedra and prisms with named regions, and how good they are."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class Volume:
 
 @dataclass(frozen=True)
 class VolumeMesh:
-    """A mesh of tetrahedra with named regions, lengths in mm.
+    """A mesh of tetrahedra, or prisms, with named regions, lengths in mm.
 
-    vertices: (n, 3) float64. tetrahedra: (m, 4) int64, of positive volume. volume_regions: name to indices of
-    tetrahedra, (e,). face_regions: name to triangles, (k, 3) vertices each. What `from_surfaces` tells:
-    `volumes` inside each surface; `deviation_mm`, the largest distance between each surface that was given and that of
+    vertices: (n, 3) float64. tetrahedra: (m, 4) int64, of positive volume. prisms: (p, 6), bottom triangle, then top
+    triangle, of which `stacked` makes layers. volume_regions: name to indices of elements, (e,), the tetrahedra first,
+    then the prisms. face_regions: name to triangles, (k, 3) vertices each. What `from_surfaces` tells: `volumes` inside each surface; `deviation_mm`, the largest distance between each surface that was given and that of
     the mesh, either way, sampled; `tolerance_mm`, which was asked for; `notes`.
     """
 
@@ -48,21 +48,27 @@ class VolumeMesh:
     deviation_mm: Mapping[str, float] = field(default_factory=dict)
     tolerance_mm: float = 0.0
     notes: tuple[str, ...] = ()
+    prisms: Indices = field(default_factory=lambda: np.empty((0, 6), dtype=np.int64))
 
     def __post_init__(self) -> None:
         vertices = np.ascontiguousarray(self.vertices, dtype=np.float64)
         tetrahedra = np.ascontiguousarray(self.tetrahedra, dtype=np.int64)
         if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.isfinite(vertices).all():
             raise InvalidInput(f"vertices of shape {vertices.shape}: give (n, 3) of finite numbers, in mm")
-        if tetrahedra.ndim != 2 or tetrahedra.shape[1] != 4 or len(tetrahedra) == 0:
+        prisms = np.ascontiguousarray(self.prisms, dtype=np.int64)
+        if prisms.ndim != 2 or prisms.shape[1] != 6:
+            raise InvalidInput(f"prisms of shape {prisms.shape}: give (p, 6)")
+        if tetrahedra.ndim != 2 or tetrahedra.shape[1] != 4 or len(tetrahedra) + len(prisms) == 0:
             raise InvalidInput(f"tetrahedra of shape {tetrahedra.shape}: give (m, 4), m > 0")
         _check_indices("tetrahedra", tetrahedra, len(vertices))
+        _check_indices("prisms", prisms, len(vertices))
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "tetrahedra", tetrahedra)
+        object.__setattr__(self, "prisms", prisms)
         elements = {name: np.unique(np.asarray(region, dtype=np.int64)) for name, region in self.volume_regions.items()}
         faces = {name: np.asarray(region, dtype=np.int64).reshape(-1, 3) for name, region in self.face_regions.items()}
         for name, region in elements.items():
-            _check_indices(f"region '{name}'", region, len(tetrahedra))
+            _check_indices(f"region '{name}'", region, len(tetrahedra) + len(prisms))
         for name, region in faces.items():
             _check_indices(f"region '{name}'", region, len(vertices))
             if name in elements:
@@ -71,46 +77,71 @@ class VolumeMesh:
         object.__setattr__(self, "face_regions", faces)
 
     def __repr__(self) -> str:
-        names = ", ".join(self.regions)
-        return (
-            f"VolumeMesh({len(self.vertices)} vertices, {len(self.tetrahedra)} tetrahedra, regions: {names or 'none'})"
-        )
+        return f"VolumeMesh({self._counts()}, regions: {', '.join(self.regions) or 'none'})"
 
     @property
-    def regions(self) -> dict[str, Indices]:
-        """All regions: of elements (e,), of faces (k, 3)."""
-        return {**self.volume_regions, **self.face_regions}
+    def regions(self) -> dict[str, Indices | dict[str, Indices]]:
+        """All regions, as softkin.Robot takes them: of elements (e,), or where there are prisms
+        {"tetrahedra": (e,), "prisms": (q,)}; of faces (k, 3)."""
+        elements: dict[str, Indices | dict[str, Indices]] = dict(self.volume_regions)
+        if len(self.prisms):
+            elements = {name: self._parts(region) for name, region in self.volume_regions.items()}
+        return {**elements, **self.face_regions}
+
+    def _parts(self, region: Indices) -> dict[str, Indices]:
+        """The numbers of its tetrahedra and of its prisms."""
+        first = len(self.tetrahedra)
+        return {"tetrahedra": region[region < first], "prisms": region[region >= first] - first}
+
+    def _counts(self) -> str:
+        kinds = [f"{len(cells)} {name}" for cells, name in ((self.tetrahedra, "tetrahedra"), (self.prisms, "prisms"))]
+        return ", ".join([f"{len(self.vertices)} vertices", *(kind for kind in kinds if not kind.startswith("0 "))])
 
     @property
     def element_volumes(self) -> Floats:
-        """Volumes of the tetrahedra, (m,), mm^3."""
-        return signed_volumes(self.vertices, self.tetrahedra)
+        """Volumes of the tetrahedra, then of the prisms, (m + p,), mm^3."""
+        tetrahedra = signed_volumes(self.vertices, self.tetrahedra)
+        return np.concatenate([tetrahedra, prism_volumes(self.vertices, self.prisms)])
 
     @property
     def quality(self) -> Quality:
-        """Least angles, aspects and counts."""
+        """Least angles, aspects and counts of the tetrahedra. Throws InvalidInput where there are none."""
         from .quality import quality_of
+
+        if len(self.tetrahedra) == 0:
+            raise InvalidInput("the mesh has prisms alone, and quality is that of tetrahedra")
 
         return quality_of(self.vertices, self.tetrahedra)
 
     def boundary(self, *names: str) -> Surface:
-        """Surface of the named volume regions together, or of the whole mesh, normals outwards."""
-        chosen = self.tetrahedra
+        """Surface of the named volume regions together, or of the whole mesh, normals outwards; four-sided faces of
+        prisms as two triangles."""
+        tetrahedra, prisms = self.tetrahedra, self.prisms
         if names:
             for name in names:
                 if name not in self.volume_regions:
                     raise InvalidInput(
                         f"no volume region '{name}'; there are: {', '.join(self.volume_regions) or 'none'}"
                     )
-            chosen = self.tetrahedra[np.unique(np.concatenate([self.volume_regions[name] for name in names]))]
-        return Surface(self.vertices, boundary_faces(chosen), " and ".join(names) or "mesh")
+            chosen = self._parts(np.unique(np.concatenate([self.volume_regions[name] for name in names])))
+            tetrahedra, prisms = tetrahedra[chosen["tetrahedra"]], prisms[chosen["prisms"]]
+        return Surface(self.vertices, outer_faces(tetrahedra, prisms), " and ".join(names) or "mesh")
+
+    def with_layer(self, region: str, layers: Mapping[str, float]) -> VolumeMesh:
+        """This mesh and layers of prisms upon a region of faces: `layers` from the body outwards, name to thickness in
+        mm. Each is a region of elements; the faces of the outermost are the region of faces 'OUTERMOST_top'. See
+        `stacked`. Throws InvalidInput."""
+        from .layers import upon
+
+        return upon(self, region, layers)
 
     def summary(self) -> str:
         """What was made and how good it is, in lines."""
-        lines = [f"{len(self.vertices)} vertices, {len(self.tetrahedra)} tetrahedra", str(self.quality)]
+        lines = [self._counts(), *([str(self.quality)] if len(self.tetrahedra) else [])]
         volumes = self.element_volumes
         for name, region in self.volume_regions.items():
-            lines.append(f"region {name}: {len(region)} tetrahedra, {volumes[region].sum():.6g} mm^3")
+            parts = [f"{len(cells)} {kind}" for kind, cells in self._parts(region).items() if len(cells)]
+            lines.append(f"region {name}: {', '.join(parts)}, {volumes[region].sum():.6g} mm^3")
         lines += [f"region {name}: {len(region)} faces" for name, region in self.face_regions.items()]
         for name, deviation in self.deviation_mm.items():
             sizes = self.volumes[name]
@@ -155,6 +186,19 @@ def signed_volumes(vertices: Array, tetrahedra: Array) -> Floats:
     return volumes
 
 
+def prism_volumes(vertices: Array, prisms: Array) -> Floats:
+    """Of wedges with straight edges, whose four-sided faces may be warped: exact, by the three-point rule in the
+    triangle and Gauss' rule of two points along the thickness."""
+    corners = vertices[prisms]
+    bottom, top = corners[:, :3], corners[:, 3:]
+    volumes: Floats = np.zeros(len(prisms))
+    for zeta in (0.5 - 0.5 / np.sqrt(3), 0.5 + 0.5 / np.sqrt(3)):
+        middle = (1 - zeta) * bottom + zeta * top
+        normal = np.cross(middle[:, 1] - middle[:, 0], middle[:, 2] - middle[:, 0]) / 2
+        volumes += np.einsum("ij,ij->i", normal, (top - bottom).mean(axis=1)) / 2
+    return volumes
+
+
 def positive(vertices: Array, tetrahedra: Array) -> Array:
     """The tetrahedra with the corners of those of negative volume reordered."""
     reversed_ones = signed_volumes(vertices, tetrahedra) < 0
@@ -179,6 +223,20 @@ def boundary_faces(tetrahedra: Array) -> Array:
     """Faces of one tetrahedron only, normals outwards, (k, 3)."""
     faces, _, second = face_pairs(tetrahedra)
     return faces[second < 0]
+
+
+def outer_faces(tetrahedra: Array, prisms: Array) -> Array:
+    """Faces of one element only, normals outwards, (k, 3). Four-sided ones are two triangles, split from the corner of
+    the lowest number, so that two prisms agree."""
+    triangles = [tetrahedra[:, FACES].reshape(-1, 3), prisms[:, [0, 2, 1]], prisms[:, [3, 4, 5]]]
+    for quad in ((0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)):
+        corners = prisms[:, quad]
+        turned = np.take_along_axis(corners, (corners.argmin(axis=1)[:, None] + np.arange(4)) % 4, axis=1)
+        triangles += [turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]]
+    every = np.concatenate(triangles)
+    _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+    faces: Indices = every[np.sort(first[count == 1])]
+    return faces
 
 
 def compacted(vertices: Array, tetrahedra: Array) -> tuple[Array, Array]:
