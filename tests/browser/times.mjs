@@ -1,6 +1,6 @@
 // Steps that have times are played in them.
 import assert from 'node:assert/strict';
-import {writeFileSync} from 'node:fs';
+import {readFileSync, writeFileSync} from 'node:fs';
 import {resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 import {frames, open, patient, violations} from './browser.mjs';
@@ -79,8 +79,47 @@ async function checkNone(browser) {
   await context.close();
 }
 
+/** The file that is saved is a video, of the picture's size and as long as the steps are played. */
+async function checkVideo(browser) {
+  const {page, watch, context} = await pageOf(browser, 'fk', ['t_s,tendon1', '0,1', '0.5,0.9', '1.5,0.7'], {});
+  await page.locator('#step').fill('2');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#record').click()]);
+  assert.match(download.suggestedFilename(), /^three_tendon_finger\.(mp4|webm)$/);
+  const file = out(download.suggestedFilename());
+  await download.saveAs(file);
+  assert.equal(await page.locator('#record').textContent(), 'Record');
+  assert.equal(await shown(page), '3 of 3, t = 1.5 s');
+  const bytes = readFileSync(file), type = file.endsWith('mp4') ? 'video/mp4' : 'video/webm';
+  const size = await page.locator('#canvas').evaluate(({width, height}) => ({width, height}));
+  const other = await context.newPage();  // the page itself may load nothing
+  const seen = await other.evaluate(async ([data, kind]) => {
+    const video = document.createElement('video');
+    video.muted = true;
+    video.src = `data:${kind};base64,${data}`;
+    const paint = document.createElement('canvas').getContext('2d', {willReadFrequently: true});
+    const sums = new Set();
+    await new Promise((done, failed) => {
+      video.onerror = () => failed(video.error);
+      video.onended = done;
+      video.ontimeupdate = () => {
+        paint.drawImage(video, 0, 0, 300, 150);
+        sums.add(paint.getImageData(0, 0, 300, 150).data.reduce((sum, x) => sum + x, 0));
+      };
+      void video.play();
+    });
+    return {width: video.videoWidth, height: video.videoHeight, end: video.currentTime, shapes: sums.size};
+  }, [bytes.toString('base64'), type]);
+  for (const side of ['width', 'height'])
+    assert.ok(seen[side] === size[side] - size[side] % 2, `${side} ${seen[side]} of ${size[side]}`);
+  assert.ok(seen.end > 1.5 && seen.end < patient(4000) / 1000, `${seen.end} s`);
+  assert.ok(seen.shapes >= 2, 'the video stands still');
+  assert.deepEqual([...watch.errors, ...watch.requests], []);
+  await context.close();
+}
+
 export async function timeTests(browser, test) {
   await test('times: steps show theirs and are played in them', () => checkSeconds(browser));
   await test('times: a path of hours is played faster', () => checkHours(browser));
+  await test('times: what is played is saved as a video', () => checkVideo(browser));
   await test('times: steps without times have no speed', () => checkNone(browser));
 }

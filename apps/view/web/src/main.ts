@@ -13,6 +13,7 @@ import {eventTime, Meter} from './meter';
 import {makeTable, stateWords, tellOrigin} from './numbers';
 import {makePathPanel} from './path_panel';
 import {makePlayer} from './player';
+import {makeRecorder} from './record';
 import {Robot} from './robot';
 import {download, makeSave} from './save';
 import {RobotScene} from './scene';
@@ -92,12 +93,13 @@ function start(): void {
                  makeLooks(robot, scene, shapes), makeTensions(robot, scene, byId('looks'), corners),
                  makeCurves(byId('curves'), robot), makeTable(robot), makeSave(robot), player.update,
                  ...(live ? [makeLivePanel(live)] : [])];
-  const labels = makeLabels(robot, scene);
+  const labels = makeLabels(robot, scene), record = makeRecorder(canvas, robot, player);
   byId('curves-section').hidden = !read.actuators.some((actuator) => actuator.load_unit);
   tellOrigin(robot);
   byId('grid-size').textContent = `Grid: ${scene.gridMm} mm`;
   scene.onDrawn = () => {
     labels();
+    record();
     meter.drawn();
   };
   robot.onChange = () => {

@@ -23,7 +23,11 @@ export class StepTrack implements Track {
   show(i: number): void { this.robot.showStep(i); }
 }
 
-export interface Player { update(): void; toggle(): void; stop(): void; setTrack(track: Track): void }
+export interface Player {
+  update(): void; toggle(): void; stop(): void; setTrack(track: Track): void;
+  /** Plays from the first on; ended is called once, where it ends or is stopped. */
+  fromStart(ended: () => void): void;
+}
 
 /** A track with times that takes longer is played faster at first [s]. */
 const longestS = 60;
@@ -56,12 +60,15 @@ export const timeWords = (time: number): string => `t = ${Number(time.toPrecisio
 export function makePlayer(robot: Robot): Player {
   const play = byId<HTMLButtonElement>('play'), slider = byId<HTMLInputElement>('step'), box = byId('player');
   const speed = byId<HTMLSelectElement>('speed');
-  let track: Track = new StepTrack(robot), timer = 0, due = 0, moving = false;
+  let track: Track = new StepTrack(robot), timer = 0, due = 0, moving = false, ended: (() => void) | null = null;
   const last = () => track.count - 1;
   const stop = () => {
     clearTimeout(timer);
     timer = 0;
     play.textContent = 'Play';
+    const tell = ended;
+    ended = null;
+    tell?.();
   };
   const until = (time: number) => {
     due = time;
@@ -74,15 +81,24 @@ export function makePlayer(robot: Robot): Player {
     track.show(track.at + 1);
     if (timer) until(due + pause());  // what drawing took is made up for
   };
-  const toggle = () => {
-    if (track.count < 1 || play.disabled) return;
-    if (timer) return stop();
+  const begin = (first: number) => {
     robot.remember();
     play.textContent = 'Pause';
     until(performance.now());
-    track.show(track.at < 0 || track.at === last() ? 0 : track.at + 1);
+    track.show(first);
     clearTimeout(timer);
     until(performance.now() + pause());
+  };
+  const toggle = () => {
+    if (track.count < 1 || play.disabled) return;
+    if (timer) stop();
+    else begin(track.at < 0 || track.at === last() ? 0 : track.at + 1);
+  };
+  const fromStart = (whenEnded: () => void) => {
+    stop();
+    ended = whenEnded;
+    if (track.count < 1 || play.disabled) stop();
+    else begin(0);
   };
   play.addEventListener('click', toggle);
   speed.addEventListener('change', () => {
@@ -117,7 +133,7 @@ export function makePlayer(robot: Robot): Player {
     update();
   };
   setTrack(track);
-  return {update, toggle, stop, setTrack};
+  return {update, toggle, stop, setTrack, fromStart};
 }
 
 /** Nothing where the track has no times. */
