@@ -43,8 +43,8 @@ std::pair<double, double> parts(const Model& model) {
   const GlobalStep global(model, system.global_matrix());
   target_shape::System::Scratch scratch = system.make_scratch();
   Points positions = model.rest;
-  std::vector<Pose> poses = global.project(positions);
   const Actuation actuation = Actuation::Constant(1, 1.5);
+  std::vector<Pose> poses = global.project(actuation, positions);
   Team alone(1);
   double local = 1e9, solve = 1e9;
   for (int run = 0; run < 30; ++run) {

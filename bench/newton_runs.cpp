@@ -107,11 +107,11 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
   const Actuation actuation = Actuation::Constant(1, target.ratio);
   const Vec3 tip = vector_of(target.tip);
   Points positions = model.rest;
-  target_shape::LocalGlobal iteration(system, global, anderson, positions);
+  target_shape::LocalGlobal iteration(system, global, anderson, actuation, positions);
   target_shape::System::Scratch scratch = system.make_scratch();
   for (int count = 1;; ++count) {
     IterationRecord record;
-    if (!iteration.iterate(actuation, scratch, team, record)) break;
+    if (!iteration.iterate(scratch, team, record)) break;
     const double time = now() - start;
     run.tip_error = (model.markers[0].point.at(iteration.positions()) - tip).norm();
     const bool inside = run.tip_error <= options.tip_error_mm;

@@ -237,7 +237,11 @@ std::string summary(const Model& model, const std::string& solver) {
     text += "\nbody " + body.name + ": " + number(1000 * body.mass_kg) + " g; held while " + body.name +
             "_hold is 1, free at 0; forces " + body.name + "_fx, _fy and _fz [N]";
   for (const Actuator& a : model.actuators)
-    if (a.kind == ActuatorKind::motion) text += "\nobstacle moved by " + a.name + " [mm]";
+    if (a.kind == ActuatorKind::motion)
+      text += "\nobstacle moved by " + a.name + " [mm]";
+    else if (a.kind == ActuatorKind::turn)
+      text +=
+          "\nsupport '" + model.turns[static_cast<std::size_t>(a.other)].support + "' turned by " + a.name + " [deg]";
   for (const Actuator& a : model.actuators)
     if (drives(a))
       text += "\nactuator " + a.name + ": " + kind_name(a) + ", " +

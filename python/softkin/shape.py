@@ -37,7 +37,8 @@ class ActuatorState:
 
     name: str
     kind: str
-    """'pneumatic', 'cable', 'dea' or 'magnetic'; 'motion', 'force' or 'hold' of what surrounds the robot"""
+    """'pneumatic', 'cable', 'dea' or 'magnetic'; 'motion', 'force' or 'hold' of what surrounds the robot,
+    'turn' of what holds it"""
     requested: float
     """what was commanded, in `unit`"""
     unit: str

@@ -49,7 +49,8 @@ void bind_actuator(nb::module_& module) {
       .def_ro("name", &Actuator::name)
       .def_prop_ro(
           "kind", [](const Actuator& a) { return kind_name(a); },
-          "'pneumatic', 'cable', 'dea' or 'magnetic'; of surroundings 'motion', 'force' or 'hold'.")
+          "'pneumatic', 'cable', 'dea' or 'magnetic'; of surroundings 'motion', 'force' or 'hold', of a support "
+          "'turn'.")
       .def_prop_ro(
           "control", [](const Actuator& a) { return control_name(a); },
           "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure', 'tension', 'voltage', "

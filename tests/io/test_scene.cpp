@@ -361,6 +361,22 @@ TEST(Scene, AliasesShareAValue) {
   EXPECT_EQ(std::get<Box>(spec.regions.at(1).selector).high, Vec3(1, 1, 1));
 }
 
+/// A point in the scene's unit, an angle in degrees whatever that is.
+TEST(Scene, SupportsMayTurn) {
+  const RobotSpec spec = parse_body(
+      "units: {length: cm}\nfixed:\n  - {region: base, displacement: [1, 0, 0],\n"
+      "     rotation: {axis: [0, 2, 0], degrees: -45, about: [1, 2, 3]}}\n  - {region: tip, rotation: {axis: [1, 0, "
+      "0]}}");
+  const RotationSpec& base = spec.fixed.at(0).rotation.value();
+  EXPECT_EQ(base.axis, Vec3(0, 2, 0));
+  EXPECT_EQ(base.degrees, -45);
+  expect_near(base.about.value(), 10, 20, 30);
+  expect_near(spec.fixed[0].displacement, 10, 0, 0);
+  const RotationSpec& tip = spec.fixed.at(1).rotation.value();
+  EXPECT_EQ(tip.degrees, 0);
+  EXPECT_FALSE(tip.about);
+}
+
 TEST(Scene, NamesMayBeQuotedOrLookLikeNumbers) {
   const RobotSpec spec = parse_body("void: [\"air chamber\", 12, 'y']\nfixed: [{region: '# 3', axes: y}]");
   EXPECT_EQ(std::get<std::string>(spec.voids.at(0).region), "air chamber");
@@ -392,7 +408,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 5u);
+  ASSERT_EQ(specs.size(), 6u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -401,7 +417,8 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[1].forces.size(), 1u);
   ASSERT_EQ(specs[3].robots.size(), 2u);
   EXPECT_EQ(specs[3].robots[1].name, "right");
-  EXPECT_EQ(specs[4].contact.value().obstacles.size(), 2u);
+  EXPECT_EQ(specs[4].fixed.at(1).rotation.value().degrees, 90);
+  EXPECT_EQ(specs[5].contact.value().obstacles.size(), 2u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

@@ -182,6 +182,11 @@ TEST(SceneRefusals, MaterialsAndSupports) {
       {"fixed: [{region: a, axes: xx}]\n", "letters x, y, z, each at most once, not 'xx'", 1},
       {"fixed: [{region: a, axes: [x, y]}]\n", "'axes' must be a word, not a list", 1},
       {"fixed: [{region: a, elements: [1]}]\n", "unknown key 'elements'", 1},
+      {"fixed: [{region: a, rotation: 90}]\n", "'rotation' must be a map with keys 'axis', 'degrees', 'about'", 1},
+      {"fixed: [{region: a, rotation: {degrees: 90}}]\n", "'rotation' needs key 'axis'", 1},
+      {"fixed:\n  - region: a\n    rotation:\n      axis: [0, 0, 0]\n", "'axis' has no direction", 4},
+      {"fixed: [{region: a, rotation: {axis: [0, 0, 1], degrees: far}}]\n", "'degrees' must be a finite number, not 'far'", 1},
+      {"fixed: [{region: a, rotation: {axis: [0, 0, 1], angle: 3}}]\n", "unknown key 'angle'", 1},
       {"rigid: [{region: a, box: [[0, 0, 0], [1, 1, 1]]}]\n", "has both 'region' and 'box'", 1},
       {"rigid: [[a]]\n", "entry 1 of 'rigid' must be a map", 1},
   });

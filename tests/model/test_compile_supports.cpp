@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <softkin/model/names.hpp>
+
 #include "model/compile_testing.hpp"
 
 using namespace softkin;
@@ -97,6 +100,80 @@ TEST(Rigid, RegionsAreHeldByAFaceOrNotAtAll) {
   whole.fixed.push_back(hold({2, 5, 11}, every));
   whole.fixed.push_back(hold({20}, along_z));
   EXPECT_EQ(refusal(whole), "");
+}
+
+RotationSpec about_z(double degrees = 0, std::optional<Vec3> about = {}) {
+  return {{0, 0, 2}, degrees, about};
+}
+
+TEST(Turns, AreOfWhatIsHeldWholeByOneEntry) {
+  RobotSpec good = free_block();
+  good.fixed = {{named("z_low"), every}};
+  good.fixed[0].rotation = about_z(90, Vec3(1, 2, 3));
+  const auto change = [](const std::function<void(FixedSpec&)>& of) {
+    return [=](RobotSpec& spec) { of(spec.fixed[0]); };
+  };
+  const auto also = [](const FixedSpec& fixed) { return [=](RobotSpec& spec) { spec.fixed.push_back(fixed); }; };
+  FixedSpec other = hold({18}, every);
+  other.rotation = about_z();
+  FixedSpec overlapping = hold({0}, every);
+  overlapping.rotation = about_z();
+  expect_refused(
+      good,
+      {
+          {"roller", change([](FixedSpec& f) {
+             f.axes = {true, true, false};
+           }),
+           "robot.yaml:1: region 'z_low' is turned, but not held along all of x, y and z"},
+          {"no axis", change([](FixedSpec& f) { f.rotation->axis = Vec3::Zero(); }), "has no direction"},
+          {"infinite axis", change([](FixedSpec& f) { f.rotation->axis[0] = HUGE_VAL; }), "has no direction"},
+          {"far", change([](FixedSpec& f) { f.rotation->degrees = 4000; }), "by 4000 degrees: at most 3600 either way"},
+          {"nan", change([](FixedSpec& f) { f.rotation->degrees = NAN; }), "at most 3600"},
+          {"nowhere", change([](FixedSpec& f) { f.rotation->about = Vec3(0, NAN, 0); }), "a point that is not finite"},
+          {"on the axis", also(other), "the list of vertices is turned about an axis on which all of its vertices lie"},
+          {"held otherwise", also(hold({0}, along_x)),
+           "holds vertex 0 (from 0), which an earlier entry holds, and one of the two turns it"},
+          {"turned otherwise", also(overlapping), "and one of the two turns it"},
+          {"rigid and otherwise held",
+           [](RobotSpec& spec) {
+             spec.fixed.push_back(hold({18, 20, 24}, every));
+             spec.rigid.push_back({named("y_low", 3), "side"});
+             spec.rigid.push_back({named("x_high", 4), "end"});
+           },
+           "robot.yaml:3: rigid region 'side' is held by 'z_low', which turns it, and by another support"},
+          {"name of an actuator",
+           [](RobotSpec& spec) {
+             spec.actuators.push_back(cable({at(2, 5, 9), at(18, 5, 9)}));
+             spec.actuators[0].name = "z_low_turn";
+             spec.actuators[0].apexes = {at(10, 5, 1)};
+           },
+           "the command 'z_low_turn' has the name of an actuator"},
+      });
+}
+
+TEST(Turns, AreCommandsInDegrees) {
+  RobotSpec spec = free_block();
+  spec.fixed = {{named("z_low"), every, Vec3(1, 0, 0)}, hold({18, 20, 24}, every)};
+  spec.fixed[0].rotation = about_z(90);
+  spec.fixed[1].rotation = about_z(-5, Vec3(1, 2, 3));
+  const Model model = compile(spec);
+  ASSERT_EQ(model.turns.size(), 2u);
+  EXPECT_EQ(model.turns[0].axis, Vec3(0, 0, 1));
+  EXPECT_LT((model.turns[0].about - Vec3(10, 10, 0)).norm(), 1e-12);
+  EXPECT_EQ(model.turns[0].displacement, Vec3(1, 0, 0));
+  EXPECT_EQ(model.turns[1].about, Vec3(1, 2, 3));
+  EXPECT_EQ(model.turns[1].vertices, (std::vector<Index>{18, 20, 24}));
+  ASSERT_EQ(model.actuators.size(), 2u);
+  EXPECT_EQ(command_column(model.actuators[0]), "z_low_turn_deg");
+  EXPECT_EQ(command_column(model.actuators[1]), "fixed_2_turn_deg");
+  EXPECT_EQ(command_unit(model.actuators[0]), "deg");
+  EXPECT_FALSE(drives(model.actuators[0]));
+  EXPECT_EQ(model.rest_actuation(), Eigen::VectorXd(Eigen::Vector2d(90, -5)));
+  RobotSpec without = spec, elsewhere = spec;
+  without.fixed[0].rotation.reset();
+  elsewhere.fixed[0].rotation->about = Vec3(0, 10, 0);
+  EXPECT_NE(fingerprint_of(compile(without)), fingerprint_of(model));
+  EXPECT_NE(fingerprint_of(compile(elsewhere)), fingerprint_of(model));
 }
 
 TEST(Rigid, RegionsAreDisjointAndSpanAPlane) {

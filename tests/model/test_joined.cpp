@@ -124,6 +124,21 @@ TEST(Joined, RegionsAreThoseOfTheRobotAlone) {
   }
 }
 
+TEST(Joined, TurnedSupportsHaveTheirAxesInTheCommonFrame) {
+  RobotSpec turning = whole_block();
+  turning.fixed.pop_back();
+  turning.fixed[0].rotation = RotationSpec{{0, 0, 1}, 20, Vec3(1, 2, 3)};
+  const RobotSpec spec = pair(turning, turning);
+  EXPECT_EQ(spec.fixed[0].rotation->axis, Vec3(0, 0, 1));
+  EXPECT_EQ(*spec.fixed[0].rotation->about, Vec3(1, 2, 3));
+  EXPECT_EQ(spec.fixed[1].rotation->axis, Vec3(0, 0, -1));
+  EXPECT_EQ(*spec.fixed[1].rotation->about, Vec3(1, 98, -3));
+  EXPECT_EQ(spec.fixed[1].rotation->degrees, 20);
+  const Model model = compile(spec);
+  EXPECT_EQ(model.actuators.back().name, "right.x_low_turn");
+  EXPECT_EQ(model.turns[1].axis, Vec3(0, 0, -1));
+}
+
 TEST(Joined, PointsVectorsAndSurfacesAreTurned) {
   RobotSpec right = whole_block();
   right.actuators[0].region.reset();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <softkin/statics/deformation.hpp>
@@ -15,6 +16,22 @@ std::string digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
+}
+
+Points held_places(const Model& model, const State& state) {
+  Points places = model.rest + state.share * (model.held - model.rest);
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    if (model.actuators[a].kind != ActuatorKind::turn) continue;
+    const SupportTurn& turn = model.turns[static_cast<std::size_t>(model.actuators[a].other)];
+    const double angle = state.share * state.actuation[static_cast<Index>(a)] * std::acos(-1.0) / 180;
+    for (const Index v : turn.vertices) {  // Rodrigues
+      const Vec3 arm = model.rest.row(v).transpose() - turn.about;
+      const Vec3 turned = std::cos(angle) * arm + std::sin(angle) * turn.axis.cross(arm) +
+                          (1 - std::cos(angle)) * turn.axis.dot(arm) * turn.axis;
+      places.row(v) = (turn.about + turned + state.share * turn.displacement).transpose();
+    }
+  }
+  return places;
 }
 
 RigidMoves moves_of(const Model& model, const RigidRegion& region) {

@@ -40,6 +40,9 @@ void confirm_target_shape(const Model& model, const Equilibrium& found, Confirma
 struct RigidMoves {
   std::array<bool, 3> slides{true, true, true}, turns{true, true, true};
 };
+/// Where fixed axes are held, turned as the commands say, at the share of the state [mm].
+[[nodiscard]] Points held_places(const Model& model, const State& state);
+
 [[nodiscard]] RigidMoves moves_of(const Model& model, const RigidRegion& region);
 
 /// A number for a message.

@@ -232,6 +232,7 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const Actuator& actuator = model.actuators[a];
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
+    if (actuator.kind == ActuatorKind::turn) continue;
     if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic) {
       const bool charged = actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
       const double expected = charged ? state.actuation[index] : 0;
@@ -287,12 +288,14 @@ void check_places(const Model& model, const State& state, Confirmation& out) {
   for (const RigidRegion& region : model.rigid)
     for (const Index v : region.vertices) of_rigid[v] = true;
   double worst = 0;
+  const Points places = held_places(model, state);
+  const bool turned = !model.turns.empty();  // sines of its own
   for (Index v = 0; v < model.rest.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis) {
       if (!model.fixed[v][axis]) continue;
-      const double place = model.rest(v, axis) + state.share * (model.held(v, axis) - model.rest(v, axis));
+      const double place = places(v, axis);
       const double allowed =
-          of_rigid[v] ? 1e-9 * model.diagonal_mm + 64 * rounding_unit * far : 4 * rounding_unit * far;
+          of_rigid[v] || turned ? 1e-9 * model.diagonal_mm + 64 * rounding_unit * far : 4 * rounding_unit * far;
       worst = std::max(worst, std::abs(state.positions(v, axis) - place) / allowed);
     }
   if (!(worst <= 1))

@@ -269,12 +269,14 @@ struct Step {
   }
 };
 
-void check_places(const Model& model, const Points& positions, Confirmation& out) {
+void check_places(const Model& model, const State& state, Confirmation& out) {
+  const Points& positions = state.positions;
+  const Points places = held_places(model, state);
   const double far = std::max(model.rest.cwiseAbs().maxCoeff(), positions.cwiseAbs().maxCoeff());
   double worst = 0;
   for (Index v = 0; v < model.rest.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (model.fixed[v][axis]) worst = std::max(worst, std::abs(positions(v, axis) - model.held(v, axis)));
+      if (model.fixed[v][axis]) worst = std::max(worst, std::abs(positions(v, axis) - places(v, axis)));
   if (!(worst <= 1e-9 * model.diagonal_mm + 64 * epsilon * far))
     out.faults.push_back("a held vertex is " + digits(worst) + " mm from its place");
   worst = 0;
@@ -293,7 +295,7 @@ void check_places(const Model& model, const Points& positions, Confirmation& out
 
 void confirm_target_shape(const Model& model, const Equilibrium& found, Confirmation& out) {
   const Points& positions = found.state.positions;
-  check_places(model, positions, out);
+  check_places(model, found.state, out);
   Step step(static_cast<Index>(model.rest.rows()));
   for (const Element& element : elements_of(model, found).all) step.add(element);
   out.undecided = step.undecided;

@@ -75,6 +75,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_stiff(m);
   make_floor(m);
   make_weights(m);
+  make_turns(m);
   spoil_number(m);
   return std::move(m.made);
 }

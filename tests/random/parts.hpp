@@ -67,5 +67,7 @@ void make_stiff(Making& m);
 void make_floor(Making& m);
 /// Some target shapes have weights that do not depend on the mesh.
 void make_weights(Making& m);
+/// Some supports turn, by angles that the commands say.
+void make_turns(Making& m);
 
 }  // namespace softkin::random_robots

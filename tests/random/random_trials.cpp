@@ -6,7 +6,7 @@ namespace {
 
 /// Draws of their own, so that robots of the same seed are otherwise what they were.
 constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72,
-                        draws_of_weights = 0x77656967687473;
+                        draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -36,6 +36,21 @@ void make_stiff(Making& m) {
 void make_weights(Making& m) {
   Draw draw(m.made.seed ^ draws_of_weights);
   if (!m.physical && draw.chance(0.3)) m.made.spec.weights = ElementWeights::mesh_independent;
+}
+
+void make_turns(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_turns);
+  if (!draw.chance(0.12) || m.is(Oddity::supports)) return;
+  for (FixedSpec& fixed : m.made.spec.fixed) {
+    const bool whole = std::all_of(fixed.axes.begin(), fixed.axes.end(), [](bool axis) { return axis; });
+    if (!whole || !draw.chance(0.7)) continue;
+    fixed.rotation = RotationSpec{draw.offset(), draw.between(-60, 60), {}};
+    if (draw.chance(0.5)) fixed.rotation->about = Vec3(m.size.cwiseProduct(draw.offset()));
+    for (Actuation& actuation : m.made.commands) {
+      actuation.conservativeResize(actuation.size() + 1);
+      actuation[actuation.size() - 1] = draw.between(-60, 60);
+    }
+  }
 }
 
 void make_floor(Making& m) {

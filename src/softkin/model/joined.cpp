@@ -184,6 +184,9 @@ class Joiner {
     const bool refused = !fixed.displacement.cwiseProduct(Vec3::Ones() - own).isZero(0);  // by compile()
     fixed.displacement = rotation * fixed.displacement;
     if (!refused) fixed.displacement = fixed.displacement.cwiseProduct(held).eval();
+    if (!fixed.rotation) return;
+    fixed.rotation->axis = rotation * fixed.rotation->axis;
+    if (fixed.rotation->about) fixed.rotation->about = placed_.place(*fixed.rotation->about);
   }
 
   void add_actuators() {

@@ -90,6 +90,7 @@ class Hash {
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
   void put(const Marker& marker) { add(marker.name, marker.point); }
+  void put(const SupportTurn& t) { add(t.axis, t.about, t.displacement, t.vertices); }
   void put(const RigidRegion& region) { add(region.name, region.vertices); }
   void put(const FreeBody& body) { add(body.name, body.vertices, body.center, body.mass_kg); }
   void put(const ContactPart& part) { add(part.name, part.rank, part.halfspace); }
@@ -202,6 +203,7 @@ std::string fingerprint_of(const Model& model) {
            model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
            model.fixed, model.held, model.dead_load);
   if (model.weights != ElementWeights::printed) hash.add(model.weights);
+  if (!model.turns.empty()) hash.add(model.turns);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {
     hash.add(model.magnetism->remanence, model.magnetism->sources);

@@ -66,7 +66,7 @@ struct Actuator {
   std::optional<ActuatorCurve> curve;  // ratio by pressure or voltage
   Branch branch = Branch::loading;     // of the curve, where a command names none
   Index other = -1;                    // motion: part of ContactModel; force, hold: index into Model::bodies;
-                                       // magnetic: index into Magnetism::sources
+                                       // magnetic: index into Magnetism::sources; turn: into Model::turns
   int axis = -1;                       // motion, force; magnetic: which of the source's commands
   bool pushes = false;                 // cable: held to its length whatever that takes, as a rod would be
   double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
@@ -103,6 +103,18 @@ struct Support {
   std::vector<Index> vertices;
 };
 
+/// Turns what a support holds, as its command says: a vertex that stands at x at rest is held at
+/// about + R(angle) (x - about) + displacement, R counterclockwise seen against the axis.
+struct SupportTurn {
+  std::string support;          // its name
+  Vec3 axis{0, 0, 1};           // of length 1
+  Vec3 about{0, 0, 0};          // a point of the axis [mm]
+  Vec3 displacement{0, 0, 0};   // [mm]
+  std::vector<Index> vertices;  // ascending; all of a rigid region that it holds
+  double degrees = 0;           // where no command says another angle
+  Origin origin;
+};
+
 /// What an element is made of: a material, or the actuator that it belongs to; physical: a material always, and a
 /// prism of a dea has its actuator too.
 struct ElementRole {
@@ -132,6 +144,7 @@ struct Model {
   std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
   Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
   std::vector<Support> supports;           // in the order of the description's `fixed`
+  std::vector<SupportTurn> turns;          // of supports; their vertices are fixed, `held` is without the turn
   std::vector<std::array<Index, 3>>
       support_of;    // per vertex and axis: the support that bears it, the first of several,
                      // or -1; a rigid region that is held is borne as a whole

@@ -23,7 +23,7 @@ Quantity field_quantity(const Actuator& actuator) {
 
 const char* kind_name(const Actuator& actuator) {
   constexpr const char* names[] = {"cable",  "dea",   "pneumatic", "magnetic",
-                                   "motion", "force", "hold"};  // in the order of ActuatorKind
+                                   "motion", "force", "hold",      "turn"};  // in the order of ActuatorKind
   return names[static_cast<std::size_t>(actuator.kind)];
 }
 
@@ -60,6 +60,7 @@ const char* command_name(const Actuator& actuator) {
 std::string command_unit(const Actuator& actuator) {
   if (actuator.control == Control::ratio) return "";
   if (actuator.kind == ActuatorKind::motion) return "mm";
+  if (actuator.kind == ActuatorKind::turn) return "deg";
   if (actuator.kind == ActuatorKind::dea) return "kV";
   if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).unit;
   return actuator.kind == ActuatorKind::pneumatic ? "kPa" : "N";

@@ -6,7 +6,8 @@
 
 namespace softkin {
 
-/// "pneumatic", "cable", "dea" or "magnetic"; of what is done to the surroundings "motion", "force" or "hold".
+/// "pneumatic", "cable", "dea" or "magnetic"; of what is done to it and its surroundings "motion", "force", "hold"
+/// or "turn".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
 /// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; of a
 /// magnetic field "flux density", "current", "position" or "moment"; else its kind.

@@ -87,16 +87,24 @@ struct MaterialSpec {
   Origin origin;
 };
 
+/// How what is held is turned: counterclockwise seen against the axis, before it is displaced.
+struct RotationSpec {
+  Vec3 axis{0, 0, 1};           // not 0
+  double degrees = 0;           // where no command says another angle
+  std::optional<Vec3> about{};  // a point of the axis at rest [mm]; none: the mean of the vertices that are held
+};
+
 struct FixedSpec {
   RegionRef where;
   std::array<bool, 3> axes{true, true, true};
   Vec3 displacement{0, 0, 0};  // where it is held, from its place at rest [mm]; 0 along axes that are not held
   std::string name{};          // of the support; empty: its region's, or fixed_N
+  std::optional<RotationSpec> rotation{};
 };
 
-/// The last three are no drives of the robot but what is done to its surroundings: the motion of an obstacle, a force
-/// on a body, and how firmly a body is held.
-enum class ActuatorKind { cable, dea, pneumatic, magnetic, motion, force, hold };
+/// The last four are no drives of the robot but what is done to it and its surroundings: the motion of an obstacle, a
+/// force on a body, how firmly a body is held, and the angle by which a support turns what it holds.
+enum class ActuatorKind { cable, dea, pneumatic, magnetic, motion, force, hold, turn };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
 /// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by.

@@ -140,7 +140,9 @@ bool asks_for_motion(const Model& model, const StepRecord& record) {
     const bool may_hang = actuator.kind == ActuatorKind::cable && actuator.control == Control::ratio && from_rest > 0;
     if (from_rest != 0 && !may_hang) return true;
   }
-  return (model.dead_load.array() != 0).any() || model.held != model.rest;
+  const auto turns = [](const SupportTurn& turn) { return turn.degrees != 0; };
+  return (model.dead_load.array() != 0).any() || model.held != model.rest ||
+         std::any_of(model.turns.begin(), model.turns.end(), turns);
 }
 
 void add_implausible(const Model& model, const StepRecord& record, std::vector<Finding>& found) {

@@ -93,10 +93,12 @@ struct Statics::Parts {
   struct TargetShape {
     explicit TargetShape(const Model& robot)
         : system(robot),
+          turning(robot),
           unknowns(robot, system),
           global(robot, system.global_matrix(), unknowns.freedoms.vertex_order()),
           newton(unknowns, global) {}
     target_shape::System system;
+    supports::Turning turning;
     target_shape::Unknowns unknowns;
     supports::GlobalStep global;
     target_shape::Newton newton;
@@ -185,6 +187,36 @@ struct Statics::Parts {
     return physical->solve(actuation, from_rest ? rest.state : start, begun, progress, team);
   }
 
+  /// In target shapes, from result.state.positions. Where supports turn far, by equilibria on the way: what is held is
+  /// put in its place at once, and elements that it turns over would stay so.
+  void solve_target_shape(const Actuation& start, const StaticsOptions& options, const ProgressCallback& progress,
+                          Team& team, Equilibrium& result) {
+    constexpr double most_turn = 10;  // at once [degrees]
+    const TargetShape& parts = *target_shape;
+    const Actuation asked = result.actuation;
+    Actuation from = start.size() > 0 ? start : asked;
+    for (Index a = 0; start.size() == 0 && a < asked.size(); ++a)
+      if (model.actuators[static_cast<std::size_t>(a)].kind == ActuatorKind::turn)
+        from[a] = parts.turning.angle(a, result.state.positions);
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(parts.turning.largest_turn(from, 1, asked, 1) / most_turn)));
+    Actuation last = steps > 1 ? from : start;
+    int on_the_way = 0;
+    for (int step = 1; step <= steps; ++step) {
+      result.actuation = step == steps ? asked : Actuation(from + (asked - from) * step / steps);
+      result.report.status = Status::not_converged;
+      if (options.solver == Solver::newton)
+        parts.newton.solve(last, options, progress, team, result);
+      else
+        target_shape::solve_local_global(model, parts.system, parts.global, options, progress, team, result);
+      on_the_way += result.report.continuation_steps;
+      if (result.report.status != Status::converged) break;
+      last = result.actuation;
+    }
+    if (options.solver == Solver::newton) result.report.continuation_steps = on_the_way;
+    result.actuation = asked;
+  }
+
   const Model& model;
   std::mutex rested_mutex;
   std::optional<Equilibrium> rested;
@@ -256,11 +288,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     result.actuation = actuation;
     result.state.positions = begun.positions;
     result.report.tolerance_mm = parts_->tolerance(options);
-    const Parts::TargetShape& parts = *parts_->target_shape;
-    if (options.solver == Solver::newton)
-      parts.newton.solve(begun.actuation, options, progress, *team, result);
-    else
-      target_shape::solve_local_global(model, parts.system, parts.global, options, progress, *team, result);
+    parts_->solve_target_shape(begun.actuation, options, progress, *team, result);
     if (result.report.status == Status::converged) result.state.actuation = actuation;
     result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
   }

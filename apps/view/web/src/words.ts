@@ -2,11 +2,11 @@ import type {Actuator, Kind} from './document';
 
 export const kindWords: Record<Kind, string> = {
   cable: 'cable', pneumatic: 'air chamber', dea: 'dielectric elastomer', magnetic: 'magnetic field',
-  motion: 'moved obstacle', force: 'force', hold: 'hold on a body',
+  motion: 'moved obstacle', force: 'force', hold: 'hold on a body', turn: 'turned support',
 };
 
 /** Not done to what is around the robot, such as a force on a body that it holds. */
-export const drives = ({kind}: Actuator): boolean => kind !== 'motion' && kind !== 'force' && kind !== 'hold';
+export const drives = ({kind}: Actuator): boolean => !['motion', 'force', 'hold', 'turn'].includes(kind);
 
 /** What is commanded, as a unit: "× rest length", "kPa". */
 export function commandWords({unit, control}: Pick<Actuator, 'unit' | 'control'>): string {

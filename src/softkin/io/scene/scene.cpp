@@ -45,13 +45,24 @@ std::array<bool, 3> read_axes(const Node& node) {
   return axes;
 }
 
+RotationSpec read_rotation(const Context& context, const Node& node) {
+  const Map map(node, {"axis", "degrees", "about"});
+  RotationSpec rotation;
+  rotation.axis = read_vector(map.at("axis"));
+  if (!(rotation.axis.stableNorm() > 0)) fail(map.at("axis"), "'axis' has no direction");
+  if (const Node* degrees = map.find("degrees")) rotation.degrees = number(*degrees);
+  if (const Node* about = map.find("about")) rotation.about = read_position(context, *about);
+  return rotation;
+}
+
 FixedSpec read_fixed(const Context& context, const Node& node) {
   Keys known = place_keys();
-  known.insert(known.end(), {"axes", "displacement"});
+  known.insert(known.end(), {"axes", "displacement", "rotation"});
   const Map map(node, known);
   FixedSpec fixed{read_place(context, map)};
   if (const Node* axes = map.find("axes")) fixed.axes = read_axes(*axes);
   if (const Node* displacement = map.find("displacement")) fixed.displacement = read_position(context, *displacement);
+  if (const Node* rotation = map.find("rotation")) fixed.rotation = read_rotation(context, *rotation);
   return fixed;
 }
 

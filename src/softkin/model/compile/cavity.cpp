@@ -118,7 +118,8 @@ std::vector<CavityFace> open_faces(const Model& model, const std::vector<CavityF
 bool is_plate(const Model& model, const CavityFace& face, bool loose) {
   const std::vector<Index> vertices = vertices_of(face);
   const auto held = [&](Index v, int axis) {
-    return model.fixed[v][axis] && (!loose || model.held(v, axis) == model.rest(v, axis));
+    return model.fixed[v][axis] &&
+           (!loose || (model.held(v, axis) == model.rest(v, axis) && turn_of(model, v) == nullptr));
   };
   const auto all_held = [&](int axis) {
     return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return held(v, axis); });

@@ -132,6 +132,7 @@ Model compile(const RobotSpec& spec) {
   doubt_units(c);
   doubt_linear_tetrahedra(c);
   doubt_straight_edges(c);
+  add_turn_commands(c);
   compile_contact(c);
   return std::move(c.model);
 }

@@ -127,6 +127,21 @@ void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
 /// Fixed vertices and rigid regions.
 void compile_supports(Compilation& c);
 
+/// Makes the turn of a support from the rotation of its entry, which holds these vertices along all axes.
+///
+/// throws  InvalidInput on a number that is not finite, an axis without direction, or where nothing lies off the axis
+void add_turn(Compilation& c, const FixedSpec& spec, const Support& support);
+/// The turn that holds a vertex; nullptr: none.
+[[nodiscard]] const SupportTurn* turn_of(const Model& model, Index vertex);
+/// After the rigid regions: what a turn holds of one turns all of it.
+///
+/// throws  InvalidInput where another support holds it, too
+void turn_rigid(Model& model, const RigidRegion& rigid, const std::string& label, const Origin& origin);
+/// A command for the angle of each turn.
+///
+/// throws  InvalidInput where its name is taken or no name for a command
+void add_turn_commands(Compilation& c);
+
 /// Refuses a robot that its fixed vertices do not hold: every part (connected through elements, rigid regions and the
 /// triangles of cables) must be unable to move rigidly, to first order.
 ///

@@ -13,6 +13,17 @@ namespace softkin {
 
 namespace {
 
+/// What turns is held by one entry: where another would hold it changes with the angle.
+void check_turned(const Compilation& c, const FixedSpec& spec, const std::vector<Index>& vertices) {
+  for (const Index v : vertices) {
+    const bool held = std::any_of(c.model.fixed[v].begin(), c.model.fixed[v].end(), [](bool axis) { return axis; });
+    if (turn_of(c.model, v) == nullptr && !(spec.rotation && held)) continue;
+    throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) + " (from 0" +
+                                              robot_text(c.spec, &RobotPart::vertices, v) + "), which an earlier " +
+                                              "entry holds, and one of the two turns it");
+  }
+}
+
 void hold(Compilation& c, const FixedSpec& spec, Index v, int axis) {
   const double place = c.model.rest(v, axis) + spec.displacement[axis];
   if (c.model.used[v] && c.model.fixed[v][axis] && c.model.held(v, axis) != place)
@@ -37,6 +48,8 @@ void fix(Compilation& c, const FixedSpec& spec) {
                [&](Index v) { return static_cast<bool>(c.model.used[v]); });
   if (support.vertices.empty())
     throw InvalidInput(spec.where.origin, label(spec.where) + " cannot be fixed: it holds no vertex of the body");
+  check_turned(c, spec, support.vertices);
+  if (spec.rotation) add_turn(c, spec, support);
   for (int axis = 0; axis < 3; ++axis) {
     if (!spec.axes[axis] && spec.displacement[axis] != 0)
       throw InvalidInput(spec.where.origin,
@@ -229,6 +242,7 @@ void compile_supports(Compilation& c) {
       owner[v] = static_cast<Index>(c.model.rigid.size());
     }
     check_held(c, spec, rigid);
+    turn_rigid(c.model, rigid, rigid_label(spec), spec.where.origin);
     bear(c.model, rigid);
     c.model.rigid.push_back(std::move(rigid));
   }

@@ -23,6 +23,8 @@ constexpr double least_contact_move = 1e-4;
 /// A way on which so many iterations bring less than this share of it leads nowhere either.
 constexpr int patience = 500;
 constexpr double least_progress = 0.01;
+/// What is held turns by no more in one step [degrees].
+constexpr double most_turn = 30;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
 /// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
@@ -195,6 +197,9 @@ void Continuation::go_together(Iterate& at) {
 
 /// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
 std::optional<Status> Continuation::go_on(Iterate& at) {
+  const double turn =
+      system_.turning().largest_turn(way_.from.actuation, way_.from.share, way_.to.actuation, way_.to.share);
+  if (way_.advance * turn > most_turn) way_.advance = most_turn / turn;
   // a step that leaves hardly anything is as long as what is left
   const double ahead = way_.done + way_.advance;
   const double next = ahead + least_left * way_.advance < 1 ? ahead : 1, length = next - way_.done;

@@ -56,6 +56,9 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
     system_.command_force(at, demand, a, work_, force, moves, team_);
     if (moves.isZero(0)) moves.resize(0, 3);
     system_.freedoms().reduce(-force, at.positions, right_.moves.col(a));
+    if (moves.rows() == 0) continue;
+    for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)  // what is held and moves takes measures along
+      right_.multipliers(i, a) = -system_.sign(held_[i]) * work_.slopes[held_[i]].cwiseProduct(moves).sum();
   }
 }
 

@@ -6,15 +6,28 @@ namespace softkin::physical {
 
 namespace {
 
+/// The rest shape is one of any angles of what turns, as nothing of them is there: of those that are asked for, so that
+/// the way goes straight there.
+Demand at_rest(const Model& model, const Actuation& wanted) {
+  Demand demand{model.rest_actuation(), 0};
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (model.actuators[a].kind == ActuatorKind::turn)
+      demand.actuation[static_cast<Index>(a)] = wanted[static_cast<Index>(a)];
+  return demand;
+}
+
 /// What the start is an equilibrium of, as far as it tells.
-Demand demand_of(const System& system, const Model& model, const State& start) {
+Demand demand_of(const System& system, const Model& model, const State& start, const Actuation& wanted) {
   if (start.actuation.size() > 0) return {start.actuation, start.share};
-  Demand demand{model.rest_actuation(), start.positions == model.rest ? 0.0 : start.share >= 0 ? start.share : 1.0};
+  if (start.positions == model.rest) return at_rest(model, wanted);
+  Demand demand{model.rest_actuation(), start.share >= 0 ? start.share : 1.0};
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.constrains(a))
       demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
     else if (model.actuators[a].kind == ActuatorKind::motion)
       demand.actuation[a] = system.moved(a, start.positions);
+    else if (model.actuators[a].kind == ActuatorKind::turn)
+      demand.actuation[a] = system.turning().angle(a, start.positions);
     else if (!drives(model.actuators[a]))
       continue;
     else if (model.actuators[a].kind == ActuatorKind::magnetic)
@@ -69,9 +82,9 @@ void Equilibria::begin_again(const Demand& to, const Options& options, const Pro
                              System::Workspace& work, Iterate& at, SolveReport& report) const {
   const std::string remark = report.remark;
   Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators())};
-  system_.hold({system_.model().rest_actuation(), 0}, fresh.positions);
+  Demand from = at_rest(system_.model(), to.actuation);
+  system_.hold(from, fresh.positions);
   Continuation continuation(system_, work, team, options, progress, report);
-  Demand from{system_.model().rest_actuation(), 0};
   if (system_.viscous()) from = system_.unbalanced(fresh, from, work, team);
   const Status status = continuation.follow(from, to, fresh);
   if (status == Status::converged) {
@@ -97,7 +110,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   if (start.actuation.size() == 0 && start.positions != model.rest) check_contact_of_start(model, start.positions);
   Lease lease(*this, start.positions, options.reuse_factor);
 
-  Demand from = demand_of(system_, model, start);
+  Demand from = demand_of(system_, model, start, actuation);
   const Demand to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors};
   system_.hold(from, at.positions);

@@ -28,7 +28,7 @@ constexpr double before_summit = 0.01;
 Index Continuation::only_load(const Demand& from, const Demand& to) const {
   const Model& model = system_.model();
   if (from.fading != to.fading) return -1;
-  if (from.share != to.share && (system_.prestretched() || model.held != model.rest)) return -1;
+  if (from.share != to.share && (system_.prestretched() || model.held != model.rest || !model.turns.empty())) return -1;
   Index found = -1;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (from.actuation[a] == to.actuation[a]) continue;

@@ -94,7 +94,7 @@ void Surroundings::command_force(Index actuator, const Eigen::VectorXd& actuatio
                                  Points& force) const {
   force.setZero(positions.rows(), 3);
   const Actuator& command = model_.actuators[static_cast<std::size_t>(actuator)];
-  if (command.kind == ActuatorKind::motion) return;
+  if (command.kind == ActuatorKind::motion || command.kind == ActuatorKind::turn) return;
   const FreeBody& body = model_.bodies[static_cast<std::size_t>(command.other)];
   if (command.kind == ActuatorKind::hold)
     return add_spring(body, stiffest_ * firm_slope(actuation[actuator]), positions, force);

@@ -32,7 +32,8 @@ class Surroundings {
   /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
   void stiffness(const Eigen::VectorXd& actuation, LargeVector<double>& slots) const;
 
-  /// Derivative of the gradient by the command of a force or a hold at fixed positions, #V by 3; zero of a motion.
+  /// Derivative of the gradient by the command of a force or a hold at fixed positions, #V by 3; zero of a motion or
+  /// a turn.
   void command_force(Index actuator, const Eigen::VectorXd& actuation, const Points& positions, Points& force) const;
   /// Derivative of the positions by the command of a motion, #V by 3.
   void motion(Index actuator, Points& moves) const;

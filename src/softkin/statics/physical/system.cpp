@@ -35,6 +35,7 @@ System::System(const Model& model)
       elastic_(model),
       measures_(model),
       surroundings_(model),
+      supports_turn_(model),
       any_dead_load_(model.dead_load.rows() > 0 && !model.dead_load.isZero(0)) {
   elastic_.add_cliques(cliques_);
   measures_.add_cliques(cliques_);
@@ -420,6 +421,7 @@ void System::advance(const Eigen::VectorXd& step, double scale, Workspace& work,
 
 void System::hold(const Demand& demand, Points& positions) const {
   freedoms_->hold(demand.share, positions);
+  supports_turn_.place(demand.actuation, demand.share, positions);
   surroundings_.place(demand.actuation, positions);
 }
 
@@ -571,9 +573,10 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
                            Points& moves, Team& team) const {
   const Actuator& command = model_.actuators[actuator];
   surroundings_.motion(actuator, moves);
+  supports_turn_.add_velocity(actuator, demand.actuation, demand.share, moves);
   if (!drives(command)) {
     surroundings_.command_force(actuator, demand.actuation, at.positions, force);
-    if (command.kind != ActuatorKind::motion) return;
+    if (command.kind != ActuatorKind::motion && command.kind != ActuatorKind::turn) return;
     assemble(at, demand, Stiffness::exact, work, team);
     work.layout->pattern.gather(work.slots, work.blocks, team);
     work.layout->pattern.multiply(work.blocks, moves, force, team);

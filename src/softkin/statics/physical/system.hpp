@@ -13,6 +13,7 @@
 #include <softkin/statics/supports/freedoms.hpp>
 #include <softkin/statics/supports/global_step.hpp>
 #include <softkin/statics/supports/reduced_matrix.hpp>
+#include <softkin/statics/supports/turning.hpp>
 #include <utility>
 
 namespace softkin::physical {
@@ -172,6 +173,9 @@ class System {
   /// Puts what is fixed or commanded to move where a demand has it, and rigid regions into the pose that fits best.
   void hold(const Demand& demand, Points& positions) const;
 
+  /// Supports that turn.
+  [[nodiscard]] const supports::Turning& turning() const { return supports_turn_; }
+
   /// How far an obstacle is from where it stands at rest, along its command's axis [mm].
   [[nodiscard]] double moved(Index actuator, const Points& positions) const {
     return surroundings_.moved(actuator, positions);
@@ -281,6 +285,7 @@ class System {
   Body elastic_;
   supports::ActuatorMeasures measures_;
   Surroundings surroundings_;
+  supports::Turning supports_turn_;
   bool any_dead_load_;
   std::unique_ptr<supports::Freedoms> freedoms_;
   linear::Cliques cliques_;               // of the body

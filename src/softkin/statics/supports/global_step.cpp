@@ -9,7 +9,7 @@ namespace softkin::supports {
 using namespace energy;
 
 GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order)
-    : region_of_(model.rest.rows(), -1), fixed_(model.fixed), rest_(model.rest), held_(model.held) {
+    : region_of_(model.rest.rows(), -1), fixed_(model.fixed), rest_(model.rest), held_(model.held), turning_(model) {
   add_regions(model);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Index> free;
@@ -202,10 +202,11 @@ std::vector<Pose> GlobalStep::poses(const Points& positions) const {
   return poses;
 }
 
-std::vector<Pose> GlobalStep::project(Points& positions) const {
+std::vector<Pose> GlobalStep::project(const Eigen::VectorXd& actuation, Points& positions) const {
   for (Index v = 0; v < rest_.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
       if (fixed_[v][axis]) positions(v, axis) = held_(v, axis);
+  turning_.place(actuation, 1, positions);
   std::vector<Pose> all = poses(positions);
   for (std::size_t r = 0; r < regions_.size(); ++r) {
     for (int axis = 0; axis < 3; ++axis)

@@ -3,6 +3,7 @@
 #include <softkin/linear/sparse_factor.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/supports/rigid_body.hpp>
+#include <softkin/statics/supports/turning.hpp>
 
 namespace softkin::supports {
 
@@ -28,8 +29,9 @@ class GlobalStep {
   /// Moves positions (#V by 3) by the step that residual (#V by 3) asks for; poses move along.
   void step(const Points& residual, Points& positions, std::vector<Pose>& poses, Team& team) const;
 
-  /// Puts fixed vertices back and rigid regions into their best-fit poses.
-  [[nodiscard]] std::vector<Pose> project(Points& positions) const;
+  /// Puts fixed vertices where they are held, turned as the actuation says, and rigid regions into their best-fit
+  /// poses.
+  [[nodiscard]] std::vector<Pose> project(const Eigen::VectorXd& actuation, Points& positions) const;
 
   /// Poses that fit best.
   [[nodiscard]] std::vector<Pose> poses(const Points& positions) const;
@@ -61,6 +63,7 @@ class GlobalStep {
   std::vector<Index> region_of_;            // per vertex, -1
   std::vector<std::array<bool, 3>> fixed_;  // per vertex and axis, rigid regions aside
   Points rest_, held_;
+  Turning turning_;
 };
 
 }  // namespace softkin::supports

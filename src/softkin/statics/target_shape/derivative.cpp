@@ -46,8 +46,17 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   for (auto& rotations : local.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
   (void)unknowns_.system.local_step(at.actuation, at.positions, local, team);
   Eigen::MatrixXd rights(unknowns_.freedoms.size(), actuators), steps;
+  const supports::Turning turning(unknowns_.model);
+  std::vector<Points> turned(static_cast<std::size_t>(actuators));  // what is held, of commands that turn it
   for (Index a = 0; a < actuators; ++a) {
-    unknowns_.system.command_change(local, a, workspace->work, team);
+    if (unknowns_.model.actuators[static_cast<std::size_t>(a)].kind == ActuatorKind::turn) {
+      Points& moves = turned[static_cast<std::size_t>(a)];
+      moves.setZero(at.positions.rows(), 3);
+      turning.add_velocity(a, at.actuation, 1, moves);
+      unknowns_.system.residual_change(local, moves, workspace->work, team);
+    } else {
+      unknowns_.system.command_change(local, a, workspace->work, team);
+    }
     unknowns_.freedoms.reduce(workspace->work.residual, at.positions, rights.col(a));
   }
   const bool near = reuse_factor && workspace->home.rows() == at.positions.rows() && workspace->home == at.positions;
@@ -64,8 +73,10 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
     }
     if (result.regular) workspace->home = at.positions;
   }
-  for (Index a = 0; result.regular && a < actuators; ++a)
+  for (Index a = 0; result.regular && a < actuators; ++a) {
     unknowns_.freedoms.expand(steps.col(a), at.positions, result.positions[a]);
+    if (const Points& moves = turned[static_cast<std::size_t>(a)]; moves.rows() > 0) result.positions[a] += moves;
+  }
   put_back(std::move(workspace));
   return result;
 }

@@ -85,24 +85,26 @@ void accept(const IterationRecord& record, bool keep_history, SolveReport& repor
   if (keep_history) report.history.push_back(record);
 }
 
-LocalGlobal::LocalGlobal(const System& system, const supports::GlobalStep& global, int anderson, Points& positions)
+LocalGlobal::LocalGlobal(const System& system, const supports::GlobalStep& global, int anderson,
+                         const Actuation& actuation, Points& positions)
     : system_(system),
       global_(global),
       anderson_(anderson),
       mixer_(anderson),
+      actuation_(actuation),
       positions_(positions),
-      poses_(global.project(positions)),
+      poses_(global.project(actuation, positions)),
       tolerated_(unlimited) {
   accepted_ = positions;
 }
 
-bool LocalGlobal::iterate(const Actuation& actuation, System::Scratch& scratch, Team& team, IterationRecord& record) {
-  record.energy = system_.local_step(actuation, positions_, scratch, team);
+bool LocalGlobal::iterate(System::Scratch& scratch, Team& team, IterationRecord& record) {
+  record.energy = system_.local_step(actuation_, positions_, scratch, team);
   if (record.energy > tolerated_) {  // the extrapolation went astray: on from the plain step
     positions_ = accepted_;
-    poses_ = global_.project(positions_);
+    poses_ = global_.project(actuation_, positions_);
     mixer_.restart();
-    record.energy = system_.local_step(actuation, positions_, scratch, team);
+    record.energy = system_.local_step(actuation_, positions_, scratch, team);
   }
   record.gradient_norm = 2 * global_.free_norm(scratch.residual, poses_);
   tolerated_ = anderson_ > 0 ? tolerated_growth * record.energy : unlimited;
@@ -121,7 +123,7 @@ void LocalGlobal::extrapolate() {
   accepted_ = positions_;
   if (anderson_ == 0) return;
   positions_ = mixer_.next(before_, positions_);
-  poses_ = global_.project(positions_);
+  poses_ = global_.project(actuation_, positions_);
 }
 
 void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
@@ -131,13 +133,13 @@ void solve_local_global(const Model& model, const System& system, const supports
   report.solver = "local-global";
   if (options.as_published) report.tolerance_mm = PublishedStop::move_mm;
   const int anderson = options.as_published ? 0 : options.anderson;
-  LocalGlobal iteration(system, global, anderson, result.state.positions);
+  LocalGlobal iteration(system, global, anderson, result.actuation, result.state.positions);
   System::Scratch scratch = system.make_scratch();
   ErrorEstimate estimate;
   Stall stall;
   while (report.iterations < options.max_iterations) {
     IterationRecord record;
-    if (!iteration.iterate(result.actuation, scratch, team, record)) break;
+    if (!iteration.iterate(scratch, team, record)) break;
     accept(record, options.keep_history, report);
     estimate.add(iteration.before(), iteration.positions() - iteration.before());
     if (has_arrived(model, iteration, options.as_published, report)) {

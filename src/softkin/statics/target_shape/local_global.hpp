@@ -12,13 +12,14 @@ namespace softkin::target_shape {
 class LocalGlobal {
  public:
   /// anderson: earlier steps that are combined; 0: as printed. Puts positions where supports hold them.
-  LocalGlobal(const System& system, const supports::GlobalStep& global, int anderson, Points& positions);
+  LocalGlobal(const System& system, const supports::GlobalStep& global, int anderson, const Actuation& actuation,
+              Points& positions);
 
   /// One iteration from the current positions.
   ///
   /// record   its energy, gradient norm and step
   /// returns  false where a number is not finite: positions are the last good ones then, and the iteration is over
-  [[nodiscard]] bool iterate(const Actuation& actuation, System::Scratch& scratch, Team& team, IterationRecord& record);
+  [[nodiscard]] bool iterate(System::Scratch& scratch, Team& team, IterationRecord& record);
 
   /// Goes on from an extrapolation of the last iterations.
   void extrapolate();
@@ -32,6 +33,7 @@ class LocalGlobal {
   const supports::GlobalStep& global_;
   int anderson_;
   linear::Anderson mixer_;
+  Actuation actuation_;
   Points& positions_;
   Points before_, accepted_;
   std::vector<supports::Pose> poses_;

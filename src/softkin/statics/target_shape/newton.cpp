@@ -96,7 +96,7 @@ NewtonSearch::NewtonSearch(const Unknowns& unknowns, const supports::GlobalStep&
 
 /// Local step at positions, which supports put right before.
 void NewtonSearch::evaluate(const Actuation& actuation, Points& positions) {
-  poses_ = global_.project(positions);
+  poses_ = global_.project(actuation, positions);
   energy_ = unknowns_.system.local_step(actuation, positions, local_, team_);
 }
 
@@ -235,12 +235,12 @@ NewtonSearch::End NewtonSearch::enter(const IterationRecord& record) {
 
 /// stuck: go on
 NewtonSearch::End NewtonSearch::local_global(const Actuation& actuation, int count, Points& positions) {
-  LocalGlobal iteration(unknowns_.system, global_, rescue_window, positions);
+  LocalGlobal iteration(unknowns_.system, global_, rescue_window, actuation, positions);
   End end = End::stuck;
   for (int i = 0; i < count && end == End::stuck; ++i) {
     if (i > 0) iteration.extrapolate();
     IterationRecord record;
-    if (!iteration.iterate(actuation, local_, team_, record)) return End::astray;
+    if (!iteration.iterate(local_, team_, record)) return End::astray;
     end = enter(record);
   }
   evaluate(actuation, positions);

@@ -1,0 +1,71 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <softkin/statics/supports/rigid_body.hpp>
+#include <softkin/statics/supports/turning.hpp>
+
+namespace softkin::supports {
+
+namespace {
+
+constexpr double radians = std::numbers::pi / 180;
+
+/// Whole turns are left out, so that 360 degrees are none to the last digit.
+Mat3 rotation_by(const SupportTurn& turn, double degrees) {
+  return rotation_about(std::remainder(degrees, 360.0) * radians * turn.axis);
+}
+
+}  // namespace
+
+const SupportTurn* Turning::turn_of(Index actuator) const {
+  const Actuator& command = model_.actuators[static_cast<std::size_t>(actuator)];
+  return command.kind == ActuatorKind::turn ? &model_.turns[static_cast<std::size_t>(command.other)] : nullptr;
+}
+
+void Turning::place(const Eigen::VectorXd& actuation, double share, Points& positions) const {
+  for (Index a = 0; any() && a < actuation.size(); ++a) {
+    const SupportTurn* turn = turn_of(a);
+    if (turn == nullptr) continue;
+    const Mat3 rotation = rotation_by(*turn, share * actuation[a]);
+    for (const Index v : turn->vertices) {
+      const Vec3 arm = model_.rest.row(v).transpose() - turn->about;
+      positions.row(v) = (turn->about + rotation * arm + share * turn->displacement).transpose();
+    }
+  }
+}
+
+void Turning::add_velocity(Index actuator, const Eigen::VectorXd& actuation, double share, Points& moves) const {
+  const SupportTurn* turn = turn_of(actuator);
+  if (turn == nullptr) return;
+  const Mat3 rotation = rotation_by(*turn, share * actuation[actuator]);
+  for (const Index v : turn->vertices) {
+    const Vec3 arm = model_.rest.row(v).transpose() - turn->about;
+    moves.row(v) += share * radians * turn->axis.cross(rotation * arm).transpose();
+  }
+}
+
+double Turning::angle(Index actuator, const Points& positions) const {
+  const SupportTurn* turn = turn_of(actuator);
+  double sine = 0, cosine = 0;
+  for (const Index v : turn->vertices) {
+    const Vec3 from = model_.rest.row(v).transpose() - turn->about;
+    const Vec3 to = positions.row(v).transpose() - turn->about - turn->displacement;
+    const Vec3 across = from - turn->axis.dot(from) * turn->axis;
+    cosine += across.dot(to);
+    sine += turn->axis.dot(across.cross(to));
+  }
+  return std::atan2(sine, cosine) / radians;
+}
+
+double Turning::largest_turn(const Eigen::VectorXd& from, double from_share, const Eigen::VectorXd& to,
+                             double to_share) const {
+  double largest = 0;
+  for (Index a = 0; any() && a < to.size(); ++a)
+    if (turn_of(a) != nullptr)
+      largest = std::max(largest, std::abs(to[a] - from[a]) * std::max(std::abs(from_share), std::abs(to_share)) +
+                                      std::abs(to_share - from_share) * std::max(std::abs(from[a]), std::abs(to[a])));
+  return largest;
+}
+
+}  // namespace softkin::supports
