@@ -95,7 +95,7 @@ def moved(results: dict[str, Result]) -> list[str]:
     faults = [f"{item}: there is no such row" for item in gone]
     for item, row in figured(results).items():
         before = known.get(item)
-        if before is None or not abs(row.figure - before) <= row.tolerance * abs(before):
+        if before is None or row.figure is None or not abs(row.figure - before) <= row.tolerance * abs(before):
             faults.append(f"{item}: {row.figure!r}, and was {before!r} (within {100 * row.tolerance:g} %)")
     return faults
 
@@ -110,7 +110,8 @@ def shown(folder: Path, picture: str) -> str:
 
 def page(results: dict[str, Result], out: Path, machine: str) -> str:
     """One file, without a network."""
-    style = "body{font-family:sans-serif;max-width:1120px;margin:2em auto}td,th{border:1px solid #ccc;padding:4px;text-align:left;vertical-align:top}"
+    style = ("body{font-family:sans-serif;max-width:1120px;margin:2em auto}"
+             "td,th{border:1px solid #ccc;padding:4px;text-align:left;vertical-align:top}")
     text = [f"<!doctype html><html lang='en'><meta charset='utf-8'><title>The paper by softkin</title><style>{style}</style>"]
     text.append(f"<h1>The paper's tables and figures by softkin</h1><p>{html.escape(machine)}</p>")
     for name, result in results.items():

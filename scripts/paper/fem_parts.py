@@ -6,8 +6,8 @@ import math
 import re
 
 import calculix
-from forward_parts import Point, bend, draw, in_plane, steps_of, values
-from rows import AS_ABOVE, Bench, Failed, elements_of, example
+from forward_parts import Point, bend, draw, in_plane, linear, steps_of, values, within
+from rows import AS_ABOVE, SHAPES, Bench, Failed, elements_of, example
 
 LIMIT_S = 900
 RATIOS = (1.0, 1.2, 1.4)  # farther St. Venant-Kirchhoff turns elements over
@@ -25,7 +25,7 @@ def times(bench: Bench) -> None:
               "another finger, machine and formulation; theirs are of an iteration that was stopped: docs/paper.md",
               conditions="bellows finger of bench_newton, linear tetrahedra; St. Venant-Kirchhoff, Newton's method, tip within 0.1 mm")
     scene, path = example("pneumatic_finger"), bench.table("path.csv", ["air"], [[v] for v in values(1.0, 2.6, 0.2)])
-    for name, options in (("target shapes", ("--formulation", "target-shape")), ("physical", ())):
+    for name, options in (("target shapes", SHAPES), ("physical", ())):
         told = bench.report("fk", scene, "--path", path, *options)
         bench.row(f"Table III, our finger, {name}", AS_ABOVE, f"{told['seconds']:.1f} s for {len(told['steps'])} shapes, to "
                   f"{bend(told['steps']):.0f} degrees", "differs", "another finger, mesh and machine",
@@ -69,8 +69,10 @@ def finite_elements(bench: Bench) -> None:
 
 
 def overlay(bench: Bench, tips: list[Point], track: calculix.Track) -> None:
-    curves = [in_plane("softkin, physical", tips), in_plane("CalculiX", [tips[0], *track.tips], marks=True)]
-    for name, options in (("target shapes", ("--formulation", "target-shape")), ("neo-Hookean", ())):
-        path = bench.table("far.csv", ["air"], [[v] for v in values(1.0, 2.6, 0.2)])
-        curves.append(in_plane(name, steps_of(bench.report("fk", example("pneumatic_finger"), "--path", path, *options), "tip")))
+    curves = [in_plane("St. Venant-Kirchhoff", tips), in_plane("CalculiX", [tips[0], *track.tips], marks=True)]
+    scene, asked = example("pneumatic_finger"), values(1.0, 1.4, 0.05)[:-1] + values(1.4, 2.6, 0.2)
+    path = bench.table("far.csv", ["air"], [[value] for value in asked])
+    for name, options in (("target shapes", SHAPES), ("neo-Hookean", ())):
+        curves.append(in_plane(name, steps_of(bench.report("fk", scene, "--path", path, *options), "tip")))
+    curves.append(in_plane("linear FEM", within(linear(bench, scene, "air", "tip", asked))))
     draw(bench, curves)

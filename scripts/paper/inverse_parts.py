@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from itertools import accumulate
 from pathlib import Path
+from typing import Any
 
 from plots import Curve, plot
 from rows import AS_ABOVE, PRINTED_WEIGHTS, SHAPES, Bench, columns_of, example
@@ -12,7 +14,7 @@ ROBOT = f"three-tendon finger, ours, 6,096 tetrahedra of order 1; {PRINTED_WEIGH
 TARGET = "tip=80,,70"
 
 
-def sampled(bench: Bench, *options: object) -> tuple[Path, dict[str, object]]:
+def sampled(bench: Bench, *options: object) -> tuple[Path, dict[str, Any]]:
     file = bench.folder / "workspace.csv"
     told = bench.run("workspace", example("three_tendon_finger"), *SHAPES, "--samples", 125, "-o", file, *options, "--force-overwrite",
                      "--json")[0]
@@ -34,19 +36,19 @@ def workspace(bench: Bench) -> None:
 
 
 def starts(bench: Bench) -> None:
-    """Fig. 12(c): the objective over the iterations from several starts."""
+    """Fig. 12(c): the objective over the equilibria that iterations and their line searches take, from several starts."""
     file, _ = sampled(bench)
-    begins = {"nearest sample": ["--workspace", file]}
+    begins = {"nearest": ["--workspace", file]}
     begins |= {name: [word for i in (1, 2, 3) for word in ("--start", f"tendon{i}={start}")]
                for name, start in (("rest", 1.0), ("0.85", 0.85), ("0.7", 0.7))}
     curves, counts = [], {}
     for method, options in (("gradient", ("--method", "gradient", "--descents", "200")), ("newton", ())):
         for name, begin in begins.items():
             told = bench.report("ik", example("three_tendon_finger"), *SHAPES, "--target", TARGET, *options, *begin, codes=(0, 1))["ik"]
-            errors = [error for error in told["history"]["error_mm"] if error > 0]
-            curves.append(Curve(f"{method}, {name}", list(range(1, len(errors) + 1)), [error * error for error in errors]))
+            least = [error * error for error in accumulate(told["history"]["error_mm"], min) if error > 0]
+            curves.append(Curve(f"{method}, {name}", list(range(1, len(least) + 1)), least))
             counts[method, name] = told["iterations"]
-    plot(bench.picture("convergence.svg"), curves, "iteration", "J [mm^2]", log="y")
+    plot(bench.picture("convergence.svg"), curves, "equilibria", "least J so far [mm^2]", log="xy")
     for method, title, printed in (("gradient", "Algorithm 2", "from the closest sample IK converges much faster"),
                                    ("newton", "Gauss-Newton", AS_ABOVE)):
         near, *others = [counts[method, name] for name in begins]

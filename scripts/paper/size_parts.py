@@ -53,7 +53,7 @@ def accuracy(bench: Bench) -> None:
             tips[weights].append(told["steps"][0]["markers"]["tip"])
         counts.append(told["mesh"]["vertices"])
     off = {weights: [math.dist(tip, found[-1]) for tip in found[:-1]] for weights, found in tips.items()}
-    plot(bench.picture("accuracy.svg"), [Curve(f"{weights} weights", counts[:-1], errors) for weights, errors in off.items()], "vertices",
+    plot(bench.picture("accuracy.svg"), [Curve(weights, counts[:-1], errors) for weights, errors in off.items()], "vertices",
          "off the finest mesh [mm]", log="xy")
     for weights, errors in off.items():
         how = PRINTED_WEIGHTS if weights == "printed" else "target shapes, mesh-independent weights, Newton's method"
