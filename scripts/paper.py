@@ -178,7 +178,7 @@ def main() -> int:
         options.table.write_text(table(results, machine))
     if options.accept:
         figures = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
-        figures = {item: figure for item, figure in figures.items() if item.split(":")[0] not in results}
+        figures = {item: figure for item, figure in figures.items() if item.split(":")[0] in PARTS.keys() - results.keys()}
         figures |= {item: row.figure for item, row in figured(results).items()}
         FIGURES.write_text(json.dumps(dict(sorted(figures.items())), indent=1) + "\n")
     if options.check:
