@@ -27,7 +27,8 @@ def workspace(bench: Bench) -> None:
     x, z = told["reach_mm"]["x"], told["reach_mm"]["z"]
     bench.row("Fig. 12(a)", "a set-up with a motor for each of three cables", "none; softkin drive writes such motors' moves", "cannot",
               "it is their robot", conditions="hardware")
-    bench.row("Fig. 12(b)", "125 sample points in 8.3 s", f"{told['converged']} in {told['seconds']:.1f} s", "agrees", conditions=ROBOT)
+    bench.claim("Fig. 12(b)", "125 sample points in 8.3 s", f"{told['converged']} in {told['seconds']:.1f} s",
+                told["converged"] == 125 and told["seconds"] < 8.3, "another machine, busy or slower", conditions=ROBOT)
     bench.row("Fig. 12(b), extent", "drawn", f"{x[1] - x[0]:.1f} x {z[1] - z[0]:.1f} mm", "differs", "another finger", conditions=ROBOT,
               figure=x[1] - x[0], tolerance=1e-3)
     each = told["seconds"] / told["samples"]
