@@ -28,6 +28,7 @@ struct FollowOptions : SolveOptions, MethodOptions, RunOptions, MapUse {
   std::string path, folder, marker, workspace, plot_file;
   std::vector<std::string> turn;  // two markers
   double max_step_mm = 0;         // 0: as given
+  std::optional<Index> samples;   // of a grid, nearest
 
   [[nodiscard]] runs::FollowFolder files() const { return runs::FollowFolder(folder, plot_file); }
   [[nodiscard]] std::vector<Output> outputs(std::size_t waypoints) const {
@@ -42,6 +43,7 @@ struct FollowOptions : SolveOptions, MethodOptions, RunOptions, MapUse {
     if (!page.empty()) outputs.push_back({"--html", page});
     return outputs;
   }
+  [[nodiscard]] bool nearest() const { return method == "nearest"; }
   [[nodiscard]] TrajectoryOptions trajectory() const {
     TrajectoryOptions result;
     result.inverse = by_method();
@@ -68,13 +70,22 @@ void add_options(CLI::App& command, FollowOptions& options) {
   add_value(command, "--max-step", options.max_step_mm, "MM",
             "Insert waypoints on the straight lines between those given,\nso that no step is longer [mm]",
             positive_length());
-  add_method(command, options, "Distance from a waypoint at which it is reached");
+  add_method(command, options, "Distance from a waypoint at which it is reached",
+             {{"nearest",
+               "without inverse kinematics, the commands of the nearest\nsample of a workspace, as Section "
+               "V-B of the same paper compares with"}});
   add_value(command, "--descents", options.descents, "N",
             "gradient: iterations of Algorithm 2 for a waypoint, i_max\n(default: " +
                 std::to_string(InverseOptions().max_iterations) + ")",
             integer_from(1, 1'000'000'000));
-  add_value(command, "--workspace", options.workspace, "F.csv",
-            "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest)");
+  add_value(
+      command, "--workspace", options.workspace, "F.csv",
+      "Of softkin workspace: the first waypoint is sought from its\nnearest sample (default: from rest); nearest: "
+      "its samples");
+  add_value(command, "--samples", options.samples, "N",
+            "nearest: so many samples of a grid over the ranges, or those of the\nfull grid next to it, as softkin "
+            "workspace makes; they are solved\nfor first",
+            integer_from(1, 1'000'000'000));
   add_value(command, "--plot", options.plot_file, "F.svg", "The plot, instead of path.svg in the folder");
   add_turn(command, options.turn);
   add_map_use(command, options);
@@ -87,7 +98,16 @@ void check_usage(const FollowOptions& options) {
   if (options.folder.empty()) throw InvalidInput("--output: the name of the folder is empty");
   check_extension("--plot", options.plot_file, {{".svg", ""}});
   check_method(options);
+  if (options.samples && !options.nearest()) throw InvalidInput("--samples are those of --method nearest");
+  if (options.nearest() && options.samples.has_value() == !options.workspace.empty())
+    throw InvalidInput("--method nearest takes the samples of one of --workspace F.csv and --samples N");
   check_solver(options);
+}
+
+/// Known samples, or how many are to be made.
+NearestOf nearest_of(const Model& model, const FollowOptions& options) {
+  if (!options.samples) return runs::samples_of(model, options.workspace);
+  return full_grid(model, *options.samples);
 }
 
 class ShownTrajectory {
@@ -128,7 +148,8 @@ class ShownTrajectory {
   }
 
   [[nodiscard]] int tell(const std::vector<WaypointRecord>& done) const {
-    say(summary_of(done, reach_mm_));
+    say(summary_of(done, reach_mm_, options_.nearest()));
+    if (options_.nearest()) say(runs::jumps_of(done));
     OverlapTally overlaps(model_);
     for (std::size_t i = 0; i < done.size(); ++i) overlaps.add(i, done[i]);
     if (const std::string text = overlaps.text("waypoint"); !text.empty()) say(text);
@@ -140,7 +161,7 @@ class ShownTrajectory {
     for (std::size_t i = 0; i < done.size(); ++i)
       if (done[i].unstable_modes > 0) unstable.push_back(i);
     if (!unstable.empty()) say(unstable_text("waypoint", unstable));
-    const std::string missed = missed_text(done);
+    const std::string missed = missed_text(done, options_.nearest());
     if (missed.empty()) return cli::done;
     std::fprintf(stderr, "softkin: %s\n", missed.c_str());
     return not_converged;
@@ -175,7 +196,9 @@ int run_follow(const FollowOptions& options) {
       leave_to_resume(outputs, file);
   check_outputs(outputs, inputs, options.may_replace);
   TrajectoryOptions trajectory = options.trajectory();
-  if (!options.workspace.empty())
+  if (options.nearest())
+    trajectory.nearest = nearest_of(model, options);
+  else if (!options.workspace.empty())
     trajectory.start = runs::nearest_actuation(model, options.workspace, goals_of(path, path.waypoints.front()));
   line.show(-1, "assembling");
   const runs::Answers answers(model, options.map, options.polish);

@@ -252,10 +252,15 @@ InverseOptions MethodOptions::by_method() const {
   return result;
 }
 
-void add_method(CLI::App& command, MethodOptions& options, const std::string& tolerance) {
-  add_value(command, "--method", options.method, "NAME",
-            "newton (default), or gradient: Algorithm 2 of Fang et al. 2020\nwith central differences",
-            one_of({"newton", "gradient"}));
+void add_method(CLI::App& command, MethodOptions& options, const std::string& tolerance,
+                const std::vector<std::pair<std::string, std::string>>& more) {
+  std::string text = "newton (default), or gradient: Algorithm 2 of Fang et al. 2020\nwith central differences";
+  std::vector<std::string> names{"newton", "gradient"};
+  for (const auto& [name, what] : more) {
+    names.push_back(name);
+    text += ",\nor " + name + ": " + what;
+  }
+  add_value(command, "--method", options.method, "NAME", text, one_of(names));
   add_value(command, "--tolerance", options.tolerance_asked_mm, "MM",
             tolerance + " [mm] (default:\n0.001; gradient: 0.2)", positive_length());
 }

@@ -99,7 +99,9 @@ struct MethodOptions {
 };
 
 /// tolerance: what it is the tolerance of, for the help.
-void add_method(CLI::App& command, MethodOptions& options, const std::string& tolerance);
+/// more: methods beside those of inverse kinematics, and what they are.
+void add_method(CLI::App& command, MethodOptions& options, const std::string& tolerance,
+                const std::vector<std::pair<std::string, std::string>>& more = {});
 /// Throws InvalidInput where the options contradict each other.
 void check_method(const MethodOptions& options);
 

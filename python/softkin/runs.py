@@ -226,6 +226,7 @@ class _Runs(Solving):
         max_step_mm: float | None = None,
         start: Commands | None = None,
         workspace: PathLike | None = None,
+        samples: int | None = None,
         store: PathLike | None = None,
         predict: bool = True,
         map: KinematicMap | None = None,
@@ -249,6 +250,9 @@ class _Runs(Solving):
         max_step_mm  inserts waypoints so that no step is longer [mm]
         start        commands from which the first waypoint is sought; None: rest
         workspace    CSV of a workspace: the first waypoint is sought from its nearest sample
+        method       'newton', 'gradient', or 'nearest': without inverse kinematics, each waypoint takes the commands of
+                     the nearest sample, of `workspace` or of a grid of so many `samples` over the ranges, which is
+                     solved for first
         store        folder as `softkin follow -o` writes it: a run that was stopped goes on where it was
         map, polish  as path's
         tolerance_mm distance from a waypoint at which it is reached [mm]; None: 0.001, gradient 0.2
@@ -257,7 +261,12 @@ class _Runs(Solving):
         robot = self._owner
         statics = _options(solver, step_tolerance_mm, max_iterations, anderson, threads, stable)
         _check_map(map, polish, statics)
-        inverse = _core.InverseOptions(method, tolerance_mm, 200, descents, 3, statics)
+        nearest = method == "nearest"
+        if nearest and (workspace is None) == (samples is None):
+            raise ValueError("method 'nearest' takes the samples of one of workspace and samples")
+        if samples is not None and not nearest:
+            raise ValueError("samples are those of method 'nearest'")
+        inverse = _core.InverseOptions("newton" if nearest else method, tolerance_mm, 200, descents, 3, statics)
         name = "the path"
         if isinstance(path, (str, os.PathLike)):
             if times is not None:
@@ -281,6 +290,8 @@ class _Runs(Solving):
             predict,
             begin,
             "" if workspace is None else os.fspath(workspace),
+            nearest,
+            samples,
             _folder(store),
         )
         return FollowRun(robot, core)

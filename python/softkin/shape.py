@@ -42,7 +42,7 @@ class ActuatorState:
     requested: float
     """what was commanded, in `unit`"""
     unit: str
-    """'kPa', 'N', 'kV', 'mT', 'A', 'mm' or 'A m^2'; '' for a ratio to rest [-]"""
+    """'kPa', 'N', 'kV', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio to rest [-]"""
     ratio: float
     """volume, length or area over that at rest [-]; of others the command that the shape is of"""
     measure: float

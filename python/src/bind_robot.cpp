@@ -57,7 +57,7 @@ void bind_actuator(nb::module_& module) {
           "'flux density', 'current', 'position' or 'moment'.")
       .def_prop_ro(
           "unit", [](const Actuator& a) { return command_unit(a); },
-          "Of a command: 'kPa', 'N', 'kV', 'mT', 'A', 'mm' or 'A m^2'; '' for a ratio [-].")
+          "Of a command: 'kPa', 'N', 'kV', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio [-].")
       .def_prop_ro(
           "range", [](const Actuator& a) { return std::pair(a.low, a.high); }, "Of commands.")
       .def_ro("rest", &Actuator::rest, "The command where none is given.")

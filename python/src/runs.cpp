@@ -321,15 +321,20 @@ void bind_runs(nb::module_& module) {
           "__init__",
           [](FollowRun* self, const RobotPtr& robot, const MapPtr& map, bool polish, const MarkerPath& path,
              const std::string& name, const InverseOptions& inverse, bool predict, const std::optional<VectorIn>& start,
-             const std::string& workspace, const std::string& store) {
+             const std::string& workspace, bool nearest, std::optional<Index> samples, const std::string& store) {
             TrajectoryOptions options{inverse, predict, start ? vector_of(*start) : Actuation()};
-            if (!workspace.empty() && !path.waypoints.empty())
+            if (nearest && samples)
+              options.nearest = full_grid(robot->model(), *samples);
+            else if (nearest)
+              options.nearest = runs::samples_of(robot->model(), workspace);
+            else if (!workspace.empty() && !path.waypoints.empty())
               options.start =
                   runs::nearest_actuation(robot->model(), workspace, goals_of(path, path.waypoints.front()));
             new (self) FollowRun(robot, map, polish, path, name, options, store);
           },
           nb::arg("robot"), nb::arg("map").none(), nb::arg("polish"), nb::arg("path"), nb::arg("name"),
-          nb::arg("inverse"), nb::arg("predict"), nb::arg("start").none(), nb::arg("workspace"), nb::arg("store"))
+          nb::arg("inverse"), nb::arg("predict"), nb::arg("start").none(), nb::arg("workspace"), nb::arg("nearest"),
+          nb::arg("samples").none(), nb::arg("store"))
       .def("commands", &FollowRun::commands)
       .def("errors", &FollowRun::errors)
       .def("asked", &FollowRun::asked)

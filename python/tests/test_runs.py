@@ -93,6 +93,24 @@ def test_follow_from_a_workspace(robot: softkin.Robot, tmp_path: Path) -> None:
         beam(materials=[{"youngs_modulus": 2, "poisson_ratio": 0.4}]).follow(targets(robot), workspace=tmp_path / "w.csv")
 
 
+def test_follow_by_nearest_samples(robot: softkin.Robot, tmp_path: Path) -> None:
+    path = targets(robot)
+    made = list(robot.follow(path, method="nearest", samples=8))
+    assert [waypoint.equilibria for waypoint in made] == [9, 1, 1]
+    low, high = (np.array([getattr(info, end) for info in robot.actuator_infos]) for end in ("low", "high"))
+    for waypoint in made:
+        commands = np.array([waypoint.actuation[name] for name in robot.actuators])
+        assert np.all((commands == low) | (commands == high)) and not waypoint.reached
+        assert waypoint.reason == "the nearest of 8 samples"
+    robot.workspace(8, store=tmp_path / "w.csv")
+    known = list(robot.follow(path, method="nearest", workspace=tmp_path / "w.csv"))
+    assert [waypoint.actuation for waypoint in known] == [waypoint.actuation for waypoint in made]
+    assert [waypoint.equilibria for waypoint in known] == [1, 1, 1]
+    for options in ({"method": "nearest"}, {"method": "nearest", "samples": 8, "workspace": "w.csv"}, {"samples": 8}):
+        with pytest.raises(ValueError, match="samples"):
+            robot.follow(path, **options)  # type: ignore[arg-type]
+
+
 def test_wrong_paths(robot: softkin.Robot, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"steps must have shape \(n, 3\), not \(2, 2\)"):
         robot.path([[1, 1], [1, 1]])

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "fk_samples.hpp"
 #include "start_program.hpp"
@@ -106,6 +107,54 @@ TEST(Follow, WritesCommandsThatForwardKinematicsConfirms) {
   EXPECT_TRUE(plot.load_string(read_text(folder.out + "/path.svg").c_str()));
   for (const char* text : {"error [mm]", "x [mm]", "z [mm]", "target", "reached", "command [-]", "time [s]"})
     EXPECT_NE(read_text(folder.out + "/path.svg").find(">" + std::string(text) + "<"), std::string::npos) << text;
+}
+
+/// The same commands by samples made on the way and by those of a workspace; errors and jumps of what is no inverse
+/// kinematics, in the columns that inverse kinematics has, too.
+TEST(Follow, TakesTheNearestSamplesInstead) {
+  const FollowFolder folder;
+  const ProgramResult made = folder.follow({"--method", "nearest", "--samples", "30"});  // 5 x 5 of them
+  EXPECT_EQ(made.exit_code, 1);
+  expect_words(made.output, {"5 waypoints, 5 at their nearest samples: error at most ", "6.00 equilibria per waypoint",
+                             "from waypoint to waypoint commands change by at most ", " % of a range"});
+  expect_words(made.errors, {"waypoints 0 to 4 were not reached: the commands are those of the nearest sample"});
+  const json report = json::parse(read_text(folder.out + "/report.json"));
+  EXPECT_EQ(report["follow"]["method"], "nearest");
+  const Rows errors = read_rows(folder.out + "/errors.csv"), commands = read_rows(folder.out + "/commands.csv");
+  EXPECT_EQ(cell(errors, 0, "equilibria"), 26);
+  EXPECT_EQ(cell(errors, 0, "command_change"), 0);
+  for (std::size_t i = 0; i < 5; ++i) {
+    for (const auto& [name, low, high] : {std::tuple("air", 0.5, 3.0), std::tuple("tendon", 0.5, 1.2)}) {
+      const double share = 4 * (cell(commands, i, name) - low) / (high - low);
+      EXPECT_NEAR(share, std::round(share), 1e-9) << name;
+    }
+    EXPECT_GT(cell(errors, i, "error_mm"), 0.01);
+    if (i == 0) continue;
+    const double change = std::max(std::abs(cell(commands, i, "air") - cell(commands, i - 1, "air")) / 2.5,
+                                   std::abs(cell(commands, i, "tendon") - cell(commands, i - 1, "tendon")) / 0.7);
+    double square = 0;
+    for (const char* axis : {"tip_x_mm", "tip_y_mm", "tip_z_mm"})
+      square += std::pow(cell(errors, i, axis) - cell(errors, i - 1, axis), 2);
+    EXPECT_NEAR(cell(errors, i, "command_change"), change, 1e-9);
+    EXPECT_NEAR(cell(errors, i, "step_mm"), std::sqrt(square), 1e-9);
+    EXPECT_EQ(report["steps"][i]["waypoint"]["command_change"], cell(errors, i, "command_change"));
+  }
+  const std::string samples = folder / "samples.csv", by_samples = read_text(folder.out + "/commands.csv");
+  ASSERT_EQ(run_program({"workspace", folder.scene, "--samples", "25", "-o", samples}).exit_code, 0);
+  const ProgramResult known = folder.follow({"--method", "nearest", "--workspace", samples, "--overwrite"});
+  EXPECT_EQ(known.exit_code, 1) << known.errors;
+  EXPECT_EQ(read_text(folder.out + "/commands.csv"), by_samples);
+  EXPECT_EQ(cell(read_rows(folder.out + "/errors.csv"), 0, "equilibria"), 1);
+}
+
+TEST(Follow, NeedsSamplesForTheNearestOnes) {
+  const FollowFolder folder;
+  folder.expect_refused({"--samples", "25"}, "--samples are those of --method nearest");
+  folder.expect_refused({"--method", "nearest"}, "takes the samples of one of --workspace F.csv and --samples N");
+  folder.expect_refused({"--method", "nearest", "--workspace", "w.csv", "--samples", "8"},
+                        "takes the samples of one of --workspace F.csv and --samples N");
+  folder.expect_refused({"--method", "nearest", "--workspace", folder / "none.csv"}, "none.csv");
+  folder.expect_refused({"--method", "nearest", "--samples", "8", "--descents", "3"}, "--descents");
 }
 
 TEST(Follow, TellsWhatIsOutOfReach) {

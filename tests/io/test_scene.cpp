@@ -104,12 +104,12 @@ TEST(Scene, WholeSceneChambersAndSkins) {
   EXPECT_EQ(air.high, 3);
   EXPECT_EQ(air.rest, 1);
   EXPECT_EQ(air.weight, 5);
-  EXPECT_FALSE(air.least_norm);
+  EXPECT_EQ(air.distribution, Distribution::uniform);
   EXPECT_EQ(skin.kind, ActuatorKind::dea);
   EXPECT_EQ(skin.region, "membrane");
   EXPECT_EQ(skin.rest, 1.2);
   EXPECT_EQ(skin.low, 0.7);
-  EXPECT_TRUE(skin.least_norm);
+  EXPECT_EQ(skin.distribution, Distribution::least_norm);
   EXPECT_FALSE(bag.region);
   ASSERT_TRUE(bag.surface);
   expect_near(bag.surface->vertices.row(1).transpose(), 1000, 0, 0);
@@ -202,7 +202,7 @@ TEST(Scene, PhysicalSceneLoads) {
   EXPECT_EQ(air.high, 80);
   EXPECT_EQ(air.rest, 0);
   EXPECT_EQ(air.weight, 3);
-  EXPECT_FALSE(air.least_norm);
+  EXPECT_EQ(air.distribution, Distribution::uniform);
   EXPECT_EQ(tendon.control, Control::load);
   EXPECT_EQ(tendon.low, 0);
   EXPECT_EQ(tendon.high, 25);
@@ -375,6 +375,14 @@ TEST(Scene, SupportsMayTurn) {
   const RotationSpec& tip = spec.fixed.at(1).rotation.value();
   EXPECT_EQ(tip.degrees, 0);
   EXPECT_FALSE(tip.about);
+}
+
+TEST(Scene, DistributionsHaveTheirNames) {
+  const RobotSpec spec = parse_body(
+      "actuators:\n  - {name: a, kind: dea, region: r, range: [1, 2], distribution: proportional}\n"
+      "  - {name: b, kind: dea, region: r, range: [1, 2], distribution: least-norm}\n");
+  EXPECT_EQ(spec.actuators.at(0).distribution, Distribution::proportional);
+  EXPECT_EQ(spec.actuators.at(1).distribution, Distribution::least_norm);
 }
 
 TEST(Scene, NamesMayBeQuotedOrLookLikeNumbers) {

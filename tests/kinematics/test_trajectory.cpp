@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <softkin/core/error.hpp>
 #include <softkin/kinematics/trajectory.hpp>
+#include <softkin/kinematics/workspace.hpp>
 
 #include "statics/physical_samples.hpp"
 
@@ -97,6 +100,68 @@ TEST(Trajectory, PredictionSavesEquilibria) {
   const auto predicted = follow_path(robot.model, robot.statics, path);
   expect_reached(robot, path, predicted, 1e-3);
   EXPECT_LT(mean_equilibria(predicted), 0.9 * mean_equilibria(plain));
+}
+
+/// Of all samples of the grid, each solved for alone, the one whose tip is nearest: the same commands whether the
+/// samples are made on the way or were known. Making them costs the first waypoint as many equilibria.
+TEST(Trajectory, NearestTakesTheNearestOfAllSamples) {
+  for (const Formulation formulation : {Formulation::physical, Formulation::target_shape}) {
+    const Robot robot(formulation);
+    MarkerPath path = made_by_actuation(robot, 9);
+    path.axes = {{true, false, true}};
+    const Index count = 64;
+    const Actuations grid = sample_actuations(robot.model, {.samples = count});
+    std::vector<WorkspaceSample> known;
+    for (Index i = 0; i < count; ++i) {
+      const Equilibrium found = robot.statics.solve(grid.row(i), robot.statics.rest());
+      ASSERT_EQ(found.report.status, Status::converged);
+      known.push_back({.number = i,
+                       .actuation = grid.row(i),
+                       .markers = robot.tip(found.state).transpose(),
+                       .status = Status::converged});
+    }
+    TrajectoryOptions made, given;
+    made.nearest = count;
+    given.nearest = known;
+    const auto by_grid = follow_path(robot.model, robot.statics, path, made);
+    const auto by_known = follow_path(robot.model, robot.statics, path, given);
+    ASSERT_EQ(by_grid.size(), path.waypoints.size());
+    ASSERT_EQ(by_known.size(), path.waypoints.size());
+    for (std::size_t w = 0; w < path.waypoints.size(); ++w) {
+      const auto distance = [&](const Vec3& tip) {
+        const Vec3 off = tip - path.waypoints[w].targets[0];
+        return std::hypot(off.x(), off.z());
+      };
+      const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+        return distance(a.markers.row(0)) < distance(b.markers.row(0));
+      });
+      for (const auto* found : {&by_grid[w], &by_known[w]}) {
+        EXPECT_EQ(found->equilibrium.actuation, nearest->actuation) << w;
+        EXPECT_NEAR(found->errors_mm[0], distance(robot.tip(found->equilibrium.state)), 1e-12);
+        EXPECT_NEAR(found->errors_mm[0], distance(nearest->markers.row(0)), 1e-4);
+        EXPECT_EQ(found->status, InverseStatus::unreachable);
+        EXPECT_EQ(found->remark, "the nearest of 64 samples");
+      }
+      EXPECT_EQ(by_known[w].equilibria, 1);
+      EXPECT_EQ(by_grid[w].equilibria, w == 0 ? 65 : 1);
+    }
+  }
+}
+
+TEST(Trajectory, NearestNeedsSamples) {
+  const Robot robot;
+  const MarkerPath path = made_by_actuation(robot, 2);
+  TrajectoryOptions none, no_grid;
+  none.nearest = std::vector<WorkspaceSample>();
+  no_grid.nearest = 10;  // of three actuators 8 or 27
+  EXPECT_THROW(PathFollower(robot.model, robot.statics, path, none), InvalidInput);
+  EXPECT_THROW(PathFollower(robot.model, robot.statics, path, no_grid), InvalidInput);
+  no_grid.nearest = 8;
+  PathFollower follower(robot.model, robot.statics, path, no_grid);
+  const InverseResult stopped = follower.advance([](const Progress&) { return false; });
+  EXPECT_TRUE(stopped.stopped);
+  EXPECT_EQ(follower.next(), 0u);
+  EXPECT_EQ(follower.advance().equilibria, 9);
 }
 
 /// Where the search looks ahead one equilibrium a waypoint does.

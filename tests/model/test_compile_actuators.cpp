@@ -17,7 +17,7 @@ TEST(Pneumatic, ARegionBecomesTheChamber) {
   RobotSpec spec = hollow_cube();
   ActuatorSpec air = chamber("chamber");
   air.weight = 7;
-  air.least_norm = false;
+  air.distribution = Distribution::uniform;
   spec.actuators.push_back(air);
   const Model model = compile(spec);
   ASSERT_EQ(model.actuators.size(), 1u);
@@ -28,7 +28,7 @@ TEST(Pneumatic, ARegionBecomesTheChamber) {
   EXPECT_EQ(compiled.low, 0.5);
   EXPECT_EQ(compiled.high, 3);
   EXPECT_EQ(compiled.weight, 7);
-  EXPECT_FALSE(compiled.least_norm);
+  EXPECT_EQ(compiled.distribution, Distribution::uniform);
   EXPECT_TRUE(compiled.points.empty());
   int members = 0;
   for (std::size_t i = 0; i < model.tetrahedra.size(); ++i) {

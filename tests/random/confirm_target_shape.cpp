@@ -148,7 +148,12 @@ struct Elements {
     // a cable's pieces inside the body keep their length
     const double asked = command * actuator.rest_measure - (actuator.rest_measure - sum);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const double free = actuator.least_norm ? ratios[i] + share(at_rest[i]) * (asked - now) / shares : asked / sum;
+      const double even = asked / sum;
+      const double free = actuator.distribution == Distribution::uniform ? even
+                          : actuator.distribution == Distribution::least_norm
+                              ? ratios[i] + share(at_rest[i]) * (asked - now) / shares
+                          : now > 0 ? ratios[i] * asked / now
+                                    : even;
       Element element{parts[i], centred(shape_at(parts[i], positions)),
                       actuated(actuator.kind, centred(shape_at(parts[i], model.rest)), std::max(least_ratio, free))};
       element.weight = weight_of(model, shape_at(parts[i], model.rest), actuator.weight * weights[i]);
@@ -269,7 +274,7 @@ struct Step {
   }
 };
 
-void check_places(const Model& model, const State& state, Confirmation& out) {
+void check_held(const Model& model, const State& state, Confirmation& out) {
   const Points& positions = state.positions;
   const Points places = held_places(model, state);
   const double far = std::max(model.rest.cwiseAbs().maxCoeff(), positions.cwiseAbs().maxCoeff());
@@ -295,7 +300,7 @@ void check_places(const Model& model, const State& state, Confirmation& out) {
 
 void confirm_target_shape(const Model& model, const Equilibrium& found, Confirmation& out) {
   const Points& positions = found.state.positions;
-  check_places(model, found.state, out);
+  check_held(model, found.state, out);
   Step step(static_cast<Index>(model.rest.rows()));
   for (const Element& element : elements_of(model, found).all) step.add(element);
   out.undecided = step.undecided;

@@ -12,7 +12,7 @@ ActuatorSpec named(Making& m, ActuatorKind kind, double low, double high) {
   spec.kind = kind;
   spec.low = low;
   spec.high = high;
-  spec.least_norm = m.draw.chance(0.6);
+  spec.distribution = m.draw.chance(0.6) ? Distribution::least_norm : Distribution::uniform;
   return spec;
 }
 

@@ -36,6 +36,8 @@ void make_stiff(Making& m) {
 void make_weights(Making& m) {
   Draw draw(m.made.seed ^ draws_of_weights);
   if (!m.physical && draw.chance(0.3)) m.made.spec.weights = ElementWeights::mesh_independent;
+  for (ActuatorSpec& actuator : m.made.spec.actuators)
+    if (draw.chance(0.25)) actuator.distribution = Distribution::proportional;
 }
 
 void make_turns(Making& m) {

@@ -18,13 +18,17 @@ inline Actuation values(std::initializer_list<double> list) {
   return actuation;
 }
 
+inline Distribution shared(bool least_norm) {
+  return least_norm ? Distribution::least_norm : Distribution::uniform;
+}
+
 inline ActuatorSpec actuator(const std::string& name, ActuatorKind kind, double low, double high, bool least_norm) {
   ActuatorSpec spec;
   spec.name = name;
   spec.kind = kind;
   spec.low = low;
   spec.high = high;
-  spec.least_norm = least_norm;
+  spec.distribution = shared(least_norm);
   return spec;
 }
 

@@ -149,13 +149,13 @@ TEST(Trace, NamesTheChamberThatItGoesAlong) {
   const Statics statics(model);
   const Equilibrium found = statics.solve(values({1000}), statics.rest(), traced());
   ASSERT_EQ(found.report.status, Status::limit);
-  int along = 0, rejected = 0;
+  int taken_along = 0, rejected = 0;
   for (const TracedStep& step : found.report.trace) {
-    along += step.along == "chamber" && step.taken;
+    taken_along += step.along == "chamber" && step.taken;
     rejected += !step.taken;
     EXPECT_EQ(step.taken, step.why.empty()) << step.why;
   }
-  EXPECT_GT(along, 2);
+  EXPECT_GT(taken_along, 2);
   EXPECT_GT(rejected, 0);
 }
 

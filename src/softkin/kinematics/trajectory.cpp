@@ -4,6 +4,7 @@
 #include <softkin/kinematics/inverse_response.hpp>
 #include <softkin/kinematics/inverse_step.hpp>
 #include <softkin/kinematics/trajectory.hpp>
+#include <softkin/kinematics/workspace.hpp>
 #include <utility>
 
 namespace softkin {
@@ -100,6 +101,11 @@ PathFollower::PathFollower(const Model& model, const Statics& statics, const Mar
   check_path(path);
   for (const Waypoint& waypoint : path.waypoints) check_goals(model, goals_of(path, waypoint));
   if (options_.start.size() > 0) check_actuation(model, options_.start);
+  if (!options_.nearest) return;
+  if (auto* known = std::get_if<std::vector<WorkspaceSample>>(&*options_.nearest))
+    samples_.emplace(model, std::move(*known));
+  else
+    (void)plan_workspace(model, {.samples = std::get<Index>(*options_.nearest)});  // throws where there is none
 }
 
 Eigen::VectorXd PathFollower::shares_of(const Actuation& actuation) const {
@@ -154,6 +160,7 @@ bool PathFollower::first(InverseResult& spent, const ProgressCallback& progress)
 }
 
 InverseResult PathFollower::advance(const ProgressCallback& progress) {
+  if (options_.nearest) return advance_nearest(progress);
   const Waypoint& waypoint = path_.waypoints.at(next_);
   const std::vector<Goal> goals = goals_of(path_, waypoint);
   clock_.set(waypoint.time, options_.inverse.statics);

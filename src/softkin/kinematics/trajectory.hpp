@@ -1,8 +1,10 @@
 #pragma once
 
 #include <softkin/kinematics/inverse.hpp>
+#include <softkin/kinematics/nearest.hpp>
 #include <softkin/model/paths.hpp>
 #include <softkin/statics/viscous_clock.hpp>
+#include <variant>
 
 namespace softkin {
 
@@ -15,6 +17,10 @@ namespace softkin {
 /// Its markers at their targets.
 [[nodiscard]] std::vector<Goal> goals_of(const MarkerPath& path, const Waypoint& waypoint);
 
+/// The sampled workspace of which each waypoint takes the nearest sample instead of being searched for: that of samples
+/// that are known, or of a grid over the ranges with so many samples, which is solved for before the first waypoint.
+using NearestOf = std::variant<std::vector<WorkspaceSample>, Index>;
+
 struct TrajectoryOptions {
   InverseOptions inverse{};  // start_sensitivity is set here; other_starts is for the first waypoint alone, as a jump
                              // to another shape would tear the path
@@ -22,13 +28,18 @@ struct TrajectoryOptions {
                              // Statics::foresee does not do
   Actuation start{};         // m: from where the first waypoint is sought, such as that of the nearest sample of a
                              // workspace; empty: rest
+  std::optional<NearestOf> nearest{};  // in place of inverse kinematics, of which the tolerance alone counts
+
+  /// "newton", "gradient" or "nearest".
+  [[nodiscard]] const char* method() const { return nearest ? "nearest" : name_of(inverse.method); }
 };
 
 /// Follows a path: inverse kinematics waypoint by waypoint, each from the solution before.
 class PathFollower {
  public:
   /// model, statics and path must outlive it. throws InvalidInput on a path without markers or waypoints, a waypoint
-  /// with other numbers of targets than markers, and as solve_inverse does
+  /// with other numbers of targets than markers, and as solve_inverse does; nearest: as NearestSamples and
+  /// sample_actuations do
   PathFollower(const Model& model, const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options);
 
   [[nodiscard]] std::size_t next() const { return next_; }  // waypoint
@@ -46,7 +57,11 @@ class PathFollower {
   /// Solves the next waypoint; equilibria counts those of the prediction too. Where it is interrupted the next waypoint
   /// stays the same. A waypoint that cannot be reached ends at the nearest point that the ranges allow.
   ///
-  /// source  Fang et al. 2020, Alg. 3; prediction: Taylor series of the markers along the path to second order
+  /// Nearest: the equilibrium at the commands of the nearest sample, from the waypoint before; the first waypoint's
+  /// equilibria and seconds have those of the samples, where these were not known.
+  ///
+  /// source  Fang et al. 2020, Alg. 3; prediction: Taylor series of the markers along the path to second order;
+  ///         nearest: what Section V-B compares with
   [[nodiscard]] InverseResult advance(const ProgressCallback& progress = {});
 
  private:
@@ -56,11 +71,14 @@ class PathFollower {
   [[nodiscard]] bool first(InverseResult& spent, const ProgressCallback& progress);
   [[nodiscard]] std::optional<Actuation> predicted(const std::vector<Goal>& goals) const;
   void learn(const std::vector<Goal>& goals, const InverseResult& found);
+  [[nodiscard]] bool sample(InverseResult& spent, const ProgressCallback& progress);
+  [[nodiscard]] InverseResult advance_nearest(const ProgressCallback& progress);
 
   const Model& model_;
   const Statics& statics_;
   const MarkerPath& path_;
   TrajectoryOptions options_;
+  std::optional<NearestSamples> samples_;
   std::size_t next_ = 0;
   ViscousClock clock_;
   std::optional<double> lost_mJ_{};

@@ -99,9 +99,10 @@ class Hash {
     add(c.distance_mm, c.modulus_MPa, c.parts, c.pairs, c.triangles, c.part_of, c.area, c.other_vertices);
   }
   void put(const Actuator& a) {
-    add(a.name, a.kind, a.control, a.rest, a.weight, a.least_norm, a.tetrahedra, a.cavity, a.prisms, a.points,
-        a.surface, a.gaps, a.other, a.axis, a.rest_measure);
+    add(a.name, a.kind, a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.tetrahedra, a.cavity,
+        a.prisms, a.points, a.surface, a.gaps, a.other, a.axis, a.rest_measure);
     if (under_voltage(a)) add(a.shares, a.prestretch);
+    if (a.distribution == Distribution::proportional) add(a.distribution);
   }
 
   std::uint64_t state_ = 0xcbf29ce484222325;

@@ -54,7 +54,7 @@ struct Actuator {
   ActuatorKind kind = ActuatorKind::pneumatic;
   Control control = Control::ratio;
   double low = 0, high = 0, rest = 1, weight = 5;
-  bool least_norm = true;
+  Distribution distribution = Distribution::least_norm;
   std::vector<Index> tetrahedra;       // pneumatic, target-shape: elements of Model
   std::vector<CavityFace> cavity;      // pneumatic with a region, physical: its boundary, normals out of the chamber
   std::vector<Index> prisms;           // dea: elements of Model

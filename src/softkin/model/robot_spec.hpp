@@ -110,6 +110,11 @@ enum class ActuatorKind { cable, dea, pneumatic, magnetic, motion, force, hold, 
 /// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by.
 enum class Control { ratio, load };
 
+/// How a target-shape actuator's elements share what its command asks for, a_i being the ratio of element i, u_i its
+/// measure at rest, and sum a_i u_i = a U, Eqs. (6)-(8). least_norm: the change of the current ratios whose norm is
+/// least; uniform: the same ratio for all; proportional: a_i in proportion to the current ratios.
+enum class Distribution { least_norm, uniform, proportional };
+
 /// A number for some prisms of the mesh.
 struct PrismValues {
   std::vector<Index> prisms;  // from 0
@@ -134,7 +139,7 @@ struct ActuatorSpec {
   double prestretch = 1;                   // dea under voltage: area that its layer has without force, over that in the
                                            // mesh [-], > 0
   double weight = 5;                       // w of Eq. (9), > 0
-  bool least_norm = true;                  // false: every element takes the actuator's ratio
+  Distribution distribution = Distribution::least_norm;
   std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
   Branch branch = Branch::loading;         // of the curve, where a command names none
   std::shared_ptr<const FieldSpec> field;  // magnetic

@@ -60,19 +60,19 @@ void FollowRun::finish() {
   if (!folder_.plot().empty()) write_svg(folder_.plot(), plot());
 }
 
-std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm) {
+std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm, bool nearest) {
   double worst = 0, errors = 0, equilibria = 0, seconds = 0;
   std::size_t reached = 0;
   for (const WaypointRecord& each : done) {
     equilibria += each.equilibria;
     seconds += each.seconds;
-    if (!each.is_reached()) continue;
+    if (nearest ? each.end == InverseStatus::not_converged : !each.is_reached()) continue;
     ++reached;
     worst = std::max(worst, each.error_mm);
     errors += each.error_mm;
   }
-  std::string text =
-      counted(done.size(), "waypoint") + ", " + std::to_string(reached) + " reached to " + number(tolerance_mm) + " mm";
+  std::string text = counted(done.size(), "waypoint") + ", " + std::to_string(reached) +
+                     (nearest ? " at their nearest samples" : " reached to " + number(tolerance_mm) + " mm");
   if (reached > 0)
     text += ": error at most " + number(worst, 2) + " mm, " + number(errors / static_cast<double>(reached), 2) +
             " mm in the mean";
@@ -80,7 +80,17 @@ std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance
          decimal(seconds, 2) + " s";
 }
 
-std::string missed_text(const std::vector<WaypointRecord>& done) {
+std::string jumps_of(const std::vector<WaypointRecord>& done) {
+  double change = 0, step = 0;
+  for (const WaypointRecord& each : done) {
+    change = std::max(change, each.command_change);
+    step = std::max(step, each.step_mm);
+  }
+  return "from waypoint to waypoint commands change by at most " + number(100 * change, 3) +
+         " % of a range, the marker moves by at most " + number(step, 3) + " mm";
+}
+
+std::string missed_text(const std::vector<WaypointRecord>& done, bool nearest) {
   std::vector<std::size_t> missed, lost;
   double worst = 0;
   for (std::size_t i = 0; i < done.size(); ++i) {
@@ -94,8 +104,10 @@ std::string missed_text(const std::vector<WaypointRecord>& done) {
     text += (text.empty() ? "" : "; ") + std::string(numbers.size() == 1 ? "waypoint " : "waypoints ") +
             list_text(numbers) + (numbers.size() == 1 ? " was " : " were ") + what;
   };
-  tell(missed, "not reached: the marker stands at the nearest point that the ranges allow");
-  tell(lost, "not reached, and the search for a nearer point did not converge");
+  tell(missed, nearest ? "not reached: the commands are those of the nearest sample"
+                       : "not reached: the marker stands at the nearest point that the ranges allow");
+  tell(lost, nearest ? "not reached: the nearest sample has no equilibrium from the waypoint before, nor from rest"
+                     : "not reached, and the search for a nearer point did not converge");
   if (!text.empty()) text += "; at most " + number(worst, 3) + " mm off";
   return text;
 }

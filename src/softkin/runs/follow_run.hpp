@@ -71,8 +71,11 @@ class FollowRun {
 };
 
 /// "55 waypoints, 55 reached to 0.001 mm: error at most 3.2e-04 mm, ...".
-[[nodiscard]] std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm);
+/// nearest: by samples, whose errors all count
+[[nodiscard]] std::string summary_of(const std::vector<WaypointRecord>& done, double tolerance_mm, bool nearest);
+/// The largest change of a command and step of a marker between neighbouring waypoints.
+[[nodiscard]] std::string jumps_of(const std::vector<WaypointRecord>& done);
 /// Which waypoints were not reached, and by how much at worst; empty where all were.
-[[nodiscard]] std::string missed_text(const std::vector<WaypointRecord>& done);
+[[nodiscard]] std::string missed_text(const std::vector<WaypointRecord>& done, bool nearest);
 
 }  // namespace softkin::runs

@@ -117,7 +117,9 @@ FollowJob::Made FollowJob::make(std::size_t number, const ProgressCallback& prog
   WaypointRecord record = waypoint_record(model_, path_.waypoints[number], found, deformation);
   record.self_overlap = overlap_.in(state.positions);
   record.stopped = found.stopped;
+  if (number > 0) note_jump(model_, path_, last_, record);
   if (!found.stopped) record.viscous_loss_mJ = follower_.lost_mJ();
+  if (!found.stopped) last_ = record;
   return Made{std::move(record), state, std::move(deformation)};
 }
 
@@ -128,6 +130,7 @@ void FollowJob::recall(const WaypointRecord& record, const Points& positions) {
 void FollowJob::go_on(std::size_t number, const WaypointRecord& before, Points positions) {
   statics_.forget();
   follower_.resume(number, state_of(model_, before, std::move(positions)));
+  last_ = before;
 }
 
 namespace {

@@ -209,6 +209,7 @@ class FollowJob : public Job<WaypointRecord> {
   std::string file_;
   PathFollower follower_;
   OverlapSearch overlap_;
+  WaypointRecord last_;
 };
 
 /// A row of a gait, on its way.

@@ -96,6 +96,20 @@ WaypointRecord waypoint_record(const Model& model, const Waypoint& asked, const 
   return record;
 }
 
+void note_jump(const Model& model, const MarkerPath& path, const WaypointRecord& before, WaypointRecord& record) {
+  record.command_change = record.step_mm = 0;
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const double change = std::abs(record.actuation[static_cast<Index>(a)] - before.actuation[static_cast<Index>(a)]);
+    if (varies(actuator))
+      record.command_change = std::max(record.command_change, change / (actuator.high - actuator.low));
+  }
+  for (const Index marker : path.markers) {
+    const auto m = static_cast<std::size_t>(marker);
+    record.step_mm = std::max(record.step_mm, (record.markers[m] - before.markers[m]).norm());
+  }
+}
+
 WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& found,
                        const ElementDeformation& deformation) {
   WalkRecord record;

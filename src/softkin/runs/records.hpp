@@ -61,6 +61,8 @@ struct WaypointRecord : StepRecord {
   InverseStatus end = InverseStatus::not_converged;
   double error_mm = 0;  // of the marker that is farthest from its target
   int equilibria = 0;
+  double command_change = 0;  // from the waypoint before, the largest of the actuators', over its range [-]
+  double step_mm = 0;         // the same, of the path's markers
   std::string search_remark;
 
   [[nodiscard]] bool is_reached() const { return end == InverseStatus::reached; }
@@ -80,6 +82,8 @@ struct WalkRecord : StepRecord {
                                      const ElementDeformation& deformation);
 [[nodiscard]] WaypointRecord waypoint_record(const Model& model, const Waypoint& asked, const InverseResult& found,
                                              const ElementDeformation& deformation);
+/// How far the record's commands and the path's markers are from those of the waypoint before.
+void note_jump(const Model& model, const MarkerPath& path, const WaypointRecord& before, WaypointRecord& record);
 [[nodiscard]] WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& found,
                                      const ElementDeformation& deformation);
 

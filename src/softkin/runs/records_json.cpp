@@ -390,6 +390,8 @@ Json to_json(const Model& model, const MarkerPath& path, const WaypointRecord& r
   json["reached"] = record.is_reached();
   json["error_mm"] = record.error_mm;
   json["equilibria"] = record.equilibria;
+  json["command_change"] = record.command_change;
+  json["step_mm"] = record.step_mm;
   json["remark"] = record.search_remark;
   add_shape(record, step);
   return step;
@@ -449,6 +451,8 @@ void from_json(const Model& model, const MarkerPath& path, const Json& step, Way
   record.end = named(ends, json.at("status").get<std::string>());
   record.error_mm = json.at("error_mm").get<double>();
   record.equilibria = json.at("equilibria").get<int>();
+  record.command_change = json.at("command_change").get<double>();
+  record.step_mm = json.at("step_mm").get<double>();
   record.search_remark = json.at("remark").get<std::string>();
 }
 

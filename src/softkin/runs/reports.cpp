@@ -287,7 +287,7 @@ std::string report_head(const Model& model, const std::string& scene, const Stat
 std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options,
                         const UsedMap* map) {
   Json head = head_json(model, scene, options.inverse.statics, map);
-  head["follow"] = {{"method", name_of(options.inverse.method)},
+  head["follow"] = {{"method", options.method()},
                     {"tolerance_mm", options.inverse.tolerance_mm},
                     {"max_iterations", options.inverse.max_iterations}};
   return line_of(head);

@@ -144,7 +144,8 @@ Table errors_table(const Model& model, const MarkerPath& path, const std::vector
       if (path.axes[m][axis]) table.columns.push_back({name + "_target_" + axis_names[axis] + "_mm"});
     for (const char* axis : axis_names) table.columns.push_back({name + "_" + axis + "_mm"});
   }
-  for (const char* key : {"error_mm", "reached", "inserted", "equilibria"}) table.columns.push_back({key});
+  for (const char* key : {"command_change", "step_mm", "error_mm", "reached", "inserted", "equilibria"})
+    table.columns.push_back({key});
   for (std::size_t i = 0; i < done.size(); ++i) {
     Row row{static_cast<std::int64_t>(i)};
     if (done[i].time_s) row.emplace_back(*done[i].time_s);
@@ -153,8 +154,9 @@ Table errors_table(const Model& model, const MarkerPath& path, const std::vector
         if (path.axes[m][axis]) row.emplace_back(done[i].asked.targets[m][static_cast<Index>(axis)]);
       for (const double x : done[i].markers[static_cast<std::size_t>(path.markers[m])]) row.emplace_back(x);
     }
-    row.insert(row.end(), {done[i].error_mm, std::int64_t{done[i].is_reached()}, std::int64_t{done[i].asked.inserted},
-                           std::int64_t{done[i].equilibria}});
+    row.insert(row.end(),
+               {done[i].command_change, done[i].step_mm, done[i].error_mm, std::int64_t{done[i].is_reached()},
+                std::int64_t{done[i].asked.inserted}, std::int64_t{done[i].equilibria}});
     table.rows.push_back(std::move(row));
   }
   return table;

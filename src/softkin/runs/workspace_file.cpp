@@ -178,14 +178,18 @@ std::vector<WorkspaceSample> WorkspaceFile::finish() {
   return std::move(table.samples);
 }
 
-Actuation nearest_actuation(const Model& model, const std::string& workspace, const std::vector<Goal>& goals) {
+std::vector<WorkspaceSample> samples_of(const Model& model, const std::string& workspace) {
   WorkspaceTable table = read_workspace(workspace, workspace_columns(model));
   const auto robot =
       std::find_if(table.head.begin(), table.head.end(), [](const auto& entry) { return entry.first == "robot"; });
   if (robot == table.head.end() || robot->second != fingerprint_of(model))
     throw InvalidInput({workspace},
                        "is of another robot, or of another formulation, or the scene or its mesh has changed");
-  NearestSamples samples(model, std::move(table.samples));
+  return std::move(table.samples);
+}
+
+Actuation nearest_actuation(const Model& model, const std::string& workspace, const std::vector<Goal>& goals) {
+  NearestSamples samples(model, samples_of(model, workspace));
   const Actuation actuation = samples.samples()[static_cast<std::size_t>(samples.find(goals).front())].actuation;
   check_actuation(model, actuation);  // the ranges may have changed
   return actuation;

@@ -67,6 +67,11 @@ class WorkspaceFile {
   std::optional<Store> store_;
 };
 
+/// The samples of a workspace of the robot.
+///
+/// throws  InvalidInput naming file and line: no workspace of this robot
+[[nodiscard]] std::vector<WorkspaceSample> samples_of(const Model& model, const std::string& workspace);
+
 /// The actuation of the sample of a workspace at which the goals are nearest to being met.
 ///
 /// throws  InvalidInput naming file and line: no workspace of this robot, no sample with an equilibrium

@@ -169,7 +169,8 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
   if (actuator.control == Control::load) actuator.rest = 0;
   read_range(map.at("range"), actuator);
   if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
-  if (const Node* node = map.find("distribution")) actuator.least_norm = choice(*node, {"least-norm", "uniform"}) == 0;
+  if (const Node* node = map.find("distribution"))
+    actuator.distribution = static_cast<Distribution>(choice(*node, {"least-norm", "uniform", "proportional"}));
   if (const Node* node = map.find("prestretch"))
     (actuator.control == Control::ratio ? actuator.rest : actuator.prestretch) = positive(*node);
   if (const Node* node = map.find("voltage_share")) actuator.shares = read_shares(context, *node, actuator);

@@ -254,7 +254,7 @@ void compile_actuator_elements(Compilation& c) {
     actuator.high = spec.high;
     actuator.rest = spec.rest;
     actuator.weight = spec.weight;
-    actuator.least_norm = spec.least_norm;
+    actuator.distribution = spec.distribution;
     actuator.prestretch = spec.prestretch;
     actuator.curve = spec.curve;
     actuator.branch = spec.branch;

@@ -99,7 +99,6 @@ void add_turn_commands(Compilation& c) {
     command.low = -most_degrees;
     command.high = most_degrees;
     command.rest = turn.degrees;
-    command.least_norm = false;
     model.actuators.push_back(std::move(command));
   }
 }

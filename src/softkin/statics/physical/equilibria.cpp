@@ -19,14 +19,15 @@ Demand at_rest(const Model& model, const Actuation& wanted) {
 /// What the start is an equilibrium of, as far as it tells.
 Demand demand_of(const System& system, const Model& model, const State& start, const Actuation& wanted) {
   if (start.actuation.size() > 0) return {start.actuation, start.share};
-  if (start.positions == model.rest) return at_rest(model, wanted);
-  Demand demand{model.rest_actuation(), start.share >= 0 ? start.share : 1.0};
+  const bool rests = start.positions == model.rest;
+  Demand demand = at_rest(model, wanted);
+  if (!rests) demand.share = start.share >= 0 ? start.share : 1.0;
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.constrains(a))
       demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
     else if (model.actuators[a].kind == ActuatorKind::motion)
       demand.actuation[a] = system.moved(a, start.positions);
-    else if (model.actuators[a].kind == ActuatorKind::turn)
+    else if (model.actuators[a].kind == ActuatorKind::turn && !rests)
       demand.actuation[a] = system.turning().angle(a, start.positions);
     else if (!drives(model.actuators[a]))
       continue;

@@ -47,6 +47,7 @@ System::Scratch System::make_scratch() const {
   sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
     scratch.rotations.emplace_back(set.block_count());
     scratch.ratios.emplace_back(set.actuator >= 0 ? set.block_count() : 0);
+    scratch.following.emplace_back();
     blocks += set.blocks.size();
   });
   scratch.energies.resize(blocks);
@@ -56,18 +57,20 @@ System::Scratch System::make_scratch() const {
   return scratch;
 }
 
-/// The least-norm change from the current ratios that meets Eqs. (6)-(8):
+/// Least norm: the least change from the current ratios that meets Eqs. (6)-(8),
 /// a_i = a_i^cur + s_i (a U - sum_j a_j^cur u_j) / sum_j s_j u_j with shares s_i = u_i, or 1 where the mesh must not
-/// matter; for a cable, a U counts the gaps only.
+/// matter; for a cable, a U counts the gaps only. Proportional: a_i = c a_i^cur with c = a U / sum_j a_j^cur u_j; where
+/// the current measures sum to nothing, uniform.
 template <int K>
 void System::local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes, std::vector<Pack>& ratios,
-                          Team& team) const {
+                          Following& following, Team& team) const {
   const Actuator& actuator = model_.actuators[set.actuator];
   const double asked = requested * actuator.rest_measure - (actuator.rest_measure - set.measure_sum);
-  if (!actuator.least_norm) {
+  following = {.asked = asked};
+  const auto all_alike = [&] {
     std::fill(ratios.begin(), ratios.end(), pack(std::max(least_ratio, asked / set.measure_sum)));
-    return;
-  }
+  };
+  if (actuator.distribution == Distribution::uniform) return all_alike();
   team.pieces(set.block_count(), [&](Index begin, Index end) {
     Shape<K> shape;
     for (Index b = begin; b < end; ++b) {
@@ -78,6 +81,13 @@ void System::local_ratios(const ActuationSet<K>& set, double requested, const Po
   double current = 0;
   for (Index e = 0; e < set.count; ++e)
     current += ratios[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
+  if (actuator.distribution == Distribution::proportional) {
+    following.current = current;
+    following.gain = current > 0 ? asked / current : 0;
+    if (!(current > 0)) return all_alike();
+    for (Pack& ratio : ratios) ratio = max(pack(least_ratio), following.gain * ratio);
+    return;
+  }
   const double change = (asked - current) / set.share_sum;
   for (Index b = 0; b < set.block_count(); ++b) ratios[b] = max(pack(least_ratio), ratios[b] + change * set.share(b));
 }
@@ -94,7 +104,8 @@ double System::local_step(const Actuation& actuation, const Points& positions, S
         pull_of_actuation<K>(set.blocks[b], scratch.ratios[index][b], shape, rotation, out);
     };
     if constexpr (!std::is_same_v<Block, BodyBlock<K>>)
-      local_ratios<K>(set, actuation[set.actuator], scratch.nodes, scratch.ratios[index], team);
+      local_ratios<K>(set, actuation[set.actuator], scratch.nodes, scratch.ratios[index], scratch.following[index],
+                      team);
     run<K>(set, scratch.nodes, scratch.rotations[index], scratch.pulls.data(), energies, team, kernel);
     energies += set.block_count();
     ++index;

@@ -12,10 +12,19 @@ class System {
  public:
   explicit System(const Model& model);
 
+  /// How local ratios follow the current ones: those change by a' and the local ones by gain a'_i less a share of
+  /// sum_j a'_j u_j.
+  struct Following {
+    double gain = 1;     // proportional: a U / sum_j a_j^cur u_j; else 1
+    double current = 1;  // sum_j a_j^cur u_j; proportional
+    double asked = 1;    // a U, for a cable of its gaps only
+  };
+
   /// What a solve needs beside the positions: warm rotations, pulls, energies. Nothing is allocated per iteration.
   struct Scratch {
     std::vector<std::vector<energy::PackRotation>> rotations;  // per set, per block
     std::vector<std::vector<energy::Pack>> ratios;             // local ratios per actuation set, per block
+    std::vector<Following> following;                          // per set
     std::vector<energy::Pack> energies;                        // per block of all sets
     std::vector<double> pulls;                                 // 3 per slot
     Points nodes;                                              // vertices, then embedded points
@@ -30,7 +39,7 @@ class System {
   double local_step(const Actuation& actuation, const Points& positions, Scratch& scratch, Team& team) const;
 
   /// How the residual changes with the positions, at the shape of the last local_step: rotations turn along, targets of
-  /// R_omega < 1 and least-norm ratios follow.
+  /// R_omega < 1 and ratios that are not uniform follow.
   ///
   /// local   the scratch of that local_step
   /// change  #V by 3, of the positions
@@ -45,19 +54,24 @@ class System {
   /// the global step asks for to go there (see turned_move_of_body).
   void turned_move(const Scratch& local, const Points& change, Scratch& out, Team& team) const;
 
-  /// The part of residual_change that couples all elements of a least-norm actuator, -source (target . change): a
-  /// change of one element's measure is made up for by all. Per least-norm actuator, in the order of the sets.
+  /// The part of residual_change that couples all elements of an actuator whose ratios follow the shape, -source
+  /// (target . change): a change of one element's measure is made up for by all. Per such actuator, in the order of the
+  /// sets.
   struct Redistribution {
     Points source, target;  // #V by 3
   };
   void redistributions(const Scratch& local, Scratch& work, std::vector<Redistribution>& out, Team& team) const;
 
-  /// Is the residual minus half the gradient of the energy: no R_omega < 1, no least-norm ratios?
+  /// Is the residual minus half the gradient of the energy: no R_omega < 1, uniform ratios alone?
   [[nodiscard]] bool is_gradient() const;
   [[nodiscard]] const ElementSets& sets() const { return sets_; }
   /// Do the set's ratios follow the shape?
   [[nodiscard]] bool redistributes(Index actuator) const {
-    return actuator >= 0 && model_.actuators[actuator].least_norm;
+    return actuator >= 0 && model_.actuators[actuator].distribution != Distribution::uniform;
+  }
+  /// In proportion to the current ones?
+  [[nodiscard]] bool is_proportional(Index actuator) const {
+    return actuator >= 0 && model_.actuators[actuator].distribution == Distribution::proportional;
   }
 
   /// Matrix of Eq. (10), one coordinate, lower triangle: sum_i w_i Vol_i P_i^T N P_i [mm^3].
@@ -66,10 +80,13 @@ class System {
  private:
   template <int K>
   void local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes,
-                    std::vector<energy::Pack>& ratios, Team& team) const;
+                    std::vector<energy::Pack>& ratios, Following& following, Team& team) const;
   template <int K>
-  void ratio_changes(const ActuationSet<K>& set, const Scratch& local, const std::vector<energy::Pack>& ratios,
-                     const Points& nodes, std::vector<energy::Pack>& changes, Team& team) const;
+  [[nodiscard]] energy::Pack share_of_change(const ActuationSet<K>& set, Index block, const energy::Pack& ratio,
+                                             const Following& following) const;
+  template <int K>
+  void ratio_changes(const ActuationSet<K>& set, const Scratch& local, std::size_t index, const Points& nodes,
+                     std::vector<energy::Pack>& changes, Team& team) const;
   template <class Kernel>
   void each_change(const Scratch& local, Scratch& out, Team& team, const Kernel& kernel) const;
   void spread(const Points& positions, Points& nodes) const;

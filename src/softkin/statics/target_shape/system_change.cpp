@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <softkin/energy/target_shape_stiffness.hpp>
+#include <softkin/model/names.hpp>
 #include <softkin/statics/target_shape/element_sets.hpp>
 #include <softkin/statics/target_shape/system.hpp>
 
@@ -25,13 +26,25 @@ bool System::is_gradient() const {
   const auto blended = [](const auto& block) { return block.blended; };
   return std::none_of(sets_.tetrahedra.blocks.begin(), sets_.tetrahedra.blocks.end(), blended) &&
          std::none_of(sets_.prisms.blocks.begin(), sets_.prisms.blocks.end(), blended) &&
-         std::none_of(model_.actuators.begin(), model_.actuators.end(), [](const Actuator& a) { return a.least_norm; });
+         std::none_of(model_.actuators.begin(), model_.actuators.end(),
+                      [](const Actuator& a) { return has_measure(a) && a.distribution != Distribution::uniform; });
+}
+
+/// What a block's ratios, of which none stands at the least one, give way by for each unit of sum_j a'_j u_j; at fixed
+/// positions they grow by as much for each unit that is asked for more, over the gain.
+template <int K>
+Pack System::share_of_change(const ActuationSet<K>& set, Index block, const Pack& ratio,
+                             const Following& following) const {
+  if (!is_proportional(set.actuator)) return set.share(block) / set.share_sum;
+  return following.current > 0 ? ratio / following.current : pack(0);
 }
 
 /// The derivative of local_ratios: zero for uniform ratios.
 template <int K>
-void System::ratio_changes(const ActuationSet<K>& set, const Scratch& local, const std::vector<Pack>& ratios,
-                           const Points& nodes, std::vector<Pack>& changes, Team& team) const {
+void System::ratio_changes(const ActuationSet<K>& set, const Scratch& local, std::size_t index, const Points& nodes,
+                           std::vector<Pack>& changes, Team& team) const {
+  const std::vector<Pack>& ratios = local.ratios[index];
+  const Following& following = local.following[index];
   if (!redistributes(set.actuator)) {
     std::fill(changes.begin(), changes.end(), pack(0));
     return;
@@ -47,8 +60,9 @@ void System::ratio_changes(const ActuationSet<K>& set, const Scratch& local, con
   double moved = 0;
   for (Index e = 0; e < set.count; ++e)
     moved += changes[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
-  const double common = -moved / set.share_sum;
-  for (Index b = 0; b < set.block_count(); ++b) changes[b] = follows(ratios[b]) * (changes[b] + common * set.share(b));
+  for (Index b = 0; b < set.block_count(); ++b)
+    changes[b] =
+        follows(ratios[b]) * (following.gain * changes[b] - moved * share_of_change<K>(set, b, ratios[b], following));
 }
 
 /// kernel(set, index of the set, block, centred shape, its change, pull), over all blocks; out.nodes is the change.
@@ -76,7 +90,7 @@ void System::residual_change(const Scratch& local, const Points& change, Scratch
   std::size_t index = 0;
   sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
     if constexpr (!std::is_same_v<Block, BodyBlock<K>>)
-      ratio_changes<K>(set, local, local.ratios[index], out.nodes, out.ratios[index], team);
+      ratio_changes<K>(set, local, index, out.nodes, out.ratios[index], team);
     ++index;
   });
   const auto kernel = [&]<int K, class Block>(const ElementSet<K, Block>& set, std::size_t i, Index b,
@@ -130,7 +144,8 @@ void System::redistributions(const Scratch& local, Scratch& work, std::vector<Re
         part.target.resize(model_.rest.rows(), 3);
         collect(
             [&](const RatioCoupling<K>& coupling, Index b, const Pack& free, Shape<K>& value) {
-              for (int i = 0; i < K; ++i) value[i] = (free * set.share(b) / set.share_sum) * coupling.pull_slope[i];
+              const Pack share = share_of_change<K>(set, b, local.ratios[index][b], local.following[index]);
+              for (int i = 0; i < K; ++i) value[i] = (free * share) * coupling.pull_slope[i];
             },
             part.source);
         collect(
@@ -150,8 +165,8 @@ void System::command_change(const Scratch& local, Index actuator, Scratch& out, 
   std::size_t index = 0;
   sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
     if constexpr (!std::is_same_v<Block, BodyBlock<K>>) {
-      const bool least_norm = redistributes(set.actuator);
-      const double common = rest_measure / (least_norm ? set.share_sum : set.measure_sum);
+      const Following& following = local.following[index];
+      const double measure = set.measure_sum;
       team.pieces(set.actuator == actuator ? set.block_count() : 0, [&](Index begin, Index end) {
         Shape<K> shape, still, pull;
         for (Pack3& point : still) point = Pack3{};
@@ -159,7 +174,12 @@ void System::command_change(const Scratch& local, Index actuator, Scratch& out, 
           load<K>(local.nodes, set.nodes[b], shape);
           center<K>(shape);
           const Pack& ratio = local.ratios[index][b];
-          const Pack change = least_norm ? common * set.share(b) : pack(common);
+          // uniform; proportional: c grows, and the ratios by as much over it
+          const Pack each = !redistributes(set.actuator)     ? pack(1 / measure)
+                            : !is_proportional(set.actuator) ? share_of_change<K>(set, b, ratio, following)
+                            : following.current > 0          ? ratio / following.asked
+                                                             : pack(1 / measure);
+          const Pack change = rest_measure * each;
           pull_change_of_actuation<K>(set.blocks[b], ratio, select(ratio > least_ratio, change, pack(0)), shape,
                                       local.rotations[index][b], still, pull);
           store<K>(pull, set.first_slot + K * lanes * b, std::min<Index>(lanes, set.count - lanes * b),
