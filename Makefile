@@ -179,7 +179,7 @@ bench: setup
 
 paper: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON
-	cmake --build --preset release --target softkin_cli bench_iteration
+	cmake --build --preset release --target softkin_cli bench_iteration bench_newton
 	python3 scripts/paper.py $(PART) $(if $(PART),,--table docs/paper_results.md --check)
 
 format:

@@ -1,9 +1,10 @@
 """The paper's tables, figures and claims, each beside what softkin gives for it: one page, out/paper/index.html, and a table.
 
-  scripts/paper.py [PART ...] [--program build/softkin] [--out out/paper] [--table FILE] [--short] [--check] [--accept]
+  scripts/paper.py [PART ...] [--program build/softkin] [--out out/paper] [--table FILE] [--only short|long] [--check] [--accept]
 
-A part that was done by the same program is not run again. --short: parts of some seconds alone. --check: fails where the
-figure of a row has moved by more than its tolerance from scripts/paper/figures.json. --accept: writes that file.
+A part that was done by the same program is not run again. --only short: parts of a second or two; long: the others that a test
+checks. --check: fails where the figure of a row has moved by more than its tolerance from scripts/paper/figures.json, or where
+what the paper prints does not stand in one row. --accept: writes that file.
 Exit codes: 0 done, 1 a part failed or a figure has moved, 2 usage."""
 
 from __future__ import annotations
@@ -21,36 +22,49 @@ from collections.abc import Callable
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "paper"))
+import air_parts as air  # noqa: E402
+import fem_parts as fem  # noqa: E402
+import forward_parts as forward  # noqa: E402
 import inverse_parts as inverse  # noqa: E402
-import kinematics_parts as kinematics  # noqa: E402
+import material_parts as material  # noqa: E402
+import method_parts as method  # noqa: E402
+import size_parts as sizes  # noqa: E402
+from printed import missing  # noqa: E402
 from rows import ROOT, Bench, Failed, Result, Row  # noqa: E402
 
 Part = Callable[[Bench], None]
-PARTS: dict[str, tuple[str, Part, bool]] = {  # title, part, is it short
-    "table1": ("Table I", kinematics.notation, True),
-    "fig1": ("Figures 1 to 4", kinematics.robots, True),
-    "fig5": ("Figure 5: the iteration", kinematics.iteration, False),
-    "fig6": ("Figure 6: strains", kinematics.strains, True),
-    "fig7": ("Figure 7 and Table II: ratios of R_omega", kinematics.ratios, False),
-    "fig8": ("Figure 8: a gripper", kinematics.gripper, True),
-    "fig9": ("Figure 9 and Table III: a finger by air", kinematics.finger, False),
-    "fig10": ("Figure 10: a crawler", kinematics.crawler, False),
-    "fig11": ("Figure 11: two materials", kinematics.two_materials, True),
-    "fig12b": ("Figure 12(b): the workspace", inverse.workspace, True),
-    "fig12c": ("Figure 12(c): starts of inverse kinematics", inverse.starts, True),
-    "fig13": ("Figure 13: paths", inverse.paths, True),
-    "fig14": ("Figure 14: a path beyond the reach", inverse.beyond, True),
-    "fig15": ("Figure 15: three chambers", inverse.chambers, True),
-    "fig16": ("Figure 16: a path by air", inverse.air_path, False),
-    "fig17": ("Figure 17 and 25 fps: sizes of meshes", inverse.sizes, False),
+SHORT, LONG, ALONE = "short", "long", "alone"  # a test runs the first, another the second; times and other programs none
+PARTS: dict[str, tuple[str, Part, str]] = {
+    "table1": ("Table I and the constants of the method", method.notation, SHORT),
+    "fig1": ("Figures 1 to 4: robots and their elements", method.robots, SHORT),
+    "fig5": ("Figure 5: the iteration", method.iteration, LONG),
+    "fig6": ("Figure 6: strains", material.strains, LONG),
+    "fig7": ("Figure 7 and Table II: ratios of R_omega", material.ratios, SHORT),
+    "fig8": ("Figure 8: a gripper", forward.gripper, LONG),
+    "fig9": ("Figure 9: a finger by air", forward.finger, LONG),
+    "table3": ("Table III: times of a finger", fem.times, ALONE),
+    "calculix": ("Figure 9 and Table III: FEM by another program", fem.finite_elements, ALONE),
+    "fig10": ("Figure 10: a crawler", forward.crawler, SHORT),
+    "fig11": ("Figure 11: two materials", forward.two_materials, SHORT),
+    "fig12": ("Figure 12(a), (b): the workspace", inverse.workspace, LONG),
+    "fig12c": ("Figure 12(c): starts of inverse kinematics", inverse.starts, LONG),
+    "fig13": ("Figure 13: paths", inverse.paths, LONG),
+    "fig14": ("Figure 14: a path beyond the reach", inverse.beyond, LONG),
+    "fig15": ("Figure 15(a), (b), (d): three chambers", air.chambers, SHORT),
+    "fig15c": ("Figure 15(c): pressures and ratios", air.coupled, SHORT),
+    "fig15mesh": ("Figure 15: as many elements", air.as_fine, LONG),
+    "fig16": ("Figure 16: a path by air", air.air_path, LONG),
+    "fig17": ("Figure 17 and 25 fps: time over the size of the mesh", sizes.iteration_times, ALONE),
+    "fig17accuracy": ("Figure 17: accuracy over the size of the mesh", sizes.accuracy, LONG),
 }
 FIGURES = ROOT / "scripts/paper/figures.json"
 
 
 def key_of(program: Path) -> str:
-    """Of the program and of what runs it."""
+    """Of the program, of what runs it and of what it reads."""
     digest = hashlib.sha256(program.read_bytes())
-    for file in sorted((ROOT / "scripts/paper").glob("*.py")):
+    robots = [file for file in (ROOT / "examples").glob("**/*") if file.suffix in (".yaml", ".csv", ".msh")]
+    for file in sorted([*(ROOT / "scripts/paper").glob("*.py"), ROOT / "bench/weights_study.py", *robots]):
         digest.update(file.read_bytes())
     return digest.hexdigest()
 
@@ -75,12 +89,13 @@ def figured(results: dict[str, Result]) -> dict[str, Row]:
 
 
 def moved(results: dict[str, Result]) -> list[str]:
-    """Rows whose figure is not what it was, or that have none there."""
+    """Rows whose figure is not what it was, that have none there, or that are gone."""
     known: dict[str, float] = json.loads(FIGURES.read_text())
-    faults = []
+    gone = [item for item in known if item.split(":")[0] in results and item not in figured(results)]
+    faults = [f"{item}: there is no such row" for item in gone]
     for item, row in figured(results).items():
         before = known.get(item)
-        if before is None or not abs(row.figure - before) <= row.tolerance * abs(before):
+        if before is None or row.figure is None or not abs(row.figure - before) <= row.tolerance * abs(before):
             faults.append(f"{item}: {row.figure!r}, and was {before!r} (within {100 * row.tolerance:g} %)")
     return faults
 
@@ -95,7 +110,8 @@ def shown(folder: Path, picture: str) -> str:
 
 def page(results: dict[str, Result], out: Path, machine: str) -> str:
     """One file, without a network."""
-    style = "body{font-family:sans-serif;max-width:1120px;margin:2em auto}td,th{border:1px solid #ccc;padding:4px;text-align:left;vertical-align:top}"
+    style = ("body{font-family:sans-serif;max-width:1120px;margin:2em auto}"
+             "td,th{border:1px solid #ccc;padding:4px;text-align:left;vertical-align:top}")
     text = [f"<!doctype html><html lang='en'><meta charset='utf-8'><title>The paper by softkin</title><style>{style}</style>"]
     text.append(f"<h1>The paper's tables and figures by softkin</h1><p>{html.escape(machine)}</p>")
     for name, result in results.items():
@@ -104,15 +120,18 @@ def page(results: dict[str, Result], out: Path, machine: str) -> str:
         text += ["</tr><tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells(row)) for row in result.rows]
         text.append("</tr></table><p>")
         text += [shown(out / name, picture) for picture in result.pictures]
+        tables = [Path(picture).with_suffix(".csv").name for picture in result.pictures if picture.endswith(".svg")]
+        text.append("</p><p>numbers: " + ", ".join(f"<a href='{name}/{table}'>{table}</a>" for table in tables) if tables else "")
         commands = html.escape("\n".join(result.commands))
         text.append(f"</p><details><summary>commands, {result.seconds:.0f} s</summary><pre>{commands}</pre></details>")
     return "\n".join(text) + "\n</html>\n"
 
 
 def table(results: dict[str, Result], machine: str) -> str:
-    lines = ["# The paper's numbers by softkin", "", "Made by `make paper`; the same with pictures is `out/paper/index.html`. " + machine, ""]
-    lines += ["| " + " | ".join(HEADS) + " |", "|---" * len(HEADS) + "|"]
-    lines += ["| " + " | ".join(cells(row)) + " |" for result in results.values() for row in result.rows]
+    lines = ["# The paper's numbers by softkin", "", "Made by `make paper`; the same with pictures is `out/paper/index.html`. " + machine]
+    for name, result in results.items():
+        lines += ["", f"## {PARTS[name][0]}", "", "| " + " | ".join(HEADS) + " |", "|---" * len(HEADS) + "|"]
+        lines += ["| " + " | ".join(cells(row)) + " |" for row in result.rows]
     return "\n".join(lines) + "\n"
 
 
@@ -135,14 +154,14 @@ def main() -> int:
     parser.add_argument("--program", type=Path, default=ROOT / "build/softkin")
     parser.add_argument("--out", type=Path, default=ROOT / "out/paper")
     parser.add_argument("--table", type=Path, help="the rows as Markdown")
-    parser.add_argument("--short", action="store_true")
+    parser.add_argument("--only", choices=(SHORT, LONG))
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--accept", action="store_true")
     options = parser.parse_args()
     for name in options.parts:
         if name not in PARTS:
             parser.error(f"there is no part '{name}'; there are {', '.join(PARTS)}")
-    names = options.parts or [name for name, (_, _, short) in PARTS.items() if short or not options.short]
+    names = options.parts or [name for name, (_, _, kind) in PARTS.items() if options.only in (None, kind)]
     key, results = key_of(options.program), {}
     for i, name in enumerate(names):
         print(f"[{i + 1}/{len(names)}] {PARTS[name][0]}", flush=True)
@@ -151,6 +170,7 @@ def main() -> int:
         except Failed as failed:
             print(f"paper: {name}: {failed}", file=sys.stderr)
             return 1
+        print(f"  {len(results[name].rows)} rows, {results[name].seconds:.1f} s", flush=True)
     machine = machine_of(options.program)
     (options.out / "index.html").write_text(page(results, options.out, machine))
     print(f"the page: {options.out / 'index.html'}")
@@ -158,11 +178,11 @@ def main() -> int:
         options.table.write_text(table(results, machine))
     if options.accept:
         figures = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
-        figures = {item: figure for item, figure in figures.items() if item.split(":")[0] not in results}
+        figures = {item: figure for item, figure in figures.items() if item.split(":")[0] in PARTS.keys() - results.keys()}
         figures |= {item: row.figure for item, row in figured(results).items()}
         FIGURES.write_text(json.dumps(dict(sorted(figures.items())), indent=1) + "\n")
     if options.check:
-        faults = moved(results)
+        faults = moved(results) + missing(results)
         print("\n".join(faults) or f"{sum(len(result.rows) for result in results.values())} rows, none has moved")
         return 1 if faults else 0
     return 0

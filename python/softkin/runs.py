@@ -180,6 +180,7 @@ class _Runs(Solving):
         anderson: int = 6,
         threads: int = 0,
         stable: bool = False,
+        as_published: bool = False,
         **commands: Command,
     ) -> PathRun:
         """The shapes along a path of commands, each solved from the last: an iterator.
@@ -192,7 +193,9 @@ class _Runs(Solving):
         polish    the solver goes on from the map's answers
         others    as solve's
         """
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
+        options = _options(
+            solver, tolerance_mm, max_iterations, anderson, threads, stable, as_published=as_published
+        )
         core = self._steps("steps", steps, times, commands)
         _check_map(map, polish, options)
         by = None if map is None else map._core

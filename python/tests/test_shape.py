@@ -238,6 +238,10 @@ def test_target_shapes() -> None:
     assert np.abs(stopped.markers["tip"] - shape.markers["tip"]).max() > np.abs(
         algorithm.markers["tip"] - shape.markers["tip"]
     ).max()
+    (one, two) = robot.path([[0.9], [0.8]], solver="local-global", as_published=True)
+    np.testing.assert_array_equal(one.positions, stopped.positions)
+    again = robot.solve(t=0.8, start=one, solver="local-global", as_published=True)
+    np.testing.assert_array_equal(two.positions, again.positions)
     with pytest.raises(softkin.InvalidInput, match="to stop as published is for solver local-global"):
         robot.solve(t=0.9, as_published=True)
     with pytest.raises(softkin.NotConverged, match="not converged at") as caught:

@@ -8,15 +8,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 640, 400, 70, 170, 30, 50
-COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#7f7f7f")
+COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#17becf", "#7f7f7f", "#8c564b")
 
 
 @dataclass
 class Curve:
-    name: str
+    name: str  # empty: thin and grey, and not in the legend
     x: Sequence[float]
     y: Sequence[float]
     points: bool = False  # instead of a line
+    filled: bool = False  # down to the axis
 
 
 def ticks(low: float, high: float) -> list[float]:
@@ -69,13 +70,18 @@ def plot(file: Path, curves: list[Curve], x: str, y: str, *, log: str = "", even
     svg.append(f'<text x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 12}" text-anchor="middle">{x}</text>')
     middle = (TOP + HEIGHT - BOTTOM) / 2
     svg.append(f'<text transform="translate(16 {middle}) rotate(-90)" text-anchor="middle">{y}</text>')
-    for i, curve in enumerate(curves):
-        colour = COLOURS[i % len(COLOURS)]
+    for i, curve in enumerate(sorted(curves, key=lambda c: c.name == "")):
+        colour = COLOURS[i % len(COLOURS)] if curve.name else "#999"
         places = [f"{across.at(a):.1f} {up.at(b):.1f}" for a, b in zip(curve.x, curve.y)]
         if curve.points:
             svg += [f'<circle cx="{p.split()[0]}" cy="{p.split()[1]}" r="2.5" fill="{colour}"/>' for p in places]
         else:
-            svg.append(f'<path d="M{"L".join(places)}" fill="none" stroke="{colour}" stroke-width="1.5"/>')
+            if curve.filled:
+                ends = [f"{across.at(curve.x[at]):.1f} {HEIGHT - BOTTOM}" for at in (-1, 0)]
+                svg.append(f'<path d="M{"L".join([*places, *ends])}Z" fill="{colour}" fill-opacity="0.25"/>')
+            svg.append(f'<path d="M{"L".join(places)}" fill="none" stroke="{colour}" stroke-width="{1.5 if curve.name else 0.7}"/>')
+        if not curve.name:
+            continue
         svg.append(f'<path d="M{WIDTH - RIGHT + 10} {TOP + 18 * i}h18" stroke="{colour}" stroke-width="2"/>')
         svg.append(f'<text x="{WIDTH - RIGHT + 34}" y="{TOP + 4 + 18 * i}">{curve.name}</text>')
     file.write_text("\n".join([*svg, "</svg>\n"]))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 import subprocess
 import time
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,8 +24,9 @@ class Failed(Exception):
 class Row:
     """One printed number or claim beside softkin's.
 
-    figure     the number behind `found`, which must not move by more than `tolerance`, relative; None: a time, or none
-    verdict    agrees; differs, because of `why`; cannot, as `why` says: it is a measurement on their robot
+    conditions  mesh, weights and solver
+    figure      the number behind `found`, which must not move by more than `tolerance`, relative; None: a time, or none
+    verdict     agrees; differs, because of `why`; cannot, as `why` says: it is a measurement on their robot
     """
 
     item: str
@@ -38,7 +41,7 @@ class Row:
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS or (self.verdict != "agrees" and not self.why):
             raise ValueError(f"{self.item}: a row that differs says why")
-        if not (self.item and self.printed and self.found):
+        if not (self.item and self.printed and self.found and self.conditions):
             raise ValueError(f"{self.item}: a row is empty")
 
 
@@ -70,7 +73,7 @@ class Bench:
     def run(self, *arguments: object, codes: tuple[int, ...] = (0,)) -> tuple[str, float]:
         """Standard output, and seconds."""
         words = [str(word) for word in arguments]
-        self.result.commands.append("build/softkin " + " ".join(re.sub(rf"^{re.escape(str(ROOT))}/", "", w) for w in words))
+        self.result.commands.append("build/softkin " + " ".join(re.sub(rf"^{re.escape(str(ROOT))}/", "", word) for word in words))
         begin = time.monotonic()
         done = subprocess.run([str(self.program), *words], capture_output=True, text=True, cwd=ROOT)
         seconds = time.monotonic() - begin
@@ -82,6 +85,21 @@ class Bench:
         """The report of `fk`."""
         return dict(json.loads(self.run(*arguments, "--json", codes=codes)[0]))
 
+    def bench(self, name: str, *arguments: object) -> str:
+        """What a program of build/bench prints."""
+        words = [str(word) for word in arguments]
+        self.result.commands.append(" ".join([f"build/bench/{name}", *words]))
+        program = self.program.parent / "bench" / name
+        if not program.exists():
+            raise Failed(f"{program}: not built; make paper builds it")
+        return subprocess.run([str(program), *words], capture_output=True, text=True, check=True).stdout
+
+    def table(self, name: str, columns: Sequence[str], rows: Iterable[Sequence[float]]) -> Path:
+        """A .csv of the part's folder."""
+        file = self.folder / name
+        file.write_text("\n".join([",".join(columns), *(",".join(f"{value:.10g}" for value in row) for row in rows)]) + "\n")
+        return file
+
     def picture(self, name: str) -> Path:
         """A file of the part's folder that its page shows."""
         self.result.pictures.append(name)
@@ -90,6 +108,27 @@ class Bench:
     def row(self, item: str, printed: str, found: str, verdict: str, why: str = "", **more: Any) -> None:
         self.result.rows.append(Row(item, printed, found, verdict, why, **more))
 
+    def claim(self, item: str, printed: str, found: str, holds: bool, why: str, **more: Any) -> None:
+        """A row that agrees if it holds, and else differs because of why."""
+        self.row(item, printed, found, "agrees" if holds else "differs", "" if holds else why, **more)
+
+
+def columns_of(file: Path) -> dict[str, list[float]]:
+    """The columns of numbers of a table."""
+    rows = list(csv.DictReader(line for line in file.read_text().splitlines() if not line.startswith("#")))
+    return {name: [float(row[name]) for row in rows] for name in rows[0] if rows[0][name].replace(".", "").lstrip("-")[:1].isdigit()}
+
 
 def example(name: str, file: str = "") -> Path:
     return ROOT / "examples" / name / (file or f"{name}.yaml")
+
+
+SHAPES = ("--formulation", "target-shape")
+AS_ABOVE = "as in the row above"
+PRINTED_WEIGHTS = "target shapes, weights 1 and 5, Newton's method"
+PHYSICAL = "physical, Newton's method"
+
+
+def elements_of(report: dict[str, Any]) -> str:
+    mesh = report["mesh"]
+    return f"{mesh['tetrahedra']:,} tetrahedra of order {mesh['order']}"
