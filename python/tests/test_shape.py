@@ -39,6 +39,17 @@ def test_what_it_tells(shape: softkin.Shape, robot: softkin.Robot) -> None:
         shape["tipp"]
 
 
+def test_turned_support() -> None:
+    rest = beam()
+    turning = beam(fixed=[{"region": "base", "rotation": {"axis": [0, 0, 1], "about": [0, 0, 0]}}])
+    info = turning.actuator_infos[-1]
+    assert (info.name, info.kind, info.unit) == ("base_turn", "turn", "deg")
+    shape = turning.solve(base_turn=90)
+    x, y, z = rest.rest.T
+    np.testing.assert_allclose(shape.positions, np.stack([-y, x, z], axis=1), atol=1e-6)
+    assert shape.actuators["base_turn"].requested == 90 and shape.actuators["base_turn"].unit == "deg"
+
+
 def test_layer_under_voltage(examples: Path) -> None:
     crawler = softkin.load(examples / "dea_crawler/voltage/crawler.yaml")
     (info,) = crawler.actuator_infos
