@@ -97,7 +97,7 @@ def test_follow_by_nearest_samples(robot: softkin.Robot, tmp_path: Path) -> None
     path = targets(robot)
     made = list(robot.follow(path, method="nearest", samples=8))
     assert [waypoint.equilibria for waypoint in made] == [9, 1, 1]
-    low, high = (np.array([getattr(info, end) for info in robot.actuator_infos]) for end in ("low", "high"))
+    low, high = robot.ranges.T
     for waypoint in made:
         commands = np.array([waypoint.actuation[name] for name in robot.actuators])
         assert np.all((commands == low) | (commands == high)) and not waypoint.reached

@@ -141,7 +141,7 @@ TEST(Follow, TakesTheNearestSamplesInstead) {
   }
   const std::string samples = folder / "samples.csv", by_samples = read_text(folder.out + "/commands.csv");
   ASSERT_EQ(run_program({"workspace", folder.scene, "--samples", "25", "-o", samples}).exit_code, 0);
-  const ProgramResult known = folder.follow({"--method", "nearest", "--workspace", samples, "--overwrite"});
+  const ProgramResult known = folder.follow({"--method", "nearest", "--workspace", samples});
   EXPECT_EQ(known.exit_code, 1) << known.errors;
   EXPECT_EQ(read_text(folder.out + "/commands.csv"), by_samples);
   EXPECT_EQ(cell(read_rows(folder.out + "/errors.csv"), 0, "equilibria"), 1);

@@ -61,7 +61,8 @@ TEST(TurnedSupportCommand, IsRefusedOutsideItsRangeAndInAnotherUnit) {
   const BlockFolder folder(turning_scene(true));
   const ProgramResult far = run_fk(folder.scene, {"--set", "base_turn=4000"});
   EXPECT_EQ(far.exit_code, 2);
-  EXPECT_NE(far.errors.find("the turn 4000 is outside its range -3600 to 3600 deg"), std::string::npos) << far.errors;
+  EXPECT_NE(far.errors.find("base_turn=4000': the turn is outside its range, -3600 to 3600 deg"), std::string::npos)
+      << far.errors;
   (void)folder.write("turn.csv", "base_turn_rad\n1\n");
   const ProgramResult radians = run_fk(folder.scene, {"--path", folder / "turn.csv"});
   EXPECT_EQ(radians.exit_code, 2);
