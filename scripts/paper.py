@@ -49,6 +49,7 @@ PARTS: dict[str, tuple[str, Part, str]] = {
     "fig12": ("Figure 12(a), (b): the workspace", inverse.workspace, LONG),
     "fig12c": ("Figure 12(c): starts of inverse kinematics", inverse.starts, LONG),
     "fig13": ("Figure 13: paths", inverse.paths, LONG),
+    "nearest": ("V-B: the nearest sample instead of inverse kinematics", inverse.nearest, LONG),
     "fig14": ("Figure 14: a path beyond the reach", inverse.beyond, LONG),
     "fig15": ("Figure 15(a), (b), (d): three chambers", air.chambers, SHORT),
     "fig15c": ("Figure 15(c): pressures and ratios", air.coupled, SHORT),

@@ -7,7 +7,7 @@ import re
 
 import calculix
 from forward_parts import Point, bend, draw, in_plane, linear, steps_of, values, within
-from rows import AS_ABOVE, SHAPES, Bench, Failed, elements_of, example
+from rows import AS_ABOVE, ROOT, SHAPES, Bench, Failed, elements_of, example
 
 LIMIT_S = 1800
 RATIOS = (1.0, 1.2, 1.4)  # farther St. Venant-Kirchhoff turns elements over
@@ -30,12 +30,32 @@ def times(bench: Bench) -> None:
         bench.row(f"Table III, our finger, {name}", AS_ABOVE, f"{told['seconds']:.1f} s for {len(told['steps'])} shapes, to "
                   f"{bend(told['steps']):.0f} degrees", "differs", "another finger, mesh and machine",
                   conditions=f"{elements_of(told)}; {name}, Newton's method")
+    slim_times(bench)
     for name, printed in (("FEM 1", "44774 elements, linear material: 240, 529, 820 s"),
                           ("FEM 2", "nonlinear material: 288, 636, 1068 s")):
         bench.row(f"Table III, {name}", printed, "none; CalculiX in its place below, and in docs/benchmarks.md", "cannot",
                   "Abaqus is not free", conditions="Abaqus, on their machine")
     bench.row("Table III, SOFA", "44900 elements: 3.8 s, no result to 180 and 240 degrees", "none", "cannot", "SOFA is not packaged",
               conditions="SOFA, on their machine")
+
+
+def slim_times(bench: Bench) -> None:
+    """Times of the solvers of the paper's formulation and weights, to 90, 180 and 240 degrees."""
+    folder = ROOT / "examples/paper/slim_finger"
+    for name, options in (("Newton's method", ()), ("Algorithm 1 as printed", ("--solver", "local-global", "--anderson", "0")),
+                          ("Algorithm 1 with Anderson's acceleration", ("--solver", "local-global")),
+                          ("stopped as published", ("--solver", "local-global", "--as-published"))):
+        told = bench.report("fk", folder / "slim_finger.yaml", "--path", folder / "path.csv", *options, codes=(0, 1))
+        steps, seconds, found = told["steps"], 0.0, []
+        for i, step in enumerate(steps):
+            seconds += step["seconds"]
+            if len(found) < 3 and bend(steps[: i + 1]) >= (90, 180, 240)[len(found)]:
+                found.append(f"{seconds:.2f}")
+        lost = sum(step["status"] != "converged" for step in steps)
+        times = f"{', '.join(found)} s to 90, 180 and 240 degrees" if len(found) == 3 else f"{bend(steps):.0f} degrees at the end"
+        bench.row(f"Table III, slim finger, {name}", AS_ABOVE, f"{times}, {sum(step['iterations'] for step in steps):,} iterations"
+                  + (f", {lost} of {len(steps)} shapes not converged" if lost else ""), "differs", "another finger, mesh and machine",
+                  conditions=f"examples/paper/slim_finger, {elements_of(told)}; target shapes, weights 1 and 5, {name}, shape by shape")
 
 
 def finite_elements(bench: Bench) -> None:

@@ -80,6 +80,25 @@ def paths(bench: Bench) -> None:
                   "it is a measurement on their robot", conditions=ROBOT)
 
 
+def nearest(bench: Bench) -> None:
+    """The baseline of V-B: for each waypoint the commands of the nearest sample."""
+    file, _ = sampled(bench)
+    rows = {}
+    for method, options in (("newton", ()), ("nearest", ("--method", "nearest", "--workspace", file))):
+        folder = bench.folder / method
+        bench.run("follow", example("three_tendon_finger"), example("three_tendon_finger", "letter_l.csv"), *SHAPES, *options, "-o", folder,
+                  "--force-overwrite", codes=(0, 1))
+        rows[method] = columns_of(folder / "errors.csv")
+    plot(bench.picture("nearest.svg"), [Curve("asked", rows["newton"]["tip_target_x_mm"], rows["newton"]["tip_target_z_mm"]),
+         *(Curve(method, told["tip_x_mm"], told["tip_z_mm"], points=True) for method, told in rows.items())], "x [mm]", "z [mm]", even=True)
+    jump = {method: 100 * max(told["command_change"]) for method, told in rows.items()}
+    miss = {method: max(told["error_mm"]) for method, told in rows.items()}
+    bench.claim("V-B: the nearest sample instead", "continuity is hard to be preserved on a path by the sample-searching method",
+                f"off by {miss['nearest']:.1f} mm at most, commands jump by {jump['nearest']:.0f} % of a range from waypoint to waypoint; "
+                f"inverse kinematics {miss['newton']:.5f} mm and {jump['newton']:.1f} %", jump["nearest"] > 5 * jump["newton"],
+                "it does not jump more", conditions=f"{ROBOT}; the letter L, 125 samples", figure=miss["nearest"], tolerance=1e-3)
+
+
 def beyond(bench: Bench) -> None:
     """Fig. 14."""
     folder = bench.folder / "beyond"

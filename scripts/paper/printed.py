@@ -19,6 +19,7 @@ PRINTED: dict[str, tuple[str, ...]] = {
     "fig12": ("a motor for each", "125 sample points", "8.3 s", "3375 sample points", "more than 5 min"),
     "fig12c": ("converges much faster",),
     "fig13": ("120 x 25 x 25", "N = 55", "38 s", "N = 85", "46 s"),
+    "nearest": ("continuity",),
     "fig14": ("inside the feasible region",),
     "fig15": ("48 x 48 x 136", "pictures of the actuator", "individual chambers", "less than 3 mm"),
     "fig15c": ("100 ~ 240 kPa", "loading and unloading", "pressure of 100 kPa"),
