@@ -232,8 +232,8 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const Actuator& actuator = model.actuators[a];
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
-    if (actuator.kind == ActuatorKind::turn) continue;
-    if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic) {
+    if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic ||
+        actuator.kind == ActuatorKind::turn) {
       const bool charged = actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
       const double expected = charged ? state.actuation[index] : 0;
       if (!(std::abs(multiplier - expected) <= 4 * rounding_unit * std::abs(expected)))

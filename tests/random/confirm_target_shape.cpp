@@ -284,6 +284,9 @@ void check_held(const Model& model, const State& state, Confirmation& out) {
       if (model.fixed[v][axis]) worst = std::max(worst, std::abs(positions(v, axis) - places(v, axis)));
   if (!(worst <= 1e-9 * model.diagonal_mm + 64 * epsilon * far))
     out.faults.push_back("a held vertex is " + digits(worst) + " mm from its place");
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (state.multipliers.size() > 0 && state.multipliers[static_cast<Index>(a)] != 0)
+      out.faults.push_back("'" + model.actuators[a].name + "' has a multiplier, and target shapes know no loads");
   worst = 0;
   for (const RigidRegion& region : model.rigid)
     for (std::size_t i = 0; i < std::min<std::size_t>(4, region.vertices.size()); ++i)
