@@ -83,7 +83,7 @@ class System {
                     std::vector<energy::Pack>& ratios, Following& following, Team& team) const;
   template <int K>
   [[nodiscard]] energy::Pack share_of_change(const ActuationSet<K>& set, Index block, const energy::Pack& ratio,
-                                             const Following& following) const;
+                                             const Following& following, double moved) const;
   template <int K>
   void ratio_changes(const ActuationSet<K>& set, const Scratch& local, std::size_t index, const Points& nodes,
                      std::vector<energy::Pack>& changes, Team& team) const;

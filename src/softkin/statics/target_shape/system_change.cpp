@@ -30,13 +30,13 @@ bool System::is_gradient() const {
                       [](const Actuator& a) { return has_measure(a) && a.distribution != Distribution::uniform; });
 }
 
-/// What a block's ratios, of which none stands at the least one, give way by for each unit of sum_j a'_j u_j; at fixed
-/// positions they grow by as much for each unit that is asked for more, over the gain.
+/// What a block's ratios, of which none stands at the least one, give way by where sum_j a'_j u_j is `moved`; at fixed
+/// positions they grow by as much where so much more is asked for, over the gain.
 template <int K>
-Pack System::share_of_change(const ActuationSet<K>& set, Index block, const Pack& ratio,
-                             const Following& following) const {
-  if (!is_proportional(set.actuator)) return set.share(block) / set.share_sum;
-  return following.current > 0 ? ratio / following.current : pack(0);
+Pack System::share_of_change(const ActuationSet<K>& set, Index block, const Pack& ratio, const Following& following,
+                             double moved) const {
+  if (!is_proportional(set.actuator)) return moved / set.share_sum * set.share(block);
+  return following.current > 0 ? moved / following.current * ratio : pack(0);
 }
 
 /// The derivative of local_ratios: zero for uniform ratios.
@@ -62,7 +62,7 @@ void System::ratio_changes(const ActuationSet<K>& set, const Scratch& local, std
     moved += changes[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
   for (Index b = 0; b < set.block_count(); ++b)
     changes[b] =
-        follows(ratios[b]) * (following.gain * changes[b] - moved * share_of_change<K>(set, b, ratios[b], following));
+        follows(ratios[b]) * (following.gain * changes[b] - share_of_change<K>(set, b, ratios[b], following, moved));
 }
 
 /// kernel(set, index of the set, block, centred shape, its change, pull), over all blocks; out.nodes is the change.
@@ -144,7 +144,7 @@ void System::redistributions(const Scratch& local, Scratch& work, std::vector<Re
         part.target.resize(model_.rest.rows(), 3);
         collect(
             [&](const RatioCoupling<K>& coupling, Index b, const Pack& free, Shape<K>& value) {
-              const Pack share = share_of_change<K>(set, b, local.ratios[index][b], local.following[index]);
+              const Pack share = share_of_change<K>(set, b, local.ratios[index][b], local.following[index], 1);
               for (int i = 0; i < K; ++i) value[i] = (free * share) * coupling.pull_slope[i];
             },
             part.source);
@@ -176,7 +176,7 @@ void System::command_change(const Scratch& local, Index actuator, Scratch& out, 
           const Pack& ratio = local.ratios[index][b];
           // uniform; proportional: c grows, and the ratios by as much over it
           const Pack each = !redistributes(set.actuator)     ? pack(1 / measure)
-                            : !is_proportional(set.actuator) ? share_of_change<K>(set, b, ratio, following)
+                            : !is_proportional(set.actuator) ? share_of_change<K>(set, b, ratio, following, 1)
                             : following.current > 0          ? ratio / following.asked
                                                              : pack(1 / measure);
           const Pack change = rest_measure * each;
