@@ -95,7 +95,7 @@ def test_what_is_no_robot() -> None:
         ((softkin.Robot, VolumeMesh), [("hexahedron", np.arange(8)[None])], "hexahedron: only tetrahedra, wedges"),
         ((softkin.Robot, VolumeMesh), [("triangle", tetrahedra[:, :3])], "no tetrahedra and no wedges, but triangle"),
         ((softkin.Robot, VolumeMesh), [("tetra", tetrahedra), ("tetra10", quadratic)], "of order 1 and of order 2"),
-        ((VolumeMesh,), [("tetra10", quadratic)], "has tetrahedra of order 2: a VolumeMesh has tetrahedra of order 1"),
+        ((VolumeMesh,), [("tetra10", quadratic)], "has tetrahedra of order 2: a VolumeMesh has those of order 1"),
     ):
         for reader in readers:
             with pytest.raises(softkin.InvalidInput, match=message):
