@@ -18,7 +18,7 @@ from .labels import Labels, check_clear, label, place
 from .repair import repaired
 from .snap import snapped
 from .surface import MM_PER_UNIT, Surface, SurfaceLike, as_surface
-from .volume_mesh import Volume, VolumeMesh, boundary_faces, compacted, face_pairs, positive, signed_volumes
+from .volume_mesh import Volume, VolumeMesh, boundary_faces, compacted, face_pairs, positive, renumbering, signed_volumes
 
 METRES_BELOW = 2.0  # mm, diagonal of a body: no robot, but a robot in metres
 
@@ -214,7 +214,7 @@ def _assemble(
         name: np.flatnonzero(flags) for name, flags in labels.regions.items() if flags.any() and name not in left_out
     }
     chosen = np.concatenate(list(blocks.values()))  # region by region, as files of Gmsh have them
-    new_number = _renumbering(len(points), tetrahedra[chosen])
+    new_number = renumbering(len(points), tetrahedra[chosen])
     vertices, cells = compacted(points, tetrahedra[chosen])
     ends = np.cumsum([len(block) for block in blocks.values()])
     volumes = {name: np.arange(end - len(block), end) for (name, block), end in zip(blocks.items(), ends)}
@@ -249,13 +249,6 @@ def _walls(tetrahedra: Array, solid: Array, labels: Labels, chambers: Mapping[st
         of_second = own_there[second] & ~own_there[first]
         walls[name] = np.concatenate([faces[of_first], faces[of_second][:, [0, 2, 1]]])
     return walls
-
-
-def _renumbering(count: int, tetrahedra: Array) -> Array:
-    used = np.unique(tetrahedra)
-    number = np.full(count, -1)
-    number[used] = np.arange(len(used))
-    return number
 
 
 def _warn(mesh: VolumeMesh) -> None:

@@ -10,7 +10,7 @@ from .arrays import Array, Floats
 from .errors import InvalidInput
 from .generate import check_name
 from .surface import Surface, SurfaceLike, as_surface
-from .volume_mesh import VolumeMesh, prism_volumes
+from .volume_mesh import VolumeMesh, prism_volumes, renumbering
 
 
 def stacked(surface: SurfaceLike, layers: Mapping[str, float], *, name: str = "surface") -> VolumeMesh:
@@ -27,12 +27,10 @@ def stacked(surface: SurfaceLike, layers: Mapping[str, float], *, name: str = "s
     given = as_surface(surface, name)
     _check(given, layers)
     vertices, prisms, regions, top = _layers(given.vertices, given.triangles, layers, 0)
-    used = np.unique(prisms)
-    number = np.full(len(vertices), -1)
-    number[used] = np.arange(len(used))
+    number = renumbering(len(vertices), prisms)
     faces = {"bottom": number[given.triangles[:, [0, 2, 1]]], "top": number[top]}
     none = np.empty((0, 4), dtype=np.int64)
-    return VolumeMesh(vertices[used], none, regions, faces, prisms=number[prisms])
+    return VolumeMesh(vertices[number >= 0], none, regions, faces, prisms=number[prisms])
 
 
 def upon(mesh: VolumeMesh, region: str, layers: Mapping[str, float]) -> VolumeMesh:
@@ -76,9 +74,8 @@ def _layers(
     points: Array, triangles: Array, layers: Mapping[str, float], first: int
 ) -> tuple[Floats, Array, dict[str, Array], Array]:
     """Vertices, those of the layers last; prisms; regions, numbered from `first` on; the outermost faces."""
-    used = np.unique(triangles)
-    place = np.full(len(points), -1)
-    place[used] = np.arange(len(used))
+    place = renumbering(len(points), triangles)
+    used = np.flatnonzero(place >= 0)
     directions = _directions(points, triangles, used, place)
     vertices, prisms, regions, below, height = [points], [], {}, triangles, 0.0
     for k, (name, thickness) in enumerate(layers.items()):

@@ -8,7 +8,7 @@ import numpy as np
 
 from .arrays import Array
 from .errors import InvalidInput
-from .volume_mesh import VolumeMesh, positive
+from .volume_mesh import VolumeMesh, positive, renumbering
 
 CORNERS = {15: 1, 1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5}  # by type of Gmsh, order 1; others are refused
 TRIANGLE, TETRAHEDRON, PRISM = 2, 4, 6
@@ -168,9 +168,8 @@ def _mesh(path: Path, points: Array, tags: Array, cells: Cells, names: dict[tupl
                 np.arange(start, start + len(block))
             )
         start += len(block)
-    used = np.unique(np.concatenate([tetrahedra.ravel(), prisms.ravel()]))
-    number = np.full(len(points), -1)
-    number[used] = np.arange(len(used))
+    number = renumbering(len(points), tetrahedra, prisms)
+    vertices = points[number >= 0]
     for groups, block in cells.get(TRIANGLE, []):
         for group in groups:
             faces.setdefault(names.get((2, group), f"physical_2_{group}"), []).append(number[rows(block)])
@@ -180,8 +179,8 @@ def _mesh(path: Path, points: Array, tags: Array, cells: Cells, names: dict[tupl
             raise InvalidInput(f"{path}: region '{name}' has faces with vertices of no element")
     joined = {f"{name}_2d" if name in volumes else name: block for name, block in joined.items()}
     return VolumeMesh(
-        points[used],
-        positive(points[used], number[tetrahedra]),
+        vertices,
+        positive(vertices, number[tetrahedra]),
         {name: np.concatenate(blocks) for name, blocks in volumes.items()},
         joined,
         prisms=number[prisms],

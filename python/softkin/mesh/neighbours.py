@@ -10,7 +10,7 @@ import numpy as np
 from .. import neighbours
 from .arrays import Array
 from .errors import InvalidInput
-from .volume_mesh import VolumeMesh, positive
+from .volume_mesh import VolumeMesh, positive, renumbering
 
 if TYPE_CHECKING:
     import meshio
@@ -87,14 +87,12 @@ def _made(read: neighbours.Elements) -> VolumeMesh:
         raise InvalidInput(
             "the mesh has tetrahedra of order 2: a VolumeMesh has those of order 1; softkin.Robot takes others"
         )
-    used = np.unique(np.concatenate([read.tetrahedra.ravel(), read.prisms.ravel()]))
-    number = np.full(len(read.points), -1)
-    number[used] = np.arange(len(used))
+    number = renumbering(len(read.points), read.tetrahedra, read.prisms)
     faces = {name: number[region["triangles"]] for name, region in read.regions.items() if "triangles" in region}
     for name, triangles in faces.items():
         if (triangles < 0).any():
             raise InvalidInput(f"region '{name}' has faces with vertices of no element")
-    vertices, cells = read.points[used], number[read.tetrahedra]
+    vertices, cells = read.points[number >= 0], number[read.tetrahedra]
     volumes = {}
     for name, region in read.regions.items():
         parts = [region[kind] + first for kind, first in (("tetrahedra", 0), ("prisms", len(cells))) if kind in region]

@@ -239,6 +239,14 @@ def outer_faces(tetrahedra: Array, prisms: Array) -> Array:
     return faces
 
 
+def renumbering(count: int, *cells: Array) -> Array:
+    """The numbers of vertices where only those of the cells are left, (count,); -1: of none."""
+    used = np.unique(np.concatenate([block.ravel() for block in cells]))
+    number = np.full(count, -1)
+    number[used] = np.arange(len(used))
+    return number
+
+
 def compacted(vertices: Array, tetrahedra: Array) -> tuple[Array, Array]:
     """Without the vertices that no tetrahedron has."""
     used, renumbered = np.unique(tetrahedra, return_inverse=True)
