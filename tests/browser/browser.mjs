@@ -69,8 +69,9 @@ export const frames = (page, count = 2) => page.evaluate((left) => new Promise((
   next();
 }), count);
 
-/** Where the first marker is on the screen. */
+/** Where the first marker is on the screen; labels are placed as a frame is drawn. */
 export async function tipOnScreen(page) {
+  await frames(page);
   const box = await page.locator('#canvas').boundingBox();
   const [x, y] = (await page.locator('#labels span').first().getAttribute('data-at')).split(',').map(Number);
   return {x: box.x + x, y: box.y + y};

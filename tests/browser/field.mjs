@@ -7,7 +7,12 @@ import {example, forward, mapOf, out, serve, softkin} from './softkin.mjs';
 
 const crawler = 'magnetic_crawler', cantilever = 'magnetic_cantilever';
 const far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
-const size = (page) => page.locator('#labels .field').textContent();
+/** What the arrow's label says: it is written as a frame is drawn, not as a command comes. */
+async function size(page) {
+  await frames(page);
+  return page.locator('#labels .field').textContent();
+}
+
 /** As it is typed: sliders round. */
 const command = async (page, a) => Number(await page.locator('.typed input').nth(a).inputValue());
 
