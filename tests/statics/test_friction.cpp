@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/system.hpp>
 
 #include "statics/physical_samples.hpp"
@@ -101,7 +102,7 @@ void expect_derivatives(const Model& model) {
     Eigen::VectorXd move(size);
     for (Index i = 0; i < size; ++i) move[i] = shake * normal(engine);
     system.freedoms().move(move, 1, from.positions);
-    system.hold_friction(from, work, team);
+    physical::hold_friction(system, from, work, team);
     ASSERT_FALSE(work.contacts->holds.empty());
     system.evaluate(from, demand, none, work, balance, team);
     ASSERT_FALSE(balance.forbidden);
@@ -116,7 +117,7 @@ void expect_derivatives(const Model& model) {
     const auto beside = [&](double scale, bool held) {
       physical::Iterate there = from;
       system.freedoms().move(way, scale, there.positions);
-      system.hold_friction(held ? from : there, work, team);
+      physical::hold_friction(system, held ? from : there, work, team);
       system.evaluate(there, demand, none, work, balance, team);
       return std::pair(balance.energy, Eigen::VectorXd(balance.force));
     };

@@ -47,9 +47,10 @@ struct MagneticSample {
 
   [[nodiscard]] Points gradient(const physical::Demand& at, const Points& shape, double* energy = nullptr) {
     Points sum = Points::Zero(shape.rows(), 3);
-    const std::optional<double> value = magnets->add_gradient(at, shape, sum, team);
-    EXPECT_TRUE(value.has_value());
-    if (energy) *energy = value.value_or(0);
+    physical::Term::Sum all{sum};
+    magnets->evaluate({shape, {}}, at, none, all, team);
+    EXPECT_FALSE(all.left_field);
+    if (energy) *energy = all.energy;
     return sum;
   }
   [[nodiscard]] Points gradient(const Points& shape) { return gradient(demand, shape); }
@@ -62,7 +63,7 @@ struct MagneticSample {
     const linear::BlockPattern pattern(static_cast<Index>(model.rest.rows()), cliques);
     LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back())), blocks;
     std::fill(slots.begin(), slots.end(), 0.0);
-    magnets->add_stiffness(demand, positions, projected, slots, team);
+    magnets->stiffness({positions, {}}, demand, projected, none, slots, team);
     pattern.gather(slots, blocks, team);
     Points product;
     pattern.multiply(blocks, vectors, product, team);
@@ -74,6 +75,7 @@ struct MagneticSample {
   Team team;
   linear::Cliques cliques;
   std::unique_ptr<physical::Magnets> magnets;
+  physical::Term::Scratch none;
   Points positions;
   physical::Demand demand;
 };
@@ -202,8 +204,8 @@ TEST(Magnets, CommandForcesAreTheSlopesByTheCommands) {
     sample.demand = {commands(sample.model, "magnet", 0.2), 0.7};
     sample.demand.actuation += commands(sample.model, "coil", 1.5) - sample.model.rest_actuation();
     for (Index a = 0; a < static_cast<Index>(sample.model.actuators.size()); ++a) {
-      Points exact;
-      sample.magnets->command_force(a, sample.demand, sample.positions, exact, sample.team);
+      Points exact = Points::Zero(sample.positions.rows(), 3);
+      sample.magnets->add_derivative(a, sample.demand, sample.positions, sample.none, exact, sample.team);
       physical::Demand high = sample.demand, low = sample.demand;
       high.actuation[a] += 1e-3;
       low.actuation[a] -= 1e-3;

@@ -134,6 +134,9 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
     add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
   for (auto& set : prisms_)
     if (set.charged) add_field(model, set);
+  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+    if (model.actuators[a].kind == ActuatorKind::dea)
+      (under_voltage(model.actuators[a]) ? voltages_ : ratios_).push_back(a);
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
     pulls_ += K * set.count;
@@ -221,8 +224,8 @@ void Body::store(const Set<K, Q>& set, Index block, const Shape<K>& pull, Scratc
     }
 }
 
-void Body::gather(const Scratch& scratch, Points& sums, Team& team) const {
-  sums.resize(vertices_, 3);
+/// Adds what the elements pull with at every vertex.
+void Body::add_pulls(const Scratch& scratch, Points& sums, Team& team) const {
   team.pieces(vertices_, [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
       double total[3] = {};
@@ -230,13 +233,13 @@ void Body::gather(const Scratch& scratch, Points& sums, Team& team) const {
         const double* pull = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(pull_order_[i]);
         for (int c = 0; c < 3; ++c) total[c] += pull[c];
       }
-      for (int c = 0; c < 3; ++c) sums(v, c) = total[c];
+      for (int c = 0; c < 3; ++c) sums(v, c) += total[c];
     }
   });
 }
 
-Body::Result Body::force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient,
-                         Team& team) const {
+/// What every element pulls with, into the scratch.
+Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& scratch, Team& team) const {
   stretch_layers(demand, scratch);
   std::size_t first = 0;
   Result result;
@@ -273,12 +276,75 @@ Body::Result Body::force(const Demand& demand, const Points& positions, Scratch&
   result.energy = sum(energy);
   result.inverted = any(inverted);
   result.forbidden = any(forbidden);
-  gather(scratch, gradient, team);
   return result;
+}
+
+Body::Result Body::force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient,
+                         Team& team) const {
+  const Result result = pull(demand, positions, scratch, team);
+  gradient.setZero(vertices_, 3);
+  add_pulls(scratch, gradient, team);
+  return result;
+}
+
+void Body::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const {
+  auto& own = static_cast<Scratch&>(scratch);
+  const Result result = pull(demand, at.positions, own, team);
+  sum.energy += result.energy;
+  sum.inverted = sum.inverted || result.inverted;
+  sum.forbidden = sum.forbidden || result.forbidden;
+  add_pulls(own, sum.gradient, team);
+}
+
+void Body::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch,
+                      Points& force, Team& team) const {
+  auto& own = static_cast<Scratch&>(scratch);
+  Points before, after;
+  for (const Index a : voltages_) {
+    const double change = to.actuation[a] - from.actuation[a];
+    if (change == 0) continue;
+    field_force(a, 1, positions, own, after, team);  // at 1 kV
+    force += change * (to.actuation[a] + from.actuation[a]) * after;
+  }
+  const bool stretched =
+      std::any_of(ratios_.begin(), ratios_.end(), [&](Index a) { return from.actuation[a] != to.actuation[a]; }) ||
+      (from.share != to.share && prestretched());
+  if (!stretched) return;
+  constexpr double reach = 1e-4;  // of a central difference, over the change
+  Demand low = from, high = from;
+  low.actuation -= reach * (to.actuation - from.actuation);
+  high.actuation += reach * (to.actuation - from.actuation);
+  for (const Index a : voltages_) low.actuation[a] = high.actuation[a] = from.actuation[a];  // the field was counted
+  low.share -= reach * (to.share - from.share);
+  high.share += reach * (to.share - from.share);
+  (void)this->force(low, positions, own, before, team);
+  (void)this->force(high, positions, own, after, team);
+  force += (after - before) / (2 * reach);
+}
+
+void Body::add_derivative(Index command, const Demand& demand, const Points& positions, Term::Scratch& scratch,
+                          Points& force, Team& team) const {
+  auto& own = static_cast<Scratch&>(scratch);
+  Points there;
+  if (std::find(voltages_.begin(), voltages_.end(), command) != voltages_.end()) {
+    field_force(command, 1, positions, own, there, team);  // it goes with the square of the voltage
+    force += 2 * demand.actuation[command] * there;
+  }
+  if (std::find(ratios_.begin(), ratios_.end(), command) == ratios_.end()) return;
+  // central difference of fourth order; the force is smooth in the ratio
+  const double reach = 1e-3 * demand.actuation[command];
+  const auto at_ratio = [&](double change) {
+    Demand changed = demand;
+    changed.actuation[command] += change;
+    (void)this->force(changed, positions, own, there, team);
+    return there;
+  };
+  force += (8 * (at_ratio(reach) - at_ratio(-reach)) - (at_ratio(2 * reach) - at_ratio(-2 * reach))) / (12 * reach);
 }
 
 void Body::field_force(Index actuator, double voltage_kV, const Points& positions, Scratch& scratch, Points& gradient,
                        Team& team) const {
+  gradient.setZero(vertices_, 3);
   std::fill(scratch.pulls.begin(), scratch.pulls.end(), 0.0);
   for (const auto& set : prisms_)
     if (set.charged && set.actuator == actuator)
@@ -291,7 +357,7 @@ void Body::field_force(Index actuator, double voltage_kV, const Points& position
           store(set, b, out.gradient, scratch);
         }
       });
-  gather(scratch, gradient, team);
+  add_pulls(scratch, gradient, team);
 }
 
 double Body::largest_pull(const Scratch& scratch, Team& team) const {
@@ -407,7 +473,8 @@ void Body::turning(const Points& positions, const Points& step, Scratch& scratch
   for (const auto& set : linear_) run(set);
   for (const auto& set : quadratic_) run(set);
   for (const auto& set : prisms_) run(set);
-  gather(scratch, residual, team);
+  residual.setZero(vertices_, 3);
+  add_pulls(scratch, residual, team);
 }
 
 Eigen::SparseMatrix<double> Body::laplacian() const {

@@ -7,19 +7,18 @@
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
-#include <softkin/statics/deformation.hpp>
-#include <softkin/statics/physical/iterate.hpp>
+#include <softkin/statics/physical/term.hpp>
 
 namespace softkin::physical {
 
 /// The body of a robot in the physical formulation: elastic energy, that of the electric field in its layers under
 /// voltage, and their derivatives in the vertices.
-class Body {
+class Body : public Term {
  public:
   explicit Body(const Model& model);
 
   /// What evaluation needs beside the positions; nothing is allocated per call.
-  struct Scratch {
+  struct Scratch : Term::Scratch {
     std::vector<double> pulls;                                    // 3 per node of every element [N]
     std::vector<energy::Pack> energies;                           // per block of all sets [mJ]
     std::vector<energy::PackMask> inverted, forbidden;            // the same
@@ -34,6 +33,9 @@ class Body {
     [[nodiscard]] bool pulls_viscously() const { return elapsed_s < std::numeric_limits<double>::infinity(); }
   };
   [[nodiscard]] Scratch make_scratch() const;
+  [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override {
+    return std::make_unique<Scratch>(make_scratch());
+  }
 
   /// Has an element Maxwell branches?
   [[nodiscard]] bool viscous() const { return branches_ > 0; }
@@ -55,6 +57,13 @@ class Body {
   /// Energy and gradient (#V by 3 [N]). demand: of which the ratios and voltages of dea actuators are taken, and the
   /// share of the prestretch of those under voltage.
   Result force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient, Team& team) const;
+  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
+
+  /// To first order; of voltages alone exactly.
+  void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
+                  Team& team) const override;
+  void add_derivative(Index command, const Demand& demand, const Points& positions, Term::Scratch& scratch,
+                      Points& force, Team& team) const override;
 
   /// Sum of the magnitudes of what the elements at a vertex pull there, the largest of all vertices [N]. After force().
   [[nodiscard]] double largest_pull(const Scratch& scratch, Team& team) const;
@@ -68,7 +77,7 @@ class Body {
   void stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out, Team& team) const;
 
   /// Adds every element as a clique.
-  void add_cliques(linear::Cliques& cliques);
+  void add_cliques(linear::Cliques& cliques) override;
 
   /// First slot of every tetrahedron's matrices, then of every prism's. After add_cliques().
   [[nodiscard]] std::vector<std::int64_t> element_slots() const;
@@ -76,6 +85,14 @@ class Body {
   /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
   void stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const;
+  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+                 LargeVector<double>& slots, Team& team) const override {
+    stiffness(demand, at.positions, projected, static_cast<Scratch&>(scratch), slots, team);
+  }
+  void tell(const Iterate& at, const Demand& demand, Term::Scratch& scratch, ElementDeformation& out,
+            Team& team) const override {
+    stress(demand, at.positions, static_cast<Scratch&>(scratch), out.stress, team);
+  }
 
   /// Does the share of what is done to it at once change it: is a layer under voltage prestretched.
   [[nodiscard]] bool prestretched() const;
@@ -131,7 +148,8 @@ class Body {
             strains ? strains + set.strains_each() * block : nullptr,
             scratch.begun.data() + set.first_begun + set.begun_each() * block};
   }
-  void gather(const Scratch& scratch, Points& sums, Team& team) const;
+  Result pull(const Demand& demand, const Points& positions, Scratch& scratch, Team& team) const;
+  void add_pulls(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;
   void stretch_layers(const Demand& demand, Scratch& scratch) const;
@@ -167,6 +185,7 @@ class Body {
   std::vector<Set<4, 1>> linear_;
   std::vector<Set<10, 4>> quadratic_;
   std::vector<Set<6, 6>> prisms_;
+  std::vector<Index> voltages_, ratios_;  // actuators of kind dea, by what their commands are
   std::size_t blocks_ = 0, branches_ = 0, strains_ = 0, begun_ = 0;
   Index pulls_ = 0;
   std::vector<Index> pull_starts_, pull_order_;  // pulls at each vertex

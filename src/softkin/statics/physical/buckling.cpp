@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 
 namespace softkin::physical {
@@ -61,7 +62,7 @@ std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, c
   Pushed found{from};
   const double reach = share * system_.model().diagonal_mm;
   double scale = reach / system_.size_of(mode.direction, from.positions).largest;
-  if (!system_.advance_clear(mode.direction, scale, work_, found.at.positions, team_)) return std::nullopt;
+  if (!advance_clear(system_, mode.direction, scale, work_, found.at.positions, team_)) return std::nullopt;
   double shift = mode.steep_shift();
   bool settled = false;
   for (int i = 0; i < most_downhill && !settled; ++i) {

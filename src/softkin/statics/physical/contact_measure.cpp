@@ -136,15 +136,13 @@ class PressedSurface {
   std::vector<Index> place_;
 };
 
-using Term = ContactPotential::Term;
-
 /// A side of a term: a vertex or a triangle, or one of two edges.
 struct Side {
   Index part;
   int begin, end;  // of its nodes
 };
 
-std::array<Side, 2> sides_of(const ContactSurfaces& surfaces, const Term& term) {
+std::array<Side, 2> sides_of(const ContactSurfaces& surfaces, const ContactPotential::Term& term) {
   const auto part = [](const std::vector<Index>& parts, Index of) { return parts[static_cast<std::size_t>(of)]; };
   if (term.threshold > 0)
     return {{{part(surfaces.edge_part, term.pair.first), 0, 2}, {part(surfaces.edge_part, term.pair.second), 2, 4}}};
@@ -153,7 +151,7 @@ std::array<Side, 2> sides_of(const ContactSurfaces& surfaces, const Term& term) 
 }
 
 /// Where a term presses on a side.
-Vec3 place_of(const Points& positions, const Term& term, const Side& side) {
+Vec3 place_of(const Points& positions, const ContactPotential::Term& term, const Side& side) {
   Vec3 place = Vec3::Zero();
   for (int i = side.begin; i < side.end; ++i)
     place += std::abs(term.separation.weights[i]) * positions.row(term.nodes[static_cast<std::size_t>(i)]).transpose();
@@ -169,14 +167,14 @@ struct PairSum {
 };
 
 /// Adds the forces on the nodes of a side.
-void add_forces(const Term& term, const contact::Gradient& gradient, const Side& side, const PressedSurface& surface,
-                Points& on_vertices) {
+void add_forces(const ContactPotential::Term& term, const contact::Gradient& gradient, const Side& side,
+                const PressedSurface& surface, Points& on_vertices) {
   for (int i = side.begin; i < side.end; ++i)
     on_vertices.row(surface.place(term.nodes[static_cast<std::size_t>(i)])) -= gradient.segment<3>(3 * i).transpose();
 }
 
-void add_term(const Points& positions, const Term& term, const contact::Gradient& gradient, std::array<Side, 2> sides,
-              const PressedSurface& surface, PairSum& sum) {
+void add_term(const Points& positions, const ContactPotential::Term& term, const contact::Gradient& gradient,
+              std::array<Side, 2> sides, const PressedSurface& surface, PairSum& sum) {
   const double gap = std::sqrt(term.separation.squared);
   Vec3 apart = Vec3::Zero();  // on the side at which the separation ends
   for (int i = sides[0].begin; i < sides[0].end; ++i) apart -= gradient.segment<3>(3 * i);
@@ -233,14 +231,15 @@ PairForces finished(const PairSum& sum, const PressedSurface& surface) {
 }  // namespace
 
 ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPotential& potential,
-                             const Points& positions, const std::vector<Term>& terms, const Friction& friction,
-                             const Friction::Holds& holds, const std::vector<Anchor>& anchors) {
+                             const Points& positions, const std::vector<ContactPotential::Term>& terms,
+                             const Friction& friction, const Friction::Holds& holds,
+                             const std::vector<Anchor>& anchors) {
   const std::vector<ContactPart>& parts = surfaces.rules->parts;
   const auto rank = [&](Index part) { return parts[static_cast<std::size_t>(part)].rank; };
   const PressedSurface surface(surfaces, positions);
   std::map<std::pair<Index, Index>, PairSum> sums;
   Points all = Points::Zero(surface.size(), 3);
-  for (const Term& term : terms) {
+  for (const ContactPotential::Term& term : terms) {
     const contact::Gradient gradient = potential.gradient(positions, term);
     const std::array<Side, 2> sides = sides_of(surfaces, term);
     Index a = sides[0].part, b = sides[1].part;

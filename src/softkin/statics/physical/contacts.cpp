@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/contact/collision.hpp>
+#include <softkin/statics/physical/contact_measure.hpp>
 #include <softkin/statics/physical/contacts.hpp>
 
 namespace softkin::physical {
@@ -130,7 +131,7 @@ contact::Exclusions Contacts::exclusions() const {
 }
 
 std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
-  return std::make_unique<Scratch>(Scratch{*broad_, {}, {}, {}, {}, {}});
+  return std::make_unique<Scratch>(*broad_);
 }
 
 /// Of candidates those that are so close and feel each other; sorted.
@@ -200,6 +201,41 @@ void Contacts::add_gradient(const Points& positions, const Scratch& scratch, Poi
     potential_->add_gradient(points, scratch.terms, out);
     friction_.add_gradient(points, scratch.holds, out);
   });
+}
+
+void Contacts::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& scratch, Sum& sum,
+                        Team& team) const {
+  auto& own = static_cast<Scratch&>(scratch);
+  own.evaluated = !sum.forbidden;
+  if (!own.evaluated) return;
+  find(at.positions, own, team);
+  if (own.friction_follows) friction_.hold(own.terms, at.anchors, own.holds);
+  sum.energy += energy(at.positions, own);
+  sum.forbidden = !std::isfinite(sum.energy);
+  own.evaluated = !sum.forbidden;
+  if (own.evaluated) add_gradient(at.positions, own, sum.gradient);
+}
+
+void Contacts::add_cliques_of(const Iterate& at, Term::Scratch& scratch, linear::Cliques& cliques, Team& team) const {
+  auto& own = static_cast<Scratch&>(scratch);
+  find_pairs(at.positions, own, team, own.slotted);
+  own.first_slot = cliques.slots.back();
+  add_cliques(own.slotted, cliques);
+}
+
+void Contacts::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& scratch,
+                         LargeVector<double>& slots, Team& /*team*/) const {
+  const auto& own = static_cast<const Scratch&>(scratch);
+  stiffness(at.positions, projected, own, own.slotted, slots.data() + 9 * own.first_slot);
+}
+
+void Contacts::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& scratch, ElementDeformation& out,
+                    Team& /*team*/) const {
+  const auto& own = static_cast<const Scratch&>(scratch);
+  Points room;
+  if (own.evaluated)
+    out.contacts = contact_forces(surfaces_, *potential_, points_.of(at.positions, room), own.terms, friction_,
+                                  own.holds, at.anchors);
 }
 
 void Contacts::follow_pushes(const Points& moves, double share, Scratch& scratch) const {
@@ -358,12 +394,13 @@ double Contacts::largest_turn(const Points& from, const Points& to) const {
   return std::sqrt(most);
 }
 
-double Contacts::safe_share(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
+double Contacts::longest_step(const Points& from, const Points& to, Term::Scratch& scratch, Team& team) const {
   Points room, room_of_end;
-  return safe_share_of_points(points_.of(from, room), points_.of(to, room_of_end), scratch, team);
+  return longest_step_of_points(points_.of(from, room), points_.of(to, room_of_end), static_cast<Scratch&>(scratch),
+                                team);
 }
 
-double Contacts::safe_share_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
+double Contacts::longest_step_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
   Scratch::Around& around = scratch.around;
   const double way = std::max(moved(around.center, from), moved(around.center, to));
   if (!(2 * way <= margin_mm_)) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/text.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 #include <softkin/statics/physical/pull_in.hpp>
 #include <softkin/statics/physical/stability.hpp>
@@ -130,7 +131,7 @@ Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate&
   set_out(from, to);
   (void)release(to, at, false);
   from_ = at.positions;
-  (void)system_.renew_friction(from_, at, work_, team_);
+  (void)renew_friction(system_, from_, at, work_, team_);
   if (!same_shape(work_.home, at.positions)) work_.trail.clear();
   way_.factorised = same_shape(work_.home, at.positions) && factor_holds_active();
   work_.home.resize(0, 3);
@@ -431,7 +432,7 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
   tell_balance();
   report_.reached = whole(done);
   report_.remark = why + pull_in_text(system_.model(), way_.from, between(way_.from, way_.to, done), at.positions);
-  const double slipping = system_.slipping_share(at, work_, team_);
+  const double slipping = slipping_share(system_, at, work_, team_);
   if (slipping >= worth_telling)
     report_.remark += "; there " + number(100 * slipping, 3) + " % of what rubs slips, or nearly";
   return Status::limit;
@@ -489,7 +490,7 @@ void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
 /// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.
 int Continuation::prepare(const Demand& here, const Iterate& at) {
   System::Balance balance;
-  system_.hold_friction(at, work_, team_);
+  hold_friction(system_, at, work_, team_);
   system_.evaluate(at, here, active_, work_, balance, team_);
   ++report_.factorisations;
   const int modes = system_.factorise(at, here, active_, System::Stiffness::exact, 0, work_, team_);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/statics/physical/bordered.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/derivative.hpp>
 #include <softkin/statics/physical/lease.hpp>
 #include <utility>
@@ -38,7 +39,7 @@ void Derivative::hold(const Iterate& at, const Demand& demand) {
     if (active_[a]) held_.push_back(a);
   }
   System::Balance balance;
-  system_.hold_friction(at, work_, team_);
+  hold_friction(system_, at, work_, team_);
   system_.evaluate(at, demand, active_, work_, balance, team_);
 }
 

@@ -1,4 +1,5 @@
 #include <softkin/statics/physical/contact_at_rest.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 #include <softkin/statics/physical/lease.hpp>
 
@@ -46,7 +47,9 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
 void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) const {
   Lease lease(*this, at.positions, true);
   system_.set_time(at.history, at.elapsed_s, lease.work(), team);
-  system_.measure(system_.iterate(at), {at.actuation, at.share}, lease.work(), out, team);
+  const Iterate shape = system_.iterate(at);
+  hold_friction(system_, shape, lease.work(), team);
+  system_.measure(shape, {at.actuation, at.share}, lease.work(), out, team);
   out.multipliers = at.multipliers;
 }
 
@@ -74,8 +77,8 @@ void Equilibria::forget() const {
 
 bool Equilibria::comes_to(const Points& from, const Points& to, System::Workspace& work, Team& team) const {
   Points end;
-  const System::Way straight = [&](double share, Points& out) { out = from + share * (to - from); };
-  return system_.clear_share(from, straight, 1, work, end, team) >= 1;
+  const Way straight = [&](double share, Points& out) { out = from + share * (to - from); };
+  return clear_share(system_, from, straight, 1, work, end, team) >= 1;
 }
 
 /// From a start that is no equilibrium no path may lead away; from rest one may.
@@ -86,7 +89,10 @@ void Equilibria::begin_again(const Demand& to, const Options& options, const Pro
   Demand from = at_rest(system_.model(), to.actuation);
   system_.hold(from, fresh.positions);
   Continuation continuation(system_, work, team, options, progress, report);
-  if (system_.viscous()) from = system_.unbalanced(fresh, from, work, team);
+  if (system_.viscous()) {
+    hold_friction(system_, fresh, work, team);
+    from = system_.unbalanced(fresh, from, work, team);
+  }
   const Status status = continuation.follow(from, to, fresh);
   if (status == Status::converged) {
     at = std::move(fresh);
@@ -121,8 +127,10 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   const bool rests = start.positions == model.rest && start.actuation.size() == 0;
   const bool same_time =
       rests ? !options.history : start.history == options.history && start.elapsed_s == options.elapsed_s;
-  if (system_.viscous() && !same_time && (rests || start.knows(system_.actuators())))
+  if (system_.viscous() && !same_time && (rests || start.knows(system_.actuators()))) {
+    hold_friction(system_, at, lease.work(), team);
     from = system_.unbalanced(at, from, lease.work(), team);
+  }
   // a start whose supports are elsewhere may have no way there
   const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
                      comes_to(start.positions, at.positions, lease.work(), team);

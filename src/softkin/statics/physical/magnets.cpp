@@ -126,6 +126,8 @@ Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
       add(quadratic_, model, nodes, remanence[e], slots[e]);
     }
   }
+  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+    if (model.actuators[a].kind == ActuatorKind::magnetic) commands_.push_back(a);
   std::vector<double> sums(static_cast<std::size_t>(vertices_));
   each([&]<int K, int Q>(const Set<K, Q>& set) {
     for (std::size_t e = 0; e < set.nodes.size(); ++e)
@@ -175,13 +177,18 @@ std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, cons
   return energy;
 }
 
-std::optional<double> Magnets::add_gradient(const Demand& demand, const Points& positions, Points& gradient,
-                                            Team& team) const {
-  return add_gradient(fields_.setting(demand), positions, gradient, team);
+void Magnets::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum, Team& team) const {
+  const std::optional<double> energy = add_gradient(fields_.setting(demand), at.positions, sum.gradient, team);
+  sum.energy += energy.value_or(0);
+  sum.forbidden = sum.forbidden || !energy;
+  sum.left_field = sum.left_field || !energy;
 }
 
-void Magnets::add_change(const Demand& from, const Demand& to, const Points& positions, Points& force,
-                         Team& team) const {
+void Magnets::add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& /*scratch*/,
+                         Points& force, Team& team) const {
+  const bool commanded =
+      std::any_of(commands_.begin(), commands_.end(), [&](Index a) { return from.actuation[a] != to.actuation[a]; });
+  if (!commanded && !(grows() && from.share != to.share)) return;
   Fields::Setting before = fields_.setting(from), after = fields_.setting(to);
   if (!before.in_space() && !after.in_space()) {  // in which the gradient is linear
     after.uniform -= before.uniform;
@@ -194,8 +201,9 @@ void Magnets::add_change(const Demand& from, const Demand& to, const Points& pos
   (void)add_gradient(after, positions, force, team);
 }
 
-void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,
-                            Team& team) const {
+void Magnets::stiffness(const Iterate& at, const Demand& demand, bool projected, Scratch& /*scratch*/,
+                        LargeVector<double>& slots, Team& team) const {
+  const Points& positions = at.positions;
   const Fields::Setting setting = fields_.setting(demand);
   turning_.add_stiffness(fields_, setting, positions, projected, slots, team);
   if (!setting.in_space()) return;
@@ -230,10 +238,10 @@ void Magnets::add_stiffness(const Demand& demand, const Points& positions, bool 
   });
 }
 
-void Magnets::command_force(Index actuator, const Demand& demand, const Points& positions, Points& force,
-                            Team& team) const {
-  force.setZero(positions.rows(), 3);
-  (void)add_gradient(fields_.derivative(actuator, demand), positions, force, team);
+void Magnets::add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& /*scratch*/,
+                             Points& force, Team& team) const {
+  if (std::find(commands_.begin(), commands_.end(), command) != commands_.end())
+    (void)add_gradient(fields_.derivative(command, demand), positions, force, team);
 }
 
 MagneticLoad Magnets::load(const Demand& demand, const Points& positions, Team& team) const {
@@ -250,7 +258,7 @@ MagneticLoad Magnets::load(const Demand& demand, const Points& positions, Team& 
   turning_.add_places(positions, volume, load.center);
   load.center /= volume;
   Points gradient = Points::Zero(positions.rows(), 3);
-  (void)add_gradient(demand, positions, gradient, team);
+  (void)add_gradient(fields_.setting(demand), positions, gradient, team);
   for (Index v = 0; v < vertices_; ++v) {
     const Vec3 force = -gradient.row(v).transpose();
     load.force += force;

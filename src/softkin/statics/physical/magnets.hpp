@@ -3,8 +3,8 @@
 #include <optional>
 #include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
-#include <softkin/statics/deformation.hpp>
 #include <softkin/statics/physical/element_shapes.hpp>
+#include <softkin/statics/physical/term.hpp>
 #include <softkin/statics/physical/turning_magnets.hpp>
 
 namespace softkin::physical {
@@ -18,30 +18,35 @@ namespace softkin::physical {
 /// own slots.
 ///
 /// source  Zhao, Kim, Cheng, Liu, Zhao, J. Mech. Phys. Solids 124, 2019; docs/magnetism.md
-class Magnets {
+class Magnets : public Term {
  public:
   /// model  must outlive the object, and have magnetism
   /// slots  first one of every tetrahedron's matrices, then of every prism's
   Magnets(const Model& model, const std::vector<std::int64_t>& slots);
 
-  /// Energy [mJ]; adds the gradient [N]. None where the field is not known: outside a grid, on a wire.
-  [[nodiscard]] std::optional<double> add_gradient(const Demand& demand, const Points& positions, Points& gradient,
-                                                   Team& team) const;
+  /// Forbidden where the field is not known: outside a grid, on a wire.
+  void evaluate(const Iterate& at, const Demand& demand, Scratch& scratch, Sum& sum, Team& team) const override;
 
-  /// Adds how the gradient changes from one demand to another [N].
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Points& force, Team& team) const;
+  void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
+                  Team& team) const override;
 
-  /// Adds second derivatives to what is in the elements' slots [N/mm]. projected: made positive semidefinite at every
+  /// Adds second derivatives to what is in the elements' slots. projected: made positive semidefinite at every
   /// quadrature point, of what stretches by the nearest such matrix in (F b_r, x)
-  void add_stiffness(const Demand& demand, const Points& positions, bool projected, LargeVector<double>& slots,
-                     Team& team) const;
+  void stiffness(const Iterate& at, const Demand& demand, bool projected, Scratch& scratch, LargeVector<double>& slots,
+                 Team& team) const override;
 
-  /// Derivative of the gradient by the command of an actuator of kind magnetic, at fixed positions, #V by 3.
-  void command_force(Index actuator, const Demand& demand, const Points& positions, Points& force, Team& team) const;
+  void add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& scratch, Points& force,
+                      Team& team) const override;
 
   [[nodiscard]] MagneticLoad load(const Demand& demand, const Points& positions, Team& team) const;
 
-  [[nodiscard]] bool any_dipole() const { return fields_.any_dipole(); }
+  void tell(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, ElementDeformation& out,
+            Team& team) const override {
+    out.magnetic = load(demand, at.positions, team);
+  }
+
+  /// Dipoles come with the share.
+  [[nodiscard]] bool grows() const override { return fields_.any_dipole(); }
 
  private:
   /// Elements of K nodes and Q quadrature points whose magnets stretch.
@@ -61,11 +66,12 @@ class Magnets {
     visit(quadratic_);
     visit(prisms_);
   }
-  /// Of the fields of a setting.
+  /// Energy [mJ] in the fields of a setting; adds the gradient. None where a field is not known.
   std::optional<double> add_gradient(const Fields::Setting& setting, const Points& positions, Points& gradient,
                                      Team& team) const;
 
   Fields fields_;
+  std::vector<Index> commands_;  // of actuators of kind magnetic
   Index vertices_;
   TurningMagnets turning_;
   std::vector<std::pair<Index, double>> poles_;  // of a uniform field: vertex, force over flux density [N / mT]

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/statics/physical/bordered.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/newton.hpp>
 #include <softkin/statics/physical/stability.hpp>
 #include <utility>
@@ -110,7 +111,7 @@ bool Newton::last(const Step& step, double before) const {
 /// there is no way.
 bool Newton::attempt(const Step& step, double& damping, const Iterate& from) {
   trial_ = from;
-  if (!system_.advance_clear(step.move, damping, work_, trial_.positions, team_)) return false;
+  if (!advance_clear(system_, step.move, damping, work_, trial_.positions, team_)) return false;
   trial_.multipliers += damping * step.change;
   system_.evaluate(trial_, *demand_, *active_, work_, trial_balance_, team_);
   return !trial_balance_.forbidden && trial_balance_.force.allFinite();
@@ -226,7 +227,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   // forces that follow their normal forces have none
   // a stiffness that was made positive leads down, if not straight; where little is left it leads to no unstable shape
-  const bool potential = (system_.contact() || !work_.exact) && !work_.friction_follows;
+  const bool potential = (system_.contact() || !work_.exact) && !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
   steepest_ = std::min(steepest_, slope);
   if (!system_.contact() && slope > worthwhile_slope * steepest_) slope = 0;

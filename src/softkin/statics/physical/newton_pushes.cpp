@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/newton.hpp>
 
 namespace softkin::physical {
@@ -16,7 +17,7 @@ Newton::Outcome Newton::settle_pushes(const Demand& demand, const std::vector<bo
   for (int i = 0; i < most_steps; ++i) {
     system_.evaluate(trial_, demand, active, work_, balance_, team_);
     if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
-    const double missed = system_.missed_by_pushes(work_);
+    const double missed = missed_by_pushes(system_, work_);
     if (damping == 1 && missed < near) {
       at = std::move(trial_);
       return Outcome::converged;
@@ -28,10 +29,10 @@ Newton::Outcome Newton::settle_pushes(const Demand& demand, const std::vector<bo
     step_.size = system_.size_of(step_.move, trial_.positions);
     const Points from = trial_.positions;
     damping = 1;
-    if (!std::isfinite(step_.size.mean) || !system_.advance_clear(step_.move, damping, work_, trial_.positions, team_))
+    if (!std::isfinite(step_.size.mean) || !advance_clear(system_, step_.move, damping, work_, trial_.positions, team_))
       return Outcome::stuck;
     trial_.multipliers += damping * step_.change;
-    system_.follow_pushes((trial_.positions - from) / damping, damping, work_);
+    system_.contacts()->follow_pushes((trial_.positions - from) / damping, damping, *work_.contacts);
     record(damping * step_.size.largest);
   }
   return Outcome::stuck;

@@ -1,4 +1,5 @@
 #include <softkin/statics/physical/bordered.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/prediction.hpp>
 
 namespace softkin::physical {
@@ -40,7 +41,7 @@ struct Tangent {
     const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
     const bool refined = !of_here || !work.factor.in_double();
     if (refined || here.share != there.share || here.fading != there.fading) {
-      system.hold_friction(at, work, team);
+      hold_friction(system, at, work, team);
       system.evaluate(at, here, active, work, balance, team);
       system.assemble(at, here, System::Stiffness::exact, work, team);
     }
@@ -93,7 +94,7 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   const Points from = at.positions;
   // what is held comes to its place whatever is left of the way
   double held = 1;
-  const System::Way way = [&](double share, Points& out) {
+  const Way way = [&](double share, Points& out) {
     const Demand to = between(here, there, share / held);
     out = from;
     system.advance(tangent.step, share, work, out, team, &to);
@@ -101,18 +102,18 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   double end = 1;
   for (bool first = true;; first = false) {
     held = end;
-    const double share = system.clear_share(from, way, end, work, at.positions, team);
+    const double share = clear_share(system, from, way, end, work, at.positions, team);
     if (first) predicted = at.positions;
     if (share >= end) break;
     end = shorter * share;
     if (end < most_cut && largest_move(from, predicted) > long_way * system.model().diagonal_mm) return std::nullopt;
     if (end >= least) continue;
     end = 0;  // only what is held moves
-    const System::Way alone = [&](double part, Points& out) {
+    const Way alone = [&](double part, Points& out) {
       out = from;
       system.hold(between(here, there, part), out);
     };
-    if (system.clear_share(from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
+    if (clear_share(system, from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
     break;
   }
   follow(tangent, end, system, there, active, at.multipliers);
@@ -189,7 +190,7 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
   System::Balance balance;
   const Demand demand{at.actuation, at.share};
   system.set_time(at.history, at.elapsed_s, work_, team);
-  system.hold_friction(iterate_, work_, team);
+  hold_friction(system, iterate_, work_, team);
   system.evaluate(iterate_, demand, active_, work_, balance, team);
   (void)system.factorise(iterate_, demand, active_, System::Stiffness::exact, 0, work_, team);
 }

@@ -1,3 +1,4 @@
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 #include <utility>
 
@@ -28,19 +29,19 @@ Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterat
   constexpr double foresight = 2;
   const std::vector<bool> before = active_;
   Iterate trial = at;
-  system_.hold_friction(from, work_, team_);
-  system_.straighten_contact(from, foresight, work_, team_);
+  hold_friction(system_, from, work_, team_);
+  OtherContact contact(system_, work_, team_);
+  contact.straighten(from, foresight);
   auto outcome = Newton::Outcome::converged;
-  if (!system_.any_push(work_)) {
-    system_.forget_pushes(work_);
-    system_.set_firmness(soft, work_);
+  if (!contact.any_push()) {
+    contact.forget();
+    contact.set_firmness(soft);
     outcome = settle_constraints(demand, Newton::Policy::descend, trial, false);
-    if (outcome == Newton::Outcome::converged) system_.straighten_contact(trial, soft.reach, work_, team_);
+    if (outcome == Newton::Outcome::converged) contact.straighten(trial, soft.reach);
   } else {
-    system_.follow_pushes(trial.positions - from.positions, 1, work_);
+    system_.contacts()->follow_pushes(trial.positions - from.positions, 1, *work_.contacts);
   }
   if (outcome == Newton::Outcome::converged) outcome = newton_.settle_pushes(demand, active_, trial);
-  system_.forget_pushes(work_);
   if (outcome == Newton::Outcome::converged)
     at = std::move(trial);
   else
@@ -55,18 +56,18 @@ Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy
   if (!system_.friction()) return settle_constraints(demand, policy, at, factorised);
   auto outcome = settle_following(demand, policy, at, factorised);
   if (outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::unmet) return outcome;
-  system_.hold_friction(at, work_, team_);
+  hold_friction(system_, at, work_, team_);
   for (int round = 1; round <= most_rounds; ++round) {
     const bool near = round > 1 && factorised_nearby(at.positions) && factor_holds_active();
     outcome = settle_constraints(demand, policy, at, near);
     rounds_ = round;
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
-    report_.friction_change = system_.renew_friction(from_, at, work_, team_);
+    report_.friction_change = renew_friction(system_, from_, at, work_, team_);
     if (report_.friction_change <= frictions_agree) break;
     if (round > 8 || (round & (round - 1)) != 0) continue;  // 1, 2, 4, 8
     const auto followed = settle_following(demand, policy, at, false);
     if (followed != Newton::Outcome::stuck && followed != Newton::Outcome::unmet) return followed;
-    system_.hold_friction(at, work_, team_);
+    hold_friction(system_, at, work_, team_);
   }
   return outcome;
 }
@@ -80,14 +81,15 @@ Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Pol
   Iterate trial = at;
   rounds_ = 1;
   for (int round = 0; round < most_rounds; ++round) {
-    work_.friction_follows = true;
-    const auto outcome = settle_constraints(demand, policy, trial, factorised);
-    work_.friction_follows = false;
+    const auto outcome = [&] {
+      const FollowingFriction following(work_);
+      return settle_constraints(demand, policy, trial, factorised);
+    }();
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) {
       active_ = before;
       return outcome;
     }
-    report_.friction_change = system_.renew_friction(from_, trial, work_, team_);
+    report_.friction_change = renew_friction(system_, from_, trial, work_, team_);
     if (report_.friction_change <= frictions_agree) {
       at = std::move(trial);
       return outcome;
@@ -101,7 +103,7 @@ Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Pol
 /// Another equilibrium instead of the one at hand: what slips goes on from there.
 void Continuation::take(Iterate& at, Iterate&& found) {
   at = std::move(found);
-  system_.slide_friction(at, work_, team_);
+  slide_friction(system_, at, work_, team_);
   from_ = at.positions;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/dense.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/stability.hpp>
 
 namespace softkin::physical {
@@ -119,7 +120,7 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
     if (!step.allFinite() || !change.allFinite()) continue;
     Iterate trial = at;
     double scale = 1;
-    if (!system.advance_clear(step, scale, work, trial.positions, team)) continue;
+    if (!advance_clear(system, step, scale, work, trial.positions, team)) continue;
     trial.multipliers += scale * change;
     system.evaluate(trial, demand, active, work, there, team);
     if (there.forbidden || !there.force.allFinite()) continue;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <softkin/core/text.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 
 namespace softkin::physical {
@@ -74,7 +75,7 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
     const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
     interrupted_ = outcome == Newton::Outcome::interrupted;
     if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted)) {
-      system_.slide_friction(trial, work_, team_);
+      slide_friction(system_, trial, work_, team_);
       found = Measured{measure, trial.multipliers[a] / system_.unit(a), std::move(trial), judged(), 0, there.share};
     }
     const Points& end = found ? found->at.positions : begun;

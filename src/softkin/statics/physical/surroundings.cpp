@@ -34,39 +34,48 @@ void Surroundings::place(const Eigen::VectorXd& actuation, Points& positions) co
       positions(v, model_.actuators[a].axis) += actuation[static_cast<Index>(a)];
 }
 
+/// Does a command load a body: a force, or what holds it.
+bool Surroundings::loads(Index command) const {
+  const ActuatorKind kind = model_.actuators[static_cast<std::size_t>(command)].kind;
+  return kind == ActuatorKind::force || kind == ActuatorKind::hold;
+}
+
 double Surroundings::moved(Index actuator, const Points& positions) const {
   const Index first = vertices_of_[static_cast<std::size_t>(actuator)][0];
   const int axis = model_.actuators[static_cast<std::size_t>(actuator)].axis;
   return positions(first, axis) - model_.rest(first, axis);
 }
 
+/// Adds what a body's springs pull with.
 void Surroundings::add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const {
   const double each = stiffness / static_cast<double>(body.vertices.size());
   for (const Index v : body.vertices) gradient.row(v) += each * (positions.row(v) - model_.rest.row(v));
 }
 
-double Surroundings::add_gradient(const Eigen::VectorXd& actuation, const Points& positions, Points& gradient) const {
-  if (!any_body()) return 0;
+void Surroundings::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum,
+                            Team& /*team*/) const {
+  if (!any_body()) return;
+  const Points& positions = at.positions;
   double energy = 0;
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
     const Actuator& actuator = model_.actuators[a];
-    const double command = actuation[static_cast<Index>(a)];
+    const double command = demand.actuation[static_cast<Index>(a)];
     if (actuator.kind == ActuatorKind::hold) {
       const FreeBody& body = model_.bodies[static_cast<std::size_t>(actuator.other)];
       const double stiffness = stiffest_ * firm_share(command);
-      add_spring(body, stiffness, positions, gradient);
+      add_spring(body, stiffness, positions, sum.gradient);
       for (const Index v : body.vertices)
         energy += 0.5 * stiffness / static_cast<double>(body.vertices.size()) *
                   (positions.row(v) - model_.rest.row(v)).squaredNorm();
     } else if (actuator.kind == ActuatorKind::force && command != 0) {
-      const EmbeddedPoint& at = model_.bodies[static_cast<std::size_t>(actuator.other)].center;
-      for (std::size_t i = 0; i < at.vertices.size(); ++i) {
-        gradient(at.vertices[i], actuator.axis) -= command * at.weights[i];
-        energy -= command * at.weights[i] * (positions - model_.rest)(at.vertices[i], actuator.axis);
+      const EmbeddedPoint& center = model_.bodies[static_cast<std::size_t>(actuator.other)].center;
+      for (std::size_t i = 0; i < center.vertices.size(); ++i) {
+        sum.gradient(center.vertices[i], actuator.axis) -= command * center.weights[i];
+        energy -= command * center.weights[i] * (positions - model_.rest)(center.vertices[i], actuator.axis);
       }
     }
   }
-  return energy;
+  sum.energy += energy;
 }
 
 void Surroundings::add_cliques(linear::Cliques& cliques) {
@@ -75,13 +84,14 @@ void Surroundings::add_cliques(linear::Cliques& cliques) {
     for (const Index v : body.vertices) cliques.add(std::array<Index, 1>{v});
 }
 
-void Surroundings::stiffness(const Eigen::VectorXd& actuation, LargeVector<double>& slots) const {
+void Surroundings::stiffness(const Iterate& /*at*/, const Demand& demand, bool /*projected*/, Scratch& /*scratch*/,
+                             LargeVector<double>& slots, Team& /*team*/) const {
   if (!any_body()) return;
   std::vector<double> of_body(model_.bodies.size());
   for (std::size_t a = 0; a < model_.actuators.size(); ++a)
     if (model_.actuators[a].kind == ActuatorKind::hold)
       of_body[static_cast<std::size_t>(model_.actuators[a].other)] =
-          stiffest_ * firm_share(actuation[static_cast<Index>(a)]);
+          stiffest_ * firm_share(demand.actuation[static_cast<Index>(a)]);
   double* slot = slots.data() + 9 * first_slot_;
   for (std::size_t b = 0; b < of_body.size(); ++b) {
     const std::size_t count = model_.bodies[b].vertices.size();
@@ -90,16 +100,27 @@ void Surroundings::stiffness(const Eigen::VectorXd& actuation, LargeVector<doubl
   }
 }
 
-void Surroundings::command_force(Index actuator, const Eigen::VectorXd& actuation, const Points& positions,
-                                 Points& force) const {
-  force.setZero(positions.rows(), 3);
-  const Actuator& command = model_.actuators[static_cast<std::size_t>(actuator)];
-  if (command.kind == ActuatorKind::motion || command.kind == ActuatorKind::turn) return;
-  const FreeBody& body = model_.bodies[static_cast<std::size_t>(command.other)];
-  if (command.kind == ActuatorKind::hold)
-    return add_spring(body, stiffest_ * firm_slope(actuation[actuator]), positions, force);
+void Surroundings::add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch,
+                              Points& force, Team& team) const {
+  Points slope;
+  for (Index a = 0; a < static_cast<Index>(model_.actuators.size()); ++a) {
+    const double change = to.actuation[a] - from.actuation[a];
+    if (change == 0 || !loads(a)) continue;
+    slope.setZero(positions.rows(), 3);
+    add_derivative(a, from, positions, scratch, slope, team);
+    force += change * slope;
+  }
+}
+
+void Surroundings::add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& /*scratch*/,
+                                  Points& force, Team& /*team*/) const {
+  if (!loads(command)) return;
+  const Actuator& actuator = model_.actuators[static_cast<std::size_t>(command)];
+  const FreeBody& body = model_.bodies[static_cast<std::size_t>(actuator.other)];
+  if (actuator.kind == ActuatorKind::hold)
+    return add_spring(body, stiffest_ * firm_slope(demand.actuation[command]), positions, force);
   for (std::size_t i = 0; i < body.center.vertices.size(); ++i)
-    force(body.center.vertices[i], command.axis) = -body.center.weights[i];
+    force(body.center.vertices[i], actuator.axis) -= body.center.weights[i];
 }
 
 void Surroundings::motion(Index actuator, Points& moves) const {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/physical/term.hpp>
 
 namespace softkin::physical {
 
@@ -10,7 +10,7 @@ namespace softkin::physical {
 ///
 /// A body is held by a spring at each of its vertices. Of a command between 0 and 1 their stiffness falls by the same
 /// factor for every part of the way, to nothing at 0: the body settles where it is free while it is being released.
-class Surroundings {
+class Surroundings : public Term {
  public:
   /// model must outlive the object.
   explicit Surroundings(const Model& model);
@@ -24,21 +24,25 @@ class Surroundings {
   /// How far an obstacle is from where it stands at rest, along its command's axis [mm].
   [[nodiscard]] double moved(Index actuator, const Points& positions) const;
 
-  /// Energy of the springs, less the work of the forces [mJ]; adds the gradient [N].
-  double add_gradient(const Eigen::VectorXd& actuation, const Points& positions, Points& gradient) const;
+  /// Energy of the springs, less the work of the forces.
+  void evaluate(const Iterate& at, const Demand& demand, Scratch& scratch, Sum& sum, Team& team) const override;
 
-  /// Adds every vertex of a body as a clique.
-  void add_cliques(linear::Cliques& cliques);
-  /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
-  void stiffness(const Eigen::VectorXd& actuation, LargeVector<double>& slots) const;
+  /// Adds every vertex of a body.
+  void add_cliques(linear::Cliques& cliques) override;
+  void stiffness(const Iterate& at, const Demand& demand, bool projected, Scratch& scratch, LargeVector<double>& slots,
+                 Team& team) const override;
 
-  /// Derivative of the gradient by the command of a force or a hold at fixed positions, #V by 3; zero of a motion or
-  /// a turn.
-  void command_force(Index actuator, const Eigen::VectorXd& actuation, const Points& positions, Points& force) const;
+  /// To first order, from the first demand on.
+  void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
+                  Team& team) const override;
+  /// Of a force or a hold.
+  void add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& scratch, Points& force,
+                      Team& team) const override;
   /// Derivative of the positions by the command of a motion, #V by 3.
   void motion(Index actuator, Points& moves) const;
 
  private:
+  [[nodiscard]] bool loads(Index command) const;
   void add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const;
 
   const Model& model_;

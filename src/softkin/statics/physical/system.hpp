@@ -1,11 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <softkin/core/dense.hpp>
 #include <softkin/linear/mixed_ldlt.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
+#include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 #include <softkin/statics/physical/surroundings.hpp>
 #include <softkin/statics/physical/trail.hpp>
@@ -19,8 +19,8 @@
 namespace softkin::physical {
 
 /// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
-/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers. The energy
-/// has that of the electric field of dea actuators under voltage; their multipliers are told, but not read.
+/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers. The energy is
+/// the sum of the terms'; multipliers of dea actuators under voltage are told, but not read.
 class System {
  public:
   explicit System(const Model& model);
@@ -30,9 +30,7 @@ class System {
     linear::BlockPattern pattern;  // over vertices
     supports::ReducedMatrix reduced;
     std::shared_ptr<const linear::FrontTree> symbolic;
-    std::int64_t slots = 0;           // of the cliques of the pattern
-    contact::Candidates touching;     // the last cliques are of these pairs
-    std::int64_t first_touching = 0;  // slot
+    std::int64_t slots = 0;  // of the cliques of the pattern
   };
 
   /// How an equilibrium changes with the commands: what a derivative found.
@@ -48,14 +46,14 @@ class System {
   struct Workspace {
     explicit Workspace(const System& system);
 
-    Body::Scratch elastic;
-    Points unbalanced;  // #V by 3 [N]: gradient of the Lagrangian where a way began that is no equilibrium
+    std::vector<std::unique_ptr<Term::Scratch>> terms;  // of each
+    Body::Scratch& elastic;
+    FadingLoads::Scratch& fading;
+    Contacts::Scratch* contacts;  // where there is contact
     /// Every column becomes nearly its solution, as linear::MixedLdlt says, with the last factorisation.
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
-    std::unique_ptr<Contacts::Scratch> contacts;      // where there is contact
     bool left_field = false;                          // was a shape where a field is not known, as outside a grid
-    bool friction_follows = false;                    // are its normal forces those of the shape, not those held
     std::shared_ptr<const Layout> layout;             // of the slots
     std::shared_ptr<const Layout> factorised_layout;  // of the factor
     LargeVector<double> slots, blocks, values;
@@ -107,13 +105,13 @@ class System {
 
   /// What Maxwell branches remember, and the time since then [s], for all that a workspace evaluates next; see Body.
   void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work, Team& team) const;
-  [[nodiscard]] bool viscous() const { return elastic_.viscous(); }
+  [[nodiscard]] bool viscous() const { return body_.viscous(); }
   /// What they remember of an equilibrium; see Body.
   [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const State& at, Workspace& work, double& lost_mJ,
                                                            Team& team) const {
-    return elastic_.flow({at.actuation, at.share}, at.positions, work.elastic, lost_mJ, team);
+    return body_.flow({at.actuation, at.share}, at.positions, work.elastic, lost_mJ, team);
   }
-  [[nodiscard]] std::size_t remembered() const { return elastic_.remembered(); }
+  [[nodiscard]] std::size_t remembered() const { return body_.remembered(); }
   /// The demand of a way that begins where forces are not in balance: what they lack fades along it.
   [[nodiscard]] Demand unbalanced(const Iterate& at, const Demand& demand, Workspace& work, Team& team) const;
 
@@ -181,46 +179,10 @@ class System {
     return surroundings_.moved(actuator, positions);
   }
 
+  /// What touches; null: nothing can.
+  [[nodiscard]] const Contacts* contacts() const { return contacts_.get(); }
   [[nodiscard]] bool contact() const { return contacts_ != nullptr; }
   [[nodiscard]] bool friction() const { return contacts_ && contacts_->friction().any(); }
-
-  /// Friction by the normal forces of an equilibrium, for what follows, at its anchors.
-  void hold_friction(const Iterate& at, Workspace& work, Team& team) const;
-  /// The same, with new anchors where something began to touch on the way from an earlier shape.
-  ///
-  /// returns  how far the friction at the iterate was by other normal forces, over the largest force on a vertex [-]
-  double renew_friction(const Points& from, Iterate& at, Workspace& work, Team& team) const;
-  /// Share of what rubs that slips, or nearly [-].
-  [[nodiscard]] double slipping_share(const Iterate& at, Workspace& work, Team& team) const;
-  /// Lets what slips at an equilibrium go on from there.
-  void slide_friction(Iterate& at, Workspace& work, Team& team) const;
-
-  /// The same, less far where otherwise something would pass through something.
-  ///
-  /// scale    becomes what was moved by
-  /// returns  false where hardly any move is possible
-  bool advance_clear(const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions, Team& team) const;
-
-  /// Contact that is felt so in all that a workspace evaluates next.
-  void set_firmness(const ContactFirmness& firmness, Workspace& work) const;
-  /// Notes what touches in a shape, and with what it pushes, as it is felt: lines through that are its laws from there
-  /// on, to look up to so many reaches; see ContactPotential::straighten.
-  void straighten_contact(const Iterate& at, double foresight, Workspace& work, Team& team) const;
-  /// After so much of a move of the vertices.
-  void follow_pushes(const Points& moves, double share, Workspace& work) const;
-  [[nodiscard]] static bool any_push(const Workspace& work) { return !work.contacts->pushes.empty(); }
-  /// How far pushes are from those of the gaps by the scene's contact, over them: the largest, but for faint ones [-].
-  [[nodiscard]] double missed_by_pushes(const Workspace& work) const;
-  /// Contact by its own laws again.
-  void forget_pushes(Workspace& work) const;
-
-  /// A way: the shape at a share of it.
-  using Way = std::function<void(double, Points&)>;
-  /// How far a way can be gone before something passes through something or is torn out of all proportion [-]. Where it
-  /// turns what touches by much it is looked at in pieces.
-  ///
-  /// end  of the way, whose shape is written to `to`
-  double clear_share(const Points& from, const Way& way, double end, Workspace& work, Points& to, Team& team) const;
 
   /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
   struct Size {
@@ -229,6 +191,8 @@ class System {
   [[nodiscard]] Size size_of(const Eigen::VectorXd& unknowns, const Points& positions) const;
 
   [[nodiscard]] const Model& model() const { return model_; }
+  /// In the order in which they are added; a workspace has their scratch in the same.
+  [[nodiscard]] const std::vector<const Term*>& terms() const { return terms_; }
   [[nodiscard]] const supports::Freedoms& freedoms() const { return *freedoms_; }
   [[nodiscard]] const supports::ActuatorMeasures& measures() const { return measures_; }
   [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
@@ -268,30 +232,38 @@ class System {
   [[nodiscard]] bool holds(Index actuator) const { return model_.actuators[actuator].kind == ActuatorKind::hold; }
   [[nodiscard]] bool any_body() const { return surroundings_.any_body(); }
   /// Are there loads that grow with the share: weight, forces, dipoles.
-  [[nodiscard]] bool any_dead_load() const { return any_dead_load_ || (magnets_ && magnets_->any_dipole()); }
-  [[nodiscard]] bool prestretched() const { return elastic_.prestretched(); }
+  [[nodiscard]] bool any_dead_load() const;
+  [[nodiscard]] bool prestretched() const { return body_.prestretched(); }
 
  private:
   bool loses_energy(Workspace& work, Team& team) const;
   [[nodiscard]] bool multiplies_unknowns(const Workspace& work) const;
-  void hold_contacts(const Iterate& at, Workspace& work, Team& team) const;
+  void give_slots(const Iterate& at, Workspace& work, Team& team) const;
   void ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const;
   void close(Workspace& work) const;
   [[nodiscard]] Eigen::VectorXd closing(const Balance& balance, const Workspace& work,
                                         const Eigen::VectorXd& more) const;
   void meet_constraints(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
+  /// visit(term, its scratch)
+  template <class Visit>
+  void each_term(Workspace& work, const Visit& visit) const {
+    for (std::size_t i = 0; i < terms_.size(); ++i) visit(*terms_[i], *work.terms[i]);
+  }
+
   const Model& model_;
-  Body elastic_;
-  supports::ActuatorMeasures measures_;
+  Body body_;
+  DeadLoads dead_loads_;
+  FadingLoads fading_loads_;
   Surroundings surroundings_;
-  supports::Turning supports_turn_;
-  bool any_dead_load_;
-  std::unique_ptr<supports::Freedoms> freedoms_;
-  linear::Cliques cliques_;               // of the body
-  std::shared_ptr<const Layout> layout_;  // of the body alone
   std::unique_ptr<const Magnets> magnets_;
   std::unique_ptr<Contacts> contacts_;
+  supports::ActuatorMeasures measures_;
+  supports::Turning supports_turn_;
+  std::unique_ptr<supports::Freedoms> freedoms_;
+  linear::Cliques cliques_;               // of what couples in every shape
+  std::shared_ptr<const Layout> layout_;  // of that alone
+  std::vector<const Term*> terms_;        // contact last: nothing is looked for in a shape that is forbidden
   std::unique_ptr<supports::GlobalStep> turning_;
 };
 

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/energy/contact_laws.hpp>
+#include <softkin/statics/physical/contact_steps.hpp>
+#include <utility>
+
+namespace softkin::physical {
+
+void hold_friction(const System& system, const Iterate& at, System::Workspace& work, Team& team) {
+  if (!system.friction()) return;
+  system.contacts()->find(at.positions, *work.contacts, team);
+  system.contacts()->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
+}
+
+double renew_friction(const System& system, const Points& from, Iterate& at, System::Workspace& work, Team& team) {
+  if (!system.friction()) return 0;
+  const Contacts& contacts = *system.contacts();
+  contacts.find(at.positions, *work.contacts, team);
+  contacts.renew(from, at.positions, *work.contacts, at.anchors);
+  const Friction::Holds before = work.contacts->holds;
+  contacts.friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
+  return contacts.disagreement(at.positions, before, work.contacts->holds);
+}
+
+double slipping_share(const System& system, const Iterate& at, System::Workspace& work, Team& team) {
+  if (!system.friction()) return 0;
+  hold_friction(system, at, work, team);
+  return system.contacts()->friction().slipping_share(at.positions, work.contacts->holds);
+}
+
+void slide_friction(const System& system, Iterate& at, System::Workspace& work, Team& team) {
+  if (!system.friction()) return;
+  const Contacts& contacts = *system.contacts();
+  contacts.find(at.positions, *work.contacts, team);
+  contacts.slide(at.positions, *work.contacts, at.anchors);
+  contacts.friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
+}
+
+OtherContact::~OtherContact() {
+  forget();
+}
+
+void OtherContact::straighten(const Iterate& at, double foresight) {
+  contacts_.find(at.positions, scratch_, team_);
+  contacts_.note_pushes(scratch_);
+  scratch_.firmness = {1, 1, foresight};
+  scratch_.straight = true;
+}
+
+void OtherContact::forget() {
+  scratch_.firmness = {};
+  scratch_.straight = false;
+  scratch_.pushes.clear();
+}
+
+double missed_by_pushes(const System& system, const System::Workspace& work) {
+  constexpr double faint = 0.01;  // over the largest
+  double largest = 0, most = 0;
+  for (const ContactPush& push : work.contacts->pushes) largest = std::max(largest, push.push);
+  for (const ContactPush& push : work.contacts->pushes) {
+    const ContactPotential::Term& term = work.contacts->terms[static_cast<std::size_t>(push.term)];
+    const double by_gap =
+        -energy::barrier(std::sqrt(term.separation.squared), system.contacts()->surfaces().reach_mm).slope;
+    most = std::max(most, std::abs(by_gap - push.push) / (push.push + faint * largest));
+  }
+  return most;
+}
+
+double clear_share(const System& system, const Points& from, const Way& way, double end, System::Workspace& work,
+                   Points& to, Team& team) {
+  constexpr double gentle = 0.7, wild = 2.5;  // turns of a piece, and of what was stretched as well
+  way(end, to);
+  if (!system.contact()) return end;
+  const Contacts& contacts = *system.contacts();
+  const double turn = to.allFinite() ? contacts.largest_turn(from, to) : 2 * wild;
+  if (!(turn <= wild)) return 0.5 * end * wild / turn;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(turn / gentle)));
+  Points last = from, next;
+  for (int piece = 1; piece <= pieces; ++piece) {
+    if (piece < pieces)
+      way(end * piece / pieces, next);
+    else
+      next = to;
+    const double share = contacts.longest_step(last, next, *work.contacts, team);
+    if (share < 1) return end * (piece - 1 + share) / pieces;
+    last.swap(next);
+  }
+  return end;
+}
+
+bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, System::Workspace& work,
+                   Points& positions, Team& team) {
+  constexpr double least = 1e-3;
+  constexpr double within = 0.95;  // of a share that is safe: a shorter way is not quite the same
+  const Points from = positions;
+  const Way way = [&](double share, Points& out) {
+    out = from;
+    system.advance(step, share * scale, work, out, team);
+  };
+  for (double end = 1; end >= least;) {
+    const double share = clear_share(system, from, way, end, work, positions, team);
+    if (share >= end) {
+      scale *= end;
+      return true;
+    }
+    end = within * share;
+  }
+  return false;
+}
+
+}  // namespace softkin::physical

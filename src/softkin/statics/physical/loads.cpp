@@ -1,0 +1,38 @@
+#include <softkin/statics/physical/loads.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+void add_dead_load(const Points& load, double share, const Points& rest, const Points& positions, Term::Sum& sum) {
+  sum.energy -= share * load.cwiseProduct(positions - rest).sum();
+  sum.gradient -= share * load;
+}
+
+}  // namespace
+
+DeadLoads::DeadLoads(const Model& model)
+    : model_(model), any_(model.dead_load.rows() > 0 && !model.dead_load.isZero(0)) {}
+
+void DeadLoads::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum,
+                         Team& /*team*/) const {
+  if (any_) add_dead_load(model_.dead_load, demand.share, model_.rest, at.positions, sum);
+}
+
+void DeadLoads::add_change(const Demand& from, const Demand& to, const Points& /*positions*/, Scratch& /*scratch*/,
+                           Points& force, Team& /*team*/) const {
+  if (any_) force -= (to.share - from.share) * model_.dead_load;
+}
+
+void FadingLoads::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
+                           Team& /*team*/) const {
+  if (demand.fading == 0) return;
+  add_dead_load(static_cast<const Scratch&>(scratch).force, demand.fading, model_.rest, at.positions, sum);
+}
+
+void FadingLoads::add_change(const Demand& from, const Demand& to, const Points& /*positions*/, Term::Scratch& scratch,
+                             Points& force, Team& /*team*/) const {
+  if (to.fading != from.fading) force -= (to.fading - from.fading) * static_cast<const Scratch&>(scratch).force;
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,218 @@
+#include <random>
+#include <softkin/statics/physical/contact_steps.hpp>
+
+#include "statics/difference.hpp"
+#include "statics/magnetic_samples.hpp"
+
+/// Every term of every kind of robot: gradient, stiffness, and derivatives by commands and shares, by differences.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+using physical::Term;
+
+constexpr int all_terms = 6;
+
+/// Tetrahedra and prisms of two materials, a layer that is stretched, another one under voltage.
+RobotSpec layered_robot() {
+  RobotSpec spec = physical_robot(mixed_robot(true).mesh);
+  spec.actuators = mixed_robot(true).actuators;
+  for (const char* side : {"y_low", "y_high"}) spec.fixed.push_back({{std::string(side), {}}, {false, true, false}});
+  spec.materials[0].density = 1100;
+  spec.gravity = {0, 2, -9.81};
+  return spec;
+}
+
+RobotSpec charged_sheet() {
+  RobotSpec spec = physical_robot(block_mesh({4, 3, 1}, {8, 6, 0.5}, Split::prisms));
+  spec.materials[0].elastic = elastic(Law::neo_hookean, 0.2, 0.45);
+  spec.materials[0].permittivity = 4.7;
+  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 20, true);
+  skin.region = "all";
+  skin.control = Control::load;
+  skin.rest = 0;
+  skin.prestretch = 1.1;
+  spec.actuators = {skin};
+  return spec;
+}
+
+RobotSpec magnetic_robot(Magnetisation magnetisation, bool quadratic) {
+  RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 8, 6}));
+  spec.quadratic = quadratic;
+  spec.materials[0].density = 1100;
+  spec.gravity = {0, 0, -9.81};
+  magnetise(spec, {120, -40, 70}, magnetisation);
+  add_uniform(spec);
+  add_field(spec, {"coil", two_loops({5, 0, 20})}, {FieldCommand::current});
+  add_field(spec, {"magnet", DipoleField{{10, -30, 12}, {0.1, 0.3, -0.2}}},
+            {FieldCommand::position_x, FieldCommand::moment_z});
+  return spec;
+}
+
+/// A body on a floor, which is held and pushed, beside a block that it does not touch.
+RobotSpec robot_beside_body() {
+  RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {10, 10, 10}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v) spec.mesh.vertices.row(v) += Vec3(60, 0, 1).transpose();
+  spec.fixed = {{{Box{{59.9, -1, -1}, {60.1, 100, 100}}, {}}, {true, true, true}, {0, 0, 0}}};
+  spec.materials[0].density = 1000;
+  spec.gravity = {0, 0, -9.81};
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.05;
+  spec.contact->friction = 0.3;
+  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
+  spec.contact->bodies.push_back({"cube", Box{{0, 0, 0}, {10, 10, 10}}, {}, {}, 1000});
+  return spec;
+}
+
+/// A block over a floor, 0.03 mm away from it where it feels it below 0.05 mm.
+RobotSpec pressed_block(bool quadratic) {
+  RobotSpec spec = physical_robot(block_mesh({2, 2, 2}, {10, 10, 10}));
+  spec.quadratic = quadratic;
+  spec.fixed = {{{Box{{-1, -1, 9.999}, {11, 11, 11}}, {}}, {true, true, true}, {0.2, 0, -0.03}}};
+  spec.contact.emplace();
+  spec.contact->distance_mm = 0.05;
+  spec.contact->friction = 0.3;
+  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
+  return spec;
+}
+
+/// The terms of a robot in a shape out of balance.
+struct TermsSample {
+  TermsSample(const RobotSpec& spec, double shake, const Vec3& move)
+      : model(compile(spec)), system(model), work(system), team(1) {
+    demand = {model.rest_actuation(), 0.7, 0.4};
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<double> within(0.05, 0.2);
+    for (Index a = 0; a < system.actuators(); ++a) {
+      const double low = model.actuators[a].low, high = model.actuators[a].high;
+      const double reach = std::min({high - demand.actuation[a], 1.0});
+      demand.actuation[a] += (reach > 0 ? reach : low - demand.actuation[a]) * within(engine);
+    }
+    at.positions = model.rest + noise(static_cast<Index>(model.rest.rows()), shake, 1);
+    at.positions.rowwise() += move.transpose();
+    system.hold({demand.actuation, 0, 0}, at.positions);
+    at.multipliers = Eigen::VectorXd::Zero(system.actuators());
+    work.fading.force = noise(static_cast<Index>(model.rest.rows()), 1, 9);
+    (void)renew_friction(system, at.positions, at, work, team);
+    along = noise(static_cast<Index>(model.rest.rows()), 1, 7);
+  }
+
+  struct Found {
+    double energy = 0;
+    Points gradient;
+  };
+  Found found(std::size_t term, const physical::Demand& wanted, const Points& shape) {
+    Found all{0, Points::Zero(shape.rows(), 3)};
+    Term::Sum sum{all.gradient};
+    physical::Iterate there = at;
+    there.positions = shape;
+    system.terms()[term]->evaluate(there, wanted, *work.terms[term], sum, team);
+    EXPECT_FALSE(sum.forbidden);
+    all.energy = sum.energy;
+    return all;
+  }
+  Points gradient(std::size_t term, const physical::Demand& wanted) {
+    return found(term, wanted, at.positions).gradient;
+  }
+
+  /// Of one term alone.
+  Points stiffness_times_way(std::size_t term) {
+    physical::System::Balance balance;
+    system.evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(system.actuators())), work, balance, team);
+    system.assemble(at, demand, physical::System::Stiffness::exact, work, team);
+    LargeVector<double> slots(work.slots.size()), blocks;
+    std::fill(slots.begin(), slots.end(), 0.0);
+    system.terms()[term]->stiffness(at, demand, false, *work.terms[term], slots, team);
+    work.layout->pattern.gather(slots, blocks, team);
+    Points product;
+    work.layout->pattern.multiply(blocks, along, product, team);
+    return product;
+  }
+
+  Model model;
+  physical::System system;
+  physical::System::Workspace work;
+  Team team;
+  physical::Demand demand;
+  physical::Iterate at;
+  Points along;
+};
+
+void expect_near(const Points& exact, const Points& slope, double share, const std::string& what) {
+  EXPECT_LT((slope - exact).norm(), share * exact.norm() + 1e-9) << what;
+}
+
+/// Sizes of what was compared, by term: nothing that can not fail.
+using Seen = std::array<std::array<double, 4>, all_terms>;
+
+void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, double reach, Seen& seen) {
+  TermsSample sample(spec, shake, move);
+  physical::Demand towards = sample.demand;  // by as much of every command and share
+  constexpr double little = 1e-5;
+  for (Index a = 0; a < towards.actuation.size(); ++a) towards.actuation[a] *= 1 + little;
+  towards.share *= 1 + little;
+  towards.fading *= 1 - little;
+  const std::size_t count = sample.system.terms().size();
+  for (std::size_t t = 0; t < count; ++t) {
+    const Term& term = *sample.system.terms()[t];
+    Term::Scratch& scratch = *sample.work.terms[t];
+    const std::string what = typeid(term).name();
+    const auto shape = [&](double way) { return Points(sample.at.positions + way * reach * sample.along); };
+    const auto high = sample.found(t, sample.demand, shape(1)), low = sample.found(t, sample.demand, shape(-1));
+    const Points exact = sample.gradient(t, sample.demand);
+    EXPECT_NEAR(exact.cwiseProduct(sample.along).sum(), (high.energy - low.energy) / (2 * reach),
+                1e-5 * exact.norm() * sample.along.norm() + 1e-9)
+        << what;
+    const Points stiff = sample.stiffness_times_way(t);
+    expect_near(stiff, (high.gradient - low.gradient) / (2 * reach), 1e-4, what + ": stiffness");
+    double by_commands = 0;
+    for (Index a = 0; a < towards.actuation.size(); ++a) {
+      Points slope = Points::Zero(exact.rows(), 3);
+      term.add_derivative(a, sample.demand, sample.at.positions, scratch, slope, sample.team);
+      physical::Demand more = sample.demand, less = sample.demand;
+      const double part = 1e-5 * std::max(1e-2, std::abs(more.actuation[a]));
+      more.actuation[a] += part;
+      less.actuation[a] -= part;
+      const bool moves = sample.model.actuators[a].kind == ActuatorKind::motion;
+      if (!moves)
+        expect_near(slope, (sample.gradient(t, more) - sample.gradient(t, less)) / (2 * part), 1e-5,
+                    what + ": by " + sample.model.actuators[a].name);
+      by_commands += slope.norm();
+    }
+    Points change = Points::Zero(exact.rows(), 3);
+    term.add_change(sample.demand, towards, sample.at.positions, scratch, change, sample.team);
+    const Points changed = sample.gradient(t, towards) - sample.gradient(t, sample.demand);
+    EXPECT_LE((change - changed).norm(), 2e-4 * change.norm() + 1e-12 * exact.norm()) << what;
+    const std::array<double, 4> sizes{exact.norm(), stiff.norm(), by_commands, change.norm()};
+    const bool contact = count > 4 && t == count - 1 && sample.system.contact();
+    auto& of_term = seen[contact ? all_terms - 1 : t];
+    for (std::size_t i = 0; i < sizes.size(); ++i) of_term[i] = std::max(of_term[i], sizes[i]);
+  }
+}
+
+}  // namespace
+
+TEST(Terms, DerivativesAreThoseOfTheEnergies) {
+  Seen seen{};
+  expect_derivatives(layered_robot(), 0.1, Vec3::Zero(), 1e-5, seen);
+  expect_derivatives(charged_sheet(), 0.01, Vec3::Zero(), 1e-6, seen);
+  for (const Magnetisation magnetisation : both_magnetisations)
+    for (const bool quadratic : {false, true})
+      expect_derivatives(magnetic_robot(magnetisation, quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
+  expect_derivatives(robot_beside_body(), 1e-3, {0, 0, -0.03}, 2e-8, seen);
+  for (const bool quadratic : {false, true})
+    expect_derivatives(pressed_block(quadratic), 1e-3, {0.01, 0, -0.03}, 2e-8, seen);
+  // body, dead and fading loads, what is done to bodies, magnets, contact: gradient, stiffness, by commands, by shares
+  const std::array<std::array<bool, 4>, all_terms> has{{{true, true, true, true},
+                                                        {true, false, false, true},
+                                                        {true, false, false, true},
+                                                        {true, true, true, true},
+                                                        {true, true, true, true},
+                                                        {true, true, false, false}}};
+  for (std::size_t t = 0; t < has.size(); ++t)
+    for (std::size_t i = 0; i < has[t].size(); ++i) EXPECT_EQ(seen[t][i] > 1e-12, has[t][i]) << t << " " << i;
+}
+
+}  // namespace softkin
