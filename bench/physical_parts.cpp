@@ -39,18 +39,17 @@ PhysicalParts::PhysicalParts(const Model& model, const Actuation& actuation, con
 int PhysicalParts::factorise() {
   using Stiffness = physical::System::Stiffness;
   system_.evaluate(at_, demand_, active_, work_, balance_, team_);
-  (void)system_.factorise(at_, demand_, active_, Stiffness::exact, 0, work_, team_);
+  (void)system_.factorise(at_, demand_, active_, balance_, {}, work_, team_);
   const int negative = work_.negative;
-  if (negative > 0) (void)system_.factorise(at_, demand_, active_, Stiffness::projected, 0, work_, team_);
+  if (negative > 0) (void)system_.factorise(at_, demand_, active_, balance_, {Stiffness::projected}, work_, team_);
   return negative;
 }
 
 PhysicalParts::Times PhysicalParts::measure(int repeat) {
   Times times;
   times.force = seconds_of(repeat, [&] { system_.evaluate(at_, demand_, active_, work_, balance_, team_); });
-  const double whole = seconds_of(repeat, [&] {
-    (void)system_.factorise(at_, demand_, active_, physical::System::Stiffness::exact, 0, work_, team_);
-  });
+  const double whole =
+      seconds_of(repeat, [&] { (void)system_.factorise(at_, demand_, active_, balance_, {}, work_, team_); });
   Eigen::MatrixXd none(unknowns(), 0);
   times.factor =
       seconds_of(repeat, [&] { (void)work_.factor.factorise(work_.values, 0, work_.precision, none, team_); });

@@ -107,8 +107,8 @@ void expect_derivatives(const Model& model) {
     system.evaluate(from, demand, none, work, balance, team);
     ASSERT_FALSE(balance.forbidden);
     const Eigen::VectorXd force = balance.force;
-    system.assemble(from, demand, physical::System::Stiffness::exact, work, team);
-    system.gather(from, work, team);
+    system.assemble(from, demand, balance, physical::System::Stiffness::exact, work, team);
+    system.gather(from, balance, work, team);
     Eigen::VectorXd way(size);
     for (Index i = 0; i < size; ++i) way[i] = normal(engine);
     Eigen::MatrixXd product(size, 1);

@@ -27,7 +27,7 @@ struct Equations {
 
   /// The stiffness on the directions that keep the active measures, dense: its eigenvalues, ascending.
   Eigen::VectorXd eigenvalues() {
-    (void)system.factorise(at, demand, active, physical::System::Stiffness::exact, 0, work, team);
+    (void)system.factorise(at, demand, active, balance, {}, work, team);
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(system.freedoms().size(), system.freedoms().size());
     work.solve(inverse, team);
     Eigen::MatrixXd stiffness = inverse.inverse();

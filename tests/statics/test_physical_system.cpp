@@ -33,13 +33,12 @@ struct SystemSample {
   }
 
   physical::System::Balance balance_at(const physical::Iterate& iterate) {
-    physical::System::Balance balance;
     system.evaluate(iterate, demand, active, work, balance, team);
     return balance;
   }
   int factorise(physical::System::Stiffness kind = physical::System::Stiffness::exact) {
     (void)balance_at(at);
-    return system.factorise(at, demand, active, kind, 0, work, team);
+    return system.factorise(at, demand, active, balance, {kind}, work, team);
   }
 
   Model model;
@@ -49,6 +48,7 @@ struct SystemSample {
   physical::Demand demand;
   physical::Iterate at;
   std::vector<bool> active;
+  physical::System::Balance balance;  // of the last evaluation
 };
 
 physical::Iterate moved(const SystemSample& sample, const Eigen::VectorXd& step, const Eigen::VectorXd& change,
@@ -135,7 +135,7 @@ TEST(System, UpsetIsTheSlopeInTheDemand) {
   const physical::Demand from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
   sample.demand = from;
   (void)sample.factorise();
-  sample.system.assemble(sample.at, from, physical::System::Stiffness::exact, sample.work, sample.team);
+  sample.system.assemble(sample.at, from, sample.balance, physical::System::Stiffness::exact, sample.work, sample.team);
   physical::System::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-4;
@@ -166,7 +166,7 @@ TEST(System, UpsetFollowsDisplacedSupports) {
   sample.demand = from;
   sample.system.freedoms().hold(from.share, sample.at.positions);
   (void)sample.factorise();
-  sample.system.assemble(sample.at, from, physical::System::Stiffness::exact, sample.work, sample.team);
+  sample.system.assemble(sample.at, from, sample.balance, physical::System::Stiffness::exact, sample.work, sample.team);
   physical::System::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-5;

@@ -95,7 +95,7 @@ TEST(RoundedFactor, ARefinedStepIsExact) {
     work.precision = precision;
     physical::System::Balance balance;
     system.evaluate(at, demand, {true}, work, balance, team);
-    (void)system.factorise(at, demand, {true}, physical::System::Stiffness::exact, 0, work, team, &balance);
+    (void)system.factorise(at, demand, {true}, balance, {.step = true}, work, team);
     EXPECT_EQ(work.factor.in_double(), precision == Precision::twice);
     Found found;
     system.step(balance, work, found.step, found.change, team);

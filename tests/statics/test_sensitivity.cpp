@@ -253,7 +253,7 @@ TEST(Sensitivity, SingularStiffnessIsNotRegular) {
   const auto modes = [&] {
     physical::System::Balance balance;
     system.evaluate(at, demand, {false}, work, balance, team);
-    return system.factorise(at, demand, {false}, physical::System::Stiffness::exact, 0, work, team);
+    return system.factorise(at, demand, {false}, balance, {}, work, team);
   };
   double unstable = 0.5, stable = 1;
   press(unstable);

@@ -121,7 +121,7 @@ struct TermsSample {
   Points stiffness_times_way(std::size_t term) {
     physical::System::Balance balance;
     system.evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(system.actuators())), work, balance, team);
-    system.assemble(at, demand, physical::System::Stiffness::exact, work, team);
+    system.assemble(at, demand, balance, physical::System::Stiffness::exact, work, team);
     LargeVector<double> slots(work.slots.size()), blocks;
     std::fill(slots.begin(), slots.end(), 0.0);
     system.terms()[term]->stiffness(at, demand, false, *work.terms[term], slots, team);

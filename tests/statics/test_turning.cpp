@@ -4,6 +4,7 @@
 #include <numbers>
 #include <softkin/core/error.hpp>
 #include <softkin/statics/deformation.hpp>
+#include <softkin/statics/physical/prediction.hpp>
 
 #include "statics/sensitivity_samples.hpp"
 
@@ -216,6 +217,37 @@ TEST(TurnedSupport, KnowsTheAngleOfAShape) {
   EXPECT_EQ(again.report.status, Status::converged);
   EXPECT_LT(again.report.continuation_steps, 3);
   EXPECT_LT(distance(again.state.positions, settled(statics, values({120})).state.positions), 1e-6);
+}
+
+/// Where a factor in double precision stands ready, and what it was made of is lost, a support that turns still takes
+/// the body along: the prediction misses by the square of the way.
+TEST(TurnedSupport, IsPredictedWithAFactorInDoublePrecision) {
+  const Model model = compile(twisted_bar(10, {8, 2, 2}));
+  const Statics statics(model);
+  const physical::System system(model);
+  physical::System::Workspace work(system);
+  work.precision = linear::MixedLdlt::Precision::twice;
+  Team team(1);
+  const Equilibrium found = statics.solve(model.rest_actuation(), statics.rest(), tight());
+  ASSERT_EQ(found.report.status, Status::converged);
+  const physical::Demand here{found.state.actuation, 1};
+  const physical::Iterate at = system.iterate(found.state);
+  physical::System::Balance balance;
+  const std::vector<bool> none(static_cast<std::size_t>(system.actuators()));
+  system.evaluate(at, here, none, work, balance, team);
+  (void)system.factorise(at, here, none, balance, {}, work, team);
+  ASSERT_TRUE(work.factor.in_double());
+  double missed[2];
+  for (int i = 0; i < 2; ++i) {
+    const physical::Demand there{here.actuation.array() + 2.0 / (1 + i), 1};
+    physical::Iterate predicted = at;
+    (void)physical::predict(system, here, there, none, work, team, predicted);
+    const Equilibrium exact = statics.solve(there.actuation, found.state, tight());
+    missed[i] =
+        (predicted.positions - exact.state.positions).norm() / (exact.state.positions - found.state.positions).norm();
+  }
+  EXPECT_LT(missed[0], 0.1);
+  EXPECT_NEAR(missed[1] / missed[0], 0.5, 0.1);
 }
 
 }  // namespace softkin

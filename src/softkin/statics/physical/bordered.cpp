@@ -5,9 +5,9 @@
 
 namespace softkin::physical {
 
-void Bordered::set(const Iterate& at) {
+void Bordered::set(const Iterate& at, const System::Balance& balance) {
   at_ = &at;
-  system_.reduce_slopes(at, work_, slopes_);
+  system_.reduce_slopes(at, balance, work_, slopes_);
 }
 
 void Bordered::set_factorised(const Iterate& at) {

@@ -493,7 +493,7 @@ int Continuation::prepare(const Demand& here, const Iterate& at) {
   hold_friction(system_, at, work_, team_);
   system_.evaluate(at, here, active_, work_, balance, team_);
   ++report_.factorisations;
-  const int modes = system_.factorise(at, here, active_, System::Stiffness::exact, 0, work_, team_);
+  const int modes = system_.factorise(at, here, active_, balance, {}, work_, team_);
   report_.factorisations_in_double += work_.factor.in_double();
   return balance.force.allFinite() ? modes : -1;
 }

@@ -38,9 +38,8 @@ void Derivative::hold(const Iterate& at, const Demand& demand) {
                  system_.measures().value(a, at.positions) >= (1 - verge) * system_.target(a, demand);
     if (active_[a]) held_.push_back(a);
   }
-  System::Balance balance;
   hold_friction(system_, at, work_, team_);
-  system_.evaluate(at, demand, active_, work_, balance, team_);
+  system_.evaluate(at, demand, active_, work_, balance_, team_);
 }
 
 /// The right-hand sides.
@@ -54,7 +53,7 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (system_.constrains(a)) continue;
     Points& moves = moves_[static_cast<std::size_t>(a)];
-    system_.command_force(at, demand, a, work_, force, moves, team_);
+    system_.command_force(at, demand, balance_, a, work_, force, moves, team_);
     if (moves.isZero(0)) moves.resize(0, 3);
     system_.freedoms().reduce(-force, at.positions, right_.moves.col(a));
     if (moves.rows() == 0) continue;
@@ -66,7 +65,7 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
 /// False where the factor is too far off, or its stiffness singular.
 bool Derivative::solve(const Iterate& at, bool exact_factor) {
   Bordered equations(system_, work_, team_);
-  equations.set(at);
+  equations.set(at, balance_);
   const bool symmetric = !system_.friction();
   const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : inexact_rounds;
   // those of the last derivative, of a shape nearby; what they leave would not tell of the factor's own rounding
@@ -101,16 +100,17 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   using Precision = linear::MixedLdlt::Precision;
   bool solved = false;
   if (work_.home.rows() > 0) {
-    if (work_.active != held_) system_.couple(at, active_, work_, team_);
-    system_.assemble(at, demand, System::Stiffness::exact, work_, team_);
-    system_.gather(at, work_, team_);
+    if (work_.active != held_) system_.couple(at, active_, balance_, work_, team_);
+    system_.assemble(at, demand, balance_, System::Stiffness::exact, work_, team_);
+    system_.gather(at, balance_, work_, team_);
     solved = solve(at, false);
   }
   const auto solve_anew = [&](Precision precision) {
     work_.home.resize(0, 3);
     const InPrecision scope(work_, precision);
-    (void)system_.factorise(at, demand, active_, System::Stiffness::exact, 0, work_, team_);
-    if (system_.contact()) system_.gather(at, work_, team_);  // else what was factorised is what is multiplied with
+    (void)system_.factorise(at, demand, active_, balance_, {}, work_, team_);
+    if (system_.contact())
+      system_.gather(at, balance_, work_, team_);  // else what was factorised is what is multiplied with
     return solve(at, work_.factor.in_double());
   };
   solved = solved || solve_anew(work_.precision) || (!work_.factor.in_double() && solve_anew(Precision::twice));

@@ -26,6 +26,7 @@ class Derivative {
   System::Workspace& work_;
   double accuracy_;
   Team& team_;
+  System::Balance balance_;  // at the shape
   std::vector<bool> active_;
   std::vector<Index> held_;
   Columns right_, found_;

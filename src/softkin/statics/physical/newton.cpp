@@ -71,7 +71,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
     secants_.clear();
     rounding_looked_at_ = false;
     const InPrecision scope(work_, precision);
-    negative = system_.factorise(at, *demand_, *active_, kind, shift, work_, team_, &balance_);
+    negative = system_.factorise(at, *demand_, *active_, balance_, {kind, shift, true}, work_, team_);
     report_.factorisations_in_double += work_.factor.in_double();
     return negative == 0 ? Advance::made : Advance::none;
   };
@@ -369,7 +369,7 @@ bool Newton::improve_constraints() {
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
   const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
-  negative_ = system_.factorise(at, *demand_, *active_, System::Stiffness::exact, 0, work_, team_);
+  negative_ = system_.factorise(at, *demand_, *active_, balance_, {}, work_, team_);
   ++report_.factorisations;
   ++report_.factorisations_in_double;
   doubtful_ = false;

@@ -40,13 +40,16 @@ struct Tangent {
     System::Balance balance;
     const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
     const bool refined = !of_here || !work.factor.in_double();
-    if (refined || here.share != there.share || here.fading != there.fading) {
+    const bool assembled = work.assembled != 0 && work.assembled == work.factorised_by;
+    if (refined || here.fading != there.fading || here.share != there.share ||
+        (!assembled && system.moves_supports(here, there))) {
       hold_friction(system, at, work, team);
       system.evaluate(at, here, active, work, balance, team);
-      system.assemble(at, here, System::Stiffness::exact, work, team);
+      system.assemble(at, here, balance, System::Stiffness::exact, work, team);
     }
-    system.upset(at, here, there, active, work, balance, team);
-    if (!refined || !refine(system, balance, work, team, at)) system.step(balance, work, step, change, team);
+    System::Balance upset;
+    system.upset(at, here, there, active, work, upset, team);
+    if (!refined || !refine(system, balance, upset, work, team, at)) system.step(upset, work, step, change, team);
     if (step.allFinite() && change.allFinite()) return;
     step.setZero();
     change.setZero();
@@ -54,14 +57,14 @@ struct Tangent {
 
  private:
   /// The step of the stiffness here; false where there is none.
-  bool refine(const System& system, const System::Balance& balance, System::Workspace& work, Team& team,
-              const Iterate& at) {
+  bool refine(const System& system, const System::Balance& balance, const System::Balance& upset,
+              System::Workspace& work, Team& team, const Iterate& at) {
     constexpr double accuracy = 1e-3;
     constexpr int rounds = 6;
     Bordered equations(system, work, team);
-    equations.set(at);
-    system.gather(at, work, team);
-    return equations.step(balance, accuracy, rounds, step, change).left < 1;
+    equations.set(at, balance);
+    system.gather(at, balance, work, team);
+    return equations.step(upset, accuracy, rounds, step, change).left < 1;
   }
 };
 
@@ -192,7 +195,7 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
   system.set_time(at.history, at.elapsed_s, work_, team);
   hold_friction(system, iterate_, work_, team);
   system.evaluate(iterate_, demand, active_, work_, balance, team);
-  (void)system.factorise(iterate_, demand, active_, System::Stiffness::exact, 0, work_, team);
+  (void)system.factorise(iterate_, demand, active_, balance, {}, work_, team);
 }
 
 State Predictor::predict(const Actuation& actuation, Team& team) {

@@ -54,7 +54,7 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   const auto negative = [&](double shift) {
     ++report.factorisations;
     ++report.factorisations_in_double;
-    const int count = system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team);
+    const int count = system.factorise(at, demand, active, balance, {System::Stiffness::exact, shift}, work, team);
     if (shift == 0) mean = work.mean;
     return count;
   };
@@ -113,7 +113,7 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
   for (; shift < most_shift; shift *= 4) {
     system.evaluate(at, demand, active, work, balance, team);
     ++report.factorisations;
-    const int modes = system.factorise(at, demand, active, System::Stiffness::exact, shift, work, team);
+    const int modes = system.factorise(at, demand, active, balance, {System::Stiffness::exact, shift}, work, team);
     report.factorisations_in_double += work.factor.in_double();
     if (modes > 0) continue;
     system.step(balance, work, step, change, team);

@@ -4,6 +4,7 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/contact_at_rest.hpp>
 #include <softkin/statics/physical/system.hpp>
+#include <stdexcept>
 
 namespace softkin::physical {
 
@@ -93,6 +94,7 @@ bool System::constrains(Index actuator) const {
 
 void System::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
                       Balance& balance, Team& team) const {
+  balance.evaluation = ++work.evaluated;
   work.gradient.setZero(at.positions.rows(), 3);
   Term::Sum sum{work.gradient};
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.evaluate(at, demand, scratch, sum, team); });
@@ -131,7 +133,12 @@ Demand System::unbalanced(const Iterate& at, const Demand& demand, Workspace& wo
   return {demand.actuation, demand.share, left.residual > balanced * left.pull ? 1.0 : 0.0};
 }
 
+void System::require_last(const Balance& balance, const Workspace& work) {
+  if (balance.evaluation != work.evaluated) throw std::logic_error("the workspace has evaluated another shape since");
+}
+
 System::Imbalance System::imbalance(const Balance& balance, const Workspace& work, Team& team) const {
+  require_last(balance, work);
   constexpr double roundings = 16;  // of a vertex's elements
   return {freedoms_->largest(balance.force), body_.largest_pull(work.elastic, team),
           roundings * std::numeric_limits<double>::epsilon() * work.stiffest * model_.diagonal_mm};
@@ -152,7 +159,10 @@ void System::give_slots(const Iterate& at, Workspace& work, Team& team) const {
   work.slots.resize(9 * static_cast<std::size_t>(work.layout->slots));
 }
 
-void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const {
+void System::assemble(const Iterate& at, const Demand& demand, const Balance& balance, Stiffness kind, Workspace& work,
+                      Team& team) const {
+  require_last(balance, work);
+  work.assembled = kind == Stiffness::exact ? balance.evaluation : 0;
   give_slots(at, work, team);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.stiffness(at, demand, kind == Stiffness::projected, scratch, work.slots, team);
@@ -162,9 +172,9 @@ void System::assemble(const Iterate& at, const Demand& demand, Stiffness kind, W
   measures_.second_derivatives(at.positions, scale, work.slots, team);
 }
 
-int System::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind,
-                      double shift, Workspace& work, Team& team, const Balance* balance) const {
-  assemble(at, demand, kind, work, team);
+int System::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, const Balance& balance,
+                      const Factoring& factoring, Workspace& work, Team& team) const {
+  assemble(at, demand, balance, factoring.kind, work, team);
   const Layout& layout = *work.layout;
   layout.reduced.reduce(layout.pattern, work.slots, work.gradient, at.positions, work.values, team);
 
@@ -181,24 +191,26 @@ int System::factorise(const Iterate& at, const Demand& demand, const std::vector
     work.stiffest = std::max(work.stiffest, std::abs(value));
   });
   const double mean = work.mean = trace / std::max<Index>(1, columns.size());
-  if (shift > 0) each_diagonal([&](double& value) { value += shift * mean; });
+  if (factoring.shift > 0) each_diagonal([&](double& value) { value += factoring.shift * mean; });
   if (work.factorised_layout != work.layout) {
     work.factor.change(layout.symbolic);
     work.factorised_layout = work.layout;
   }
   using Precision = linear::MixedLdlt::Precision;
   const auto made = [&](Precision precision) {
-    ask(at, active, work, balance);
+    ask(at, active, balance, factoring.step, work);
     if (!layout.reduced.in_order()) layout.reduced.to_columns(work.solutions, work.in_columns);
     Eigen::MatrixXd& right_sides = layout.reduced.in_order() ? work.solutions : work.in_columns;
     LargeVector<double>* spare = contacts_ ? nullptr : &work.slots;  // nothing else is to be multiplied with them
+    if (spare) work.assembled = 0;
     work.negative = work.factor.factorise(work.values, 1e-13 * mean, precision, right_sides, team, spare).negative;
     if (!layout.reduced.in_order()) layout.reduced.to_unknowns(work.in_columns, work.solutions);
     close(work);
   };
   made(work.precision);
   if (!work.factor.trusted() && (work.unstable == 0 || !loses_energy(work, team))) made(Precision::twice);
-  work.exact = kind == Stiffness::exact && shift == 0;
+  work.exact = factoring.kind == Stiffness::exact && factoring.shift == 0;
+  work.factorised_by = balance.evaluation;
   work.factorised = at.positions;
   return work.unstable;
 }
@@ -225,25 +237,29 @@ bool System::loses_energy(Workspace& work, Team& team) const {
   return symmetric_eigenvalues(-(basis.transpose() * image)).minCoeff() < -rounding * work.mean;
 }
 
-void System::couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team) const {
-  ask(at, active, work, nullptr);
+void System::couple(const Iterate& at, const std::vector<bool>& active, const Balance& balance, Workspace& work,
+                    Team& team) const {
+  ask(at, active, balance, false, work);
   work.solve(work.solutions, team);
   close(work);
 }
 
-/// What a factorisation is to solve for: the active constraints' slopes, and the force of the balance.
-void System::ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const {
+/// What a factorisation is to solve for: the active constraints' slopes, and for a step the force of the balance.
+void System::ask(const Iterate& at, const std::vector<bool>& active, const Balance& balance, bool step,
+                 Workspace& work) const {
   work.active.clear();
   for (Index a = 0; a < actuators(); ++a)
     if (active[a]) work.active.push_back(a);
   const Index count = static_cast<Index>(work.active.size());
-  reduce_slopes(at, work, work.constraint_slopes);
-  work.solutions.resize(freedoms_->size(), count + (balance ? 1 : 0));
+  reduce_slopes(at, balance, work, work.constraint_slopes);
+  work.solutions.resize(freedoms_->size(), count + (step ? 1 : 0));
   work.solutions.leftCols(count) = work.constraint_slopes;
-  if (balance) work.solutions.col(count) = -balance->force;
+  if (step) work.solutions.col(count) = -balance.force;
 }
 
-void System::reduce_slopes(const Iterate& at, const Workspace& work, Eigen::MatrixXd& slopes) const {
+void System::reduce_slopes(const Iterate& at, const Balance& balance, const Workspace& work,
+                           Eigen::MatrixXd& slopes) const {
+  require_last(balance, work);
   slopes.resize(freedoms_->size(), static_cast<Index>(work.active.size()));
   for (Index i = 0; i < static_cast<Index>(slopes.cols()); ++i) {
     freedoms_->reduce(work.slopes[work.active[i]], at.positions, slopes.col(i));
@@ -300,6 +316,16 @@ void System::correct_multipliers(const Balance& balance, const Workspace& work, 
   if (work.active.empty()) return;
   const Eigen::VectorXd change = closing(balance, work, -(work.responses.transpose() * balance.force));
   for (Index i = 0; i < static_cast<Index>(change.size()); ++i) multipliers[work.active[i]] += change[i];
+}
+
+bool System::moves_supports(const Demand& from, const Demand& to) const {
+  if (from.share != to.share) return true;
+  for (Index a = 0; a < actuators(); ++a) {
+    const ActuatorKind kind = model_.actuators[a].kind;
+    if ((kind == ActuatorKind::motion || kind == ActuatorKind::turn) && from.actuation[a] != to.actuation[a])
+      return true;
+  }
+  return false;
 }
 
 void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
@@ -393,7 +419,8 @@ bool System::multiplies_unknowns(const Workspace& work) const {
   return !friction() && work.layout->reduced.in_order();
 }
 
-void System::gather(const Iterate& at, Workspace& work, Team& team) const {
+void System::gather(const Iterate& at, const Balance& balance, Workspace& work, Team& team) const {
+  require_last(balance, work);
   const Layout& layout = *work.layout;
   if (multiplies_unknowns(work))
     layout.reduced.reduce(layout.pattern, work.slots, work.gradient, at.positions, work.values, team);
@@ -420,8 +447,8 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
   }
 }
 
-void System::command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
-                           Points& moves, Team& team) const {
+void System::command_force(const Iterate& at, const Demand& demand, const Balance& balance, Index actuator,
+                           Workspace& work, Points& force, Points& moves, Team& team) const {
   surroundings_.motion(actuator, moves);
   supports_turn_.add_velocity(actuator, demand.actuation, demand.share, moves);
   force.setZero(at.positions.rows(), 3);
@@ -433,7 +460,7 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
     term.add_derivative(actuator, demand, at.positions, scratch, force, team);
   });
   if (moves.isZero(0)) return;
-  assemble(at, demand, Stiffness::exact, work, team);
+  assemble(at, demand, balance, Stiffness::exact, work, team);
   work.layout->pattern.gather(work.slots, work.blocks, team);
   Points pulled;
   work.layout->pattern.multiply(work.blocks, moves, pulled, team);

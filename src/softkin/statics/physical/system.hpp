@@ -54,6 +54,9 @@ class System {
     void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
     bool left_field = false;                          // was a shape where a field is not known, as outside a grid
+    std::uint64_t evaluated = 0;                      // times
+    std::uint64_t assembled = 0;                      // by which the exact stiffness in the slots is; 0: none is there
+    std::uint64_t factorised_by = 0;                  // the same of the factor
     std::shared_ptr<const Layout> layout;             // of the slots
     std::shared_ptr<const Layout> factorised_layout;  // of the factor
     LargeVector<double> slots, blocks, values;
@@ -83,19 +86,23 @@ class System {
   };
 
   struct Balance {
-    Eigen::VectorXd force;       // of the unknowns, what is not in balance [N, N mm]
-    Eigen::VectorXd constraint;  // m: measure minus demand, 0 where not active [mm, mm^3]
-    double energy = 0;           // elastic and of contact, less the work of dead loads [mJ]
-    double load_energy = 0;      // of measures whose multipliers are given [mJ]
-    bool inverted = false;       // an element
-    bool forbidden = false;      // inverted where the law has no energy
+    Eigen::VectorXd force;         // of the unknowns, what is not in balance [N, N mm]
+    Eigen::VectorXd constraint;    // m: measure minus demand, 0 where not active [mm, mm^3]
+    double energy = 0;             // elastic and of contact, less the work of dead loads [mJ]
+    double load_energy = 0;        // of measures whose multipliers are given [mJ]
+    bool inverted = false;         // an element
+    bool forbidden = false;        // inverted where the law has no energy
+    std::uint64_t evaluation = 0;  // of the workspace
   };
 
   /// active: per actuator, is its measure held at the demand (else its multiplier is given).
   void evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
                 Balance& balance, Team& team) const;
 
-  /// How well forces balance at an iterate that was just evaluated [N].
+  // What follows and takes the balance of an evaluation asks for the last one of the workspace.
+  // throws std::logic_error on another one
+
+  /// How well forces balance at an iterate [N].
   struct Imbalance {
     double residual = 0;  // on a vertex or a rigid region, the largest
     double pull = 0;      // of the elements on a vertex, sum of magnitudes, the largest
@@ -116,33 +123,42 @@ class System {
   [[nodiscard]] Demand unbalanced(const Iterate& at, const Demand& demand, Workspace& work, Team& team) const;
 
   enum class Stiffness { exact, projected };
-  /// Stiffness at an iterate that was just evaluated, factorised, shift times the mean diagonal added. Where nothing
-  /// can touch, what was assembled is lost; multiply() is as ready as after gather() if nothing was shifted.
-  /// balance  of that iterate, if first_step() is to follow: its step is solved for together with the responses
+  /// Which stiffness is factorised.
+  struct Factoring {
+    Stiffness kind = Stiffness::exact;
+    double shift = 0;   // times the mean diagonal, added
+    bool step = false;  // is first_step() to follow: the balance's step is solved for together with the responses
+  };
+  /// Stiffness at an iterate, factorised. Where nothing can touch, what was assembled is lost; multiply() is as ready
+  /// as after gather() if nothing was shifted.
+  ///
+  /// balance  of its evaluation
   /// returns  how many negative eigenvalues it has on the changes that keep the active measures: 0 at a stable
   ///          equilibrium
-  int factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Stiffness kind, double shift,
-                Workspace& work, Team& team, const Balance* balance = nullptr) const;
+  int factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, const Balance& balance,
+                const Factoring& factoring, Workspace& work, Team& team) const;
 
-  /// What the last factorisation holds of the active measures, from their slopes at an iterate that was just evaluated.
-  void couple(const Iterate& at, const std::vector<bool>& active, Workspace& work, Team& team) const;
+  /// What the last factorisation holds of the active measures, from their slopes at an iterate.
+  void couple(const Iterate& at, const std::vector<bool>& active, const Balance& balance, Workspace& work,
+              Team& team) const;
 
   /// Stiffness of the elements and measures at an iterate, as factorise() makes it itself.
-  void assemble(const Iterate& at, const Demand& demand, Stiffness kind, Workspace& work, Team& team) const;
-  /// Makes the stiffness that was assembled last, at an iterate that was just evaluated, ready for multiply().
-  void gather(const Iterate& at, Workspace& work, Team& team) const;
-  /// K times every column, over the unknowns, at an iterate that was just evaluated, and what the normal forces that
-  /// limit friction add to it, which no factor holds. product: of vectors' size
+  void assemble(const Iterate& at, const Demand& demand, const Balance& balance, Stiffness kind, Workspace& work,
+                Team& team) const;
+  /// Makes the stiffness that was assembled last ready for multiply().
+  void gather(const Iterate& at, const Balance& balance, Workspace& work, Team& team) const;
+  /// K times every column, over the unknowns, at the iterate that was gathered, and what the normal forces that limit
+  /// friction add to it, which no factor holds. product: of vectors' size
   void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
                 Team& team) const;
 
   /// Derivative of the gradient of the Lagrangian by a command that no measure answers to, at fixed positions of all
   /// that is free, #V by 3 [N per unit of command]. moves: of what is commanded to move, per unit
-  void command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
-                     Points& moves, Team& team) const;
+  void command_force(const Iterate& at, const Demand& demand, const Balance& balance, Index actuator, Workspace& work,
+                     Points& force, Points& moves, Team& team) const;
 
-  /// Slopes of the active measures by the unknowns, with their signs, at an iterate that was just evaluated.
-  void reduce_slopes(const Iterate& at, const Workspace& work, Eigen::MatrixXd& slopes) const;
+  /// Slopes of the active measures by the unknowns, with their signs, at an iterate.
+  void reduce_slopes(const Iterate& at, const Balance& balance, const Workspace& work, Eigen::MatrixXd& slopes) const;
 
   /// Newton step of the balance with which the last factorisation was made.
   void first_step(const Balance& balance, Workspace& work, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
@@ -154,8 +170,10 @@ class System {
   /// What the next step would change multipliers by, without one: G^T K^-1 force needs no solve.
   void correct_multipliers(const Balance& balance, const Workspace& work, Eigen::VectorXd& multipliers) const;
 
-  /// Balance that a change of demand upsets, to first order: for the tangent predictor. Where it moves what holds the
-  /// robot the stiffness is to be assembled.
+  /// Does a change of demand move what holds the robot or stands around it?
+  [[nodiscard]] bool moves_supports(const Demand& from, const Demand& to) const;
+  /// Balance that a change of demand upsets, to first order: for the tangent predictor. Where it moves supports the
+  /// stiffness is to be assembled.
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
 
@@ -239,7 +257,9 @@ class System {
   bool loses_energy(Workspace& work, Team& team) const;
   [[nodiscard]] bool multiplies_unknowns(const Workspace& work) const;
   void give_slots(const Iterate& at, Workspace& work, Team& team) const;
-  void ask(const Iterate& at, const std::vector<bool>& active, Workspace& work, const Balance* balance) const;
+  static void require_last(const Balance& balance, const Workspace& work);
+  void ask(const Iterate& at, const std::vector<bool>& active, const Balance& balance, bool step,
+           Workspace& work) const;
   void close(Workspace& work) const;
   [[nodiscard]] Eigen::VectorXd closing(const Balance& balance, const Workspace& work,
                                         const Eigen::VectorXd& more) const;
