@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "statics/contact_scenes.hpp"
 #include "statics/physical_samples.hpp"
 
 /// A solve that is stopped, at any instant, gives the last equilibrium on its way, from which another one goes on.
@@ -79,6 +80,41 @@ TEST(Stopped, AtAnyInstantOfTheSearchForAMaximum) {
     EXPECT_LT(distance(same.state.positions, part.state.positions), 1e-5) << looks;
   }
   EXPECT_GT(most, 0);
+}
+
+/// As a callback throws at every instant: what is asked next is answered as by a solver that is new.
+void expect_unharmed_by_exceptions(const RobotSpec& spec, const Actuation& asked) {
+  struct Thrown {};
+  const Model model = compile(spec);
+  const Equilibrium whole = settled(Statics(model), asked);
+  ASSERT_EQ(whole.report.status, Status::converged) << whole.report.remark;
+  const Statics statics(model);
+  int looks = 0;
+  for (bool thrown = true; thrown; ++looks) {
+    thrown = false;
+    try {
+      (void)statics.solve(asked, statics.rest(), tight(), [left = looks](const Progress&) mutable {
+        if (left-- == 0) throw Thrown{};
+        return true;
+      });
+    } catch (const Thrown&) {
+      thrown = true;
+    }
+    const Equilibrium again = settled(statics, asked);
+    ASSERT_EQ(again.state.positions, whole.state.positions) << looks;
+    ASSERT_EQ(again.report.iterations, whole.report.iterations) << looks;
+  }
+  EXPECT_GT(looks, 5);
+}
+
+TEST(Stopped, ByAnExceptionItLeavesNothingBehind) {
+  expect_unharmed_by_exceptions(cable_beam(), values({0.6, 1.5}));
+  RobotSpec pressed = BlockOnFloor{0.05, 0.03, 0.3}.robot();
+  pressed.fixed[0].displacement = {1, 0, -0.3};
+  pressed.fixed[0].axes = {true, true, true};
+  pressed.fixed.resize(1);
+  pressed.contact->friction = 0.4;
+  expect_unharmed_by_exceptions(pressed, Actuation(0));
 }
 
 TEST(Stopped, ByItsDeadlineItIsNotConvergedAndSaysSo) {

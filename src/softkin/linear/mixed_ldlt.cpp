@@ -52,9 +52,10 @@ bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy,
 
 Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Precision precision,
                             Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team, LargeVector<double>* spare) {
-  in_double_ = precision == Precision::twice || wait_ > 0;
-  if (precision != Precision::twice && wait_ > 0) --wait_;
-  if (!in_double_) {
+  const bool waits = precision != Precision::twice && wait_ > 0;
+  if (waits) --wait_;
+  if (precision != Precision::twice && !waits) {
+    in_double_ = false;
     if (!single_) single_.emplace(tree_);
     const Pivots pivots = single_->factorise(values, single_least * least, team, spare);
     const bool by_energy = pivots.negative == 0 && precision != Precision::good;
@@ -65,14 +66,13 @@ Pivots MixedLdlt::factorise(const LargeVector<double>& values, double least, Pre
       right_sides = found_.leftCols(right_sides.cols());
       return pivots;
     }
-    in_double_ = true;
     distrust();
   }
   if (!twice_) {
     require_memory(*tree_, sizeof(double));
     twice_.emplace(tree_);
   }
-  trusted_ = true;
+  in_double_ = trusted_ = true;
   const Pivots pivots = twice_->factorise(values, least, team, spare);
   twice_->solve(right_sides, team);
   return pivots;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <exception>
 #include <softkin/statics/physical/equilibria.hpp>
 
 namespace softkin::physical {
@@ -27,7 +28,9 @@ class Equilibria::Lease {
     work_->tangents.at.resize(0, 3);
     work_->factor.forget();
   }
+  /// What an exception left half done is not used again.
   ~Lease() {
+    if (std::uncaught_exceptions() > exceptions_) return;
     const std::lock_guard lock(owner_.mutex_);
     owner_.idle_.push_back(std::move(work_));
   }
@@ -41,6 +44,7 @@ class Equilibria::Lease {
   }
 
   const Equilibria& owner_;
+  const int exceptions_ = std::uncaught_exceptions();
   std::unique_ptr<System::Workspace> work_;
 };
 
