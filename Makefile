@@ -103,27 +103,30 @@ test-page:
 test-page-deep:
 	scripts/test_page.sh build/softkin build/page-tests live
 
+# programs that are made for one instruction set, whatever is asked of others
+any_target := env -u SOFTKIN_TARGET
+
 test-sanitize:
 	cmake --preset sanitize
 	cmake --build --preset sanitize --target $(sanitized:%=test_%)
-	ctest --test-dir build-sanitize --parallel $(cores) --no-tests=error --tests-regex '$(sanitized_pattern)'
+	$(any_target) ctest --test-dir build-sanitize --parallel $(cores) --no-tests=error --tests-regex '$(sanitized_pattern)'
 
 test-threads:
 	cmake --preset sanitize-threads
 	cmake --build --preset sanitize-threads --target test_threads
-	ctest --test-dir build-threads --no-tests=error --tests-regex '^threads$$'
+	$(any_target) ctest --test-dir build-threads --no-tests=error --tests-regex '^threads$$'
 
 test-fuzz:
 	cmake --preset sanitize
 	cmake --build --preset sanitize --target softkin_fuzz
-	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
+	$(any_target) scripts/fuzz.sh build-sanitize/tests/softkin_fuzz quick
 
 test-arm:
 	@$(SETUP) --arm
 	scripts/arm_sysroot.sh
 	cmake -S . -B build-arm/build -G Ninja --toolchain cmake/aarch64.cmake -DSOFTKIN_OPENCV=OFF -DSOFTKIN_BENCH=OFF -DSOFTKIN_TESTS=ON
 	cmake --build build-arm/build --target test_core test_linear test_energy test_contact
-	ctest --test-dir build-arm/build --parallel $(cores) --no-tests=error --tests-regex '^(core|(linear|energy|contact)_neon)$$'
+	$(any_target) ctest --test-dir build-arm/build --parallel $(cores) --no-tests=error --tests-regex '^(core|(linear|energy|contact)_neon)$$'
 
 # the package with its $(extras), in a folder of its own: built where test-release built all but the extension module
 define install_package

@@ -2,6 +2,7 @@
 
 #include <softkin/kinematics/map.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/reports.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include <memory>
@@ -58,6 +59,12 @@ struct Session : std::enable_shared_from_this<Session> {
   /// polish  the solver goes on from its answers
   /// throws  InvalidInput where it is the map of another robot, or one without shape
   Session(RobotPtr of, MapPtr by, bool polish);
+
+  /// What reports say of the map.
+  [[nodiscard]] std::optional<runs::UsedMap> used() const {
+    if (!map) return std::nullopt;
+    return runs::UsedMap{map->name, map->map.data(), polishes};
+  }
 
   RobotPtr robot;
   MapPtr map;

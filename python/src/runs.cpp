@@ -99,11 +99,14 @@ class PathRun : public Runner<runs::StepRecord> {
         session_(robot, map, polish),
         steps_(std::move(steps)),
         job_(model(), session_.statics, steps_, name, options),
-        run_(model(), job_, files_in(store), runs::report_head(model(), model().name, options), {}) {
+        used_(session_.used()),
+        run_(model(), job_, files_in(store),
+             runs::report_head(model(), model().name, options, used_ ? &*used_ : nullptr), {}) {
     resume(store);
   }
   void save_plot(const std::string& path) {
-    const std::string title = runs::plot_title(model(), model().name) + ", " + name_of(options().solver);
+    const std::string by = used_ && !used_->polished ? used_->file : std::string(name_of(options().solver));
+    const std::string title = runs::plot_title(model(), model().name) + ", " + by;
     write_svg(path, runs::plot_of_steps(model(), run_.log().all(), title));
   }
 
@@ -113,6 +116,7 @@ class PathRun : public Runner<runs::StepRecord> {
   Session session_;
   Steps steps_;
   runs::PathJob job_;
+  std::optional<runs::UsedMap> used_;
   runs::Run<runs::StepRecord> run_;
 };
 
@@ -122,7 +126,8 @@ class FollowRun : public Runner<runs::WaypointRecord> {
             const TrajectoryOptions& options, const std::string& store)
       : Runner(robot, options.inverse.statics),
         session_(robot, map, polish),
-        follow_(model(), session_.statics, {model().name, name, std::move(path)}, options,
+        used_(session_.used()),
+        follow_(model(), session_.statics, {model().name, name, std::move(path), used_ ? &*used_ : nullptr}, options,
                 runs::FollowFolder(made(store))) {
     resume(store);
   }
@@ -152,6 +157,7 @@ class FollowRun : public Runner<runs::WaypointRecord> {
   [[nodiscard]] runs::Run<runs::WaypointRecord>& run() override { return follow_.run(); }
 
   Session session_;
+  std::optional<runs::UsedMap> used_;
   runs::FollowRun follow_;
 };
 

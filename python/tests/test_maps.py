@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import pickle
 import shutil
 import subprocess
@@ -384,3 +385,21 @@ def test_threads_share_a_map(robot: softkin.Robot, made: softkin.KinematicMap) -
     for thread in threads:
         thread.join()
     assert same == [True] * 4
+
+
+def test_runs_tell_of_their_map(robot: softkin.Robot, made: softkin.KinematicMap, tmp_path: Path) -> None:
+    """A report says which map answered; a run is not continued by another solver than it was begun with."""
+    steps = [[1 + 0.05 * i, 1.1, 1] for i in range(1, 7)]
+    list(robot.path(steps, map=made, store=tmp_path / "by_map"))
+    solver = json.loads((tmp_path / "by_map/report.json").read_text())["solver"]
+    assert solver["name"] == "map" and solver["map"]["equilibria"] == made.equilibria
+    with pytest.raises(softkin.InvalidInput, match="cannot go on from this report"):
+        robot.path([*steps, [1.4, 1.1, 1]], store=tmp_path / "by_map")
+    list(robot.path(steps[:1], map=made, polish=True, store=tmp_path / "polished"))
+    solver = json.loads((tmp_path / "polished/report.json").read_text())["solver"]
+    assert solver["name"] == "newton" and solver["begun_from_map"]["equilibria"] == made.equilibria
+    targets = np.array([robot.solve(step, map=made)["tip"] for step in steps[:2]])
+    list(robot.follow(targets, map=made, store=tmp_path / "followed"))
+    assert json.loads((tmp_path / "followed/report.json").read_text())["solver"]["name"] == "map"
+    with pytest.raises(softkin.InvalidInput, match="cannot go on from"):
+        robot.follow(targets, store=tmp_path / "followed")

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -25,7 +26,62 @@ std::set<std::string> names_in_tables(const fs::path& file) {
   return names;
 }
 
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+using Constants = std::multiset<std::pair<std::string, std::string>>;
+
+/// Names and values of the numbers of a source.
+Constants constants_in(const std::string& source) {
+  static const std::regex declared(R"(constexpr (?:double|int|Index|std::size_t|std::int64_t) ([^;{]*);)");
+  static const std::regex soft(R"(constexpr ContactFirmness (\w+)\{([^}]*)\};)");
+  static const std::regex one(R"((\w+) = ([^,]+))");
+  Constants found;
+  for (std::sregex_iterator match(source.begin(), source.end(), declared), end; match != end; ++match) {
+    const std::string list = (*match)[1].str();
+    for (std::sregex_iterator each(list.begin(), list.end(), one); each != end; ++each)
+      found.emplace((*each)[1].str(), (*each)[2].str());
+  }
+  for (std::sregex_iterator match(source.begin(), source.end(), soft), end; match != end; ++match)
+    found.emplace((*match)[1].str(), (*match)[2].str());
+  return found;
+}
+
+/// By file, what the tables of following.md have.
+std::map<std::string, Constants> constants_told(const std::string& page) {
+  static const std::regex heading(R"(### `(\w+)`)"), row(R"(\| `(\w+)` \| ([^|]+) \|.*)");
+  std::map<std::string, Constants> told;
+  std::string file;
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, heading))
+      file = match[1].str();
+    else if (!file.empty() && std::regex_match(line, match, row))
+      told[file].emplace(match[1].str(), match[2].str());
+  }
+  return told;
+}
+
 }  // namespace
+
+/// following.md has every number by which a path is followed, with the value that it has.
+TEST(Architecture, TellsTheConstants) {
+  const fs::path source(SOFTKIN_SOURCE_DIR);
+  const auto told = constants_told(text_of(source / "docs/following.md"));
+  std::size_t count = 0;
+  for (const auto& [file, constants] : told) {
+    EXPECT_EQ(constants, constants_in(text_of(source / "src/softkin/statics/physical" / (file + ".cpp")))) << file;
+    count += constants.size();
+  }
+  EXPECT_GT(count, 110u);
+  for (const char* file : {"continuation", "newton", "settling", "summit", "beyond_summit", "buckling", "prediction"})
+    EXPECT_TRUE(told.contains(file)) << file;
+}
 
 /// Every source of the rooms that are not read in a minute.
 TEST(Architecture, HasARowForEverySource) {

@@ -204,6 +204,9 @@ TEST_F(Steps, OfWhatRubsKeepWhereItSticks) {
   ASSERT_FALSE(last.anchors.empty());
   const State known = state_of(model, read_back(job.codec(), last), model.rest);
   ASSERT_EQ(known.anchors.size(), last.anchors.size());
+  StepRecord agreed = last;
+  agreed.friction_change = 3e-5;
+  EXPECT_EQ(read_back(job.codec(), agreed).friction_change, 3e-5);
   for (std::size_t i = 0; i < known.anchors.size(); ++i) {
     EXPECT_EQ(known.anchors[i].vertex, last.anchors[i].vertex);
     EXPECT_EQ(known.anchors[i].part, last.anchors[i].part);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <softkin/core/error.hpp>
 #include <softkin/core/types.hpp>
@@ -46,6 +47,11 @@ struct ContactModel {
   [[nodiscard]] bool any() const { return distance_mm > 0; }
   [[nodiscard]] const ContactPair& pair(Index a, Index b) const {
     return pairs[static_cast<std::size_t>(a) * parts.size() + static_cast<std::size_t>(b)];
+  }
+  /// Does any pair of parts rub?
+  [[nodiscard]] bool rubs() const {
+    return std::any_of(pairs.begin(), pairs.end(),
+                       [](const ContactPair& pair) { return pair.touch && pair.friction > 0; });
   }
   /// "the robot", "robot 'left'", "region 'skin'", "body 'pen'", "obstacle 'floor'"
   [[nodiscard]] std::string label(Index part) const;

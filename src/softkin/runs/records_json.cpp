@@ -187,6 +187,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
     json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
   if (model.magnetism) json["magnetic"] = record.magnetic ? magnetic_json(*record.magnetic) : Json();
   if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
+  if (model.contact.rubs()) json["friction_change"] = known(record.friction_change);
   if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
   return json;
 }
@@ -206,6 +207,7 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
                          point_of(load.at("center_mm"))};
   if (!model.contact.any()) return;
   if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);
+  if (model.contact.rubs()) record.friction_change = number_or_nan(json.at("friction_change"));
   if (json.contains("anchors")) record.anchors = anchors_of(model, json.at("anchors"));
 }
 
@@ -216,7 +218,7 @@ Json rounded(double value) {
   return known(std::strtod(text, nullptr));
 }
 
-/// Every iteration up to 50, then ever sparser: a curve stays a curve and a report stays small.
+/// Every iteration up to 100, then ever sparser: a curve stays a curve and a report stays small.
 Json history_json(const StepRecord& record) {
   const bool all = record.history_iterations.empty();
   Json json = {

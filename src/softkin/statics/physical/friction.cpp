@@ -19,9 +19,7 @@ bool before(const A& a, const B& b) {
 }  // namespace
 
 Friction::Friction(const ContactSurfaces& surfaces) : surfaces_(surfaces), creep_mm_(creep_share * surfaces.reach_mm) {
-  if (surfaces.rules == nullptr) return;
-  const auto rubs = [](const ContactPair& pair) { return pair.touch && pair.friction > 0; };
-  any_ = std::any_of(surfaces.rules->pairs.begin(), surfaces.rules->pairs.end(), rubs);
+  any_ = surfaces.rules != nullptr && surfaces.rules->rubs();
 }
 
 /// What a vertex feels of a part.

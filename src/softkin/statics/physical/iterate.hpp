@@ -7,7 +7,7 @@ namespace softkin::physical {
 /// What is asked of a robot in the physical formulation.
 struct Demand {
   Eigen::VectorXd actuation;  // m, as the user commands it
-  double share = 1;           // of dead loads and of the displacement of what is held [-]
+  double share = 1;           // of dead loads, dipoles, prestretch and displacements of supports [-]
   double fading = 0;          // share of what was not in balance where the way began [-]
 };
 
