@@ -29,8 +29,8 @@ PhysicalParts::PhysicalParts(const Model& model, const Actuation& actuation, con
       demand_{actuation, 1},
       at_{shape.positions, shape.multipliers} {
   for (Index a = 0; a < system_.actuators(); ++a) {
-    active_.push_back(system_.constrains(a));
-    at_.multipliers[a] *= system_.unit(a);
+    active_.push_back(system_.measures().constrains(a));
+    at_.multipliers[a] *= system_.measures().unit(a);
   }
   projected_ = factorise() > 0;
 }

@@ -21,7 +21,8 @@ struct Equations {
         team(1),
         demand{state.actuation, state.share},
         at(system.iterate(state)) {
-    for (Index a = 0; a < system.actuators(); ++a) active.push_back(system.constrains(a) && at.multipliers[a] != 0);
+    for (Index a = 0; a < system.actuators(); ++a)
+      active.push_back(system.measures().constrains(a) && at.multipliers[a] != 0);
     system.evaluate(at, demand, active, work, balance, team);
   }
 

@@ -29,7 +29,7 @@ struct SystemSample {
     system.freedoms().hold(1, at.positions);
     at.multipliers = Eigen::VectorXd::Constant(system.actuators(), 0.01);
     active.assign(static_cast<std::size_t>(system.actuators()), true);
-    for (Index a = 0; a < system.actuators(); ++a) active[a] = system.constrains(a);
+    for (Index a = 0; a < system.actuators(); ++a) active[a] = system.measures().constrains(a);
   }
 
   physical::System::Balance balance_at(const physical::Iterate& iterate) {
@@ -131,7 +131,7 @@ TEST(System, UpsetIsTheSlopeInTheDemand) {
   spec.materials[0].density = 1000;
   spec.gravity = {0, 0, -2};
   SystemSample sample(spec);
-  sample.at.multipliers[1] = sample.system.unit(1) * 30;
+  sample.at.multipliers[1] = sample.system.measures().unit(1) * 30;
   const physical::Demand from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
   sample.demand = from;
   (void)sample.factorise();
@@ -145,7 +145,7 @@ TEST(System, UpsetIsTheSlopeInTheDemand) {
     sample.demand = {from.actuation + way * (to.actuation - from.actuation),
                      from.share + way * (to.share - from.share)};
     physical::Iterate iterate = sample.at;
-    iterate.multipliers[1] = sample.system.unit(1) * sample.demand.actuation[1];
+    iterate.multipliers[1] = sample.system.measures().unit(1) * sample.demand.actuation[1];
     sides[side] = sample.balance_at(iterate);
   }
   const Eigen::VectorXd force = (sides[0].force - sides[1].force) / (2 * reach);

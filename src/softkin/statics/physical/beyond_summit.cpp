@@ -116,8 +116,9 @@ Continuation::Climb Continuation::go_beyond(Index a, double way, const Demand& f
 Continuation::Climb Continuation::go_back(Index a, const Demand& from, const Demand& to, Iterate& at) {
   const double begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
   Measured last{begin, from.actuation[a], at, last_, 0, from.share};
-  last.at.multipliers[a] = system_.unit(a) * last.load;
-  const double slope = slope_at(a, from, last), grows = -system_.sign(a);  // the load with the measure, at rest
+  last.at.multipliers[a] = system_.measures().unit(a) * last.load;
+  const double slope = slope_at(a, from, last),
+               grows = -system_.measures().sign(a);  // the load with the measure, at rest
   if (!std::isfinite(slope) || slope * grows >= 0) return Climb::lost;
   const double way = to.actuation[a] > from.actuation[a] ? -grows : grows;
   const double end = way == grows ? beyond_ : 1;
@@ -143,7 +144,7 @@ void Continuation::note_branch(Index a, const Measured& point) {
 /// In the order of the measure; nothing where the way did not go along it.
 void Continuation::sort_branch() {
   auto& points = report_.branch.points;
-  const double way = report_.branch.actuator >= 0 ? -system_.sign(report_.branch.actuator) : 1;
+  const double way = report_.branch.actuator >= 0 ? -system_.measures().sign(report_.branch.actuator) : 1;
   std::sort(points.begin(), points.end(),
             [way](const auto& a, const auto& b) { return way * a.measure < way * b.measure; });
 }

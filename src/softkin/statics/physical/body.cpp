@@ -326,7 +326,7 @@ void Body::add_derivative(Index command, const Demand& demand, const Points& pos
                           Points& force, Team& team) const {
   auto& own = static_cast<Scratch&>(scratch);
   Points there;
-  if (std::find(voltages_.begin(), voltages_.end(), command) != voltages_.end()) {
+  if (loads(command)) {
     field_force(command, 1, positions, own, there, team);  // it goes with the square of the voltage
     force += 2 * demand.actuation[command] * there;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <softkin/core/team.hpp>
 #include <softkin/energy/dielectric.hpp>
 #include <softkin/energy/viscous.hpp>
@@ -92,6 +93,11 @@ class Body : public Term {
   void tell(const Iterate& at, const Demand& demand, Term::Scratch& scratch, ElementDeformation& out,
             Team& team) const override {
     stress(demand, at.positions, static_cast<Scratch&>(scratch), out.stress, team);
+  }
+
+  /// Voltages.
+  [[nodiscard]] bool loads(Index command) const override {
+    return std::find(voltages_.begin(), voltages_.end(), command) != voltages_.end();
   }
 
   /// Does the share of what is done to it at once change it: is a layer under voltage prestretched.

@@ -92,7 +92,7 @@ linear::Remainder Bordered::step(const System::Balance& balance, double accuracy
   const Index count = static_cast<Index>(work_.active.size());
   Columns right{-balance.force, Eigen::MatrixXd(count, 1)}, found;
   for (Index i = 0; i < count; ++i)
-    right.multipliers(i, 0) = -system_.sign(work_.active[i]) * balance.constraint[work_.active[i]];
+    right.multipliers(i, 0) = -system_.measures().sign(work_.active[i]) * balance.constraint[work_.active[i]];
   const linear::Remainder remainder = solve(right, accuracy, rounds, found);
   if (!(remainder.left < 1)) return remainder;
   step = found.moves.col(0);

@@ -91,9 +91,10 @@ class Contacts : public Term {
   /// Adds what friction's normal forces change of the gradient with moves; see Friction::add_response.
   void add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
                              Points& gradient) const;
+  [[nodiscard]] bool symmetric() const override { return !friction_.any(); }
   void add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch,
                     Points& force) const override {
-    if (friction_.any()) add_friction_response(at.positions, static_cast<const Scratch&>(scratch), moves, force);
+    if (!symmetric()) add_friction_response(at.positions, static_cast<const Scratch&>(scratch), moves, force);
   }
 
   /// The share in [0, 1] of a motion, every vertex on its straight way, in which nothing passes through anything and no

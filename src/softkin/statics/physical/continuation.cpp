@@ -127,7 +127,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
 
 Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate& at) {
   active_.resize(static_cast<std::size_t>(system_.actuators()));
-  for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.constrains(a);
+  for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.measures().constrains(a);
   set_out(from, to);
   (void)release(to, at, false);
   from_ = at.positions;
@@ -157,7 +157,7 @@ void Continuation::set_out(const Demand& from, const Demand& to) {
   way_ = {.from = from, .to = to, .here = from, .before = way_.before};
   way_.loads_change = change_loads(from, to);
   for (Index a = 0; a < system_.actuators(); ++a)
-    way_.releases = way_.releases || (system_.holds(a) && from.actuation[a] != to.actuation[a]);
+    way_.releases = way_.releases || (system_.surroundings().holds(a) && from.actuation[a] != to.actuation[a]);
   way_.load = only_load(from, to);
   way_.marked_iterations = report_.iterations;
 }
@@ -240,7 +240,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const bool unstable = outcome == Newton::Outcome::unstable;
   if (newton_.inverted() && !last_.inverted && length > most_inverting) reject("an element is inverted");
   // a body that nothing holds has no stiffness, and so no step
-  if (system_.any_body() && !newton_.balanced()) reject("a body is out of balance");
+  if (system_.surroundings().any_body() && !newton_.balanced()) reject("a body is out of balance");
 
   std::optional<Status> end;
   const double longest = longest_step(snap, unstable);
@@ -401,7 +401,7 @@ double Continuation::longest_step(bool snap, bool unstable) const {
 bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   if (from.fading != to.fading || (system_.any_dead_load() && from.share != to.share)) return true;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (from.actuation[a] != to.actuation[a] && (system_.loads(a) || system_.given_load(a))) return true;
+    if (from.actuation[a] != to.actuation[a] && (system_.loads(a) || system_.measures().given_load(a))) return true;
   return false;
 }
 
@@ -443,8 +443,8 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
 bool Continuation::release(const Demand& there, Iterate& at, bool contradicting) {
   bool changed = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!active_[a] || !system_.only_pulls(a) || (at.multipliers[a] > 0 && !contradicting)) continue;
-    if (system_.measures().value(a, at.positions) >= system_.target(a, there)) continue;
+    if (!active_[a] || !system_.measures().only_pulls(a) || (at.multipliers[a] > 0 && !contradicting)) continue;
+    if (system_.measures().value(a, at.positions) >= system_.measures().target(a, there.actuation)) continue;
     active_[a] = false;
     at.multipliers[a] = 0;
     changed = true;

@@ -33,9 +33,10 @@ Derivative::Derivative(const System& system, System::Workspace& work, double acc
 /// Measures that are held: of chambers, and of cables that pull or are as long as they may be.
 void Derivative::hold(const Iterate& at, const Demand& demand) {
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!system_.constrains(a)) continue;
-    active_[a] = !system_.only_pulls(a) || at.multipliers[a] > 0 ||
-                 system_.measures().value(a, at.positions) >= (1 - verge) * system_.target(a, demand);
+    if (!system_.measures().constrains(a)) continue;
+    active_[a] =
+        !system_.measures().only_pulls(a) || at.multipliers[a] > 0 ||
+        system_.measures().value(a, at.positions) >= (1 - verge) * system_.measures().target(a, demand.actuation);
     if (active_[a]) held_.push_back(a);
   }
   hold_friction(system_, at, work_, team_);
@@ -47,18 +48,18 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
   right_.moves.setZero(system_.freedoms().size(), system_.actuators());
   right_.multipliers.setZero(static_cast<Index>(held_.size()), system_.actuators());
   for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
-    right_.multipliers(i, held_[i]) = system_.sign(held_[i]) * system_.measures().rest(held_[i]);
+    right_.multipliers(i, held_[i]) = system_.measures().sign(held_[i]) * system_.measures().rest(held_[i]);
   Points force;
   moves_.resize(static_cast<std::size_t>(system_.actuators()));
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (system_.constrains(a)) continue;
+    if (system_.measures().constrains(a)) continue;
     Points& moves = moves_[static_cast<std::size_t>(a)];
     system_.command_force(at, demand, balance_, a, work_, force, moves, team_);
     if (moves.isZero(0)) moves.resize(0, 3);
     system_.freedoms().reduce(-force, at.positions, right_.moves.col(a));
     if (moves.rows() == 0) continue;
     for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)  // what is held and moves takes measures along
-      right_.multipliers(i, a) = -system_.sign(held_[i]) * work_.slopes[held_[i]].cwiseProduct(moves).sum();
+      right_.multipliers(i, a) = -system_.measures().sign(held_[i]) * work_.slopes[held_[i]].cwiseProduct(moves).sum();
   }
 }
 
@@ -66,7 +67,7 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
 bool Derivative::solve(const Iterate& at, bool exact_factor) {
   Bordered equations(system_, work_, team_);
   equations.set(at, balance_);
-  const bool symmetric = !system_.friction();
+  const bool symmetric = system_.symmetric();
   const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : inexact_rounds;
   // those of the last derivative, of a shape nearby; what they leave would not tell of the factor's own rounding
   const System::Slopes& last = work_.tangents;
@@ -88,8 +89,8 @@ Sensitivity Derivative::result(const Iterate& at) const {
     system_.freedoms().expand(found_.moves.col(a), at.positions, result.positions[a]);
     if (const Points& moves = moves_[static_cast<std::size_t>(a)]; moves.rows() > 0) result.positions[a] += moves;
     for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
-      result.multipliers(held_[i], a) = found_.multipliers(i, a) / system_.unit(held_[i]);
-    if (system_.given_load(a)) result.multipliers(a, a) = 1;
+      result.multipliers(held_[i], a) = found_.multipliers(i, a) / system_.measures().unit(held_[i]);
+    if (system_.measures().given_load(a)) result.multipliers(a, a) = 1;
   }
   return result;
 }

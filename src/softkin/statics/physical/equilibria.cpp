@@ -24,10 +24,10 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
   Demand demand = at_rest(model, wanted);
   if (!rests) demand.share = start.share >= 0 ? start.share : 1.0;
   for (Index a = 0; a < system.actuators(); ++a) {
-    if (system.constrains(a))
+    if (system.measures().constrains(a))
       demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
     else if (model.actuators[a].kind == ActuatorKind::motion)
-      demand.actuation[a] = system.moved(a, start.positions);
+      demand.actuation[a] = system.surroundings().moved(a, start.positions);
     else if (model.actuators[a].kind == ActuatorKind::turn && !rests)
       demand.actuation[a] = system.turning().angle(a, start.positions);
     else if (!drives(model.actuators[a]))
@@ -122,7 +122,8 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors};
   system_.hold(from, at.positions);
   if (start.multipliers.size() > 0)
-    for (Index a = 0; a < system_.actuators(); ++a) at.multipliers[a] = system_.unit(a) * start.multipliers[a];
+    for (Index a = 0; a < system_.actuators(); ++a)
+      at.multipliers[a] = system_.measures().unit(a) * start.multipliers[a];
   system_.set_time(options.history, options.elapsed_s, lease.work(), team);
   const bool rests = start.positions == model.rest && start.actuation.size() == 0;
   const bool same_time =
@@ -167,7 +168,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
     return result;
   }
   result.state.multipliers = at.multipliers;
-  for (Index a = 0; a < system_.actuators(); ++a) result.state.multipliers[a] /= system_.unit(a);
+  for (Index a = 0; a < system_.actuators(); ++a) result.state.multipliers[a] /= system_.measures().unit(a);
   return result;
 }
 

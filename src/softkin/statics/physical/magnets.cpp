@@ -240,8 +240,7 @@ void Magnets::stiffness(const Iterate& at, const Demand& demand, bool projected,
 
 void Magnets::add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& /*scratch*/,
                              Points& force, Team& team) const {
-  if (std::find(commands_.begin(), commands_.end(), command) != commands_.end())
-    (void)add_gradient(fields_.derivative(command, demand), positions, force, team);
+  if (loads(command)) (void)add_gradient(fields_.derivative(command, demand), positions, force, team);
 }
 
 MagneticLoad Magnets::load(const Demand& demand, const Points& positions, Team& team) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
@@ -45,6 +46,9 @@ class Magnets : public Term {
     out.magnetic = load(demand, at.positions, team);
   }
 
+  [[nodiscard]] bool loads(Index command) const override {
+    return std::find(commands_.begin(), commands_.end(), command) != commands_.end();
+  }
   /// Dipoles come with the share.
   [[nodiscard]] bool grows() const override { return fields_.any_dipole(); }
 

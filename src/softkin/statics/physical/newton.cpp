@@ -139,7 +139,7 @@ double Newton::weigh_constraints(const Iterate& at) {
     if (!(*active_)[a]) continue;
     const double multiplier = at.multipliers[a], missed = balance_.constraint[a];
     constraint_weights_[a] = above * std::max(std::abs(multiplier), std::abs(multiplier + step_.change[a]));
-    slope += system_.sign(a) * multiplier * missed - constraint_weights_[a] * std::abs(missed);
+    slope += system_.measures().sign(a) * multiplier * missed - constraint_weights_[a] * std::abs(missed);
   }
   return slope;
 }

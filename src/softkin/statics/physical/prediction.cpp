@@ -73,7 +73,7 @@ void follow(const Tangent& tangent, double share, const System& system, const De
             const std::vector<bool>& active, Eigen::VectorXd& multipliers) {
   multipliers += share * tangent.change;
   for (Index a = 0; a < system.actuators(); ++a)
-    if (!active[a] && system.given_load(a)) multipliers[a] = system.unit(a) * there.actuation[a];
+    if (!active[a] && system.measures().given_load(a)) multipliers[a] = system.measures().unit(a) * there.actuation[a];
 }
 
 }  // namespace
@@ -188,7 +188,7 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
       active_(static_cast<std::size_t>(system.actuators())) {
   for (Index a = 0; a < system.actuators(); ++a) {
     // chambers are held always, cables where they pull
-    active_[a] = system.constrains(a) && (!system.only_pulls(a) || iterate_.multipliers[a] > 0);
+    active_[a] = system.measures().constrains(a) && (!system.measures().only_pulls(a) || iterate_.multipliers[a] > 0);
   }
   System::Balance balance;
   const Demand demand{at.actuation, at.share};
@@ -212,9 +212,10 @@ State Predictor::predict(const Actuation& actuation, Team& team) {
               at_.history,
               at_.elapsed_s};
   for (Index a = 0; a < system_.actuators(); ++a) {
-    state.multipliers[a] /= system_.unit(a);
+    state.multipliers[a] /= system_.measures().unit(a);
     // no cable pushes
-    if (system_.constrains(a) && system_.only_pulls(a)) state.multipliers[a] = std::max(0.0, state.multipliers[a]);
+    if (system_.measures().constrains(a) && system_.measures().only_pulls(a))
+      state.multipliers[a] = std::max(0.0, state.multipliers[a]);
   }
   return state;
 }

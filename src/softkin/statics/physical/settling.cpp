@@ -9,7 +9,8 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   const std::vector<bool> before = active_;
   Iterate trial = at;
   auto outcome = settle(demand, Newton::Policy::descend, trial);
-  if (newton_.inverted() || (system_.any_body() && !newton_.balanced())) outcome = Newton::Outcome::stuck;
+  if (newton_.inverted() || (system_.surroundings().any_body() && !newton_.balanced()))
+    outcome = Newton::Outcome::stuck;
   if (outcome == Newton::Outcome::converged) {
     take(at, std::move(trial));
     last_ = judged();
@@ -130,8 +131,8 @@ Newton::Outcome Continuation::settle_constraints(const Demand& demand, Newton::P
 bool Continuation::change_active(const Demand& demand, Iterate& at) {
   bool changed = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!system_.constrains(a) || !system_.only_pulls(a)) continue;  // a chamber pushes and pulls
-    const double target = system_.target(a, demand);
+    if (!system_.measures().constrains(a) || !system_.measures().only_pulls(a)) continue;  // a chamber pushes and pulls
+    const double target = system_.measures().target(a, demand.actuation);
     if (active_[a] && at.multipliers[a] < 0) {
       active_[a] = false;
       at.multipliers[a] = 0;

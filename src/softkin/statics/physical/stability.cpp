@@ -100,7 +100,7 @@ double lagrangian(const System& system, const System::Balance& balance, const Po
   double energy = balance.energy;
   for (Index a = 0; a < system.actuators(); ++a)
     if (system.measures().measures(a) && multipliers[a] != 0)
-      energy += system.sign(a) * multipliers[a] * system.measures().value(a, positions);
+      energy += system.measures().sign(a) * multipliers[a] * system.measures().value(a, positions);
   return energy;
 }
 

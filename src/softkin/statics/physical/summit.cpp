@@ -33,7 +33,7 @@ Index Continuation::only_load(const Demand& from, const Demand& to) const {
   Index found = -1;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (from.actuation[a] == to.actuation[a]) continue;
-    if (found >= 0 || system_.constrains(a) || !system_.measures().measures(a)) return -1;
+    if (found >= 0 || system_.measures().constrains(a) || !system_.measures().measures(a)) return -1;
     found = a;
   }
   return found;
@@ -76,7 +76,8 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
     interrupted_ = outcome == Newton::Outcome::interrupted;
     if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted)) {
       slide_friction(system_, trial, work_, team_);
-      found = Measured{measure, trial.multipliers[a] / system_.unit(a), std::move(trial), judged(), 0, there.share};
+      found = Measured{measure,    trial.multipliers[a] / system_.measures().unit(a), std::move(trial), judged(), 0,
+                       there.share};
     }
     const Points& end = found ? found->at.positions : begun;
     tracer_.end(found.has_value(),
@@ -139,7 +140,8 @@ double Continuation::slope_at(Index a, const Demand& load, const Measured& point
   if (prepare(here, point.at) >= 0) {
     Iterate beside = point.at;
     (void)predict(system_, here, there, active_, work_, team_, beside);
-    slope = (beside.multipliers[a] - point.at.multipliers[a]) / system_.unit(a) / (first_step * point.measure);
+    slope =
+        (beside.multipliers[a] - point.at.multipliers[a]) / system_.measures().unit(a) / (first_step * point.measure);
   }
   active_[a] = false;
   return slope;
@@ -150,10 +152,10 @@ double Continuation::slope_at(Index a, const Demand& load, const Measured& point
 Continuation::Climb Continuation::climb(Index a, const Demand& from, const Demand& here, const Demand& to,
                                         Iterate& at) {
   const double up = to.actuation[a] > here.actuation[a] ? 1 : -1;  // a chamber grows with its pressure, a cable
-  const double way = -up * system_.sign(a);                        // shortens with its tension
+  const double way = -up * system_.measures().sign(a);             // shortens with its tension
   const double begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
   Measured low{begin, here.actuation[a], at, last_, 0, here.share};
-  low.at.multipliers[a] = system_.unit(a) * low.load;
+  low.at.multipliers[a] = system_.measures().unit(a) * low.load;
   const auto gain = [&](const Measured& point) { return up * way * slope_at(a, here, point); };
   const auto at_maximum = [&](const Measured& point) {
     return std::abs(point.gain) * point.measure < flat * std::abs(point.load);
@@ -219,7 +221,7 @@ Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& ne
                                             Newton::Policy policy) {
   Iterate trial = near.at;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (system_.given_load(a)) trial.multipliers[a] = system_.unit(a) * to.actuation[a];
+    if (system_.measures().given_load(a)) trial.multipliers[a] = system_.measures().unit(a) * to.actuation[a];
   const auto outcome = settle(to, policy, trial);
   if (outcome == Newton::Outcome::interrupted) return Climb::interrupted;
   const bool found = outcome == Newton::Outcome::converged ||

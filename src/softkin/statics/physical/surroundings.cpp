@@ -34,7 +34,6 @@ void Surroundings::place(const Eigen::VectorXd& actuation, Points& positions) co
       positions(v, model_.actuators[a].axis) += actuation[static_cast<Index>(a)];
 }
 
-/// Does a command load a body: a force, or what holds it.
 bool Surroundings::loads(Index command) const {
   const ActuatorKind kind = model_.actuators[static_cast<std::size_t>(command)].kind;
   return kind == ActuatorKind::force || kind == ActuatorKind::hold;

@@ -32,6 +32,11 @@ class Surroundings : public Term {
   void stiffness(const Iterate& at, const Demand& demand, bool projected, Scratch& scratch, LargeVector<double>& slots,
                  Team& team) const override;
 
+  /// A force, or what holds a body.
+  [[nodiscard]] bool loads(Index command) const override;
+  [[nodiscard]] bool holds(Index command) const {
+    return model_.actuators[static_cast<std::size_t>(command)].kind == ActuatorKind::hold;
+  }
   /// To first order, from the first demand on.
   void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
                   Team& team) const override;
@@ -42,7 +47,6 @@ class Surroundings : public Term {
   void motion(Index actuator, Points& moves) const;
 
  private:
-  [[nodiscard]] bool loads(Index command) const;
   void add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const;
 
   const Model& model_;

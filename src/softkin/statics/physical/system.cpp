@@ -87,11 +87,6 @@ void System::Workspace::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& tea
   reduced.to_unknowns(in_columns, right_sides);
 }
 
-bool System::constrains(Index actuator) const {
-  const Actuator& a = model_.actuators[actuator];
-  return a.kind != ActuatorKind::dea && drives(a) && a.control == Control::ratio;
-}
-
 void System::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
                       Balance& balance, Team& team) const {
   balance.evaluation = ++work.evaluated;
@@ -108,10 +103,10 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
     if (!measures_.measures(a) || (!active[a] && at.multipliers[a] == 0)) continue;
     const double value = measures_.value(a, at.positions, &work.slopes[a]);
     if (active[a])
-      balance.constraint[a] = value - target(a, demand);
+      balance.constraint[a] = value - measures_.target(a, demand.actuation);
     else
-      balance.load_energy += sign(a) * at.multipliers[a] * value;
-    work.gradient += sign(a) * at.multipliers[a] * work.slopes[a];
+      balance.load_energy += measures_.sign(a) * at.multipliers[a] * value;
+    work.gradient += measures_.sign(a) * at.multipliers[a] * work.slopes[a];
   }
   balance.force.resize(freedoms_->size());
   freedoms_->reduce(work.gradient, at.positions, balance.force);
@@ -168,7 +163,7 @@ void System::assemble(const Iterate& at, const Demand& demand, const Balance& ba
     term.stiffness(at, demand, kind == Stiffness::projected, scratch, work.slots, team);
   });
   Eigen::VectorXd scale(actuators());
-  for (Index a = 0; a < actuators(); ++a) scale[a] = sign(a) * at.multipliers[a];
+  for (Index a = 0; a < actuators(); ++a) scale[a] = measures_.sign(a) * at.multipliers[a];
   measures_.second_derivatives(at.positions, scale, work.slots, team);
 }
 
@@ -263,7 +258,7 @@ void System::reduce_slopes(const Iterate& at, const Balance& balance, const Work
   slopes.resize(freedoms_->size(), static_cast<Index>(work.active.size()));
   for (Index i = 0; i < static_cast<Index>(slopes.cols()); ++i) {
     freedoms_->reduce(work.slopes[work.active[i]], at.positions, slopes.col(i));
-    slopes.col(i) *= sign(work.active[i]);
+    slopes.col(i) *= measures_.sign(work.active[i]);
   }
 }
 
@@ -298,7 +293,7 @@ void System::first_step(const Balance& balance, Workspace& work, Eigen::VectorXd
 Eigen::VectorXd System::closing(const Balance& balance, const Workspace& work, const Eigen::VectorXd& more) const {
   Eigen::VectorXd asked = more;
   for (Index i = 0; i < static_cast<Index>(asked.size()); ++i)
-    asked[i] += sign(work.active[i]) * balance.constraint[work.active[i]];
+    asked[i] += measures_.sign(work.active[i]) * balance.constraint[work.active[i]];
   return work.scale.cwiseProduct(work.schur.solve(work.scale.cwiseProduct(asked)));
 }
 
@@ -349,10 +344,10 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0 || !measures_.measures(a)) continue;
     if (active[a]) {
-      balance.constraint[a] += target(a, from) - target(a, to);
-    } else if (!constrains(a)) {
+      balance.constraint[a] += measures_.target(a, from.actuation) - measures_.target(a, to.actuation);
+    } else if (!measures_.constrains(a)) {
       (void)measures_.value(a, at.positions, &work.slopes[a]);
-      force += sign(a) * unit(a) * change * work.slopes[a];
+      force += measures_.sign(a) * measures_.unit(a) * change * work.slopes[a];
     }
   }
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
@@ -416,7 +411,7 @@ System::Size System::size_of(const Eigen::VectorXd& unknowns, const Points& posi
 }
 
 bool System::multiplies_unknowns(const Workspace& work) const {
-  return !friction() && work.layout->reduced.in_order();
+  return symmetric() && work.layout->reduced.in_order();
 }
 
 void System::gather(const Iterate& at, const Balance& balance, Workspace& work, Team& team) const {
@@ -454,7 +449,7 @@ void System::command_force(const Iterate& at, const Demand& demand, const Balanc
   force.setZero(at.positions.rows(), 3);
   if (measures_.measures(actuator)) {
     (void)measures_.value(actuator, at.positions, &force);
-    force *= sign(actuator) * unit(actuator);
+    force *= measures_.sign(actuator) * measures_.unit(actuator);
   }
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.add_derivative(actuator, demand, at.positions, scratch, force, team);
@@ -466,6 +461,14 @@ void System::command_force(const Iterate& at, const Demand& demand, const Balanc
   work.layout->pattern.multiply(work.blocks, moves, pulled, team);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.add_response(at, moves, scratch, pulled); });
   force += pulled;
+}
+
+bool System::loads(Index actuator) const {
+  return std::any_of(terms_.begin(), terms_.end(), [&](const Term* term) { return term->loads(actuator); });
+}
+
+bool System::symmetric() const {
+  return std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->symmetric(); });
 }
 
 bool System::any_dead_load() const {

@@ -192,11 +192,6 @@ class System {
   /// Supports that turn.
   [[nodiscard]] const supports::Turning& turning() const { return supports_turn_; }
 
-  /// How far an obstacle is from where it stands at rest, along its command's axis [mm].
-  [[nodiscard]] double moved(Index actuator, const Points& positions) const {
-    return surroundings_.moved(actuator, positions);
-  }
-
   /// What touches; null: nothing can.
   [[nodiscard]] const Contacts* contacts() const { return contacts_.get(); }
   [[nodiscard]] bool contact() const { return contacts_ != nullptr; }
@@ -214,41 +209,17 @@ class System {
   [[nodiscard]] const supports::Freedoms& freedoms() const { return *freedoms_; }
   [[nodiscard]] const supports::ActuatorMeasures& measures() const { return measures_; }
   [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
-  /// Is the actuator's measure commanded (else its load, or it is a dea).
-  [[nodiscard]] bool constrains(Index actuator) const;
-  /// Is a load of the robot itself commanded: tension, pressure or voltage.
-  [[nodiscard]] bool given_load(Index actuator) const {
-    return !constrains(actuator) && (measures_.measures(actuator) || under_voltage(model_.actuators[actuator]));
-  }
-  [[nodiscard]] double sign(Index actuator) const {
-    return model_.actuators[actuator].kind == ActuatorKind::cable ? 1 : -1;
-  }
-  /// A cable, which gives way where it would push.
-  [[nodiscard]] bool only_pulls(Index actuator) const {
-    const Actuator& a = model_.actuators[actuator];
-    return a.kind == ActuatorKind::cable && !a.pushes;
-  }
-  /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
-  [[nodiscard]] double unit(Index actuator) const {
-    return model_.actuators[actuator].kind == ActuatorKind::pneumatic ? 1e-3 : 1;
-  }
   /// Of a shape whose multipliers are known.
   [[nodiscard]] Iterate iterate(const State& at) const {
     Iterate shape{at.positions, at.multipliers, at.anchors};
-    for (Index a = 0; a < actuators(); ++a) shape.multipliers[a] *= unit(a);
+    for (Index a = 0; a < actuators(); ++a) shape.multipliers[a] *= measures_.unit(a);
     return shape;
   }
-  /// Demanded measure [mm, mm^3].
-  [[nodiscard]] double target(Index actuator, const Demand& demand) const {
-    return demand.actuation[actuator] * measures_.rest(actuator);
-  }
-  /// Does a command load the robot without a measure: a magnetic field, a force on a body, or what holds it.
-  [[nodiscard]] bool loads(Index actuator) const {
-    const ActuatorKind kind = model_.actuators[actuator].kind;
-    return kind == ActuatorKind::magnetic || kind == ActuatorKind::force || kind == ActuatorKind::hold;
-  }
-  [[nodiscard]] bool holds(Index actuator) const { return model_.actuators[actuator].kind == ActuatorKind::hold; }
-  [[nodiscard]] bool any_body() const { return surroundings_.any_body(); }
+  [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
+  /// Does a command load the robot without a measure: a voltage, a magnetic field, a force on a body, what holds it.
+  [[nodiscard]] bool loads(Index actuator) const;
+  /// Is the derivative of the gradient by the shape symmetric?
+  [[nodiscard]] bool symmetric() const;
   /// Are there loads that grow with the share: weight, forces, dipoles.
   [[nodiscard]] bool any_dead_load() const;
   [[nodiscard]] bool prestretched() const { return body_.prestretched(); }

@@ -49,6 +49,8 @@ class Term {
   /// that was evaluated last. projected: made positive semidefinite, part by part
   virtual void stiffness(const Iterate& /*at*/, const Demand& /*demand*/, bool /*projected*/, Scratch& /*scratch*/,
                          LargeVector<double>& /*slots*/, Team& /*team*/) const {}
+  /// Are these all? Else a response is added to them.
+  [[nodiscard]] virtual bool symmetric() const { return true; }
   /// Adds what moves of the vertices change of the gradient beside that: what is not symmetric [N].
   virtual void add_response(const Iterate& /*at*/, const Points& /*moves*/, const Scratch& /*scratch*/,
                             Points& /*force*/) const {}
@@ -59,6 +61,8 @@ class Term {
   /// Adds the derivative of the gradient by a command in one shape [N per unit of command].
   virtual void add_derivative(Index /*command*/, const Demand& /*demand*/, const Points& /*positions*/,
                               Scratch& /*scratch*/, Points& /*force*/, Team& /*team*/) const {}
+  /// Is a command a load that it lays on the robot: not a measure or a ratio, which the robot answers with a load.
+  [[nodiscard]] virtual bool loads(Index /*command*/) const { return false; }
   /// Is it a load that grows with the share of what is done at once, as weight is?
   [[nodiscard]] virtual bool grows() const { return false; }
 

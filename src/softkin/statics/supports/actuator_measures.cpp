@@ -140,6 +140,15 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
   }
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a)
     rest_.push_back(measures(a) ? value(a, model.rest) : model.actuators[a].rest_measure);
+  for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const bool cable = actuator.kind == ActuatorKind::cable;
+    const bool constrains =
+        actuator.kind != ActuatorKind::dea && drives(actuator) && actuator.control == Control::ratio;
+    const bool given_load = !constrains && (measures(a) || under_voltage(actuator));
+    roles_.push_back({constrains, given_load, cable && !actuator.pushes, cable ? 1.0 : -1.0,
+                      actuator.kind == ActuatorKind::pneumatic ? 1e-3 : 1.0});
+  }
 }
 
 Vec3 ActuatorMeasures::at(Index node, const Points& positions) const {

@@ -17,6 +17,24 @@ class ActuatorMeasures {
   /// At rest.
   [[nodiscard]] double rest(Index actuator) const { return rest_[actuator]; }
 
+  // In the equations of equilibrium an actuator's measure is held to what is commanded, or its multiplier, a tension [N]
+  // or gauge pressure [MPa], is given.
+
+  /// Is its measure commanded (else its load, or it is a dea, or what is done to the robot).
+  [[nodiscard]] bool constrains(Index actuator) const { return roles_[actuator].constrains; }
+  /// Is a load of the robot itself commanded: tension, pressure or voltage.
+  [[nodiscard]] bool given_load(Index actuator) const { return roles_[actuator].given_load; }
+  /// Of its multiplier times its measure in the potential: 1 for cables, -1 for chambers.
+  [[nodiscard]] double sign(Index actuator) const { return roles_[actuator].sign; }
+  /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
+  [[nodiscard]] double unit(Index actuator) const { return roles_[actuator].unit; }
+  /// A cable, which gives way where it would push.
+  [[nodiscard]] bool only_pulls(Index actuator) const { return roles_[actuator].only_pulls; }
+  /// Demanded measure [mm, mm^3] by a command.
+  [[nodiscard]] double target(Index actuator, const Eigen::VectorXd& actuation) const {
+    return actuation[actuator] * rest_[actuator];
+  }
+
   /// Value of an actuator's measure; gradient (#V by 3) where it is asked for.
   [[nodiscard]] double value(Index actuator, const Points& positions, Points* gradient = nullptr) const;
 
@@ -44,6 +62,11 @@ class ActuatorMeasures {
     std::vector<Index> vertices, terms;
   };
 
+  struct Role {
+    bool constrains, given_load, only_pulls;
+    double sign, unit;
+  };
+
   [[nodiscard]] Vec3 at(Index node, const Points& positions) const;
   void spread(Index node, const Vec3& vector, Points& gradient) const;
   [[nodiscard]] std::vector<std::vector<Part>> parts_of(const Term& term) const;
@@ -54,6 +77,7 @@ class ActuatorMeasures {
   std::vector<std::vector<Term>> terms_;  // per actuator
   std::vector<Clique> cliques_;
   std::vector<double> rest_;
+  std::vector<Role> roles_;
 };
 
 }  // namespace softkin::supports
