@@ -79,9 +79,10 @@ T field_energy(const Square<T>& f, const RealVec3& e) {
   return T(-0.5L) * sum / determinant(f);
 }
 
-/// J^(-2/3) F^T F.
+/// J^(-2/3) F^T F; also of what is mirrored, as a law may have it where no branch pulls yet.
 RealMat3 barred(const RealMat3& f) {
-  return std::pow(f.determinant(), -2.0L / 3) * f.transpose() * f;
+  const Real root = std::cbrt(f.determinant());
+  return f.transpose() * f / (root * root);
 }
 
 /// Energy of a branch at the end of a step that began relaxed with bar C (docs/viscosity.md), but for a constant.
