@@ -13,7 +13,7 @@ constexpr double to_node = 4.0 / 3, to_end = -1.0 / 6;
 }  // namespace
 
 ConfirmedFloor::ConfirmedFloor(const Model& model, const Points& positions)
-    : model_(model), of_surface_(model.used.size()), near_(model.used.size()) {
+    : model_(model), of_surface_(model.used.size()), near_(model.used.size()), beside_(model.used.size()) {
   double floor = 0;
   for (std::size_t t = 0; t < model.contact.triangles.size(); ++t) {
     const bool halfspace = model.contact.parts[static_cast<std::size_t>(model.contact.part_of[t])].halfspace;
@@ -31,6 +31,8 @@ ConfirmedFloor::ConfirmedFloor(const Model& model, const Points& positions)
     near_[v] = height[static_cast<Index>(v)] < model.contact.distance_mm;
     depth_ = std::max(depth_, -height[static_cast<Index>(v)]);
   }
+  for (const auto& [a, b, node] : model.contact.edges)
+    if (near_[node]) beside_[a] = beside_[b] = true;
 }
 
 void ConfirmedFloor::push(const std::vector<bool>& of_rigid, RealPoints& sum) const {

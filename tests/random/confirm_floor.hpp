@@ -16,14 +16,15 @@ class ConfirmedFloor {
   /// Takes from forces that lack the floor's what a push of it can balance, at what may move along z.
   void push(const std::vector<bool>& of_rigid, RealPoints& sum) const;
 
-  [[nodiscard]] bool near(Index vertex) const { return near_[vertex]; }
+  /// Is a vertex so near, or does a node beside it that is hand it a part of its push?
+  [[nodiscard]] bool near(Index vertex) const { return near_[vertex] || beside_[vertex]; }
 
   /// How far the deepest point is below it [mm]; <= 0: none is.
   [[nodiscard]] double depth() const { return depth_; }
 
  private:
   const Model& model_;
-  std::vector<bool> of_surface_, near_;
+  std::vector<bool> of_surface_, near_, beside_;
   double depth_ = 0;
 };
 
