@@ -20,8 +20,8 @@ class Bordered {
   /// The equations of the last factorisation themselves.
   void set_factorised(const Iterate& at);
 
-  /// The shape, at an iterate, with the balance of its evaluation. The measures must be those of the last factorisation,
-  /// or of couple(); the stiffness is that which was gathered last.
+  /// The shape, at an iterate, with the balance of its evaluation. The measures must be those of the last
+  /// factorisation, or of couple(); the stiffness is that which was gathered last.
   void set(const Iterate& at, const System::Balance& balance);
 
   /// accuracy  of each column, over the right-hand side, both as the factor answers

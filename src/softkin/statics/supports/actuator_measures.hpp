@@ -17,8 +17,8 @@ class ActuatorMeasures {
   /// At rest.
   [[nodiscard]] double rest(Index actuator) const { return rest_[actuator]; }
 
-  // In the equations of equilibrium an actuator's measure is held to what is commanded, or its multiplier, a tension [N]
-  // or gauge pressure [MPa], is given.
+  // In the equations of equilibrium an actuator's measure is held to what is commanded, or its multiplier, a tension
+  // [N] or gauge pressure [MPa], is given.
 
   /// Is its measure commanded (else its load, or it is a dea, or what is done to the robot).
   [[nodiscard]] bool constrains(Index actuator) const { return roles_[actuator].constrains; }
