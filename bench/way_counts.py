@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """What ways to equilibria take: iterations, factorisations, projections and steps, and why steps were not taken.
 
-Runs `softkin fk --trace` along the path of every shipped robot in the physical formulation, and of every scene of the
-folders that are named (scenes beside a table of the same name or NAME_path.csv; without one at their command), and
-prints a table in Markdown.
+Runs `softkin fk --trace` along the path of every shipped robot in the physical formulation, and prints a table in
+Markdown. So are scenes of the folders that are named: along the table beside them, NAME_path.csv or NAME.csv, or at
+the commands that `--set NAME A=V` gives them.
 """
 
 import argparse
@@ -22,19 +22,19 @@ def shipped():
     """Scene and path of the robots of examples."""
     for path in sorted(ROOT.glob("examples/*/path.csv")) + sorted(ROOT.glob("examples/paper/*/path.csv")):
         folder = path.parent
-        scenes = [folder / f"{folder.name}.yaml"] if (folder / f"{folder.name}.yaml").exists() else sorted(folder.glob("*.yaml"))
-        for scene in scenes:
-            if ".hardware" not in scene.name and "ball" not in scene.name and "finger.yaml" != scene.name:
-                yield scene, ["--path", str(path)]
+        own = folder / f"{folder.name}.yaml"
+        for scene in [own] if own.exists() else sorted(folder.glob("*.yaml")):
+            yield scene, ["--path", str(path)]
 
 
-def of_folder(folder):
+def of_folder(folder, commands):
     for scene in sorted(folder.glob("*.yaml")):
         tables = [folder / f"{scene.stem}_path.csv", folder / f"{scene.stem}.csv"]
         table = next((t for t in tables if t.exists()), None)
-        commands = {"sheet": "cable=0", "sheet_len": "cable=0.8"}.get(scene.stem)
-        if table or commands:
-            yield scene, ["--path", str(table)] if table else ["--set", commands]
+        if table:
+            yield scene, ["--path", str(table)]
+        elif scene.stem in commands:
+            yield scene, ["--set", commands[scene.stem]]
 
 
 def counted(program, scene, options, threads, seconds):
@@ -64,6 +64,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", metavar="SOFTKIN")
     parser.add_argument("folders", metavar="FOLDER", nargs="*", type=pathlib.Path)
+    parser.add_argument("--set", nargs=2, action="append", default=[], metavar=("NAME", "A=V"), help="of a scene of a folder")
     parser.add_argument("--only", default="", help="scenes whose path has this")
     parser.add_argument("--threads", type=int, default=0, help="0: all")
     parser.add_argument("--seconds", type=float, default=300, help="longest run of a scene")
@@ -71,7 +72,8 @@ def main():
     print("| scene | " + " | ".join(COLUMNS) + " |")
     print("|---|" + "---|" * len(COLUMNS))
     count = 0
-    for scene, words in [*shipped(), *(pair for folder in options.folders for pair in of_folder(folder))]:
+    commands = dict(options.set)
+    for scene, words in [*shipped(), *(pair for folder in options.folders for pair in of_folder(folder, commands))]:
         if options.only not in str(scene):
             continue
         row = counted(options.program, scene, words, options.threads, options.seconds)
