@@ -3,6 +3,7 @@
 #include <cmath>
 #include <softkin/statics/statics.hpp>
 
+#include "statics/contact_scenes.hpp"
 #include "statics/physical_samples.hpp"
 
 namespace softkin {
@@ -10,23 +11,6 @@ namespace softkin {
 namespace {
 
 using namespace testing;
-
-constexpr double gravity_m_s2 = 9.81;
-
-/// A small block of rubber beside a floor on which a body stands, a little above it.
-RobotSpec body_on_floor(const Vec3& size, double friction, double slope = 0) {
-  RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {10, 10, 10}));
-  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v) spec.mesh.vertices.row(v) += Vec3(60, 0, 1).transpose();
-  spec.fixed = {{{Box{{59.9, -1, -1}, {60.1, 100, 100}}, {}}, {true, true, true}, {0, 0, 0}}};
-  spec.materials[0].density = 1000;
-  spec.gravity = gravity_m_s2 * Vec3(std::sin(slope), 0, -std::cos(slope));
-  spec.contact.emplace();
-  spec.contact->distance_mm = 0.05;
-  spec.contact->friction = friction;
-  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
-  spec.contact->bodies.push_back({"cube", Box{{0, 0, 0}, size}, {}, {}, 1000});
-  return spec;
-}
 
 double weight(const Vec3& size) {
   return 1e-6 * size.prod() * gravity_m_s2;  // of 1000 kg/m^3

@@ -6,6 +6,7 @@
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/system.hpp>
 
+#include "statics/contact_scenes.hpp"
 #include "statics/physical_samples.hpp"
 
 namespace softkin {
@@ -13,18 +14,6 @@ namespace softkin {
 namespace {
 
 using namespace testing;
-
-/// A block over a floor, held at its top and moved down and sideways with the share of the way.
-RobotSpec pressed_block(double friction, const Vec3& move, int cells = 3, bool quadratic = false) {
-  RobotSpec spec = physical_robot(block_mesh({cells, cells, cells}, {10, 10, 10}));
-  spec.quadratic = quadratic;
-  spec.fixed = {{{Box{{-1, -1, 9.999}, {11, 11, 11}}, {}}, {true, true, true}, move}};
-  spec.contact.emplace();
-  spec.contact->distance_mm = 0.05;
-  spec.contact->friction = friction;
-  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
-  return spec;
-}
 
 /// Of the top on the block [N].
 Vec3 reaction(const Model& model, const Statics& statics, const State& at) {
@@ -50,7 +39,7 @@ Equilibrium moved(const Model& model, const Statics& statics, int steps) {
 /// Where all of the floor's contact slips the force along it is the friction coefficient times that across it.
 TEST(Friction, OfWhatSlidesIsItsCoefficient) {
   for (const double friction : {0.1, 0.25}) {
-    const Model model = compile(pressed_block(friction, {4, 0, -0.5}));
+    const Model model = compile(block_on_rough_floor(friction, {4, 0, -0.5}));
     const Statics statics(model);
     const Equilibrium found = moved(model, statics, 1);
     const Vec3 force = reaction(model, statics, found.state);
@@ -62,7 +51,7 @@ TEST(Friction, OfWhatSlidesIsItsCoefficient) {
 }
 
 TEST(Friction, NoneLeavesTheFloorSmooth) {
-  const Model model = compile(pressed_block(0, {1, 0, -0.5}));
+  const Model model = compile(block_on_rough_floor(0, {1, 0, -0.5}));
   const Statics statics(model);
   const Vec3 force = reaction(model, statics, moved(model, statics, 1).state);
   EXPECT_LT(std::hypot(force.x(), force.y()), 1e-8 * std::abs(force.z()));
@@ -70,7 +59,7 @@ TEST(Friction, NoneLeavesTheFloorSmooth) {
 
 /// What sticks does not creep: solving again from the equilibrium changes nothing.
 TEST(Friction, WhatSticksStays) {
-  const Model model = compile(pressed_block(2, {0.3, 0, -0.5}));
+  const Model model = compile(block_on_rough_floor(2, {0.3, 0, -0.5}));
   const Statics statics(model);
   const Equilibrium once = moved(model, statics, 1);
   Equilibrium again = once;
@@ -132,8 +121,8 @@ void expect_derivatives(const Model& model) {
 }  // namespace
 
 TEST(Friction, GradientAndStiffnessAreDerivatives) {
-  expect_derivatives(compile(pressed_block(0.5, {0.4, 0.1, -0.5}, 2)));
-  expect_derivatives(compile(pressed_block(0.5, {0.4, 0.1, -0.5}, 1, true)));
+  expect_derivatives(compile(block_on_rough_floor(0.5, {0.4, 0.1, -0.5}, 2)));
+  expect_derivatives(compile(block_on_rough_floor(0.5, {0.4, 0.1, -0.5}, 1, true)));
 }
 
 namespace {

@@ -2,6 +2,7 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/stability.hpp>
 
+#include "statics/physical_equations.hpp"
 #include "statics/physical_samples.hpp"
 
 /// Whether forces balance where steps are small, and whether an equilibrium is one at which a robot stays.
@@ -13,14 +14,10 @@ namespace {
 using namespace testing;
 
 /// The equations at a state that is given, apart from the solve that found it.
-struct Equations {
-  Equations(const Model& robot, const State& state)
-      : model(robot),
-        system(robot),
-        work(system),
-        team(1),
-        demand{state.actuation, state.share},
-        at(system.iterate(state)) {
+struct Equations : PhysicalEquations {
+  Equations(const Model& robot, const State& state) : PhysicalEquations(robot) {
+    demand = {state.actuation, state.share};
+    at = system.iterate(state);
     for (Index a = 0; a < system.actuators(); ++a)
       active.push_back(system.measures().constrains(a) && at.multipliers[a] != 0);
     system.evaluate(at, demand, active, work, balance, team);
@@ -38,15 +35,6 @@ struct Equations {
     }
     return symmetric_eigenvalues(stiffness);
   }
-
-  Model model;
-  physical::System system;
-  physical::System::Workspace work;
-  Team team;
-  physical::Demand demand;
-  physical::Iterate at;
-  std::vector<bool> active;
-  physical::System::Balance balance;
 };
 
 StaticsOptions stable() {

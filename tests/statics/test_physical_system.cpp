@@ -1,6 +1,7 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/system.hpp>
 
+#include "statics/physical_equations.hpp"
 #include "statics/physical_samples.hpp"
 
 /// One Newton step: the equations, their derivative, and how a step is taken.
@@ -22,8 +23,8 @@ RobotSpec full_robot() {
 }
 
 /// A shape out of balance, and what is asked of it.
-struct SystemSample {
-  explicit SystemSample(const RobotSpec& spec) : model(compile(spec)), system(model), work(system), team(1) {
+struct SystemSample : PhysicalEquations {
+  explicit SystemSample(const RobotSpec& spec) : PhysicalEquations(compile(spec)) {
     demand = {Actuation::Constant(system.actuators(), 1.2), 1};
     at.positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.1, 1);
     system.freedoms().hold(1, at.positions);
@@ -40,15 +41,6 @@ struct SystemSample {
     (void)balance_at(at);
     return system.factorise(at, demand, active, balance, {kind}, work, team);
   }
-
-  Model model;
-  physical::System system;
-  physical::System::Workspace work;
-  Team team;
-  physical::Demand demand;
-  physical::Iterate at;
-  std::vector<bool> active;
-  physical::System::Balance balance;  // of the last evaluation
 };
 
 physical::Iterate moved(const SystemSample& sample, const Eigen::VectorXd& step, const Eigen::VectorXd& change,

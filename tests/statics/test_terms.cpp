@@ -1,8 +1,10 @@
 #include <random>
 #include <softkin/statics/physical/contact_steps.hpp>
 
+#include "statics/contact_scenes.hpp"
 #include "statics/difference.hpp"
 #include "statics/magnetic_samples.hpp"
+#include "statics/physical_equations.hpp"
 
 /// Every term of every kind of robot: gradient, stiffness, and derivatives by commands and shares, by differences.
 
@@ -51,37 +53,10 @@ RobotSpec magnetic_robot(Magnetisation magnetisation, bool quadratic) {
   return spec;
 }
 
-/// A body on a floor, which is held and pushed, beside a block that it does not touch.
-RobotSpec robot_beside_body() {
-  RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {10, 10, 10}));
-  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v) spec.mesh.vertices.row(v) += Vec3(60, 0, 1).transpose();
-  spec.fixed = {{{Box{{59.9, -1, -1}, {60.1, 100, 100}}, {}}, {true, true, true}, {0, 0, 0}}};
-  spec.materials[0].density = 1000;
-  spec.gravity = {0, 0, -9.81};
-  spec.contact.emplace();
-  spec.contact->distance_mm = 0.05;
-  spec.contact->friction = 0.3;
-  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
-  spec.contact->bodies.push_back({"cube", Box{{0, 0, 0}, {10, 10, 10}}, {}, {}, 1000});
-  return spec;
-}
-
-/// A block over a floor, 0.03 mm away from it where it feels it below 0.05 mm.
-RobotSpec pressed_block(bool quadratic) {
-  RobotSpec spec = physical_robot(block_mesh({2, 2, 2}, {10, 10, 10}));
-  spec.quadratic = quadratic;
-  spec.fixed = {{{Box{{-1, -1, 9.999}, {11, 11, 11}}, {}}, {true, true, true}, {0.2, 0, -0.03}}};
-  spec.contact.emplace();
-  spec.contact->distance_mm = 0.05;
-  spec.contact->friction = 0.3;
-  spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -0.06}, {0, 0, 1}}, {}, {}});
-  return spec;
-}
-
 /// The terms of a robot in a shape out of balance.
-struct TermsSample {
-  TermsSample(const RobotSpec& spec, double shake, const Vec3& move)
-      : model(compile(spec)), system(model), work(system), team(1) {
+struct TermsSample : PhysicalEquations {
+  TermsSample(const RobotSpec& spec, double shake, const Vec3& move) : PhysicalEquations(compile(spec)) {
+    active.resize(static_cast<std::size_t>(system.actuators()));
     demand = {model.rest_actuation(), 0.7, 0.4};
     std::mt19937 engine(5);
     std::uniform_real_distribution<double> within(0.05, 0.2);
@@ -119,8 +94,7 @@ struct TermsSample {
 
   /// Of one term alone.
   Points stiffness_times_way(std::size_t term) {
-    physical::System::Balance balance;
-    system.evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(system.actuators())), work, balance, team);
+    system.evaluate(at, demand, active, work, balance, team);
     system.assemble(at, demand, balance, physical::System::Stiffness::exact, work, team);
     LargeVector<double> slots(work.slots.size()), blocks;
     std::fill(slots.begin(), slots.end(), 0.0);
@@ -131,12 +105,6 @@ struct TermsSample {
     return product;
   }
 
-  Model model;
-  physical::System system;
-  physical::System::Workspace work;
-  Team team;
-  physical::Demand demand;
-  physical::Iterate at;
   Points along;
 };
 
@@ -201,9 +169,9 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
   for (const Magnetisation magnetisation : both_magnetisations)
     for (const bool quadratic : {false, true})
       expect_derivatives(magnetic_robot(magnetisation, quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
-  expect_derivatives(robot_beside_body(), 1e-3, {0, 0, -0.03}, 2e-8, seen);
+  expect_derivatives(body_on_floor({10, 10, 10}, 0.3), 1e-3, {0, 0, -0.03}, 2e-8, seen);
   for (const bool quadratic : {false, true})
-    expect_derivatives(pressed_block(quadratic), 1e-3, {0.01, 0, -0.03}, 2e-8, seen);
+    expect_derivatives(block_on_rough_floor(0.3, {0.2, 0, -0.03}, 2, quadratic), 1e-3, {0.01, 0, -0.03}, 2e-8, seen);
   // body, dead and fading loads, what is done to bodies, magnets, contact: gradient, stiffness, by commands, by shares
   const std::array<std::array<bool, 4>, all_terms> has{{{true, true, true, true},
                                                         {true, false, false, true},

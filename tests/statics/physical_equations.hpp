@@ -1,0 +1,21 @@
+#pragma once
+
+#include <softkin/statics/physical/system.hpp>
+
+namespace softkin::testing {
+
+/// The equations of a robot with memory to solve them; a shape, and what is asked of it.
+struct PhysicalEquations {
+  explicit PhysicalEquations(Model robot) : model(std::move(robot)), system(model), work(system), team(1) {}
+
+  Model model;
+  physical::System system;
+  physical::System::Workspace work;
+  Team team;
+  physical::Demand demand;
+  physical::Iterate at;
+  std::vector<bool> active;
+  physical::System::Balance balance;  // of the last evaluation
+};
+
+}  // namespace softkin::testing
