@@ -63,6 +63,21 @@ TEST(ConjugateResiduals, SharesDirections) {
   EXPECT_LT(together, 0.8 * alone);
 }
 
+/// What rounding leaves of columns that are multiples of each other is no direction.
+TEST(ConjugateResiduals, ColumnsMayBeNearlyTheSame) {
+  const Eigen::MatrixXd matrix = near_identity(40, 0.3);
+  for (const double apart : {0.0, 1e-15, 1e-11, 1e-9, 1e-7, 1e-4}) {
+    Eigen::MatrixXd right = Eigen::MatrixXd::Random(40, 3), x;
+    right.col(1) = -70 * right.col(0) + apart * right.col(1);
+    right.col(2) = 0.3 * right.col(0) + apart * right.col(2);
+    Eigen::MatrixXd left = right;
+    int columns = 0;
+    EXPECT_LE(conjugate_residuals(Counting{matrix, &columns}, 1e-9, 60, left, x).left, 1e-9) << apart;
+    for (int i = 0; i < 3; ++i)
+      EXPECT_LT((right.col(i) - matrix * x.col(i)).norm(), 2e-9 * right.col(i).norm()) << apart;
+  }
+}
+
 TEST(ConjugateResiduals, SaysSoWhereItFails) {
   Eigen::MatrixXd matrix = near_identity(20, 0.3), x;
   matrix.row(4).setZero();

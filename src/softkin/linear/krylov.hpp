@@ -88,7 +88,7 @@ struct Remainder {
 template <class Product>
 Remainder conjugate_residuals(const Product& product, double tolerance, int rounds, Eigen::MatrixXd& left,
                               Eigen::MatrixXd& x) {
-  constexpr double dependent = 1e-12;  // directions whose images others already have
+  constexpr double dependent = 1e-8;  // directions whose images others already have but for rounding, which would grow
   const Eigen::VectorXd sizes = left.colwise().norm();
   const auto share_left = [&](Eigen::Index column) {
     return sizes[column] > 0 ? left.col(column).norm() / sizes[column] : 0.0;
