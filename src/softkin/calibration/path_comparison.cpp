@@ -1,11 +1,11 @@
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <softkin/calibration/path_comparison.hpp>
 #include <softkin/calibration/report_parts.hpp>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/io/json_text.hpp>
@@ -74,13 +74,12 @@ void align(PathComparison& comparison) {
   const double scale = 1 + covariance.cwiseAbs().sum();
   for (std::size_t a = 0; a < 3; ++a)
     if (!comparison.axes[a]) covariance(static_cast<Index>(a), static_cast<Index>(a)) = 10 * scale;
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
-  comparison.rotation = svd.matrixU() * Vec3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+  const NearestRotation nearest = nearest_rotation(covariance);
+  comparison.rotation = nearest.rotation;
   comparison.translation = mean_reference - comparison.rotation * mean_other;
   comparison.aligned = true;
   // determined where all directions but one are spanned; an axis that is not compared counts as spanned
-  comparison.unique = svd.singularValues()[1] > negligible * (scale - 1);
+  comparison.unique = nearest.values[1] > negligible * (scale - 1);
   for (WaypointError& each : comparison.waypoints)
     each.other = masked(comparison.rotation * each.other + comparison.translation, comparison.axes);
 }

@@ -1,6 +1,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <cmath>
 #include <softkin/core/dense.hpp>
 
@@ -17,6 +18,12 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
 
 Vec3 principal_values(const Mat3& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+NearestRotation nearest_rotation(const Mat3& map) {
+  const Eigen::JacobiSVD<Mat3> parts(map, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = parts.matrixU().determinant() * parts.matrixV().determinant() < 0 ? -1 : 1;
+  return {parts.matrixU() * Vec3(1, 1, sign).asDiagonal() * parts.matrixV().transpose(), parts.singularValues()};
 }
 
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {

@@ -25,6 +25,13 @@ struct SymmetricEigen {
 [[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 [[nodiscard]] Vec3 principal_values(const Mat3& symmetric);
 
+/// The proper rotation R that maximises tr(R^T A), of A = U S V^T.
+struct NearestRotation {
+  Mat3 rotation;
+  Vec3 values;  // of S, descending
+};
+[[nodiscard]] NearestRotation nearest_rotation(const Mat3& map);
+
 /// A vector that no symmetry of a robot shares, the same each time.
 [[nodiscard]] Eigen::VectorXd lopsided(Eigen::Index size);
 

@@ -1,10 +1,10 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <optional>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/vision/boards.hpp>
@@ -49,8 +49,7 @@ Line fitted_line(const std::vector<Vec2>& points) {
   for (const Vec2& point : points) mean += point / static_cast<double>(points.size());
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
   for (const Vec2& point : points) spread += (point - mean) * (point - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
-  return Line(solver.eigenvectors().col(0), mean);
+  return Line(Vec2(symmetric_eigen(spread).vectors.col(0)), mean);
 }
 
 /// An edge, distortion taken out.

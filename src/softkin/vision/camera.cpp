@@ -1,10 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
@@ -176,8 +175,8 @@ Map first_guess(const std::vector<PlanePoint>& points) {
     }
   }
   if (!square.allFinite()) return Map::Constant(NAN);  // all at one point
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(square);
-  const Map map = to.inverse() * solver.eigenvectors().col(0).reshaped<Eigen::RowMajor>(3, 3) * from;
+  const Eigen::VectorXd least = symmetric_eigen(square).vectors.col(0);
+  const Map map = to.inverse() * least.reshaped<Eigen::RowMajor>(3, 3) * from;
   return map / map(2, 2);
 }
 
@@ -286,14 +285,13 @@ PlaneView::PlaneView(std::optional<Camera> camera, const std::vector<PlanePoint>
     }
     const Eigen::Matrix<double, 8, 1> size = rows.colwise().norm().cwiseInverse();
     rows *= size.asDiagonal();  // entries of the map differ in size
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(rows);
-    solver.setThreshold(1e-6);
+    const MinimumNorm solver(rows, 1e-6);
     if (!rows.allFinite() || solver.rank() < 8)
       throw InvalidInput("the points of the plane lie on a line: its perspective cannot be found");
     if (round == 5) {
       // an exact fit of four points says nothing about their errors
       const double variance = n > 8 ? miss.squaredNorm() / static_cast<double>(n - 8) : 0;
-      covariance_ = variance * size.asDiagonal() * (rows.transpose() * rows).inverse() * size.asDiagonal();
+      covariance_ = variance * size.asDiagonal() * inverse_of(rows.transpose() * rows) * size.asDiagonal();
       break;
     }
     Eigen::Matrix<double, 9, 1> step = Eigen::Matrix<double, 9, 1>::Zero();

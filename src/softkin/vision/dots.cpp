@@ -1,7 +1,7 @@
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/vision/dots.hpp>
 #include <softkin/vision/pixels.hpp>
@@ -114,7 +114,7 @@ Ground ground_of(const Pixels& ring_pixels) {
   // what else lies there, another marker or an edge, is no ground
   const Pixels ground = ring_pixels.where([&](Eigen::Index i) { return (off.row(i).array() <= width.array()).all(); });
   Ground result;
-  result.fit = ground.places.colPivHouseholderQr().solve(ground.colours);
+  result.fit = MinimumNorm(ground.places).solve(ground.colours);
   const Eigen::MatrixX3d miss = ground.colours - ground.places * result.fit;
   result.noise = miss.transpose() * miss / static_cast<double>(miss.rows());
   result.noise.diagonal().array() += 1.0 / 12;  // whole numbers

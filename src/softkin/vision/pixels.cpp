@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <softkin/core/dense.hpp>
 #include <softkin/vision/pixels.hpp>
 #include <tuple>
 #include <utility>
@@ -159,7 +159,7 @@ double Blob::fullness() const {
 }
 
 double Blob::elongation() const {
-  const Vec2 values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues();
+  const Vec2 values = symmetric_eigenvalues(spread);
   return std::sqrt(values[1] / values[0]);
 }
 

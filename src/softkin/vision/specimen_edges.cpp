@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/vision/outlines.hpp>
 #include <softkin/vision/pixels.hpp>
@@ -51,13 +51,13 @@ BarFrame frame_of(const AreaMoments& a, const AreaMoments& b, const PlaneView& v
   frame.origin = (a.area * a.centre + b.area * b.centre) / area;
   const Eigen::Matrix2d spread =
       (a.area * a.second + b.area * b.second) / area - frame.origin * frame.origin.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
-  frame.along = solver.eigenvectors().col(1);
+  const SymmetricEigen axes = symmetric_eigen(spread);
+  frame.along = axes.vectors.col(1);
   if (frame.along.dot(from_a_to_b) < 0) frame.along = -frame.along;
   frame.across = Vec2(-frame.along.y(), frame.along.x());
   if (!(frame.along.dot(from_a_to_b) > 0.5 * from_a_to_b.norm()))
     throw InvalidInput("the parts of the specimen lie beside each other, not one after the other along its axis");
-  frame.half_width = used_width * std::sqrt(3 * solver.eigenvalues()[0]);
+  frame.half_width = used_width * std::sqrt(3 * axes.values[0]);
   frame.pixel = std::sqrt(view.pixel_area(view.to_pixel(frame.origin)));
   return frame;
 }
