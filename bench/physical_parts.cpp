@@ -40,7 +40,7 @@ int PhysicalParts::factorise() {
   using Stiffness = physical::System::Stiffness;
   system_.evaluate(at_, demand_, active_, work_, balance_, team_);
   (void)system_.factorise(at_, demand_, active_, balance_, {}, work_, team_);
-  const int negative = work_.negative;
+  const int negative = work_.saddle.spectrum().negative;
   if (negative > 0) (void)system_.factorise(at_, demand_, active_, balance_, {Stiffness::projected}, work_, team_);
   return negative;
 }
@@ -51,14 +51,14 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   const double whole =
       seconds_of(repeat, [&] { (void)system_.factorise(at_, demand_, active_, balance_, {}, work_, team_); });
   Eigen::MatrixXd none(unknowns(), 0);
-  times.factor =
-      seconds_of(repeat, [&] { (void)work_.factor.factorise(work_.values, 0, work_.precision, none, team_); });
+  times.factor = seconds_of(
+      repeat, [&] { (void)work_.saddle.factor().factorise(work_.values, 0, work_.saddle.precision(), none, team_); });
   Eigen::VectorXd step, change;
-  system_.step(balance_, work_, step, change, team_);
+  work_.saddle.step(balance_, step, change, team_);
   Eigen::MatrixXd column;
   times.solve = seconds_of(repeat, [&] {
     column.setOnes(unknowns(), 1);
-    work_.factor.solve(column, team_);
+    work_.saddle.factor().solve(column, team_);
   });
   Points moved = at_.positions;
   times.turn = seconds_of(repeat, [&] {
@@ -75,8 +75,8 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   (void)elastic.force(demand_, at_.positions, scratch, gradient, team_);
   times.stiffness =
       seconds_of(repeat, [&] { elastic.stiffness(demand_, at_.positions, false, scratch, slots, team_); });
-  times.assembly =
-      std::max(0.0, whole - times.stiffness - times.factor - static_cast<double>(work_.active.size()) * times.solve);
+  times.assembly = std::max(
+      0.0, whole - times.stiffness - times.factor - static_cast<double>(work_.saddle.active().size()) * times.solve);
   return times;
 }
 

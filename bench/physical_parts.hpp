@@ -23,8 +23,8 @@ class PhysicalParts {
   [[nodiscard]] Times measure(int repeat);
 
   /// Of the factorisation.
-  [[nodiscard]] double flops() const { return work_.factor.flops(); }
-  [[nodiscard]] double nonzeros() const { return static_cast<double>(work_.factor.nonzeros()); }
+  [[nodiscard]] double flops() const { return work_.saddle.factor().flops(); }
+  [[nodiscard]] double nonzeros() const { return static_cast<double>(work_.saddle.factor().nonzeros()); }
   [[nodiscard]] Index unknowns() const { return pattern().size(); }
 
   /// The last stiffness, lower triangle in elimination order, as softkin's factorisation takes it.
@@ -41,8 +41,8 @@ class PhysicalParts {
   const Model& model_;
   Team team_;
   physical::System system_;
-  physical::System::Workspace work_;
-  physical::System::Balance balance_;
+  physical::Workspace work_;
+  physical::Balance balance_;
   physical::Demand demand_;
   std::vector<bool> active_;
   physical::Iterate at_;

@@ -93,7 +93,7 @@ Vec3 point_of(const Coordinates& coordinates) {
 }
 
 Vec3 at_rest(const Model& model, Index marker) {
-  return model.markers[static_cast<std::size_t>(marker)].point.at(model.rest);
+  return model.markers[static_cast<std::size_t>(marker)].at(model.rest);
 }
 
 /// One argument of an option: NAME=VALUE.

@@ -34,7 +34,7 @@ std::vector<std::optional<double>> loads_of(const Model& model, const State& sta
 
 /// How a shape that stays stands to a target that was asked for.
 TargetAnswer target_answer(const Model& model, const TargetRequest& request, const Points& positions) {
-  const Vec3 place = model.markers[static_cast<std::size_t>(request.marker)].point.at(positions);
+  const Vec3 place = model.markers[static_cast<std::size_t>(request.marker)].at(positions);
   return {request.marker, request.at, (place - request.at).norm(), false, ""};
 }
 
@@ -49,7 +49,7 @@ std::optional<LiveShape> live_shape(const Model& model, const Statics& statics, 
   shape.remark = found.report.remark;
   shape.commands = found.actuation;
   shape.loads = loads_of(model, found.state);
-  for (const Marker& marker : model.markers) shape.markers.push_back(marker.point.at(positions));
+  for (const Marker& marker : model.markers) shape.markers.push_back(marker.at(positions));
   shape.iterations = found.report.iterations;
   shape.seconds = found.report.seconds;
   shape.vertices = page.vertices().size();

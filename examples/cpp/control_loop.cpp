@@ -64,7 +64,7 @@ int main(int argc, char** argv) try {
   const softkin::Statics statics(model);
   softkin::Actuation command = model.rest_actuation();
   softkin::Equilibrium now = statics.solve(command, statics.rest(), options);
-  const auto tip = [&] { return model.markers[0].point.at(now.state.positions).z(); };
+  const auto tip = [&] { return model.markers[0].at(now.state.positions).z(); };
   const double rest = tip();
 
   std::vector<double> times;
@@ -74,7 +74,7 @@ int main(int argc, char** argv) try {
     const double wanted = rest + 2.5 * (1 - std::cos(0.02 * tick));  // mm, up to 5 and back
     // how the tip answers to the cable here, from the factor that the last solve left behind
     const softkin::Sensitivity sensitivity = statics.sensitivity(now.state, options);
-    const double slope = softkin::jacobian(model, sensitivity, {0})(2, 0);
+    const double slope = softkin::jacobian(model, now.state.positions, sensitivity, {0})(2, 0);
     if (slope != 0)
       command[0] = std::clamp(command[0] + (wanted - tip()) / slope, model.actuators[0].low, model.actuators[0].high);
     now = statics.solve(command, now.state, options);

@@ -104,7 +104,7 @@ std::string report_of(const Answer& answer) {
 
 /// From marker to marker at rest [mm], the default lever of a direction.
 double distance_at_rest(const Model& model, Index from, Index to) {
-  const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].point.at(model.rest); };
+  const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].at(model.rest); };
   return (at(to) - at(from)).norm();
 }
 

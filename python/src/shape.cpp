@@ -152,8 +152,8 @@ void bind_shape(nb::module_& module) {
       .def_prop_ro(
           "positions", [](nb::pointer_and_handle<Shape> s) { return view_of(s.p->positions(), s.h); },
           nb::rv_policy::automatic)
-      .def("marker", [](const Shape& s,
-                        std::size_t marker) { return array_of(s.model().markers.at(marker).point.at(s.positions())); })
+      .def("marker",
+           [](const Shape& s, std::size_t marker) { return array_of(s.model().markers.at(marker).at(s.positions())); })
       .def("actuators",
            [](const Shape& s) {
              std::vector<ActuatorOut> all;

@@ -56,7 +56,7 @@ TableOut jacobian_of(const Shape& shape, const Session* session, const std::vect
     const Sensitivity sensitivity = statics_of(*shape.robot(), session).sensitivity(shape.found().state, options);
     if (!sensitivity.regular)
       throw InvalidInput("the shape stands at a limit of existence or a branch, where it has no Jacobian");
-    slopes = jacobian(shape.model(), sensitivity, markers);
+    slopes = jacobian(shape.model(), shape.positions(), sensitivity, markers);
   }
   return table_of<double>(slopes.data(), static_cast<std::size_t>(slopes.rows()),
                           static_cast<std::size_t>(slopes.cols()));

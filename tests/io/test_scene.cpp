@@ -219,6 +219,26 @@ TEST(Scene, PhysicalSceneLoads) {
   EXPECT_EQ(spec.forces[1].force, Vec3(1, 0, 0));
 }
 
+TEST(Scene, Tractions) {
+  const RobotSpec spec = parse(
+      "softkin: 1\nmesh: {file: a.msh}\ntractions:\n"
+      "  - {name: wind, region: side, traction: [1, -2, 3]}\n"
+      "  - {name: skin, region: side, traction: [0, 0, 4], follows: true}\n"
+      "  - {name: water, box: [[0, 0, 0], [1, 2, 3]], pressure: 5}\n");
+  ASSERT_EQ(spec.tractions.size(), 3u);
+  const TractionSpec &wind = spec.tractions[0], &skin = spec.tractions[1], &water = spec.tractions[2];
+  EXPECT_EQ(wind.name, "wind");
+  EXPECT_EQ(wind.kilopascals, Vec3(1, -2, 3));
+  EXPECT_EQ(wind.where.origin.line, 4u);
+  EXPECT_FALSE(wind.follows);
+  EXPECT_TRUE(skin.follows);
+  EXPECT_EQ(skin.pressure_kPa, 0);
+  EXPECT_TRUE(std::holds_alternative<Box>(std::get<Selector>(water.where.region)));
+  EXPECT_TRUE(water.follows);
+  EXPECT_EQ(water.pressure_kPa, 5);
+  EXPECT_EQ(water.kilopascals, Vec3(0, 0, 0));
+}
+
 TEST(Scene, EveryLawByItsName) {
   const std::pair<const char*, Law> laws[] = {
       {"law: st-venant-kirchhoff, youngs_modulus: 1, poisson_ratio: 0.3", Law::st_venant_kirchhoff},

@@ -30,6 +30,19 @@ void expect_all_refused(const std::vector<Refusal>& refusals) {
     expect_refused(std::string("softkin: 1\nmesh: {file: a.msh}\n") + each.text, each.fragment, each.line + 2);
 }
 
+TEST(SceneRefusals, Tractions) {
+  expect_all_refused({
+      {"tractions: [{name: a, region: r}]\n", "'traction', 'pressure'", 1},
+      {"tractions: [{name: a, region: r, traction: [1, 2, 3], pressure: 4}]\n", "'pressure'", 1},
+      {"tractions: [{name: a, region: r, pressure: 4, follows: true}]\n", "a pressure always follows", 1},
+      {"tractions: [{name: a, region: r, traction: 3}]\n", "'traction'", 1},
+      {"tractions: [{name: a, region: r, traction: [1, 2, 3], follows: yes}]\n", "'false', 'true'", 1},
+      {"tractions: [{region: r, pressure: 4}]\n", "'name'", 1},
+      {"tractions:\n  - {name: a, region: r, pressure: 4}\n  - {name: a, region: q, pressure: 4}\n", "'a'", 3},
+      {"tractions: [{name: a, pressure: 4}]\n", "'region'", 1},
+  });
+}
+
 TEST(SceneRefusals, WholeTexts) {
   const std::vector<Refusal> refusals{
       {"", "the scene is empty", 1},
@@ -340,7 +353,8 @@ TEST(SceneRefusals, ActuatorsAndMarkers) {
       {"actuators: [{name: 'a=b', kind: dea, region: r, range: [1, 2]}]\n", "must not hold", 1},
       {"markers:\n  - {name: m, point: [0, 0, 0]}\n  - {name: m, region: r}\n", "the name 'm' is taken", 3},
       {"markers: [{name: m}]\n", "needs one of 'point', 'region'", 1},
-      {"markers: [{name: m, point: [0, 0, 0], region: r}]\n", "has both 'point' and 'region'", 1},
+      {"markers: [{name: m, point: [0, 0, 0], offset: [0, 0, 1]}]\n", "which the marker has not", 1},
+      {"markers: [{name: m, region: r, point: [0, 0, 0], offset: [0, 0, 1]}]\n", "not both", 1},
       {"markers: [{name: m, point: {x: 1}}]\n", "'point' must be a list, not a map", 1},
       {"markers: [{name: '', point: [0, 0, 0]}]\n", "'name' is empty", 1},
       {"markers:\n  - name: m\n    name: n\n    point: [0, 0, 0]\n", "key 'name' appears twice", 3},

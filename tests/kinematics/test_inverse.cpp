@@ -301,7 +301,7 @@ TEST(Inverse, SensitivityIsThatOfTheAnswer) {
   const Equilibrium made = settled(statics, values({1.3, 20, 0.95}));
   const InverseResult result = solve_inverse(model, statics, at_point(marker_at(model, made)), statics.rest());
   ASSERT_EQ(result.status, InverseStatus::reached);
-  const Eigen::MatrixXd found = jacobian(model, result.sensitivity, {0});
+  const Eigen::MatrixXd found = jacobian(model, result.equilibrium.state.positions, result.sensitivity, {0});
   for (Index a = 0; a < 3; ++a) {
     const double reach = a == 1 ? 0.01 : 1e-4;
     Actuation high = result.equilibrium.actuation, low = high;

@@ -70,12 +70,13 @@ TEST(Jacobian, HasThreeRowsAMarker) {
   const Statics statics(model);
   const Equilibrium at = settled(statics, values({1.3, 1.1}));
   const Sensitivity sensitivity = statics.sensitivity(at.state);
-  const Eigen::MatrixXd once = jacobian(model, sensitivity, {0}), twice = jacobian(model, sensitivity, {0, 0});
+  const Eigen::MatrixXd once = jacobian(model, at.state.positions, sensitivity, {0}),
+                        twice = jacobian(model, at.state.positions, sensitivity, {0, 0});
   EXPECT_EQ(once, jacobian(model, statics, at, {0}));
   EXPECT_EQ(once, twice.topRows(3));
   EXPECT_EQ(once, twice.bottomRows(3));
-  EXPECT_EQ(jacobian(model, sensitivity, {}).rows(), 0);
-  EXPECT_EQ(jacobian(model, sensitivity, {}).cols(), 2);
+  EXPECT_EQ(jacobian(model, at.state.positions, sensitivity, {}).rows(), 0);
+  EXPECT_EQ(jacobian(model, at.state.positions, sensitivity, {}).cols(), 2);
 }
 
 TEST(Jacobian, IsZeroWhereNotRegular) {

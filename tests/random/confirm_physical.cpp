@@ -1,7 +1,9 @@
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <softkin/model/mesh/triangle_points.hpp>
 
 #include "random/commanded_fields.hpp"
 #include "random/confirm.hpp"
@@ -282,6 +284,37 @@ void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
   for (std::size_t e = 0; e < model.prisms.size(); ++e) add(model.tetrahedra.size() + e, model.prisms[e].data(), 6);
 }
 
+/// Loads that follow the surface: the turn of a place by the singular vectors of what deforms surface and normal.
+void add_tractions(const Model& model, const State& state, Forces& forces) {
+  using Real2 = Eigen::Matrix<Real, 3, 2>;
+  using Real3 = Eigen::Matrix<Real, 3, 3>;
+  for (const FollowingTraction& traction : model.tractions)
+    for (const LoadedFace& loaded : traction.faces) {
+      const std::vector<Index> nodes = nodes_of(loaded.face);
+      for (const TrianglePoint& point : triangle_points(nodes.size())) {
+        Real2 rest = Real2::Zero(), now = Real2::Zero();
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+          const auto k = static_cast<Eigen::Index>(i);
+          const Eigen::Matrix<Real, 1, 2> along(point.along_u[k], point.along_v[k]);
+          rest += model.rest.row(nodes[i]).transpose().cast<Real>() * along;
+          now += state.positions.row(nodes[i]).transpose().cast<Real>() * along;
+        }
+        const RealVec3 normal_at_rest = rest.col(0).cross(rest.col(1)), normal = now.col(0).cross(now.col(1));
+        Real3 from, to;
+        from << rest, normal_at_rest.normalized();
+        to << now, normal.normalized();
+        const Eigen::JacobiSVD<Real3> parts(to * from.inverse(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+        const Real3 turn = parts.matrixU() * parts.matrixV().transpose();
+        const RealVec3 force = static_cast<Real>(state.share * loaded.share * point.weight) *
+                               (normal.norm() * (turn * traction.traction_MPa.cast<Real>()) -
+                                static_cast<Real>(traction.pressure_MPa) * normal);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          forces.add(nodes[i], -static_cast<Real>(point.shape[static_cast<Eigen::Index>(i)]) * force,
+                     sums * rounding_unit * force.norm());
+      }
+    }
+}
+
 void check_places(const Model& model, const State& state, Confirmation& out) {
   const double far = std::max(model.rest.cwiseAbs().maxCoeff(), state.positions.cwiseAbs().maxCoeff());
   std::vector<bool> of_rigid(model.used.size());
@@ -378,6 +411,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   add_elements(model, found, begun, forces);
   add_actuators(model, found, forces, out);
   add_magnets(model, found, forces);
+  add_tractions(model, state, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)
     forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);
   if (!forces.sum.allFinite()) {

@@ -76,6 +76,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_floor(m);
   make_weights(m);
   make_turns(m);
+  make_tractions(m);
   spoil_number(m);
   return std::move(m.made);
 }

@@ -69,5 +69,6 @@ void make_floor(Making& m);
 void make_weights(Making& m);
 /// Some supports turn, by angles that the commands say.
 void make_turns(Making& m);
+void make_tractions(Making& m);
 
 }  // namespace softkin::random_robots

@@ -6,7 +6,8 @@ namespace {
 
 /// Draws of their own, so that robots of the same seed are otherwise what they were.
 constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72,
-                        draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73;
+                        draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73,
+                        draws_of_tractions = 0x7472616374;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -52,6 +53,24 @@ void make_turns(Making& m) {
       actuation.conservativeResize(actuation.size() + 1);
       actuation[actuation.size() - 1] = draw.between(-60, 60);
     }
+  }
+}
+
+void make_tractions(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_tractions);
+  if (!m.physical || !draw.chance(0.12)) return;
+  const double slender = std::min(1.0, std::min(m.size[1], m.size[2]) / m.size[0]);
+  for (int i = draw.whole(1, 2); i > 0; --i) {
+    const double kilopascals = 1e3 * draw.log_between(1e-6, 0.02) * slender * m.modulus;
+    TractionSpec spec;
+    spec.name = "traction" + std::to_string(i);
+    spec.where = {std::string(draw.pick({"x_high", "z_high", "y_high", "z_low"})), {}};
+    spec.follows = draw.chance(0.8);
+    if (spec.follows && draw.chance(0.5))
+      spec.pressure_kPa = draw.chance(0.5) ? kilopascals : -kilopascals;
+    else
+      spec.kilopascals = kilopascals * draw.offset();
+    m.made.spec.tractions.push_back(std::move(spec));
   }
 }
 

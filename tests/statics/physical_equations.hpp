@@ -10,12 +10,12 @@ struct PhysicalEquations {
 
   Model model;
   physical::System system;
-  physical::System::Workspace work;
+  physical::Workspace work;
   Team team;
   physical::Demand demand;
   physical::Iterate at;
   std::vector<bool> active;
-  physical::System::Balance balance;  // of the last evaluation
+  physical::Balance balance;  // of the last evaluation
 };
 
 }  // namespace softkin::testing

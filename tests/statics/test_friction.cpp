@@ -76,12 +76,12 @@ void expect_derivatives(const Model& model) {
   const Statics statics(model);
   const State found = moved(model, statics, 1).state;
   const physical::System system(model);
-  physical::System::Workspace work(system);
+  physical::Workspace work(system);
   Team team(1);
   const physical::Demand demand{model.rest_actuation(), 1};
   physical::Iterate at = system.iterate(found);
   at.multipliers = Eigen::VectorXd::Zero(0);
-  physical::System::Balance balance;
+  physical::Balance balance;
   const std::vector<bool> none;
   std::mt19937 engine(4);
   std::normal_distribution<double> normal;

@@ -27,9 +27,9 @@ struct Equations : PhysicalEquations {
   Eigen::VectorXd eigenvalues() {
     (void)system.factorise(at, demand, active, balance, {}, work, team);
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(system.freedoms().size(), system.freedoms().size());
-    work.solve(inverse, team);
+    work.saddle.solve(inverse, team);
     Eigen::MatrixXd stiffness = inverse.inverse();
-    if (const Eigen::MatrixXd& slopes = work.constraint_slopes; slopes.cols() > 0) {
+    if (const Eigen::MatrixXd& slopes = work.saddle.slopes(); slopes.cols() > 0) {
       const Eigen::MatrixXd kept = singular_values(slopes.transpose()).right.rightCols(slopes.rows() - slopes.cols());
       stiffness = (kept.transpose() * stiffness * kept).eval();
     }
@@ -121,8 +121,8 @@ TEST(Stability, TheLowestModeIsThatOfTheDenseMatrix) {
     ASSERT_GT(mode.unstable, 0);
     EXPECT_NEAR(mode.curvature, all[0], 1e-3 * std::abs(all[0])) << compression;
     EXPECT_NEAR(mode.direction.norm(), 1, 1e-12);
-    EXPECT_LT((equations.work.constraint_slopes.transpose() * mode.direction).norm(),
-              1e-8 * equations.work.constraint_slopes.norm());
+    EXPECT_LT((equations.work.saddle.slopes().transpose() * mode.direction).norm(),
+              1e-8 * equations.work.saddle.slopes().norm());
   }
 }
 

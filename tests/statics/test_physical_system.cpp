@@ -33,7 +33,7 @@ struct SystemSample : PhysicalEquations {
     for (Index a = 0; a < system.actuators(); ++a) active[a] = system.measures().constrains(a);
   }
 
-  physical::System::Balance balance_at(const physical::Iterate& iterate) {
+  physical::Balance balance_at(const physical::Iterate& iterate) {
     system.evaluate(iterate, demand, active, work, balance, team);
     return balance;
   }
@@ -60,10 +60,10 @@ TEST(System, ANewtonStepSolvesTheLinearisedEquations) {
     if (partly) spec.rigid.clear();
     SystemSample sample(spec);
     if (partly) sample.active[1] = false;  // its multiplier is given
-    const physical::System::Balance before = sample.balance_at(sample.at);
+    const physical::Balance before = sample.balance_at(sample.at);
     (void)sample.factorise();
     Eigen::VectorXd step, change;
-    sample.system.step(before, sample.work, step, change, sample.team);
+    sample.work.saddle.step(before, step, change, sample.team);
     EXPECT_GT(before.force.norm(), 1e-2);
     if (partly) {
       EXPECT_EQ(change[1], 0);
@@ -72,7 +72,7 @@ TEST(System, ANewtonStepSolvesTheLinearisedEquations) {
     double errors[2];
     for (int i = 0; i < 2; ++i) {
       const double scale = i == 0 ? 1e-3 : 5e-4;
-      const physical::System::Balance after = sample.balance_at(moved(sample, step, change, scale));
+      const physical::Balance after = sample.balance_at(moved(sample, step, change, scale));
       EXPECT_LT((after.constraint - (1 - scale) * before.constraint).norm(), 2e-3 * scale * before.constraint.norm());
       if (partly) {  // turns aside, in which T changes too
         errors[i] = (after.force - (1 - scale) * before.force).norm() / before.force.norm();
@@ -98,9 +98,9 @@ TEST(System, CountsUnstableDirections) {
     sample.system.freedoms().hold(1, sample.at.positions);
     const int found = sample.factorise();
     const Index n = sample.system.freedoms().size();
-    const Eigen::MatrixXd slopes = sample.work.constraint_slopes;
+    const Eigen::MatrixXd slopes = sample.work.saddle.slopes();
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(n, n);
-    sample.work.solve(inverse, sample.team);
+    sample.work.saddle.solve(inverse, sample.team);
     const Eigen::MatrixXd stiffness = inverse.inverse();
     const Eigen::MatrixXd kept = singular_values(slopes.transpose()).right.rightCols(n - slopes.cols());
     const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(kept.transpose() * stiffness * kept);
@@ -128,10 +128,10 @@ TEST(System, UpsetIsTheSlopeInTheDemand) {
   sample.demand = from;
   (void)sample.factorise();
   sample.system.assemble(sample.at, from, sample.balance, physical::System::Stiffness::exact, sample.work, sample.team);
-  physical::System::Balance upset;
+  physical::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-4;
-  physical::System::Balance sides[2];
+  physical::Balance sides[2];
   for (int side = 0; side < 2; ++side) {
     const double way = side == 0 ? reach : -reach;
     sample.demand = {from.actuation + way * (to.actuation - from.actuation),
@@ -159,7 +159,7 @@ TEST(System, UpsetFollowsDisplacedSupports) {
   sample.system.freedoms().hold(from.share, sample.at.positions);
   (void)sample.factorise();
   sample.system.assemble(sample.at, from, sample.balance, physical::System::Stiffness::exact, sample.work, sample.team);
-  physical::System::Balance upset;
+  physical::Balance upset;
   sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
   constexpr double reach = 1e-5;
   physical::Iterate high = sample.at, low = sample.at;

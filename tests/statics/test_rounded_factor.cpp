@@ -34,8 +34,8 @@ double tolerance_mm(const Model& model) {
 
 Bent bend(const Model& model, Precision precision) {
   const physical::System system(model);
-  physical::System::Workspace work(system);
-  work.precision = precision;
+  physical::Workspace work(system);
+  work.saddle.precision() = precision;
   Team team(1);
   Bent bent;
   const ProgressCallback silent;
@@ -91,14 +91,14 @@ TEST(RoundedFactor, ARefinedStepIsExact) {
     Eigen::VectorXd step, change, refined, refined_change;
   };
   const auto step_of = [&](Precision precision) {
-    physical::System::Workspace work(system);
-    work.precision = precision;
-    physical::System::Balance balance;
+    physical::Workspace work(system);
+    work.saddle.precision() = precision;
+    physical::Balance balance;
     system.evaluate(at, demand, {true}, work, balance, team);
     (void)system.factorise(at, demand, {true}, balance, {.step = true}, work, team);
-    EXPECT_EQ(work.factor.in_double(), precision == Precision::twice);
+    EXPECT_EQ(work.saddle.factor().in_double(), precision == Precision::twice);
     Found found;
-    system.step(balance, work, found.step, found.change, team);
+    work.saddle.step(balance, found.step, found.change, team);
     physical::Bordered equations(system, work, team);
     equations.set_factorised(at);
     EXPECT_LT(equations.step(balance, 1e-9, 20, found.refined, found.refined_change).left, 1e-9);

@@ -245,13 +245,13 @@ TEST(Sensitivity, SingularStiffnessIsNotRegular) {
   spec.actuators = {by_load(cable("askew", {{0, 3, 9}, {30, 4, 8}, {60, 2, 7}}))};  // pulls at every mode
   const Model model = compile(spec);
   const physical::System system(model);
-  physical::System::Workspace work(system);
+  physical::Workspace work(system);
   Team team(1);
   physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
   const physical::Demand demand{values({0}), 1};
   const auto press = [&](double length) { at.positions = model.rest * Eigen::Vector3d(length, 1, 1).asDiagonal(); };
   const auto modes = [&] {
-    physical::System::Balance balance;
+    physical::Balance balance;
     system.evaluate(at, demand, {false}, work, balance, team);
     return system.factorise(at, demand, {false}, balance, {}, work, team);
   };

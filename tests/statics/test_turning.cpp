@@ -225,18 +225,18 @@ TEST(TurnedSupport, IsPredictedWithAFactorInDoublePrecision) {
   const Model model = compile(twisted_bar(10, {8, 2, 2}));
   const Statics statics(model);
   const physical::System system(model);
-  physical::System::Workspace work(system);
-  work.precision = linear::MixedLdlt::Precision::twice;
+  physical::Workspace work(system);
+  work.saddle.precision() = linear::MixedLdlt::Precision::twice;
   Team team(1);
   const Equilibrium found = statics.solve(model.rest_actuation(), statics.rest(), tight());
   ASSERT_EQ(found.report.status, Status::converged);
   const physical::Demand here{found.state.actuation, 1};
   const physical::Iterate at = system.iterate(found.state);
-  physical::System::Balance balance;
+  physical::Balance balance;
   const std::vector<bool> none(static_cast<std::size_t>(system.actuators()));
   system.evaluate(at, here, none, work, balance, team);
   (void)system.factorise(at, here, none, balance, {}, work, team);
-  ASSERT_TRUE(work.factor.in_double());
+  ASSERT_TRUE(work.saddle.factor().in_double());
   double missed[2];
   for (int i = 0; i < 2; ++i) {
     const physical::Demand there{here.actuation.array() + 2.0 / (1 + i), 1};

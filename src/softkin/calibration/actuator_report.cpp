@@ -133,7 +133,7 @@ std::string suggestions(double factor, const RobotSpec& spec) {
   }
   const bool pushed = std::any_of(spec.forces.begin(), spec.forces.end(),
                                   [](const ForceSpec& force) { return force.force != Vec3(0, 0, 0); });
-  if (pushed || spec.gravity != Vec3(0, 0, 0))
+  if (pushed || !spec.tractions.empty() || spec.gravity != Vec3(0, 0, 0))
     text += "note: weight and forces act too, which do not grow with the moduli: repeat this with the new ones\n";
   return text;
 }

@@ -17,7 +17,20 @@ template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
 Vec3 marker_at(const Model& model, Index marker, const Points& positions) {
-  return model.markers[static_cast<std::size_t>(marker)].point.at(positions);
+  return model.markers[static_cast<std::size_t>(marker)].at(positions);
+}
+
+/// How a marker moves where the vertices do.
+Vec3 marker_move(const Model& model, Index marker, const Points& positions, const Points& moves) {
+  return model.markers[static_cast<std::size_t>(marker)].velocity(positions, moves);
+}
+
+/// The coordinates that count.
+Eigen::VectorXd counted(const PositionGoal& goal, const Vec3& vector) {
+  Eigen::VectorXd terms(std::count(goal.axes.begin(), goal.axes.end(), true));
+  for (Index axis = 0, row = 0; axis < 3; ++axis)
+    if (goal.axes[static_cast<std::size_t>(axis)]) terms[row++] = vector[axis];
+  return terms;
 }
 
 /// Of a vector that may vanish: markers may come to lie on each other.
@@ -29,11 +42,7 @@ Vec3 unit(const Vec3& vector) {
 /// Errors of one goal, unweighted: one value per coordinate that counts [mm].
 Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& positions) {
   return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
-                                 const Vec3 miss = marker_at(model, g.marker, positions) - g.target;
-                                 Eigen::VectorXd terms(std::count(g.axes.begin(), g.axes.end(), true));
-                                 for (Index axis = 0, row = 0; axis < 3; ++axis)
-                                   if (g.axes[static_cast<std::size_t>(axis)]) terms[row++] = miss[axis];
-                                 return terms;
+                                 return counted(g, marker_at(model, g.marker, positions) - g.target);
                                },
                                [&](const PlaneGoal& g) -> Eigen::VectorXd {
                                  const Vec3 miss = marker_at(model, g.marker, positions) - g.point;
@@ -50,15 +59,17 @@ Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& pos
 /// Derivative of terms_of along a change of the positions.
 Eigen::VectorXd change_of(const Model& model, const Goal& goal, const Points& positions, const Points& moves) {
   return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
-                                 return terms_of(model, {PositionGoal{g.marker, Vec3::Zero(), g.axes}}, moves);
+                                 return counted(g, marker_move(model, g.marker, positions, moves));
                                },
                                [&](const PlaneGoal& g) -> Eigen::VectorXd {
-                                 return terms_of(model, {PlaneGoal{g.marker, Vec3::Zero(), g.normal}}, moves);
+                                 const Vec3 move = marker_move(model, g.marker, positions, moves);
+                                 return Eigen::VectorXd::Constant(1, unit(g.normal).dot(move));
                                },
                                [&](const DirectionGoal& g) -> Eigen::VectorXd {
                                  const Vec3 line =
                                      marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
-                                 const Vec3 move = marker_at(model, g.to, moves) - marker_at(model, g.from, moves);
+                                 const Vec3 move = marker_move(model, g.to, positions, moves) -
+                                                   marker_move(model, g.from, positions, moves);
                                  const double length = line.stableNorm();
                                  if (!(length > 0)) return Vec3::Zero();
                                  const Vec3 along = line / length;

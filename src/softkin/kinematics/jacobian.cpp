@@ -3,21 +3,23 @@
 
 namespace softkin {
 
-Eigen::MatrixXd jacobian(const Model& model, const Sensitivity& sensitivity, const std::vector<Index>& markers) {
+Eigen::MatrixXd jacobian(const Model& model, const Points& positions, const Sensitivity& sensitivity,
+                         const std::vector<Index>& markers) {
   Eigen::MatrixXd result(3 * static_cast<Index>(markers.size()), static_cast<Index>(sensitivity.positions.size()));
   for (std::size_t p = 0; p < markers.size(); ++p) {
     if (markers[p] < 0 || markers[p] >= static_cast<Index>(model.markers.size()))
       throw InvalidInput("the robot has no marker number " + std::to_string(markers[p]));
-    const EmbeddedPoint& point = model.markers[static_cast<std::size_t>(markers[p])].point;
+    const Marker& marker = model.markers[static_cast<std::size_t>(markers[p])];
     for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
-      result.block<3, 1>(3 * static_cast<Index>(p), static_cast<Index>(a)) = point.at(sensitivity.positions[a]);
+      result.block<3, 1>(3 * static_cast<Index>(p), static_cast<Index>(a)) =
+          marker.velocity(positions, sensitivity.positions[a]);
   }
   return result;
 }
 
 Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equilibrium& equilibrium,
                          const std::vector<Index>& markers) {
-  return jacobian(model, statics.sensitivity(equilibrium.state), markers);
+  return jacobian(model, equilibrium.state.positions, statics.sensitivity(equilibrium.state), markers);
 }
 
 }  // namespace softkin

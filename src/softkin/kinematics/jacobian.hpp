@@ -11,7 +11,7 @@ namespace softkin {
 /// markers      p indices into model.markers
 /// returns      3p x m: x, y, z of each marker [mm per unit of command: 1 (ratio), N or kPa]
 /// throws       InvalidInput on a marker that the model does not have
-[[nodiscard]] Eigen::MatrixXd jacobian(const Model& model, const Sensitivity& sensitivity,
+[[nodiscard]] Eigen::MatrixXd jacobian(const Model& model, const Points& positions, const Sensitivity& sensitivity,
                                        const std::vector<Index>& markers);
 
 /// The same at an equilibrium that statics.solve() returned; zero where its sensitivity is not regular.

@@ -126,9 +126,9 @@ Model seen_by(const Model& model, const MapData& data) {
   const auto markers = static_cast<Index>(model.markers.size()), cables = static_cast<Index>(data.cables.size());
   seen.rest = Points::Zero(markers + 2 * cables, 3);
   for (Index p = 0; p < markers; ++p) {
-    EmbeddedPoint& point = seen.markers[static_cast<std::size_t>(p)].point;
-    seen.rest.row(p) = point.at(model.rest);
-    point = {{p}, {1.0}};
+    Marker& marker = seen.markers[static_cast<std::size_t>(p)];
+    seen.rest.row(p) = marker.at(model.rest);
+    marker = {marker.name, {{p}, {1.0}}};
   }
   for (Index c = 0; c < cables; ++c) {
     Actuator& cable = seen.actuators[static_cast<std::size_t>(data.cables[static_cast<std::size_t>(c)].actuator)];
@@ -182,28 +182,35 @@ class ShapesOfMap : public OfMap {
   [[nodiscard]] Points positions(const Eigen::VectorXd& values, const Eigen::VectorXd& commands,
                                  const KinematicMap::Place& place) const override {
     Points positions = map_.shape(commands.data(), place);
-    lead_markers(values, positions);
+    lead_markers(values, positions, nullptr);
     return positions;
   }
 
   void add_moves(const maps::RowMatrix& slopes, const Eigen::VectorXd& commands, const KinematicMap::Place& place,
                  Sensitivity& found) const override {
     std::vector<Points> moves = map_.shape_slopes(commands.data(), place);
+    const Points at = map_.shape(commands.data(), place);
     for (Index i = 0; i < map_.inputs(); ++i) {
       Points& move = moves[static_cast<std::size_t>(i)];
-      lead_markers(slopes.row(i), move);
+      lead_markers(slopes.row(i), move, &at);
       found.positions[static_cast<std::size_t>(map_.data().inputs[static_cast<std::size_t>(i)].actuator)] =
           std::move(move);
     }
   }
 
-  /// The least move of the vertices of each marker that brings it to where it is. Of positions, or of their slopes.
-  void lead_markers(const Eigen::VectorXd& values, Points& positions) const {
+  /// The least move of the vertices of each marker that brings it to where it is; what carries a stem moves as a whole.
+  /// Of positions, or of their slopes at a shape.
+  void lead_markers(const Eigen::VectorXd& values, Points& positions, const Points* slopes_at) const {
     Index next = 0;
     for (const Marker& marker : model_.markers) {
       const EmbeddedPoint& point = marker.point;
-      const Vec3 missing = values.segment<3>(next) - point.at(positions);
+      const Vec3 there = slopes_at ? marker.velocity(*slopes_at, positions) : marker.at(positions);
+      const Vec3 missing = values.segment<3>(next) - there;
       next += 3;
+      if (!marker.arms.empty()) {
+        for (const Index v : point.vertices) positions.row(v) += missing.transpose();
+        continue;
+      }
       double squares = 0;
       for (const double weight : point.weights) squares += weight * weight;
       for (std::size_t k = 0; k < point.vertices.size(); ++k)

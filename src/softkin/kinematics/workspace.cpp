@@ -85,7 +85,7 @@ class Group {
     sample.multipliers = found.state.multipliers;
     sample.markers.resize(static_cast<Index>(model_.markers.size()), 3);
     for (std::size_t p = 0; p < model_.markers.size(); ++p)
-      sample.markers.row(static_cast<Index>(p)) = model_.markers[p].point.at(found.state.positions);
+      sample.markers.row(static_cast<Index>(p)) = model_.markers[p].at(found.state.positions);
     return sample;
   }
 

@@ -12,6 +12,14 @@ void Cliques::add(std::span<const Index> set) {
   slots.push_back(slots.back() + count * (count + 1) / 2);
 }
 
+std::uint64_t Cliques::fingerprint() const {
+  std::uint64_t state = 0xcbf29ce484222325;
+  const auto add = [&](std::int64_t number) { state = (state ^ static_cast<std::uint64_t>(number)) * 0x100000001b3; };
+  for (const std::int64_t start : starts) add(start);
+  for (const Index vertex : vertices) add(vertex);
+  return state;
+}
+
 BlockPattern::BlockPattern(Index vertices, const Cliques& cliques) {
   // every slot once, with the row and the column that it falls into
   const auto each_slot = [&](const auto& visit) {

@@ -20,6 +20,8 @@ struct Cliques {
 
   void add(std::span<const Index> set);
   [[nodiscard]] Index count() const { return static_cast<Index>(starts.size()) - 1; }
+  /// Differs where the sets do (FNV-1a of 64 bits).
+  [[nodiscard]] std::uint64_t fingerprint() const;
 };
 
 /// Pattern of a symmetric matrix of 3 x 3 blocks, a row per vertex, lower triangle; made once from its cliques.

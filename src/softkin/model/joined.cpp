@@ -123,6 +123,12 @@ class Joiner {
     if (const auto* name = std::get_if<std::string>(&where.region)) return {full(*name), where.origin};
     return {Selector(chosen(label(where).substr(4), regions_.resolve(where))), where.origin};  // without "the "
   }
+  [[nodiscard]] MarkerSpec full(const MarkerSpec& marker) const {
+    MarkerSpec all{placed_.name + "." + marker.name, full(marker.at)};
+    if (marker.offset) all.offset = placed_.place.rotation * *marker.offset;
+    if (marker.carrier) all.carrier = full(*marker.carrier);
+    return all;
+  }
   [[nodiscard]] PointRef full(const PointRef& point) const {
     if (const auto* name = std::get_if<std::string>(&point.point)) return {full(*name), point.origin};
     return {placed_.place(std::get<Vec3>(point.point)), point.origin, placed_.name};
@@ -210,8 +216,13 @@ class Joiner {
   void add_points() {
     for (const ForceSpec& force : robot_.forces)
       all_.forces.push_back({placed_.name + "." + force.name, full(force.at), placed_.place.rotation * force.force});
-    for (const MarkerSpec& marker : robot_.markers)
-      all_.markers.push_back({placed_.name + "." + marker.name, full(marker.at)});
+    for (TractionSpec& traction : robot_.tractions) {
+      traction.name = placed_.name + "." + traction.name;
+      traction.where = full(traction.where);
+      traction.kilopascals = placed_.place.rotation * traction.kilopascals;
+      all_.tractions.push_back(std::move(traction));
+    }
+    for (const MarkerSpec& marker : robot_.markers) all_.markers.push_back(full(marker));
     for (FootSpec& foot : robot_.feet) {
       foot.marker = placed_.name + "." + foot.marker;
       all_.feet.push_back(std::move(foot));
@@ -281,6 +292,7 @@ void add_common(RobotSpec& robots, RobotSpec common) {
   append_parts(robots.rigid, common.rigid);
   append_parts(robots.actuators, common.actuators);
   append_parts(robots.forces, common.forces);
+  append_parts(robots.tractions, common.tractions);
   append_parts(robots.markers, common.markers);
   append_parts(robots.feet, common.feet);
   robots.contact = std::move(common.contact);

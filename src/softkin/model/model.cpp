@@ -87,9 +87,14 @@ class Hash {
     if (!m.viscosity.empty()) add(m.viscosity);
   }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
+  void put(const LoadedFace& loaded) { add(loaded.face, loaded.share); }
+  void put(const FollowingTraction& t) { add(t.traction_MPa, t.pressure_MPa, t.faces); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
-  void put(const Marker& marker) { add(marker.name, marker.point); }
+  void put(const Marker& marker) {
+    add(marker.name, marker.point);
+    if (!marker.arms.empty()) add(marker.stem);
+  }
   void put(const SupportTurn& t) { add(t.axis, t.about, t.displacement, t.vertices); }
   void put(const RigidRegion& region) { add(region.name, region.vertices); }
   void put(const FreeBody& body) { add(body.name, body.vertices, body.center, body.mass_kg); }
@@ -101,6 +106,7 @@ class Hash {
   void put(const Actuator& a) {
     add(a.name, a.kind, a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.tetrahedra, a.cavity,
         a.prisms, a.points, a.surface, a.gaps, a.other, a.axis, a.rest_measure);
+    if (a.factor != 1 || a.offset != 0) add(a.factor, a.offset);
     if (under_voltage(a)) add(a.shares, a.prestretch);
     if (a.distribution == Distribution::proportional) add(a.distribution);
   }
@@ -132,10 +138,10 @@ double quadratic_face(const Points& positions, const CavityFace& face, const Vec
 
 }  // namespace
 
-Vec3 EmbeddedPoint::at(const Points& positions) const {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < vertices.size(); ++i) sum += weights[i] * positions.row(vertices[i]).transpose();
-  return sum;
+std::vector<Index> nodes_of(const CavityFace& face) {
+  std::vector<Index> nodes(face.corners.begin(), face.corners.end());
+  if (face.edges[0] >= 0) nodes.insert(nodes.end(), face.edges.begin(), face.edges.end());
+  return nodes;
 }
 
 double enclosed_volume(const Points& positions, const std::vector<CavityFace>& faces) {
@@ -205,6 +211,7 @@ std::string fingerprint_of(const Model& model) {
            model.fixed, model.held, model.dead_load);
   if (model.weights != ElementWeights::printed) hash.add(model.weights);
   if (!model.turns.empty()) hash.add(model.turns);
+  if (!model.tractions.empty()) hash.add(model.tractions);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {
     hash.add(model.magnetism->remanence, model.magnetism->sources);

@@ -1,21 +1,13 @@
 #pragma once
 
 #include <softkin/model/contact_model.hpp>
+#include <softkin/model/marker.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
 
 namespace softkin {
 
 struct Magnetism;  // magnetic_field.hpp
-
-/// A point that moves with the mesh: the weighted sum of some vertices; the weights sum to 1.
-struct EmbeddedPoint {
-  std::vector<Index> vertices;
-  std::vector<double> weights;
-  double distance_mm = 0;  // from the nearest element; 0: inside
-
-  [[nodiscard]] Vec3 at(const Points& positions) const;
-};
 
 struct Material {
   std::string region;
@@ -33,6 +25,9 @@ struct CavityFace {
   Triangle corners;
   std::array<Index, 3> edges{-1, -1, -1};
 };
+
+/// The nodes of a face: its corners, then those on its edges.
+[[nodiscard]] std::vector<Index> nodes_of(const CavityFace& face);
 
 /// Volume enclosed by a cavity's boundary whose normals point out of it, exact for curved faces too.
 ///
@@ -69,13 +64,9 @@ struct Actuator {
                                        // magnetic: index into Magnetism::sources; turn: into Model::turns
   int axis = -1;                       // motion, force; magnetic: which of the source's commands
   bool pushes = false;                 // cable: held to its length whatever that takes, as a rod would be
+  double factor = 1, offset = 0;       // load control: what acts is factor times the command plus offset [N, kPa]
   double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
                                        // a dea's ratio 1
-};
-
-struct Marker {
-  std::string name;
-  EmbeddedPoint point;
 };
 
 /// Stands on the floor and slides where friction lets it.
@@ -115,6 +106,19 @@ struct SupportTurn {
   Origin origin;
 };
 
+/// A face of the body's surface with its normal outwards, under a load; a share of it.
+struct LoadedFace {
+  CavityFace face;
+  double share = 1;
+};
+
+/// A load that turns with the surface and acts on its present area.
+struct FollowingTraction {
+  Vec3 traction_MPa{0, 0, 0};  // as the surface stands at rest
+  double pressure_MPa = 0;     // onto it, along its normal
+  std::vector<LoadedFace> faces;
+};
+
 /// What an element is made of: a material, or the actuator that it belongs to; physical: a material always, and a
 /// prism of a dea has its actuator too.
 struct ElementRole {
@@ -148,7 +152,8 @@ struct Model {
   std::vector<std::array<Index, 3>>
       support_of;    // per vertex and axis: the support that bears it, the first of several,
                      // or -1; a rigid region that is held is borne as a whole
-  Points dead_load;  // #V by 3 [N]: weight and forces; physical, else empty
+  Points dead_load;  // #V by 3 [N]: weight, forces, tractions that follow nothing; physical, else empty
+  std::vector<FollowingTraction> tractions;
   ContactModel contact;
   std::shared_ptr<const Magnetism> magnetism;  // physical; none: nothing is magnetic
   std::vector<bool> used;                      // per vertex: is it a vertex of an element
@@ -158,6 +163,9 @@ struct Model {
 
   /// How many vertices are the mesh's: the first ones.
   [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.other_vertices; }
+
+  /// Is there anything that loads it but its actuators?
+  [[nodiscard]] bool loaded() const { return !dead_load.isZero(0) || !tractions.empty(); }
 
   /// Vertices of a bounded part of its surroundings, which follow each other.
   [[nodiscard]] std::array<Index, 2> vertices_of_part(Index part) const;

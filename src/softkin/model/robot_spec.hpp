@@ -136,6 +136,8 @@ struct ActuatorSpec {
   double low = 0, high = 0;                // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
                                            // pressure [kPa]: any
   double rest = 1;                         // value where none is asked for: a dea's prestretch; load control: 0; else 1
+  double factor = 1, offset = 0;           // tension and pressure: of a command, what acts is this times it plus that
+                                           // [N, kPa]; factor > 0
   double prestretch = 1;                   // dea under voltage: area that its layer has without force, over that in the
                                            // mesh [-], > 0
   double weight = 5;                       // w of Eq. (9), > 0
@@ -147,9 +149,12 @@ struct ActuatorSpec {
   Origin origin;
 };
 
+/// With neither of the last two it moves with the element around it, or is the mean of its region.
 struct MarkerSpec {
   std::string name;
   PointRef at;
+  std::optional<Vec3> offset{};          // from the mean of its region, on a stem that turns with it [mm]
+  std::optional<std::string> carrier{};  // of a point: the region on which its stem stands
 };
 
 /// A foot that stands on the floor: a marker, and the friction that it takes to slide it towards the front foot's side
@@ -172,6 +177,15 @@ struct ForceSpec {
   Vec3 force{0, 0, 0};  // [N]
 };
 
+/// A load on each piece of the body's surface in a region, over its area.
+struct TractionSpec {
+  std::string name;
+  RegionRef where;            // of dimension 2: its faces; else all faces of the surface between its vertices
+  bool follows = false;       // turns with the surface and acts on its present area; else neither, on its area at rest
+  Vec3 kilopascals{0, 0, 0};  // as the surface stands at rest [kPa]
+  double pressure_kPa = 0;    // where it follows: onto the surface, along its normal [kPa]
+};
+
 /// One of several robots that are described as one.
 struct RobotPart {
   std::string name;
@@ -186,17 +200,18 @@ struct RobotSpec {
   std::string name;  // the scene's file name, for messages
   Formulation formulation = Formulation::target_shape;
   ElementWeights weights = ElementWeights::printed;
-  Mesh mesh;                        // in mm
-  Origin mesh_origin;               // of the entry that names it
-  bool accept_mesh_errors = false;  // take doubled or overlapping elements, with a note
-  bool quadratic = false;           // physical: elevate a mesh of order 1 to order 2
-  std::optional<CurveSpec> curve;   // physical, order 2: how the edges are curved; none: as the mesh has them
-  bool curved = false;              // of several robots: one was, by a `curve` of its own
-  std::vector<std::string> notes;   // of what was done before compile()
-  bool linear_by_choice = false;    // it was said that the mesh stays of order 1: what that costs is told as a note
-  Vec3 gravity{0, 0, 0};            // [m/s^2]; physical
-  Origin gravity_origin;            // no file: none is given
-  std::vector<ForceSpec> forces;    // physical
+  Mesh mesh;                            // in mm
+  Origin mesh_origin;                   // of the entry that names it
+  bool accept_mesh_errors = false;      // take doubled or overlapping elements, with a note
+  bool quadratic = false;               // physical: elevate a mesh of order 1 to order 2
+  std::optional<CurveSpec> curve;       // physical, order 2: how the edges are curved; none: as the mesh has them
+  bool curved = false;                  // of several robots: one was, by a `curve` of its own
+  std::vector<std::string> notes;       // of what was done before compile()
+  bool linear_by_choice = false;        // it was said that the mesh stays of order 1: what that costs is told as a note
+  Vec3 gravity{0, 0, 0};                // [m/s^2]; physical
+  Origin gravity_origin;                // no file: none is given
+  std::vector<ForceSpec> forces;        // physical
+  std::vector<TractionSpec> tractions;  // physical
   std::vector<RegionSpec> regions;
   std::vector<MaterialSpec> materials;
   std::vector<RegionRef> voids;

@@ -100,7 +100,7 @@ Json page_actuators(const Model& model) {
 Json page_markers(const Model& model) {
   Json list = Json::array();
   for (const Marker& marker : model.markers)
-    list.push_back({{"name", marker.name}, {"at", json_of(marker.point.at(model.rest))}});
+    list.push_back({{"name", marker.name}, {"at", json_of(marker.at(model.rest))}});
   for (Json& marker : list)
     for (const FreeBody& body : model.bodies)
       if (marker.at("name") == body.name) marker["body"] = true;

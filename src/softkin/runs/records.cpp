@@ -69,7 +69,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   record.largest_displacement_mm = largest_move(model.rest, found.state.positions);
-  for (const Marker& marker : model.markers) record.markers.push_back(marker.point.at(found.state.positions));
+  for (const Marker& marker : model.markers) record.markers.push_back(marker.at(found.state.positions));
   record.marker_turns = marker_turns(model, found.state.positions);
   record.actuators = actuator_records(model, found);
   record.strain = strain_histogram(model, deformation);
@@ -155,8 +155,7 @@ bool asks_for_motion(const Model& model, const StepRecord& record) {
     if (from_rest != 0 && !may_hang) return true;
   }
   const auto turns = [](const SupportTurn& turn) { return turn.degrees != 0; };
-  return (model.dead_load.array() != 0).any() || model.held != model.rest ||
-         std::any_of(model.turns.begin(), model.turns.end(), turns);
+  return model.loaded() || model.held != model.rest || std::any_of(model.turns.begin(), model.turns.end(), turns);
 }
 
 void add_implausible(const Model& model, const StepRecord& record, std::vector<Finding>& found) {

@@ -163,11 +163,11 @@ std::string unit_of(const Actuator& actuator) {
 }
 
 /// Of every marker and every pressure and tension, by the command of every actuator, each with its unit.
-Json jacobian_json(const Model& model, const Sensitivity& sensitivity) {
+Json jacobian_json(const Model& model, const Points& positions, const Sensitivity& sensitivity) {
   Json json = {{"unit", Json::object()}, {"markers", Json::object()}};
   std::vector<Index> markers;
   for (std::size_t p = 0; p < model.markers.size(); ++p) markers.push_back(static_cast<Index>(p));
-  const Eigen::MatrixXd slopes = jacobian(model, sensitivity, markers);
+  const Eigen::MatrixXd slopes = jacobian(model, positions, sensitivity, markers);
   for (const Actuator& actuator : model.actuators) json["unit"][actuator.name] = "mm per " + unit_of(actuator);
   for (std::size_t p = 0; p < markers.size(); ++p)
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
@@ -212,7 +212,7 @@ Json inverse_json(const Model& model, const InverseOptions& options, const std::
     if (found.active[a] != 0) json["at_end_of_range"][model.actuators[a].name] = found.active[a] < 0 ? "low" : "high";
   if (newton && found.status != InverseStatus::reached) json["slope_mm_per_range"] = found.slope;
   if (newton && found.sensitivity.regular) {
-    json["jacobian"] = jacobian_json(model, found.sensitivity);
+    json["jacobian"] = jacobian_json(model, found.equilibrium.state.positions, found.sensitivity);
     if (model.contact.any()) json["jacobian"]["one_sided"] = sliding_pairs(model, record.contacts);
   }
   json["history"] = history_json(found.history);
@@ -313,7 +313,7 @@ RecordLog step_report(const Model& model, const std::string& scene, const std::f
 }
 
 Vec3 place_of(const Model& model, const Goal& goal, const Points& positions) {
-  const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].point.at(positions); };
+  const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].at(positions); };
   if (const auto* position = std::get_if<PositionGoal>(&goal.what)) return at(position->marker);
   if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) return at(plane->marker);
   const auto& direction = std::get<DirectionGoal>(goal.what);

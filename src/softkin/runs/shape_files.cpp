@@ -31,12 +31,12 @@ constexpr std::array<double, 3> cable_color{0.80, 0.33, 0.10}, marker_color{0.13
 void add_target(const Goal& goal, const Model& model, const Points& positions, std::vector<PictureMark>& marks) {
   Vec3 from, to;
   if (const auto* at = std::get_if<PositionGoal>(&goal.what)) {
-    from = to = model.markers[at->marker].point.at(positions);
+    from = to = model.markers[at->marker].at(positions);
     for (int axis = 0; axis < 3; ++axis)
       if (at->axes[axis]) to[axis] = at->target[axis];
   } else if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) {
     const Vec3 normal = plane->normal.stableNormalized();
-    from = model.markers[plane->marker].point.at(positions);
+    from = model.markers[plane->marker].at(positions);
     to = from - normal.dot(from - plane->point) * normal;
   } else {
     return;
@@ -57,7 +57,7 @@ std::vector<PictureMark> marks_of(const Model& model, const Points& positions, c
   }
   for (const Goal& goal : goals) add_target(goal, model, positions, marks);
   for (const Marker& marker : model.markers)
-    marks.push_back({marker.point.at(positions).transpose(), marker.name, marker_color});
+    marks.push_back({marker.at(positions).transpose(), marker.name, marker_color});
   return marks;
 }
 

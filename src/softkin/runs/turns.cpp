@@ -1,10 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/runs/turns.hpp>
@@ -46,26 +45,22 @@ constexpr double flat = 1e-6;  // of squares of lengths: what is thinner is a pl
 
 /// Do its vertices at rest span a plane, so that it has an orientation?
 bool spans_a_plane(const Model& model, const EmbeddedPoint& point) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments(point, model.rest, model.rest));
-  return axes.eigenvalues()[1] > flat * axes.eigenvalues()[2];
+  const Vec3 axes = principal_values(moments(point, model.rest, model.rest));
+  return axes[1] > flat * axes[2];
 }
 
 /// The linear map that takes its vertices best from rest to where they are; of a plane's normal to the normal.
 Mat3 best_map(const EmbeddedPoint& point, const Points& rest, const Points& positions) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments(point, rest, rest));
-  const Mat3 from = axes.eigenvectors(), there = moments(point, rest, positions);
+  const SymmetricEigen axes = symmetric_eigen(moments(point, rest, rest));
+  const Mat3 from = axes.vectors, there = moments(point, rest, positions);
   Mat3 to;
-  for (Index k = 0; k < 3; ++k) to.col(k) = there * from.col(k) / axes.eigenvalues()[k];
-  if (axes.eigenvalues()[0] <= flat * axes.eigenvalues()[2])
-    to.col(0) = from.determinant() * to.col(1).cross(to.col(2)).normalized();
+  for (Index k = 0; k < 3; ++k) to.col(k) = there * from.col(k) / axes.values[k];
+  if (axes.values[0] <= flat * axes.values[2]) to.col(0) = from.determinant() * to.col(1).cross(to.col(2)).normalized();
   return to * from.transpose();
 }
 
 double turn_of(const EmbeddedPoint& point, const Points& rest, const Points& positions) {
-  const Eigen::JacobiSVD<Mat3> svd(best_map(point, rest, positions), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
-  const Mat3 rotation = svd.matrixU() * Vec3(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
-  return degrees_per_radian * Eigen::AngleAxisd(rotation).angle();
+  return degrees_per_radian * Eigen::AngleAxisd(nearest_rotation(best_map(point, rest, positions)).rotation).angle();
 }
 
 }  // namespace
@@ -84,8 +79,8 @@ Vec3 MarkerLine::in(const std::vector<Vec3>& markers) const {
 }
 
 Vec3 MarkerLine::at_rest(const Model& model) const {
-  return model.markers.at(static_cast<std::size_t>(to)).point.at(model.rest) -
-         model.markers.at(static_cast<std::size_t>(from)).point.at(model.rest);
+  return model.markers.at(static_cast<std::size_t>(to)).at(model.rest) -
+         model.markers.at(static_cast<std::size_t>(from)).at(model.rest);
 }
 
 std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <softkin/core/types.hpp>
+#include <softkin/model/model.hpp>
 #include <vector>
 
 namespace softkin {
@@ -10,6 +10,21 @@ namespace softkin {
 struct Sensitivity {
   std::vector<Points> positions;  // per actuator, #V by 3 [mm per unit of its command]
   Eigen::MatrixXd multipliers;    // m x m: of tension [N] or pressure [kPa] i by command j [per unit of its command]
+  bool regular = false;           // false: at a limit of existence or a branch; then all values are zero
+};
+
+/// A robot with one of its numbers a little larger and a little smaller: models that were compiled from descriptions
+/// which differ in nothing else.
+struct Perturbed {
+  const Model& more;
+  const Model& less;
+  double difference = 0;  // of the number between them, in its unit; not 0
+};
+
+/// How an equilibrium changes with numbers of the robot under the same commands, to first order.
+struct ParameterSensitivity {
+  std::vector<Points> positions;  // per number, #V by 3 [mm per unit of it]
+  Eigen::MatrixXd multipliers;    // m by numbers: of tension [N] or pressure [kPa] of actuator i
   bool regular = false;           // false: at a limit of existence or a branch; then all values are zero
 };
 

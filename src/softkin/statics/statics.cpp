@@ -233,6 +233,12 @@ struct Statics::Parts {
 Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {
   parts_->assemble(model);
 }
+Statics::Statics(const Model& model, const Statics& like) : parts_(std::make_unique<Parts>(model)) {
+  if (model.formulation == Formulation::physical && like.parts_->physical)
+    parts_->physical.emplace(model, *like.parts_->physical);
+  else
+    parts_->assemble(model);
+}
 Statics::Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given, Given use)
     : parts_(std::make_unique<Parts>(model)) {
   parts_->given = std::move(given);
@@ -353,6 +359,33 @@ ViscousFlow Statics::flow(const State& at) const {
 void Statics::forget() const {
   if (parts_->physical) parts_->physical->forget();
   if (parts_->target_shape) parts_->target_shape->newton.forget();
+}
+
+struct Perturbations::Parts {
+  const Statics& statics;
+  std::vector<physical::Perturbation> perturbations{};
+};
+
+Perturbations::Perturbations(const Statics& statics, const std::vector<Perturbed>& perturbed)
+    : parts_(std::make_unique<Parts>(Parts{statics})) {
+  if (!statics.parts_->physical)
+    throw InvalidInput("derivatives by numbers of the robot are for the physical formulation");
+  for (const Perturbed& each : perturbed) {
+    if (!(each.difference != 0 && std::isfinite(each.difference)))
+      throw InvalidInput("a number is not perturbed, or by a difference that is not finite");
+    parts_->perturbations.emplace_back(each, statics.parts_->physical->system());
+  }
+}
+
+Perturbations::~Perturbations() = default;
+Perturbations::Perturbations(Perturbations&&) noexcept = default;
+Perturbations& Perturbations::operator=(Perturbations&&) noexcept = default;
+
+ParameterSensitivity Perturbations::at(const State& at, const StaticsOptions& options, double accuracy) const {
+  Statics::Parts& statics = *parts_->statics.parts_;
+  statics.check_known(at, options, "the sensitivity of a shape");
+  const TeamPool::Lent team = statics.team(options);
+  return statics.physical->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, *team);
 }
 
 struct Neighbourhood::Parts {

@@ -74,6 +74,11 @@ class Statics {
  public:
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held
   explicit Statics(const Model& model);
+  /// Of a robot that differs from another one in numbers alone: what depends on the mesh is shared. like must outlive
+  /// the object.
+  ///
+  /// throws  InvalidInput where they differ by more; as the first
+  Statics(const Model& model, const Statics& like);
   /// Of a robot whose equilibria are given, or whose equilibria are found from those that are.
   Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given, Given use = Given::answers);
   ~Statics();
@@ -141,6 +146,29 @@ class Statics {
 
  private:
   friend class Neighbourhood;
+  friend class Perturbations;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// How equilibria change with numbers of their robot: anything in its description but its mesh and which vertices are
+/// held. The equations are differentiated by central differences between perturbed models, the equilibrium exactly.
+class Perturbations {
+ public:
+  /// statics and the models must outlive the object.
+  ///
+  /// perturbed  by 1e-5 or so of the number, or of what it is beside: more is less exact, less is rounded
+  /// throws     InvalidInput in the target-shape formulation, and where the models differ by more than numbers
+  Perturbations(const Statics& statics, const std::vector<Perturbed>& perturbed);
+  ~Perturbations();
+  Perturbations(Perturbations&&) noexcept;
+  Perturbations& operator=(Perturbations&&) noexcept;
+
+  /// As Statics::sensitivity. Several threads may ask at once.
+  [[nodiscard]] ParameterSensitivity at(const State& at, const StaticsOptions& options = {},
+                                        double accuracy = 1e-8) const;
+
+ private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

@@ -17,7 +17,8 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region", "surface", "points", "apexes", "spacing", "prestretch", "curve", "voltage_share"};
+const Keys kind_keys{"region",     "surface", "points",        "apexes", "spacing",
+                     "prestretch", "curve",   "voltage_share", "factor", "offset"};
 
 Keys all_kind_keys() {
   Keys all = kind_keys;
@@ -27,8 +28,11 @@ Keys all_kind_keys() {
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
-      {ActuatorKind::pneumatic, "pneumatic", {"volume", "pressure"}, {"region", "surface", "curve"}},
-      {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes", "spacing"}},
+      {ActuatorKind::pneumatic,
+       "pneumatic",
+       {"volume", "pressure"},
+       {"region", "surface", "curve", "factor", "offset"}},
+      {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes", "spacing", "factor", "offset"}},
       {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}},
       {ActuatorKind::magnetic, "magnetic", {}, field_keys()}};
   return all;
@@ -158,6 +162,16 @@ PrismValues read_shares(const Context& context, const Node& node, const Actuator
   });
 }
 
+/// What of a commanded tension or pressure acts.
+void read_share(const Map& map, ActuatorSpec& actuator) {
+  const Node *factor = map.find("factor"), *offset = map.find("offset");
+  for (const Node* node : {factor, offset})
+    if (node != nullptr && actuator.control == Control::ratio)
+      fail(*node, node->name + " belongs to 'control: tension' and 'control: pressure'");
+  if (factor != nullptr) actuator.factor = positive(*factor);
+  if (offset != nullptr) actuator.offset = number(*offset);
+}
+
 std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
   ActuatorSpec actuator;
   actuator.origin = map.node().origin;
@@ -174,6 +188,7 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
   if (const Node* node = map.find("prestretch"))
     (actuator.control == Control::ratio ? actuator.rest : actuator.prestretch) = positive(*node);
   if (const Node* node = map.find("voltage_share")) actuator.shares = read_shares(context, *node, actuator);
+  read_share(map, actuator);
   if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
   if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);
   if (kind.kind == ActuatorKind::cable) read_cable(context, map, actuator);

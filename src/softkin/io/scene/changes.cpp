@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <softkin/core/error.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
 #include <softkin/io/scene/changes.hpp>
 #include <utility>
 
@@ -11,8 +13,10 @@ namespace {
 using Shared = std::shared_ptr<const Node>;
 
 /// What an entry of a list is called: its name, its region, or itself; of a material without a region "all".
+/// Words are their own names; numbers have none but their place.
 std::string name_of_item(const Node& list, const Node& item) {
-  if (item.kind == Node::Kind::scalar) return item.text;
+  double value = 0;
+  if (item.kind == Node::Kind::scalar) return parse_real(item.text, value) ? "" : item.text;
   for (const char* key : {"name", "region"})
     for (const Node::Entry& entry : item.entries)
       if (entry.key == key && entry.value->kind == Node::Kind::scalar) return entry.value->text;
@@ -33,13 +37,37 @@ class Change {
     value_->origin = {.file = told_};
   }
 
+  /// What stands at the path now; null: a key that its entry does not have.
+  [[nodiscard]] Shared found(const Shared& root) const {
+    Shared node = root;
+    for (std::string path = path_; !path.empty();) {
+      if (node->kind == Node::Kind::list) {
+        const auto [at, rest] = item_of(*node, path);
+        node = node->items[at];
+        path = rest;
+        continue;
+      }
+      const std::string key = path.substr(0, path.find('.'));
+      const auto entry = std::find_if(node->entries.begin(), node->entries.end(),
+                                      [&](const Node::Entry& each) { return each.key == key; });
+      if (entry == node->entries.end()) {
+        if (key.size() == path.size()) return nullptr;
+        (void)within_of(*node, path);  // says what is wrong
+        return nullptr;
+      }
+      node = entry->value;
+      path = key.size() == path.size() ? "" : path.substr(key.size() + 1);
+    }
+    return node;
+  }
+
+  [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput({.file = told_}, why); }
+
   [[nodiscard]] Shared made(const Shared& root, const std::string& within) const {
     return within_of(*root, within.empty() ? path_ : within + "." + path_);
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput({.file = told_}, why); }
-
   [[nodiscard]] Shared named_value(const std::string& name) const {
     auto node = std::make_shared<Node>(*value_);
     node->name = name;
@@ -119,6 +147,15 @@ class Change {
 };
 
 }  // namespace
+
+double number_at(const Shared& root, const std::string& option, const std::string& path) {
+  const Change change(option, path + "=0");
+  const Shared node = change.found(root);
+  if (!node)
+    throw InvalidInput(option + " " + path + ": the scene has no such number: begin at one, " + path + "=START");
+  if (node->kind != Node::Kind::scalar) change.refuse("it is no number but a list or a map: name one of its numbers");
+  return number(*node);
+}
 
 Shared changed(const Shared& root, const std::string& option, const std::string& change, const std::string& within) {
   return Change(option, change).made(root, within);

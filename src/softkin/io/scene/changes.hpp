@@ -16,4 +16,10 @@ namespace softkin::scene {
 [[nodiscard]] std::shared_ptr<const Node> changed(const std::shared_ptr<const Node>& root, const std::string& option,
                                                   const std::string& change, const std::string& within);
 
+/// The number at such a path.
+///
+/// throws  InvalidInput naming option and path: as changed(), or there is no number
+[[nodiscard]] double number_at(const std::shared_ptr<const Node>& root, const std::string& option,
+                               const std::string& path);
+
 }  // namespace softkin::scene

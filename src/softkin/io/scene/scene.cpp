@@ -79,14 +79,44 @@ PointRef read_point_or_region(const Context& context, const Map& map) {
   return {read_position(context, *at.value), map.node().origin};
 }
 
+/// A point, the mean of a region, or a stem on one: by its offset, or by the point where it ends.
 MarkerSpec read_marker(const Context& context, const Node& node, Names& names) {
-  const Map map(node, {"name", "point", "region"});
-  return {names.add_label(map.at("name")), read_point_or_region(context, map)};
+  const Map map(node, {"name", "point", "region", "offset"});
+  const std::string name = names.add_label(map.at("name"));
+  const Node *point = map.find("point"), *region = map.find("region"), *offset = map.find("offset");
+  if (point != nullptr && region != nullptr) {
+    if (offset != nullptr) fail(*offset, "a stem ends at 'point' or by 'offset', not both");
+    return {name, {read_position(context, *point), node.origin}, std::nullopt, text(*region)};
+  }
+  MarkerSpec marker{name, read_point_or_region(context, map)};
+  if (offset == nullptr) return marker;
+  if (region == nullptr) fail(*offset, "'offset' is from the mean of a 'region', which the marker has not");
+  marker.offset = read_position(context, *offset);
+  return marker;
 }
 
 ForceSpec read_force(const Context& context, const Node& node, Names& names) {
   const Map map(node, {"name", "point", "region", "force"});
   return {names.add_label(map.at("name")), read_point_or_region(context, map), read_vector(map.at("force"))};
+}
+
+/// A traction that keeps its direction or turns with the surface, or a pressure.
+TractionSpec read_traction(const Context& context, const Node& node, Names& names) {
+  Keys known = place_keys();
+  known.insert(known.end(), {"name", "traction", "pressure", "follows"});
+  const Map map(node, known);
+  TractionSpec spec{names.add_label(map.at("name")), read_place(context, map)};
+  const Node::Entry& load = map.one_of({"traction", "pressure"});
+  const Node* follows = map.find("follows");
+  if (load.key == "pressure") {
+    if (follows != nullptr) fail(*follows, "a pressure always follows the surface: leave 'follows' out");
+    spec.pressure_kPa = number(*load.value);
+    spec.follows = true;
+  } else {
+    spec.kilopascals = read_vector(*load.value);
+    spec.follows = follows != nullptr && choice(*follows, {"false", "true"}) == 1;
+  }
+  return spec;
 }
 
 FootSpec read_foot(const Node& node) {
@@ -105,7 +135,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
     if (const Node* node = map.find(key))
       for (const auto& item : list(*node)) read(*item);
   };
-  Names forces, markers;
+  Names forces, tractions, markers;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   each("materials", [&](const Node& item) { spec.materials.push_back(read_material(context, item)); });
   spec.formulation = formulation_of(context, map, spec.materials);
@@ -119,6 +149,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   each("rigid", [&](const Node& item) { spec.rigid.push_back(read_rigid(context, item, spec.rigid.size() + 1)); });
   if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
   each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
+  each("tractions", [&](const Node& item) { spec.tractions.push_back(read_traction(context, item, tractions)); });
   each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
   if (const Node* node = map.find("feet"))
     for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
@@ -156,9 +187,9 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
 RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files) {
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
-  const scene::Map map(root, {"softkin", "units",     "mesh", "meshes",  "robots",    "formulation", "weights",
-                              "regions", "materials", "void", "fixed",   "rigid",     "actuators",   "gravity",
-                              "forces",  "markers",   "feet", "contact", "obstacles", "bodies"});
+  const scene::Map map(root, {"softkin", "units",     "mesh",    "meshes", "robots",  "formulation", "weights",
+                              "regions", "materials", "void",    "fixed",  "rigid",   "actuators",   "gravity",
+                              "forces",  "tractions", "markers", "feet",   "contact", "obstacles",   "bodies"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);

@@ -294,7 +294,10 @@ class CommandReader {
 }  // namespace
 
 std::vector<ActuationStep> read_actuation_path(const Model& model, const std::string& file, const Settings& settings) {
-  const CsvTable table = read_csv(file);
+  return actuation_steps(model, read_csv(file), settings);
+}
+
+std::vector<ActuationStep> actuation_steps(const Model& model, const CsvTable& table, const Settings& settings) {
   return PathReader(model, table, settings).steps();
 }
 

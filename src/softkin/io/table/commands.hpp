@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <softkin/io/table/csv.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
@@ -24,6 +25,10 @@ struct ActuationStep {
 /// throws  InvalidInput naming file and line, or the setting of an actuator that has a column too
 [[nodiscard]] std::vector<ActuationStep> read_actuation_path(const Model& model, const std::string& file,
                                                              const Settings& settings);
+
+/// The same of a table that was read already.
+[[nodiscard]] std::vector<ActuationStep> actuation_steps(const Model& model, const CsvTable& table,
+                                                         const Settings& settings);
 
 /// Whose command a column of such a table holds: the actuator's that it names, with the unit of its load if it has one.
 [[nodiscard]] std::optional<Index> actuator_of_column(const Model& model, const std::string& column);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/io/plain_text.hpp>
@@ -63,7 +64,8 @@ std::vector<std::string> read_header(const Scanner& scanner, std::string_view li
   return columns;
 }
 
-std::vector<double> read_row(const Scanner& scanner, std::string_view line, const std::vector<std::string>& columns) {
+std::vector<double> read_row(const Scanner& scanner, std::string_view line, const std::vector<std::string>& columns,
+                             bool gaps) {
   const std::vector<std::string_view> cells = split(line);
   if (cells.size() != columns.size())
     scanner.fail("the row has " + std::to_string(cells.size()) + " cells, the header " +
@@ -71,7 +73,9 @@ std::vector<double> read_row(const Scanner& scanner, std::string_view line, cons
                  (cells.size() > columns.size() ? "; a number is written with a decimal point, not a comma" : ""));
   std::vector<double> row(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i)
-    if (!parse_real(cells[i], row[i]))
+    if (gaps && cells[i].empty())
+      row[i] = std::numeric_limits<double>::quiet_NaN();
+    else if (!parse_real(cells[i], row[i]))
       scanner.fail("column " + excerpt(columns[i]) + " must hold a finite number, not " + excerpt(cells[i]) +
                    " (cells are separated by commas)");
   return row;
@@ -84,7 +88,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-CsvTable table_of(Scanner& scanner, const std::string& file) {
+CsvTable table_of(Scanner& scanner, const std::string& file, bool gaps = false) {
   std::string_view line;
   if (!next_line(scanner, line)) throw InvalidInput({file}, "has no header");
   CsvTable table;
@@ -92,7 +96,7 @@ CsvTable table_of(Scanner& scanner, const std::string& file) {
   table.columns = read_header(scanner, line);
   table.header_line = scanner.here().line;
   while (next_line(scanner, line)) {
-    table.rows.push_back(read_row(scanner, line, table.columns));
+    table.rows.push_back(read_row(scanner, line, table.columns, gaps));
     table.lines.push_back(scanner.here().line);
   }
   if (table.rows.empty()) scanner.fail("no row follows the header");
@@ -104,6 +108,11 @@ CsvTable table_of(Scanner& scanner, const std::string& file) {
 CsvTable read_csv(const std::filesystem::path& path) {
   Scanner scanner(path);
   return table_of(scanner, path.string());
+}
+
+CsvTable read_csv_with_gaps(const std::filesystem::path& path) {
+  Scanner scanner(path);
+  return table_of(scanner, path.string(), true);
 }
 
 CsvTable parse_csv(const std::string& file, std::string_view text) {

@@ -29,6 +29,8 @@ struct CsvTable {
 /// throws  InvalidInput naming file and line: no header, no row, a duplicate or empty column name, a row of another
 ///         length, a cell that is not a finite number
 [[nodiscard]] CsvTable read_csv(const std::filesystem::path& path);
+/// The same where a cell may be empty: it is NaN.
+[[nodiscard]] CsvTable read_csv_with_gaps(const std::filesystem::path& path);
 
 /// The same of the text of a file.
 [[nodiscard]] CsvTable parse_csv(const std::string& file, std::string_view text);

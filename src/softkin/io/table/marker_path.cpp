@@ -125,7 +125,7 @@ Waypoint waypoint_of(const std::vector<TargetColumn>& columns, const MarkerPath&
 /// Distance of a marker at rest from a target, along the axes that count [mm]; scale: of the target.
 double distance_from_rest(const Model& model, const MarkerPath& path, const Waypoint& waypoint, std::size_t m,
                           double scale) {
-  const Vec3 rest = model.markers[static_cast<std::size_t>(path.markers[m])].point.at(model.rest);
+  const Vec3 rest = model.markers[static_cast<std::size_t>(path.markers[m])].at(model.rest);
   Vec3 away = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis)
     if (path.axes[m][static_cast<std::size_t>(axis)]) away[axis] = scale * waypoint.targets[m][axis] - rest[axis];

@@ -86,7 +86,7 @@ Eigen::VectorXd outputs_of(const Model& model, const MapData& data, const State&
   Eigen::VectorXd values(static_cast<Index>(data.outputs.size()));
   Index next = 0;
   for (const Marker& marker : model.markers) {
-    values.segment<3>(next) = marker.point.at(state.positions);
+    values.segment<3>(next) = marker.at(state.positions);
     next += 3;
   }
   std::size_t c = 0;

@@ -83,6 +83,13 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
 }
 
 void check_members(const ActuatorSpec& spec, Formulation formulation) {
+  const bool acts =
+      spec.control == Control::load && (spec.kind == ActuatorKind::cable || spec.kind == ActuatorKind::pneumatic);
+  if (!acts && (spec.factor != 1 || spec.offset != 0))
+    refuse(spec, "takes no factor and no offset: only a cable by tension and a chamber by pressure do");
+  if (!(spec.factor > 0 && std::isfinite(spec.factor) && std::isfinite(spec.offset)))
+    refuse(spec,
+           "needs a factor above 0 and a finite offset, not " + number(spec.factor) + " and " + number(spec.offset));
   const bool cable = spec.kind == ActuatorKind::cable;
   if (!cable && !(spec.points.empty() && spec.apexes.empty())) refuse(spec, "takes no points: only a cable does");
   if (!cable && spec.spacing != 0) refuse(spec, "takes no spacing: only a cable does");
@@ -256,6 +263,8 @@ void compile_actuator_elements(Compilation& c) {
     actuator.weight = spec.weight;
     actuator.distribution = spec.distribution;
     actuator.prestretch = spec.prestretch;
+    actuator.factor = spec.factor;
+    actuator.offset = spec.offset;
     actuator.curve = spec.curve;
     actuator.branch = spec.branch;
     if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);

@@ -8,12 +8,6 @@ namespace softkin {
 
 namespace {
 
-std::vector<Index> vertices_of(const CavityFace& face) {
-  std::vector<Index> vertices(face.corners.begin(), face.corners.end());
-  if (face.edges[0] >= 0) vertices.insert(vertices.end(), face.edges.begin(), face.edges.end());
-  return vertices;
-}
-
 void add_faces(const Compilation& c, const ActuatorSpec& spec, const std::vector<Triangle>& triangles,
                Actuator& actuator) {
   const EdgeTable& edges = c.regions.edges();
@@ -32,7 +26,7 @@ void add_faces(const Compilation& c, const ActuatorSpec& spec, const std::vector
 void check_contact(Compilation& c, const ActuatorSpec& spec, const Actuator& actuator) {
   std::set<Index> vertices;
   for (const CavityFace& face : actuator.cavity)
-    for (const Index v : vertices_of(face)) vertices.insert(v);
+    for (const Index v : nodes_of(face)) vertices.insert(v);
   const auto loose = static_cast<std::size_t>(
       std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
   if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
@@ -116,7 +110,7 @@ std::vector<CavityFace> open_faces(const Model& model, const std::vector<CavityF
 /// the chamber there: all of its vertices are held, or all along the axis to which it is normal. Vertices of no element
 /// stay at rest, so that where there are such the others must be held at rest too.
 bool is_plate(const Model& model, const CavityFace& face, bool loose) {
-  const std::vector<Index> vertices = vertices_of(face);
+  const std::vector<Index> vertices = nodes_of(face);
   const auto held = [&](Index v, int axis) {
     return model.fixed[v][axis] &&
            (!loose || (model.held(v, axis) == model.rest(v, axis) && turn_of(model, v) == nullptr));

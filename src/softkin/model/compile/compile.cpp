@@ -68,13 +68,41 @@ EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::
   return mean;
 }
 
+namespace {
+
+/// A marker on a stem: mean of its region and what turns with it.
+Marker on_stem(Compilation& c, const MarkerSpec& spec, const std::string& region) {
+  const auto refuse = [&](const std::string& why) {
+    throw InvalidInput(spec.at.origin, "marker '" + spec.name + "' " + why);
+  };
+  Marker marker{spec.name, embed_point(c, {region, spec.at.origin}, "marker '" + spec.name + "'")};
+  const Vec3 mean = marker.point.at(c.model.rest);
+  marker.stem = spec.offset ? *spec.offset : std::get<Vec3>(spec.at.point) - mean;
+  if (!marker.stem.allFinite()) refuse("is not finite");
+  if (marker.stem.norm() > c.model.diagonal_mm)
+    refuse("is on a stem of " + number(marker.stem.norm()) + " mm, longer than the robot is from corner to corner, " +
+           number(c.model.diagonal_mm) + " mm");
+  if (!span_plane(c.model.rest, marker.point.vertices))
+    refuse("stands on region '" + region + "', whose vertices are on a line: no stem turns with them");
+  for (const Index v : marker.point.vertices) marker.arms.push_back(vertex_at(c.model.rest, v) - mean);
+  return marker;
+}
+
+Marker made_marker(Compilation& c, const MarkerSpec& spec) {
+  if (spec.carrier) return on_stem(c, spec, *spec.carrier);
+  if (!spec.offset) return {spec.name, embed_point(c, spec.at, "marker '" + spec.name + "'")};
+  return on_stem(c, spec, std::get<std::string>(spec.at.point));
+}
+
+}  // namespace
+
 void compile_markers(Compilation& c) {
   std::set<std::string> names;
   for (const MarkerSpec& spec : c.spec.markers) {
     if (spec.name.empty()) throw InvalidInput(spec.at.origin, "a marker needs a name");
     if (!names.insert(spec.name).second)
       throw InvalidInput(spec.at.origin, "there are two markers '" + spec.name + "'");
-    c.model.markers.push_back({spec.name, embed_point(c, spec.at, "marker '" + spec.name + "'")});
+    c.model.markers.push_back(made_marker(c, spec));
   }
 }
 
@@ -148,6 +176,9 @@ void compile_feet(Compilation& c) {
     check_friction(spec, spec.backward, "backward");
     c.model.feet.push_back({marker_of(c.model, spec), spec.forward, spec.backward});
   }
+  for (std::size_t f = 0; f < feet.size(); ++f)
+    if (!c.model.markers[static_cast<std::size_t>(c.model.feet[f].marker)].arms.empty())
+      throw InvalidInput(feet[f].origin, "marker '" + feet[f].marker + "' is on a stem: a foot stands on the body");
   if (c.model.feet[0].marker == c.model.feet[1].marker)
     throw InvalidInput(feet[1].origin, "both feet stand at marker '" + feet[1].marker + "'");
 }

@@ -88,6 +88,9 @@ void compile_loads(Compilation& c) {
     if (!c.spec.forces.empty())
       c.model.notes.push_back(counted(c.spec.forces.size(), "force is", "forces are") +
                               " left out: the target-shape formulation knows none.");
+    if (!c.spec.tractions.empty())
+      c.model.notes.push_back(counted(c.spec.tractions.size(), "traction is", "tractions are") +
+                              " left out: the target-shape formulation knows no forces.");
     return;
   }
   if (!c.spec.gravity.allFinite()) throw InvalidInput(c.origin, "gravity is not finite");
@@ -102,6 +105,7 @@ void compile_loads(Compilation& c) {
       throw InvalidInput(spec.at.origin, "there are two forces '" + spec.name + "'");
     add_force(c, spec);
   }
+  compile_tractions(c);
 }
 
 }  // namespace softkin

@@ -158,8 +158,10 @@ void compile_markers(Compilation& c);
 /// After the markers.
 void compile_feet(Compilation& c);
 
-/// Physical: the weight of the elements and the forces, lumped on the vertices [N].
+/// Physical: the weight of the elements, the forces and tractions, lumped on the vertices [N].
 void compile_loads(Compilation& c);
+/// The part of compile_loads() that is about tractions.
+void compile_tractions(Compilation& c);
 
 /// Refuses what can be told of contact before anything is compiled: of target shapes, numbers outside their ranges,
 /// names that are taken or that nothing has, shapes without extent.

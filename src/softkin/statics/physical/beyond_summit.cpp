@@ -116,7 +116,7 @@ Continuation::Climb Continuation::go_beyond(Index a, double way, const Demand& f
 Continuation::Climb Continuation::go_back(Index a, const Demand& from, const Demand& to, Iterate& at) {
   const double begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
   Measured last{begin, from.actuation[a], at, last_, 0, from.share};
-  last.at.multipliers[a] = system_.measures().unit(a) * last.load;
+  last.at.multipliers[a] = system_.measures().given(a, last.load);
   const double slope = slope_at(a, from, last),
                grows = -system_.measures().sign(a);  // the load with the measure, at rest
   if (!std::isfinite(slope) || slope * grows >= 0) return Climb::lost;

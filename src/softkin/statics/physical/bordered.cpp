@@ -5,24 +5,24 @@
 
 namespace softkin::physical {
 
-void Bordered::set(const Iterate& at, const System::Balance& balance) {
+void Bordered::set(const Iterate& at, const Balance& balance) {
   at_ = &at;
   system_.reduce_slopes(at, balance, work_, slopes_);
 }
 
 void Bordered::set_factorised(const Iterate& at) {
   at_ = &at;
-  slopes_ = work_.constraint_slopes;
+  slopes_ = saddle_.slopes();
 }
 
 /// Solves with the factor, in place.
 void Bordered::precondition(Columns& columns) {
-  if (!columns.moves.isZero(0)) work_.solve(columns.moves, team_);
-  if (work_.active.empty()) return;
+  if (!columns.moves.isZero(0)) saddle_.solve(columns.moves, team_);
+  if (saddle_.active().empty()) return;
   const Eigen::MatrixXd asked =
-      work_.scale.asDiagonal() * (work_.constraint_slopes.transpose() * columns.moves - columns.multipliers);
-  columns.multipliers = work_.scale.asDiagonal() * work_.schur.solve(asked);
-  columns.moves.noalias() -= work_.responses * columns.multipliers;
+      saddle_.scale().asDiagonal() * (saddle_.slopes().transpose() * columns.moves - columns.multipliers);
+  columns.multipliers = saddle_.scale().asDiagonal() * saddle_.schur().solve(asked);
+  columns.moves.noalias() -= saddle_.responses() * columns.multipliers;
 }
 
 void Bordered::multiply(const Columns& columns, Columns& product) {
@@ -36,7 +36,7 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
                                   const Columns* guess) {
   constexpr linear::Remainder failed{1, 1};
   const Index size = static_cast<Index>(slopes_.rows()), count = static_cast<Index>(slopes_.cols());
-  if (count > 0 && work_.schur.rank() < count) return failed;
+  if (count > 0 && saddle_.schur().rank() < count) return failed;
   Columns begin = right;
   if (guess != nullptr) {
     multiply(*guess, begin);
@@ -51,7 +51,7 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
   const double energy = std::abs(about.moves.cwiseProduct(right.moves - slopes_ * about.multipliers).sum());
   const double stiffness = squares > 0 && energy > 0 ? energy / squares : 1;
   Eigen::VectorXd weights(count);
-  for (Index i = 0; i < count; ++i) weights[i] = 1 / (work_.scale[i] * std::sqrt(stiffness));
+  for (Index i = 0; i < count; ++i) weights[i] = 1 / (saddle_.scale()[i] * std::sqrt(stiffness));
   const auto split = [&](const Eigen::MatrixXd& joined) {
     return Columns{joined.topRows(size), weights.cwiseInverse().asDiagonal() * joined.bottomRows(count)};
   };
@@ -87,17 +87,17 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
   return remainder;
 }
 
-linear::Remainder Bordered::step(const System::Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
+linear::Remainder Bordered::step(const Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
                                  Eigen::VectorXd& change) {
-  const Index count = static_cast<Index>(work_.active.size());
+  const Index count = static_cast<Index>(saddle_.active().size());
   Columns right{-balance.force, Eigen::MatrixXd(count, 1)}, found;
   for (Index i = 0; i < count; ++i)
-    right.multipliers(i, 0) = -system_.measures().sign(work_.active[i]) * balance.constraint[work_.active[i]];
+    right.multipliers(i, 0) = -system_.measures().sign(saddle_.active()[i]) * balance.constraint[saddle_.active()[i]];
   const linear::Remainder remainder = solve(right, accuracy, rounds, found);
   if (!(remainder.left < 1)) return remainder;
   step = found.moves.col(0);
   change.setZero(system_.actuators());
-  for (Index i = 0; i < count; ++i) change[work_.active[i]] = found.multipliers(i, 0);
+  for (Index i = 0; i < count; ++i) change[saddle_.active()[i]] = found.multipliers(i, 0);
   return remainder;
 }
 

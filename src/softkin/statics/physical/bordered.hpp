@@ -15,14 +15,15 @@ struct Columns {
 class Bordered {
  public:
   /// All must outlive the object.
-  Bordered(const System& system, System::Workspace& work, Team& team) : system_(system), work_(work), team_(team) {}
+  Bordered(const System& system, Workspace& work, Team& team)
+      : system_(system), work_(work), saddle_(work.saddle), team_(team) {}
 
   /// The equations of the last factorisation themselves.
   void set_factorised(const Iterate& at);
 
   /// The shape, at an iterate, with the balance of its evaluation. The measures must be those of the last
   /// factorisation, or of couple(); the stiffness is that which was gathered last.
-  void set(const Iterate& at, const System::Balance& balance);
+  void set(const Iterate& at, const Balance& balance);
 
   /// accuracy  of each column, over the right-hand side, both as the factor answers
   /// rounds    at most
@@ -31,8 +32,8 @@ class Bordered {
   linear::Remainder solve(const Columns& right, double accuracy, int rounds, Columns& found,
                           const Columns* guess = nullptr);
 
-  /// The step of a balance, as System::step() says, from zero; change: of all multipliers.
-  linear::Remainder step(const System::Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
+  /// The step of a balance, as Saddle::step() says, from zero; change: of all multipliers.
+  linear::Remainder step(const Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
                          Eigen::VectorXd& change);
 
  private:
@@ -40,7 +41,8 @@ class Bordered {
   void multiply(const Columns& columns, Columns& product);
 
   const System& system_;
-  System::Workspace& work_;
+  Workspace& work_;
+  Saddle& saddle_;
   Team& team_;
   const Iterate* at_ = nullptr;
   Eigen::MatrixXd slopes_;  // G

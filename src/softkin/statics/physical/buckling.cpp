@@ -61,7 +61,7 @@ std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, c
                                                          const LowestMode& mode, double share) {
   Pushed found{from};
   const double reach = share * system_.model().diagonal_mm;
-  double scale = reach / system_.size_of(mode.direction, from.positions).largest;
+  double scale = reach / system_.freedoms().size_of(mode.direction, from.positions).largest;
   if (!advance_clear(system_, mode.direction, scale, work_, found.at.positions, team_)) return std::nullopt;
   double shift = mode.steep_shift();
   bool settled = false;

@@ -6,13 +6,13 @@
 
 namespace softkin::physical {
 
-void hold_friction(const System& system, const Iterate& at, System::Workspace& work, Team& team) {
+void hold_friction(const System& system, const Iterate& at, Workspace& work, Team& team) {
   if (!system.friction()) return;
   system.contacts()->find(at.positions, *work.contacts, team);
   system.contacts()->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
 }
 
-double renew_friction(const System& system, const Points& from, Iterate& at, System::Workspace& work, Team& team) {
+double renew_friction(const System& system, const Points& from, Iterate& at, Workspace& work, Team& team) {
   if (!system.friction()) return 0;
   const Contacts& contacts = *system.contacts();
   contacts.find(at.positions, *work.contacts, team);
@@ -22,13 +22,13 @@ double renew_friction(const System& system, const Points& from, Iterate& at, Sys
   return contacts.disagreement(at.positions, before, work.contacts->holds);
 }
 
-double slipping_share(const System& system, const Iterate& at, System::Workspace& work, Team& team) {
+double slipping_share(const System& system, const Iterate& at, Workspace& work, Team& team) {
   if (!system.friction()) return 0;
   hold_friction(system, at, work, team);
   return system.contacts()->friction().slipping_share(at.positions, work.contacts->holds);
 }
 
-void slide_friction(const System& system, Iterate& at, System::Workspace& work, Team& team) {
+void slide_friction(const System& system, Iterate& at, Workspace& work, Team& team) {
   if (!system.friction()) return;
   const Contacts& contacts = *system.contacts();
   contacts.find(at.positions, *work.contacts, team);
@@ -53,7 +53,7 @@ void OtherContact::forget() {
   scratch_.pushes.clear();
 }
 
-double missed_by_pushes(const System& system, const System::Workspace& work) {
+double missed_by_pushes(const System& system, const Workspace& work) {
   constexpr double faint = 0.01;  // over the largest
   double largest = 0, most = 0;
   for (const ContactPush& push : work.contacts->pushes) largest = std::max(largest, push.push);
@@ -66,8 +66,8 @@ double missed_by_pushes(const System& system, const System::Workspace& work) {
   return most;
 }
 
-double clear_share(const System& system, const Points& from, const Way& way, double end, System::Workspace& work,
-                   Points& to, Team& team) {
+double clear_share(const System& system, const Points& from, const Way& way, double end, Workspace& work, Points& to,
+                   Team& team) {
   constexpr double gentle = 0.7, wild = 2.5;  // turns of a piece, and of what was stretched as well
   way(end, to);
   if (!system.contact()) return end;
@@ -88,8 +88,8 @@ double clear_share(const System& system, const Points& from, const Way& way, dou
   return end;
 }
 
-bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, System::Workspace& work,
-                   Points& positions, Team& team) {
+bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
+                   Team& team) {
   constexpr double least = 1e-3;
   constexpr double within = 0.95;  // of a share that is safe: a shorter way is not quite the same
   const Points from = positions;

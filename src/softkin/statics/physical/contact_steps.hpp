@@ -9,20 +9,20 @@
 namespace softkin::physical {
 
 /// Friction by the normal forces of an equilibrium, for what follows, at its anchors.
-void hold_friction(const System& system, const Iterate& at, System::Workspace& work, Team& team);
+void hold_friction(const System& system, const Iterate& at, Workspace& work, Team& team);
 /// The same, with new anchors where something began to touch on the way from an earlier shape.
 ///
 /// returns  how far the friction at the iterate was by other normal forces, over the largest force on a vertex [-]
-double renew_friction(const System& system, const Points& from, Iterate& at, System::Workspace& work, Team& team);
+double renew_friction(const System& system, const Points& from, Iterate& at, Workspace& work, Team& team);
 /// Share of what rubs that slips, or nearly [-].
-[[nodiscard]] double slipping_share(const System& system, const Iterate& at, System::Workspace& work, Team& team);
+[[nodiscard]] double slipping_share(const System& system, const Iterate& at, Workspace& work, Team& team);
 /// Lets what slips at an equilibrium go on from there.
-void slide_friction(const System& system, Iterate& at, System::Workspace& work, Team& team);
+void slide_friction(const System& system, Iterate& at, Workspace& work, Team& team);
 
 /// While it lives the normal forces that limit friction are those of the shape, not those held.
 class FollowingFriction {
  public:
-  explicit FollowingFriction(System::Workspace& work) : contacts_(work.contacts) { set(true); }
+  explicit FollowingFriction(Workspace& work) : contacts_(work.contacts) { set(true); }
   ~FollowingFriction() { set(false); }
   FollowingFriction(const FollowingFriction&) = delete;
   FollowingFriction& operator=(const FollowingFriction&) = delete;
@@ -39,7 +39,7 @@ class FollowingFriction {
 class OtherContact {
  public:
   /// Of contact that there is. All must outlive the object.
-  OtherContact(const System& system, System::Workspace& work, Team& team)
+  OtherContact(const System& system, Workspace& work, Team& team)
       : contacts_(*system.contacts()), scratch_(*work.contacts), team_(team) {}
   ~OtherContact();
   OtherContact(const OtherContact&) = delete;
@@ -60,7 +60,7 @@ class OtherContact {
 };
 
 /// How far pushes are from those of the gaps by the scene's contact, over them: the largest, but for faint ones [-].
-[[nodiscard]] double missed_by_pushes(const System& system, const System::Workspace& work);
+[[nodiscard]] double missed_by_pushes(const System& system, const Workspace& work);
 
 /// A way: the shape at a share of it.
 using Way = std::function<void(double, Points&)>;
@@ -68,14 +68,14 @@ using Way = std::function<void(double, Points&)>;
 /// turns what touches by much it is looked at in pieces.
 ///
 /// end  of the way, whose shape is written to `to`
-double clear_share(const System& system, const Points& from, const Way& way, double end, System::Workspace& work,
-                   Points& to, Team& team);
+double clear_share(const System& system, const Points& from, const Way& way, double end, Workspace& work, Points& to,
+                   Team& team);
 
 /// System::advance, less far where otherwise something would pass through something.
 ///
 /// scale    becomes what was moved by
 /// returns  false where hardly any move is possible
-bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, System::Workspace& work,
-                   Points& positions, Team& team);
+bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
+                   Team& team);
 
 }  // namespace softkin::physical

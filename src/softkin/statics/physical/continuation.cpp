@@ -45,8 +45,8 @@ constexpr double worth_telling = 0.5;
 
 }  // namespace
 
-Continuation::Continuation(const System& system, System::Workspace& work, Team& team,
-                           const Equilibria::Options& options, const ProgressCallback& progress, SolveReport& report)
+Continuation::Continuation(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
+                           const ProgressCallback& progress, SolveReport& report)
     : system_(system),
       work_(work),
       team_(team),
@@ -70,7 +70,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
           (follow_foreseen(system_, here, there, active_, work_, team_, trial) ||
            work_.trail.lead(here, there, active_, tolerance_mm_, trial));
     if (led) {
-      system_.hold(there, trial.positions);
+      system_.placement().hold(there, trial.positions);
       predicted_ = begun_ = trial.positions;
       move_mm_ = largest_move(at.positions, predicted_);
       return true;
@@ -198,8 +198,7 @@ void Continuation::go_together(Iterate& at) {
 
 /// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
 std::optional<Status> Continuation::go_on(Iterate& at) {
-  const double turn =
-      system_.turning().largest_turn(way_.from.actuation, way_.from.share, way_.to.actuation, way_.to.share);
+  const double turn = system_.placement().largest_turn(way_.from, way_.to);
   if (way_.advance * turn > most_turn) way_.advance = most_turn / turn;
   // a step that leaves hardly anything is as long as what is left
   const double ahead = way_.done + way_.advance;
@@ -374,7 +373,7 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
 
 /// Does the workspace hold the stable stiffness of a shape close by?
 bool Continuation::factorised_nearby(const Points& shape) const {
-  return work_.exact && work_.unstable == 0 && work_.factorised.rows() == shape.rows() &&
+  return work_.exact && work_.saddle.spectrum().unstable == 0 && work_.factorised.rows() == shape.rows() &&
          largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;
 }
 
@@ -385,7 +384,7 @@ Continuation::Judgement Continuation::judged() const {
 /// Does the workspace's factor hold the constraints that are active?
 bool Continuation::factor_holds_active() const {
   std::vector<bool> held(active_.size());
-  for (const Index a : work_.active) held[a] = true;
+  for (const Index a : work_.saddle.active()) held[a] = true;
   return held == active_;
 }
 
@@ -489,12 +488,12 @@ void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
 
 /// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.
 int Continuation::prepare(const Demand& here, const Iterate& at) {
-  System::Balance balance;
+  Balance balance;
   hold_friction(system_, at, work_, team_);
   system_.evaluate(at, here, active_, work_, balance, team_);
   ++report_.factorisations;
   const int modes = system_.factorise(at, here, active_, balance, {}, work_, team_);
-  report_.factorisations_in_double += work_.factor.in_double();
+  report_.factorisations_in_double += work_.saddle.factor().in_double();
   return balance.force.allFinite() ? modes : -1;
 }
 

@@ -13,7 +13,7 @@ namespace softkin::physical {
 class Continuation {
  public:
   /// All must outlive the object.
-  Continuation(const System& system, System::Workspace& work, Team& team, const Equilibria::Options& options,
+  Continuation(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
                const ProgressCallback& progress, SolveReport& report);
 
   /// Follows the equilibrium from `from` to `to`; at is the last good one.
@@ -31,7 +31,7 @@ class Continuation {
 
   /// What Newton's method says of the shape that it came to.
   struct Judgement {
-    System::Imbalance forces;
+    Imbalance forces;
     bool balanced = true, inverted = false;
     int modes = 0;  // ways in which it is unstable
   };
@@ -156,7 +156,7 @@ class Continuation {
   bool change_active(const Demand& demand, Iterate& at);
 
   const System& system_;
-  System::Workspace& work_;
+  Workspace& work_;
   Team& team_;
   Newton newton_;
   double tolerance_mm_;

@@ -23,7 +23,7 @@ constexpr double verge = 1e-9;
 
 }  // namespace
 
-Derivative::Derivative(const System& system, System::Workspace& work, double accuracy, Team& team)
+Derivative::Derivative(const System& system, Workspace& work, double accuracy, Team& team)
     : system_(system),
       work_(work),
       accuracy_(accuracy),
@@ -43,23 +43,33 @@ void Derivative::hold(const Iterate& at, const Demand& demand) {
   system_.evaluate(at, demand, active_, work_, balance_, team_);
 }
 
-/// The right-hand sides.
+void Derivative::make_room(Index columns) {
+  right_.moves.setZero(system_.freedoms().size(), columns);
+  right_.multipliers.setZero(static_cast<Index>(held_.size()), columns);
+  moves_.resize(static_cast<std::size_t>(columns));
+}
+
+/// A right-hand side, of forces that change and of what is held and moves: that takes measures along.
+void Derivative::ask(const Iterate& at, Index column, const Points& force, Points moves) {
+  system_.freedoms().reduce(-force, at.positions, right_.moves.col(column));
+  if (moves.isZero(0)) return;
+  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+    right_.multipliers(i, column) -=
+        system_.measures().sign(held_[i]) * work_.slopes[held_[i]].cwiseProduct(moves).sum();
+  moves_[static_cast<std::size_t>(column)] = std::move(moves);
+}
+
+/// The right-hand sides of the commands.
 void Derivative::ask(const Iterate& at, const Demand& demand) {
-  right_.moves.setZero(system_.freedoms().size(), system_.actuators());
-  right_.multipliers.setZero(static_cast<Index>(held_.size()), system_.actuators());
+  by_commands_ = true;
+  make_room(system_.actuators());
   for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
     right_.multipliers(i, held_[i]) = system_.measures().sign(held_[i]) * system_.measures().rest(held_[i]);
-  Points force;
-  moves_.resize(static_cast<std::size_t>(system_.actuators()));
+  Points force, moves;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (system_.measures().constrains(a)) continue;
-    Points& moves = moves_[static_cast<std::size_t>(a)];
     system_.command_force(at, demand, balance_, a, work_, force, moves, team_);
-    if (moves.isZero(0)) moves.resize(0, 3);
-    system_.freedoms().reduce(-force, at.positions, right_.moves.col(a));
-    if (moves.rows() == 0) continue;
-    for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)  // what is held and moves takes measures along
-      right_.multipliers(i, a) = -system_.measures().sign(held_[i]) * work_.slopes[held_[i]].cwiseProduct(moves).sum();
+    ask(at, a, force, moves);
   }
 }
 
@@ -70,8 +80,8 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
   const bool symmetric = system_.symmetric();
   const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : inexact_rounds;
   // those of the last derivative, of a shape nearby; what they leave would not tell of the factor's own rounding
-  const System::Slopes& last = work_.tangents;
-  const bool like_last = !exact_factor && last.at.rows() == at.positions.rows() && last.held == held_;
+  const Slopes& last = work_.tangents;
+  const bool like_last = by_commands_ && !exact_factor && last.at.rows() == at.positions.rows() && last.held == held_;
   const Columns guess = like_last ? Columns{last.moves, last.multipliers} : Columns{};
   const linear::Remainder remainder =
       equations.solve(right_, asked * accuracy_, rounds, found_, like_last ? &guess : nullptr);
@@ -79,55 +89,137 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
   return remainder.left <= asked * accuracy_ && !rounded;
 }
 
-Sensitivity Derivative::result(const Iterate& at) const {
-  const Index actuators = system_.actuators();
-  Sensitivity result;
-  result.regular = true;
-  result.positions.resize(static_cast<std::size_t>(actuators));
-  result.multipliers.setZero(actuators, actuators);
-  for (Index a = 0; a < actuators; ++a) {
-    system_.freedoms().expand(found_.moves.col(a), at.positions, result.positions[a]);
-    if (const Points& moves = moves_[static_cast<std::size_t>(a)]; moves.rows() > 0) result.positions[a] += moves;
-    for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
-      result.multipliers(held_[i], a) = found_.multipliers(i, a) / system_.measures().unit(held_[i]);
-    if (system_.measures().given_load(a)) result.multipliers(a, a) = 1;
-  }
-  return result;
+Points Derivative::positions(const Iterate& at, Index column) const {
+  Points positions;
+  system_.freedoms().expand(found_.moves.col(column), at.positions, positions);
+  if (const Points& moves = moves_[static_cast<std::size_t>(column)]; moves.rows() > 0) positions += moves;
+  return positions;
 }
 
-Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
-  hold(at, demand);
-  ask(at, demand);
+/// Of the measures that are held, as users know them.
+Eigen::VectorXd Derivative::multipliers(Index column) const {
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system_.actuators());
+  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+    multipliers[held_[i]] = found_.multipliers(i, column) / system_.measures().unit(held_[i]);
+  return multipliers;
+}
+
+/// Solves for all right-hand sides, with the factor at hand or a new one.
+bool Derivative::find(const Iterate& at, const Demand& demand) {
   using Precision = linear::MixedLdlt::Precision;
   bool solved = false;
   if (work_.home.rows() > 0) {
-    if (work_.active != held_) system_.couple(at, active_, balance_, work_, team_);
+    if (work_.saddle.active() != held_) system_.couple(at, active_, balance_, work_, team_);
     system_.assemble(at, demand, balance_, System::Stiffness::exact, work_, team_);
     system_.gather(at, balance_, work_, team_);
     solved = solve(at, false);
   }
   const auto solve_anew = [&](Precision precision) {
     work_.home.resize(0, 3);
-    const InPrecision scope(work_, precision);
+    const InPrecision scope(work_.saddle, precision);
     (void)system_.factorise(at, demand, active_, balance_, {}, work_, team_);
     if (system_.contact())
       system_.gather(at, balance_, work_, team_);  // else what was factorised is what is multiplied with
-    return solve(at, work_.factor.in_double());
+    return solve(at, work_.saddle.factor().in_double());
   };
-  solved = solved || solve_anew(work_.precision) || (!work_.factor.in_double() && solve_anew(Precision::twice));
-  if (!solved) return no_sensitivity(static_cast<Index>(at.positions.rows()), system_.actuators());
-  if (work_.home.rows() == 0) work_.home = at.positions;
-  const Sensitivity sensitivity = result(at);
+  solved = solved || solve_anew(work_.saddle.precision()) ||
+           (!work_.saddle.factor().in_double() && solve_anew(Precision::twice));
+  if (solved && work_.home.rows() == 0) work_.home = at.positions;
+  return solved;
+}
+
+Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
+  hold(at, demand);
+  ask(at, demand);
+  const Index actuators = system_.actuators();
+  if (!find(at, demand)) return no_sensitivity(static_cast<Index>(at.positions.rows()), actuators);
+  Sensitivity result{{}, Eigen::MatrixXd(actuators, actuators), true};
+  for (Index a = 0; a < actuators; ++a) {
+    result.positions.push_back(positions(at, a));
+    result.multipliers.col(a) = multipliers(a);
+    if (system_.measures().given_load(a))
+      result.multipliers(a, a) = system_.measures().rate(a) / system_.measures().unit(a);
+  }
   const bool moves = std::any_of(moves_.begin(), moves_.end(), [](const Points& move) { return move.rows() > 0; });
   if (!system_.contact() && !moves)
     work_.tangents = {at.positions, held_, std::move(found_.moves), std::move(found_.multipliers)};
-  return sensitivity;
+  return result;
+}
+
+namespace {
+
+/// What a robot's equations find in a shape, and where it has what is held.
+struct Found {
+  Points gradient, held;
+  Eigen::VectorXd constraint, multipliers;
+};
+
+Found found_by(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
+               const std::shared_ptr<const ViscousHistory>& history, double elapsed_s, Team& team) {
+  Workspace work(system);
+  Iterate own = at;  // what acts of a command may be one of the numbers
+  for (Index a = 0; a < system.actuators(); ++a)
+    if (system.measures().measures(a) && system.measures().given_load(a))
+      own.multipliers[a] = system.measures().given(a, demand.actuation[a]);
+  system.set_time(history, elapsed_s, work, team);
+  hold_friction(system, own, work, team);
+  Balance balance;
+  system.evaluate(own, demand, active, work, balance, team);
+  Found found{std::move(work.gradient), at.positions, std::move(balance.constraint), std::move(own.multipliers)};
+  system.placement().hold(demand, found.held);
+  return found;
+}
+
+}  // namespace
+
+Perturbation::Perturbation(const Perturbed& perturbed, const System& like)
+    : more(std::make_unique<const System>(perturbed.more, like)),
+      less(std::make_unique<const System>(perturbed.less, like)),
+      difference(perturbed.difference) {}
+
+ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
+                                    const std::vector<Perturbation>& perturbations,
+                                    const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) {
+  const auto count = static_cast<Index>(perturbations.size());
+  hold(at, demand);
+  make_room(count);
+  Eigen::MatrixXd loads(system_.actuators(), count);  // those that are given
+  for (Index p = 0; p < count; ++p) {
+    const Perturbation& each = perturbations[static_cast<std::size_t>(p)];
+    Found more = found_by(*each.more, at, demand, active_, history, elapsed_s, team_);
+    const Found less = found_by(*each.less, at, demand, active_, history, elapsed_s, team_);
+    Points force = (more.gradient - less.gradient) / each.difference;
+    Points moves = (more.held - less.held) / each.difference;
+    loads.col(p) = (more.multipliers - less.multipliers) / each.difference;
+    for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+      right_.multipliers(i, p) = -system_.measures().sign(held_[i]) *
+                                 (more.constraint[held_[i]] - less.constraint[held_[i]]) / each.difference;
+    if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
+    ask(at, p, force, std::move(moves));
+  }
+  ParameterSensitivity result{{}, Eigen::MatrixXd::Zero(system_.actuators(), count), false};
+  result.regular = count == 0 || find(at, demand);
+  for (Index p = 0; p < count; ++p) {
+    result.positions.push_back(result.regular ? positions(at, p) : Points(Points::Zero(at.positions.rows(), 3)));
+    if (result.regular) result.multipliers.col(p) = multipliers(p);
+    for (Index a = 0; result.regular && a < system_.actuators(); ++a)
+      result.multipliers(a, p) += loads(a, p) / system_.measures().unit(a);
+  }
+  return result;
 }
 
 Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
   Lease lease(*this, at.positions, reuse_factor);
   system_.set_time(at.history, at.elapsed_s, lease.work(), team);
   return Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(at), {at.actuation, at.share});
+}
+
+ParameterSensitivity Equilibria::sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
+                                             bool reuse_factor, double accuracy, Team& team) const {
+  Lease lease(*this, at.positions, reuse_factor);
+  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
+  return Derivative(system_, lease.work(), accuracy, team)
+      .of(system_.iterate(at), {at.actuation, at.share}, perturbations, at.history, at.elapsed_s);
 }
 
 }  // namespace softkin::physical

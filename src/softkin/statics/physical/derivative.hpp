@@ -5,32 +5,51 @@
 
 namespace softkin::physical {
 
+/// The equations of a robot with one of its numbers a little larger and a little smaller.
+struct Perturbation {
+  /// All must outlive the object.
+  Perturbation(const Perturbed& perturbed, const System& like);
+
+  std::unique_ptr<const System> more, less;
+  double difference = 0;
+};
+
 /// Derivatives of an equilibrium by the commands: K X + G L = F, G^T X = T, a column per actuator, with the stiffness K
 /// and the slopes G of the measures that are held, both at the shape. F: how loads and layers change with the command;
 /// T: the measures'.
 class Derivative {
  public:
   /// All must outlive the object. work.home: the shape near which the workspace factorised, or empty
-  Derivative(const System& system, System::Workspace& work, double accuracy, Team& team);
+  Derivative(const System& system, Workspace& work, double accuracy, Team& team);
 
   /// at  multipliers in internal units
   [[nodiscard]] Sensitivity of(const Iterate& at, const Demand& demand);
+  /// By numbers of the robot: F and T are what the equations miss in the shape with more and less of them, over the
+  /// difference. history, elapsed_s: of the equilibrium
+  [[nodiscard]] ParameterSensitivity of(const Iterate& at, const Demand& demand,
+                                        const std::vector<Perturbation>& perturbations,
+                                        const std::shared_ptr<const ViscousHistory>& history, double elapsed_s);
 
  private:
   void hold(const Iterate& at, const Demand& demand);
+  void make_room(Index columns);
   void ask(const Iterate& at, const Demand& demand);
+  void ask(const Iterate& at, Index column, const Points& force, Points moves);
+  bool find(const Iterate& at, const Demand& demand);
   bool solve(const Iterate& at, bool exact_factor);
-  [[nodiscard]] Sensitivity result(const Iterate& at) const;
+  [[nodiscard]] Points positions(const Iterate& at, Index column) const;
+  [[nodiscard]] Eigen::VectorXd multipliers(Index column) const;
 
   const System& system_;
-  System::Workspace& work_;
+  Workspace& work_;
   double accuracy_;
   Team& team_;
-  System::Balance balance_;  // at the shape
+  Balance balance_;  // at the shape
   std::vector<bool> active_;
   std::vector<Index> held_;
   Columns right_, found_;
-  std::vector<Points> moves_;  // per actuator: of what its command moves itself; no rows: nothing
+  bool by_commands_ = false;   // are the columns those of the commands?
+  std::vector<Points> moves_;  // per column: of what is moved itself; no rows: nothing
 };
 
 }  // namespace softkin::physical

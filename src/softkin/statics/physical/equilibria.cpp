@@ -26,10 +26,9 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.measures().constrains(a))
       demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
-    else if (model.actuators[a].kind == ActuatorKind::motion)
-      demand.actuation[a] = system.surroundings().moved(a, start.positions);
-    else if (model.actuators[a].kind == ActuatorKind::turn && !rests)
-      demand.actuation[a] = system.turning().angle(a, start.positions);
+    else if (model.actuators[a].kind == ActuatorKind::motion ||
+             (model.actuators[a].kind == ActuatorKind::turn && !rests))
+      demand.actuation[a] = system.placement().command_of(a, start.positions);
     else if (!drives(model.actuators[a]))
       continue;
     else if (model.actuators[a].kind == ActuatorKind::magnetic)
@@ -37,7 +36,9 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
     else if (model.actuators[a].kind == ActuatorKind::dea && !under_voltage(model.actuators[a]))
       demand.actuation[a] = 1;
     else
-      demand.actuation[a] = start.multipliers.size() > 0 ? start.multipliers[a] : 0;
+      demand.actuation[a] = start.multipliers.size() > 0
+                                ? system.measures().command(a, system.measures().unit(a) * start.multipliers[a])
+                                : 0;
   }
   return demand;
 }
@@ -75,7 +76,7 @@ void Equilibria::forget() const {
   idle_.clear();
 }
 
-bool Equilibria::comes_to(const Points& from, const Points& to, System::Workspace& work, Team& team) const {
+bool Equilibria::comes_to(const Points& from, const Points& to, Workspace& work, Team& team) const {
   Points end;
   const Way straight = [&](double share, Points& out) { out = from + share * (to - from); };
   return clear_share(system_, from, straight, 1, work, end, team) >= 1;
@@ -83,11 +84,11 @@ bool Equilibria::comes_to(const Points& from, const Points& to, System::Workspac
 
 /// From a start that is no equilibrium no path may lead away; from rest one may.
 void Equilibria::begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
-                             System::Workspace& work, Iterate& at, SolveReport& report) const {
+                             Workspace& work, Iterate& at, SolveReport& report) const {
   const std::string remark = report.remark;
   Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators())};
   Demand from = at_rest(system_.model(), to.actuation);
-  system_.hold(from, fresh.positions);
+  system_.placement().hold(from, fresh.positions);
   Continuation continuation(system_, work, team, options, progress, report);
   if (system_.viscous()) {
     hold_friction(system_, fresh, work, team);
@@ -120,10 +121,12 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   Demand from = demand_of(system_, model, start, actuation);
   const Demand to{actuation, 1};
   Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors};
-  system_.hold(from, at.positions);
+  system_.placement().hold(from, at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a)
-      at.multipliers[a] = system_.measures().unit(a) * start.multipliers[a];
+      at.multipliers[a] = system_.measures().measures(a) && system_.measures().given_load(a)
+                              ? system_.measures().given(a, from.actuation[a])  // of this robot's factor
+                              : system_.measures().unit(a) * start.multipliers[a];
   system_.set_time(options.history, options.elapsed_s, lease.work(), team);
   const bool rests = start.positions == model.rest && start.actuation.size() == 0;
   const bool same_time =

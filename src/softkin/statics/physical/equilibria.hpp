@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mutex>
+#include <softkin/statics/physical/derivative.hpp>
 #include <softkin/statics/physical/newton.hpp>
 #include <softkin/statics/physical/prediction.hpp>
 #include <softkin/statics/sensitivity.hpp>
@@ -15,6 +16,8 @@ class Equilibria {
 
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held
   explicit Equilibria(const Model& model) : system_(model) {}
+  /// See Statics.
+  Equilibria(const Model& model, const Equilibria& like) : system_(model, like.system_) {}
 
   struct Options {
     double tolerance_mm = 0;
@@ -36,6 +39,9 @@ class Equilibria {
   /// Of an equilibrium; see Statics::sensitivity.
   [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
 
+  [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
+                                                 bool reuse_factor, double accuracy, Team& team) const;
+
   /// See Statics::foresee.
   bool foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const;
 
@@ -52,13 +58,13 @@ class Equilibria {
 
  private:
   /// Without that anything passes through anything, every vertex on its straight way.
-  bool comes_to(const Points& from, const Points& to, System::Workspace& work, Team& team) const;
+  bool comes_to(const Points& from, const Points& to, Workspace& work, Team& team) const;
   void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
-                   System::Workspace& work, Iterate& at, SolveReport& report) const;
+                   Workspace& work, Iterate& at, SolveReport& report) const;
 
   System system_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<System::Workspace>> idle_;  // from earlier solves
+  mutable std::vector<std::unique_ptr<Workspace>> idle_;  // from earlier solves
 };
 
 }  // namespace softkin::physical

@@ -21,4 +21,13 @@ struct Iterate {
   std::vector<Anchor> anchors{};  // of friction
 };
 
+/// How an equilibrium changes with the commands: what a derivative found.
+struct Slopes {
+  Points at;                           // no rows: not known
+  std::vector<Index> held;             // the constraints that were
+  Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the constraints, per unit of each command
+  Eigen::VectorXd foreseen_for{};      // an actuation whose equilibrium was foreseen from here; empty: none
+  Iterate foreseen{};
+};
+
 }  // namespace softkin::physical

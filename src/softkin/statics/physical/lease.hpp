@@ -22,11 +22,11 @@ class Equilibria::Lease {
         idle.erase(found);
       }
     }
-    if (!work_) work_ = std::make_unique<System::Workspace>(owner_.system_);
+    if (!work_) work_ = std::make_unique<Workspace>(owner_.system_);
     if (reuse && is_at(*work_, start)) return;
     work_->home.resize(0, 3);
     work_->tangents.at.resize(0, 3);
-    work_->factor.forget();
+    work_->saddle.factor().forget();
   }
   /// What an exception left half done is not used again.
   ~Lease() {
@@ -36,16 +36,16 @@ class Equilibria::Lease {
   }
   Lease(const Lease&) = delete;
   Lease& operator=(const Lease&) = delete;
-  [[nodiscard]] System::Workspace& work() { return *work_; }
+  [[nodiscard]] Workspace& work() { return *work_; }
 
  private:
-  static bool is_at(const System::Workspace& work, const Points& shape) {
+  static bool is_at(const Workspace& work, const Points& shape) {
     return work.home.rows() == shape.rows() && work.home == shape;
   }
 
   const Equilibria& owner_;
   const int exceptions_ = std::uncaught_exceptions();
-  std::unique_ptr<System::Workspace> work_;
+  std::unique_ptr<Workspace> work_;
 };
 
 }  // namespace softkin::physical

@@ -35,7 +35,7 @@ constexpr double worthwhile_balance = 0.7;
 
 }  // namespace
 
-Newton::Newton(const System& system, System::Workspace& work, Team& team, const Settings& settings,
+Newton::Newton(const System& system, Workspace& work, Team& team, const Settings& settings,
                const ProgressCallback& progress, SolveReport& report)
     : system_(system), work_(work), team_(team), settings_(settings), progress_(progress), report_(report) {}
 
@@ -60,7 +60,7 @@ bool Newton::goes_on() const {
 Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = System::Stiffness;
   using Precision = linear::MixedLdlt::Precision;
-  const Precision usual = work_.precision;
+  const Precision usual = work_.saddle.precision();
   // one that is not stable is not stepped with where Newton descends; and where its sign is a guess, one that is hardly
   // stiffer wants a closer look
   const bool guess = policy == Policy::descend && usual == Precision::enough;
@@ -70,15 +70,15 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
     ++report_.factorisations;
     secants_.clear();
     rounding_looked_at_ = false;
-    const InPrecision scope(work_, precision);
+    const InPrecision scope(work_.saddle, precision);
     negative = system_.factorise(at, *demand_, *active_, balance_, {kind, shift, true}, work_, team_);
-    report_.factorisations_in_double += work_.factor.in_double();
+    report_.factorisations_in_double += work_.saddle.factor().in_double();
     return negative == 0 ? Advance::made : Advance::none;
   };
   Advance end = attempted(Stiffness::exact, 0, guess ? Precision::sign : usual);
   if (end == Advance::interrupted) return end;
   negative_ = negative;
-  doubtful_ = !work_.factor.trusted();
+  doubtful_ = !work_.saddle.factor().trusted();
   const Precision closer = doubtful_ ? Precision::good : usual;
   if (end == Advance::made || policy == Policy::follow) return Advance::made;
   for (double shift = std::max(slight_shift, last_shift_); slow_ && end == Advance::none && shift < clear_shift;
@@ -104,7 +104,7 @@ bool Newton::last(const Step& step, double before) const {
   constexpr double most_left = 0.02;  // of the tolerance
   const double size = step.size.largest, share = before > 0 ? std::min(1.0, size / before) : 1;
   return size < settings_.tolerance_mm &&
-         (work_.factor.in_double() || share * size < most_left * settings_.tolerance_mm);
+         (work_.saddle.factor().in_double() || share * size < most_left * settings_.tolerance_mm);
 }
 
 /// Moves by `damping` times a step, less where something is in the way. False where the law has no energy, or where
@@ -123,7 +123,7 @@ bool Newton::attempt_whole(const Step& step, const Iterate& from) {
 }
 
 /// What a step of Newton's makes less where the stiffness is positive: potential, and constraints that are missed.
-double Newton::merit(const System::Balance& balance) const {
+double Newton::merit(const Balance& balance) const {
   return balance.energy + balance.load_energy + constraint_weights_.dot(balance.constraint.cwiseAbs());
 }
 
@@ -147,7 +147,7 @@ double Newton::weigh_constraints(const Iterate& at) {
 /// Step that what was factorised last asks for, closer than the factor's precision gives it.
 ///
 /// returns  how far from it the factor's own is, over that; 0 where none comes out
-double Newton::refine(const System::Balance& balance, const Iterate& at, Step& step) {
+double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
   constexpr double accuracy = 0.03, worthwhile = 0.3;
   constexpr int rounds = 6;
   Bordered equations(system_, work_, team_);
@@ -155,7 +155,7 @@ double Newton::refine(const System::Balance& balance, const Iterate& at, Step& s
   Step found;
   const linear::Remainder remainder = equations.step(balance, accuracy, rounds, found.move, found.change);
   if (!(remainder.left < worthwhile)) return 0;
-  found.size = system_.size_of(found.move, at.positions);
+  found.size = system_.freedoms().size_of(found.move, at.positions);
   step = std::move(found);
   return remainder.apart;
 }
@@ -164,24 +164,24 @@ double Newton::refine(const System::Balance& balance, const Iterate& at, Step& s
 /// if that is why, and the next factors are in double precision.
 bool Newton::refine_first(const Iterate& at) {
   constexpr double slow = 0.25, much = 0.15;
-  if (rounding_looked_at_ || work_.factor.in_double() || system_.contact()) return false;
+  if (rounding_looked_at_ || work_.saddle.factor().in_double() || system_.contact()) return false;
   if (next_.size.mean < slow * step_.size.mean) return false;
   rounding_looked_at_ = true;
   refines_ = refine(balance_, at, step_) > much;
-  if (refines_) work_.factor.distrust();
+  if (refines_) work_.saddle.factor().distrust();
   return refines_;
 }
 
 /// Step that the factor at hand asks for.
-void Newton::find(const System::Balance& balance, const Iterate& at, Step& step) {
-  const bool refined = refines_ && !work_.factor.in_double() && refine(balance, at, step) > 0;
-  if (!refined) system_.step(balance, work_, step.move, step.change, team_);
+void Newton::find(const Balance& balance, const Iterate& at, Step& step) {
+  const bool refined = refines_ && !work_.saddle.factor().in_double() && refine(balance, at, step) > 0;
+  if (!refined) work_.saddle.step(balance, step.move, step.change, team_);
   for (const Secant& secant : secants_) {
     const double part = secant.step.dot(step.move);
     step.move += part * secant.left;
     step.change += part * secant.left_change;
   }
-  step.size = system_.size_of(step.move, at.positions);
+  step.size = system_.freedoms().size_of(step.move, at.positions);
 }
 
 bool Newton::accept(double moved_mm, Iterate& at) {
@@ -216,9 +216,9 @@ void Newton::note_pace(double damping) {
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
-  system_.first_step(balance_, work_, step_.move, step_.change);
-  step_.size = system_.size_of(step_.move, at.positions);
-  if (refines_ && !work_.factor.in_double()) (void)refine(balance_, at, step_);
+  work_.saddle.first_step(balance_, step_.move, step_.change);
+  step_.size = system_.freedoms().size_of(step_.move, at.positions);
+  if (refines_ && !work_.saddle.factor().in_double()) (void)refine(balance_, at, step_);
   if (!std::isfinite(step_.size.mean)) {
     why_ = "the stiffness is singular";
     return Advance::none;
@@ -227,7 +227,8 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   // forces that follow their normal forces have none
   // a stiffness that was made positive leads down, if not straight; where little is left it leads to no unstable shape
-  const bool potential = (system_.contact() || !work_.exact) && !(work_.contacts && work_.contacts->friction_follows);
+  const bool potential = (system_.contact() || !work_.exact) && system_.conservative() &&
+                         !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
   steepest_ = std::min(steepest_, slope);
   if (!system_.contact() && slope > worthwhile_slope * steepest_) slope = 0;
@@ -276,7 +277,7 @@ Newton::Advance Newton::reject(const Iterate& at) {
 bool Newton::update_next() {
   const double square = step_.move.squaredNorm(), part = step_.move.dot(next_.move) / square;
   const double size = next_.size.mean / step_.size.mean;
-  const bool rounded = work_.factor.rounded() > much_rounded;
+  const bool rounded = work_.saddle.factor().rounded() > much_rounded;
   if (rounded && !system_.contact() ? !(part < rounded_along && size < rounded_contraction)
                                     : !(part < most_along && size < worthwhile_contraction * (1 - part)))
     return false;
@@ -284,7 +285,7 @@ bool Newton::update_next() {
   secants_.push_back({step_.move, scale * next_.move, scale * next_.change});
   next_.move /= 1 - part;
   next_.change /= 1 - part;
-  next_.size = system_.size_of(next_.move, trial_.positions);
+  next_.size = system_.freedoms().size_of(next_.move, trial_.positions);
   return true;
 }
 
@@ -368,7 +369,7 @@ bool Newton::improve_constraints() {
 
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
-  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
+  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
   negative_ = system_.factorise(at, *demand_, *active_, balance_, {}, work_, team_);
   ++report_.factorisations;
   ++report_.factorisations_in_double;
@@ -385,7 +386,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   const Outcome outcome = descend(policy, factorised, at);
   if (outcome != Outcome::stuck || in_single() == before || system_.contact()) return outcome;
   at = start_;  // rounding may be why
-  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
+  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
   return descend(policy, false, at);
 }
 
@@ -428,7 +429,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;
   if (!meets_constraints()) return Outcome::unmet;
-  system_.correct_multipliers(balance_, work_, at.multipliers);
+  work_.saddle.correct_multipliers(balance_, at.multipliers);
   if (negative_ != 0 && doubtful_) make_sure(at);
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }

@@ -23,8 +23,8 @@ class Newton {
   /// blocked, too_far: not tried, as the way there is.
   enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far };
 
-  Newton(const System& system, System::Workspace& work, Team& team, const Settings& settings,
-         const ProgressCallback& progress, SolveReport& report);
+  Newton(const System& system, Workspace& work, Team& team, const Settings& settings, const ProgressCallback& progress,
+         SolveReport& report);
 
   /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact one,
   /// towards the nearest equilibrium, stable or not.
@@ -46,7 +46,7 @@ class Newton {
 
   /// Are the forces in balance at the last equilibrium, too?
   [[nodiscard]] bool balanced() const;
-  [[nodiscard]] const System::Imbalance& imbalance() const { return imbalance_; }
+  [[nodiscard]] const Imbalance& imbalance() const { return imbalance_; }
 
   /// Why the last solve got stuck.
   [[nodiscard]] const char* why_stuck() const { return why_; }
@@ -57,7 +57,7 @@ class Newton {
  private:
   struct Step {
     Eigen::VectorXd move, change;  // of unknowns and of multipliers
-    System::Size size;
+    supports::Freedoms::Size size;
   };
   /// A step and what it left to do over step . (step - left): Broyden's update.
   struct Secant {
@@ -68,15 +68,15 @@ class Newton {
   Outcome descend(Policy policy, bool factorised, Iterate& at);
   [[nodiscard]] bool goes_on() const;
   Advance factorise(const Iterate& at, Policy policy);
-  void find(const System::Balance& balance, const Iterate& at, Step& step);
-  double refine(const System::Balance& balance, const Iterate& at, Step& step);
+  void find(const Balance& balance, const Iterate& at, Step& step);
+  double refine(const Balance& balance, const Iterate& at, Step& step);
   bool refine_first(const Iterate& at);
   [[nodiscard]] bool last(const Step& step, double before) const;
   bool attempt(const Step& step, double& damping, const Iterate& from);
   bool attempt_whole(const Step& step, const Iterate& from);
   bool labours(double damping);
   void note_pace(double damping);
-  [[nodiscard]] double merit(const System::Balance& balance) const;
+  [[nodiscard]] double merit(const Balance& balance) const;
   [[nodiscard]] double weigh_constraints(const Iterate& at);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
@@ -93,14 +93,14 @@ class Newton {
   void record(double step_mm);
 
   const System& system_;
-  System::Workspace& work_;
+  Workspace& work_;
   Team& team_;
   Settings settings_;
   const ProgressCallback& progress_;
   SolveReport& report_;
   const Demand* demand_ = nullptr;
   const std::vector<bool>* active_ = nullptr;
-  System::Balance balance_, trial_balance_;  // at the iterate, at the one being tried
+  Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
   std::vector<Secant> secants_;         // of the factor at hand
   Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
@@ -116,7 +116,7 @@ class Newton {
   bool rounding_looked_at_ = false;
   bool refines_ = false;  // do steps want more than what the factor's precision gives
   int negative_ = 0;      // of the last factorisation
-  System::Imbalance imbalance_;
+  Imbalance imbalance_;
   double missed_ = 0;  // the worst constraint, over its measure at rest [-]
 };
 

@@ -25,8 +25,8 @@ Newton::Outcome Newton::settle_pushes(const Demand& demand, const std::vector<bo
     const Advance ready = factorise(trial_, Policy::descend);
     if (ready == Advance::interrupted) return Outcome::interrupted;
     if (ready == Advance::none) return Outcome::stuck;
-    system_.first_step(balance_, work_, step_.move, step_.change);
-    step_.size = system_.size_of(step_.move, trial_.positions);
+    work_.saddle.first_step(balance_, step_.move, step_.change);
+    step_.size = system_.freedoms().size_of(step_.move, trial_.positions);
     const Points from = trial_.positions;
     damping = 1;
     if (!std::isfinite(step_.size.mean) || !advance_clear(system_, step_.move, damping, work_, trial_.positions, team_))

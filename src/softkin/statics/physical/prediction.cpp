@@ -6,11 +6,11 @@ namespace softkin::physical {
 
 namespace {
 
-bool are_of(const System::Slopes& slopes, const Iterate& at) {
+bool are_of(const Slopes& slopes, const Iterate& at) {
   return slopes.at.rows() == at.positions.rows() && slopes.at == at.positions;
 }
 
-std::vector<bool> held(const System::Slopes& slopes, Index actuators) {
+std::vector<bool> held(const Slopes& slopes, Index actuators) {
   std::vector<bool> active(static_cast<std::size_t>(actuators));
   for (const Index a : slopes.held) active[static_cast<std::size_t>(a)] = true;
   return active;
@@ -21,7 +21,7 @@ struct Tangent {
   Eigen::VectorXd step, change;
 
   /// What a derivative found before.
-  Tangent(const System::Slopes& slopes, const Demand& here, const Demand& there) {
+  Tangent(const Slopes& slopes, const Demand& here, const Demand& there) {
     const Eigen::VectorXd way = there.actuation - here.actuation;
     const Eigen::VectorXd multipliers = slopes.multipliers * way;
     step = slopes.moves * way;
@@ -30,26 +30,26 @@ struct Tangent {
   }
 
   Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-          System::Workspace& work, Team& team, const Iterate& at) {
-    const System::Slopes& slopes = work.tangents;
+          Workspace& work, Team& team, const Iterate& at) {
+    const Slopes& slopes = work.tangents;
     if (here.share == there.share && here.fading == there.fading && are_of(slopes, at) &&
         held(slopes, system.actuators()) == active) {
       *this = Tangent(slopes, here, there);
       return;
     }
-    System::Balance balance;
+    Balance balance;
     const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
-    const bool refined = !of_here || !work.factor.in_double();
+    const bool refined = !of_here || !work.saddle.factor().in_double();
     const bool assembled = work.assembled != 0 && work.assembled == work.factorised_by;
     if (refined || here.fading != there.fading || here.share != there.share ||
-        (!assembled && system.moves_supports(here, there))) {
+        (!assembled && system.placement().changes(here, there))) {
       hold_friction(system, at, work, team);
       system.evaluate(at, here, active, work, balance, team);
       system.assemble(at, here, balance, System::Stiffness::exact, work, team);
     }
-    System::Balance upset;
+    Balance upset;
     system.upset(at, here, there, active, work, upset, team);
-    if (!refined || !refine(system, balance, upset, work, team, at)) system.step(upset, work, step, change, team);
+    if (!refined || !refine(system, balance, upset, work, team, at)) work.saddle.step(upset, step, change, team);
     if (step.allFinite() && change.allFinite()) return;
     step.setZero();
     change.setZero();
@@ -57,8 +57,8 @@ struct Tangent {
 
  private:
   /// The step of the stiffness here; false where there is none.
-  bool refine(const System& system, const System::Balance& balance, const System::Balance& upset,
-              System::Workspace& work, Team& team, const Iterate& at) {
+  bool refine(const System& system, const Balance& balance, const Balance& upset, Workspace& work, Team& team,
+              const Iterate& at) {
     constexpr double accuracy = 1e-3;
     constexpr int rounds = 6;
     Bordered equations(system, work, team);
@@ -73,13 +73,13 @@ void follow(const Tangent& tangent, double share, const System& system, const De
             const std::vector<bool>& active, Eigen::VectorXd& multipliers) {
   multipliers += share * tangent.change;
   for (Index a = 0; a < system.actuators(); ++a)
-    if (!active[a] && system.measures().given_load(a)) multipliers[a] = system.measures().unit(a) * there.actuation[a];
+    if (!active[a] && system.measures().given_load(a)) multipliers[a] = system.measures().given(a, there.actuation[a]);
 }
 
 }  // namespace
 
 double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-               System::Workspace& work, Team& team, Iterate& at) {
+               Workspace& work, Team& team, Iterate& at) {
   const Tangent tangent(system, here, there, active, work, team, at);
   const Points before = at.positions;
   system.advance(tangent.step, 1, work, at.positions, team, &there);
@@ -88,7 +88,7 @@ double predict(const System& system, const Demand& here, const Demand& there, co
 }
 
 std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
-                                    const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
+                                    const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at,
                                     Points& predicted) {
   constexpr double shorter = 0.9;                    // than what is clear
   constexpr double most_cut = 0.5, long_way = 0.05;  // of the way, of the diagonal
@@ -114,7 +114,7 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
     end = 0;  // only what is held moves
     const Way alone = [&](double part, Points& out) {
       out = from;
-      system.hold(between(here, there, part), out);
+      system.placement().hold(between(here, there, part), out);
     };
     if (clear_share(system, from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
     break;
@@ -123,18 +123,18 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   return largest_move(from, at.positions);
 }
 
-bool foresee(const System& system, const Demand& here, const Demand& there, System::Workspace& work, Team& team,
+bool foresee(const System& system, const Demand& here, const Demand& there, Workspace& work, Team& team,
              const Iterate& at, Points& positions) {
   constexpr double longest = 5e-3;  // of the diagonal, that the difference moves
-  System::Slopes& slopes = work.tangents;
+  Slopes& slopes = work.tangents;
   if (system.contact() || !are_of(slopes, at)) return false;
   const std::vector<bool> active = held(slopes, system.actuators());
   slopes.foreseen_for.resize(0);
   Tangent way(slopes, here, there);
-  const double length = system.size_of(way.step, at.positions).largest;
+  const double length = system.freedoms().size_of(way.step, at.positions).largest;
   const double reach = std::min(1.0, longest * system.model().diagonal_mm / length);
   // what the way upsets on both sides but for its first order, which are the equations of the tangent
-  System::Balance balance;
+  Balance balance;
   Eigen::VectorXd force, constraint;
   for (const double share : {reach, -reach}) {
     Iterate beside = at;
@@ -150,7 +150,7 @@ bool foresee(const System& system, const Demand& here, const Demand& there, Syst
   balance.force = (balance.force + force) / (2 * reach * reach);
   balance.constraint = (balance.constraint + constraint) / (2 * reach * reach);
   Eigen::VectorXd bend, change;
-  system.step(balance, work, bend, change, team);
+  work.saddle.step(balance, bend, change, team);
   if (!bend.allFinite() || !change.allFinite()) return false;
   way.step += bend;
   way.change += change;
@@ -163,9 +163,9 @@ bool foresee(const System& system, const Demand& here, const Demand& there, Syst
 }
 
 bool follow_foreseen(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-                     System::Workspace& work, Team& team, Iterate& at) {
+                     Workspace& work, Team& team, Iterate& at) {
   constexpr double most_left = 0.03;  // of the way: what is left is gone along tangents at its begin
-  const System::Slopes& slopes = work.tangents;
+  const Slopes& slopes = work.tangents;
   if (slopes.foreseen_for.size() == 0 || !are_of(slopes, at) || held(slopes, system.actuators()) != active ||
       here.share != there.share || here.fading != there.fading)
     return false;
@@ -180,7 +180,7 @@ bool follow_foreseen(const System& system, const Demand& here, const Demand& the
   return true;
 }
 
-Predictor::Predictor(const System& system, System::Workspace& work, const State& at, Team& team)
+Predictor::Predictor(const System& system, Workspace& work, const State& at, Team& team)
     : system_(system),
       work_(work),
       at_(at),
@@ -190,7 +190,7 @@ Predictor::Predictor(const System& system, System::Workspace& work, const State&
     // chambers are held always, cables where they pull
     active_[a] = system.measures().constrains(a) && (!system.measures().only_pulls(a) || iterate_.multipliers[a] > 0);
   }
-  System::Balance balance;
+  Balance balance;
   const Demand demand{at.actuation, at.share};
   system.set_time(at.history, at.elapsed_s, work_, team);
   hold_friction(system, iterate_, work_, team);

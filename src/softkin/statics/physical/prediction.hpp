@@ -9,7 +9,7 @@ namespace softkin::physical {
 ///
 /// returns  the largest move of a vertex [mm]
 double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-               System::Workspace& work, Team& team, Iterate& at);
+               Workspace& work, Team& team, Iterate& at);
 
 /// The same, less far where otherwise something would pass through something.
 ///
@@ -17,7 +17,7 @@ double predict(const System& system, const Demand& here, const Demand& there, co
 /// returns    the largest move of a vertex [mm]; none where a shorter way is better: supports are in each other's way,
 ///            or little of a long one is left
 std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
-                                    const std::vector<bool>& active, System::Workspace& work, Team& team, Iterate& at,
+                                    const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at,
                                     Points& predicted);
 
 /// The equilibrium under other commands by second order, from the derivative that was asked for at the shape: what the
@@ -25,24 +25,24 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
 ///
 /// returns  false where no derivative is known, something may touch, or the law has no energy there
 /// source   as geodesic acceleration, Transtrum and Sethna 2012
-bool foresee(const System& system, const Demand& here, const Demand& there, System::Workspace& work, Team& team,
+bool foresee(const System& system, const Demand& here, const Demand& there, Workspace& work, Team& team,
              const Iterate& at, Points& positions);
 
 /// Moves `at` to where foresee() and the tangent lead. False where nothing was foreseen from there.
 bool follow_foreseen(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-                     System::Workspace& work, Team& team, Iterate& at);
+                     Workspace& work, Team& team, Iterate& at);
 
 /// The stiffness at an equilibrium, for predictions of those around it.
 class Predictor {
  public:
   /// at: of a known actuation, with multipliers.
-  Predictor(const System& system, System::Workspace& work, const State& at, Team& team);
+  Predictor(const System& system, Workspace& work, const State& at, Team& team);
 
   [[nodiscard]] State predict(const Actuation& actuation, Team& team);
 
  private:
   const System& system_;
-  System::Workspace& work_;
+  Workspace& work_;
   State at_;
   Iterate iterate_;
   std::vector<bool> active_;

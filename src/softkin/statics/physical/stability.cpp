@@ -22,43 +22,45 @@ constexpr double difference = 1e-6, as_stiff = 0.25;
 }  // namespace
 
 bool as_stiff_as_factorised(const System& system, const Iterate& at, const Demand& demand,
-                            const std::vector<bool>& active, const System::Balance& balance, System::Workspace& work,
-                            Team& team) {
-  if (work.softest.size() == 0) {
-    System::Balance right;
+                            const std::vector<bool>& active, const Balance& balance, Workspace& work, Team& team) {
+  if (!work.softest) {
+    Balance right;
     right.constraint = Eigen::VectorXd::Zero(system.actuators());
     Eigen::VectorXd next, multipliers;
-    work.softest = lopsided(system.freedoms().size()).normalized();
+    Workspace::Softest softest{lopsided(system.freedoms().size()).normalized(), 0};
     for (int i = 0; i < soft_iterations; ++i) {
-      right.force = -work.softest;
-      system.step(right, work, next, multipliers, team);
-      work.softness = work.softest.dot(next) / next.squaredNorm();
-      work.softest = next.normalized();
+      right.force = -softest.direction;
+      work.saddle.step(right, next, multipliers, team);
+      softest.curvature = softest.direction.dot(next) / next.squaredNorm();
+      softest.direction = next.normalized();
     }
+    work.softest = std::move(softest);
   }
+  const Eigen::VectorXd& direction = work.softest->direction;
   Iterate beside = at;
-  const double largest = system.size_of(work.softest, at.positions).largest;
+  const double largest = system.freedoms().size_of(direction, at.positions).largest;
   const double reach = difference * system.model().diagonal_mm / largest;
-  system.freedoms().move(work.softest, reach, beside.positions);
-  System::Balance there;
+  system.freedoms().move(direction, reach, beside.positions);
+  Balance there;
   system.evaluate(beside, demand, active, work, there, team);
-  const double curvature = work.softest.dot(there.force - balance.force) / reach;
-  return std::abs(curvature - work.softness) <= as_stiff * work.softness;
+  const double curvature = direction.dot(there.force - balance.force) / reach;
+  const double expected = work.softest->curvature;
+  return std::abs(curvature - expected) <= as_stiff * expected;
 }
 
 LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
-                       System::Workspace& work, Team& team, SolveReport& report) {
-  System::Balance balance;
+                       Workspace& work, Team& team, SolveReport& report) {
+  Balance balance;
   system.evaluate(at, demand, active, work, balance, team);
   double mean = 0;
   const auto negative = [&](double shift) {
     ++report.factorisations;
     ++report.factorisations_in_double;
     const int count = system.factorise(at, demand, active, balance, {System::Stiffness::exact, shift}, work, team);
-    if (shift == 0) mean = work.mean;
+    if (shift == 0) mean = work.saddle.spectrum().mean;
     return count;
   };
-  const InPrecision twice(work,
+  const InPrecision twice(work.saddle,
                           linear::MixedLdlt::Precision::twice);  // curvatures are differences of what hardly differs
   LowestMode mode;
   mode.unstable = negative(0);
@@ -75,12 +77,12 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   }
   (void)negative(high);
   // the constraints are met by every step, so that the iteration stays among the directions that keep them
-  System::Balance right;
+  Balance right;
   right.constraint = Eigen::VectorXd::Zero(system.actuators());
   Eigen::VectorXd vector = lopsided(system.freedoms().size()).normalized(), next, multipliers;
   for (int i = 0; i < most_inverse_iterations; ++i) {
     right.force = -vector;
-    system.step(right, work, next, multipliers, team);
+    work.saddle.step(right, next, multipliers, team);
     const double curvature = 1 / vector.dot(next) - high * mean;
     vector = next.normalized();
     if (i > 2 && std::abs(curvature - mode.curvature) < settled * std::abs(curvature)) break;
@@ -95,7 +97,7 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
 namespace {
 
 /// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given.
-double lagrangian(const System& system, const System::Balance& balance, const Points& positions,
+double lagrangian(const System& system, const Balance& balance, const Points& positions,
                   const Eigen::VectorXd& multipliers) {
   double energy = balance.energy;
   for (Index a = 0; a < system.actuators(); ++a)
@@ -107,16 +109,16 @@ double lagrangian(const System& system, const System::Balance& balance, const Po
 }  // namespace
 
 bool step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift, Iterate& at,
-               System::Workspace& work, Team& team, SolveReport& report) {
-  System::Balance balance, there;
+               Workspace& work, Team& team, SolveReport& report) {
+  Balance balance, there;
   Eigen::VectorXd step, change;
   for (; shift < most_shift; shift *= 4) {
     system.evaluate(at, demand, active, work, balance, team);
     ++report.factorisations;
     const int modes = system.factorise(at, demand, active, balance, {System::Stiffness::exact, shift}, work, team);
-    report.factorisations_in_double += work.factor.in_double();
+    report.factorisations_in_double += work.saddle.factor().in_double();
     if (modes > 0) continue;
-    system.step(balance, work, step, change, team);
+    work.saddle.step(balance, step, change, team);
     if (!step.allFinite() || !change.allFinite()) continue;
     Iterate trial = at;
     double scale = 1;
@@ -135,8 +137,8 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
 }
 
 double potential(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
-                 System::Workspace& work, Team& team) {
-  System::Balance balance;
+                 Workspace& work, Team& team) {
+  Balance balance;
   system.evaluate(at, demand, active, work, balance, team);
   return balance.energy + balance.load_energy;
 }

@@ -8,8 +8,8 @@ namespace softkin::physical {
 /// Is the stiffness along the softest change of shape, which an instability comes by, still that of the factor at hand?
 /// balance: of the iterate, just evaluated; the workspace is left with another one.
 [[nodiscard]] bool as_stiff_as_factorised(const System& system, const Iterate& at, const Demand& demand,
-                                          const std::vector<bool>& active, const System::Balance& balance,
-                                          System::Workspace& work, Team& team);
+                                          const std::vector<bool>& active, const Balance& balance, Workspace& work,
+                                          Team& team);
 
 /// The direction in which the energy curves least, among those that keep the active measures.
 struct LowestMode {
@@ -26,8 +26,7 @@ struct LowestMode {
 ///
 /// source  a shift that makes the stiffness positive, by bisection on Sylvester's inertia, then inverse iteration
 [[nodiscard]] LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& demand,
-                                     const std::vector<bool>& active, System::Workspace& work, Team& team,
-                                     SolveReport& report);
+                                     const std::vector<bool>& active, Workspace& work, Team& team, SolveReport& report);
 
 /// A step with K + shift mean(diag K) 1 to a shape of less energy, measured with the multipliers at its begin. shift, a
 /// share, grows until the stiffness is positive and the energy falls, and shrinks for the next step. False: there is
@@ -36,11 +35,11 @@ struct LowestMode {
 ///
 /// source  Levenberg and Marquardt; active measures are closed to first order, as by Newton's method
 [[nodiscard]] bool step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift,
-                             Iterate& at, System::Workspace& work, Team& team, SolveReport& report);
+                             Iterate& at, Workspace& work, Team& team, SolveReport& report);
 
 /// Elastic energy less the work of dead loads and of the pressures and tensions that are given [mJ]: what a stable
 /// equilibrium has least of among the shapes around it.
 [[nodiscard]] double potential(const System& system, const Iterate& at, const Demand& demand,
-                               const std::vector<bool>& active, System::Workspace& work, Team& team);
+                               const std::vector<bool>& active, Workspace& work, Team& team);
 
 }  // namespace softkin::physical

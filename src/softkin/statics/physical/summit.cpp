@@ -76,7 +76,7 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
     interrupted_ = outcome == Newton::Outcome::interrupted;
     if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted)) {
       slide_friction(system_, trial, work_, team_);
-      found = Measured{measure,    trial.multipliers[a] / system_.measures().unit(a), std::move(trial), judged(), 0,
+      found = Measured{measure,    system_.measures().command(a, trial.multipliers[a]), std::move(trial), judged(), 0,
                        there.share};
     }
     const Points& end = found ? found->at.positions : begun;
@@ -106,7 +106,7 @@ void Continuation::bend(Index a, const Demand& here, const Demand& there, const 
   const Points miss = ratio * ratio * (beside.at.positions - back.positions);
   if (!(miss.rowwise().norm().maxCoeff() < most * largest_move(from.at.positions, trial.positions))) return;
   trial.positions += miss;
-  system_.hold(there, trial.positions);
+  system_.placement().hold(there, trial.positions);
   trial.multipliers += ratio * ratio * (beside.at.multipliers - back.multipliers);
 }
 
@@ -135,13 +135,13 @@ double Continuation::slope_at(Index a, const Demand& load, const Measured& point
   there.actuation[a] = (1 + first_step) * point.measure;
   here.share = there.share = point.share;
   active_[a] = true;
-  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);
+  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
   double slope = std::numeric_limits<double>::quiet_NaN();
   if (prepare(here, point.at) >= 0) {
     Iterate beside = point.at;
     (void)predict(system_, here, there, active_, work_, team_, beside);
     slope =
-        (beside.multipliers[a] - point.at.multipliers[a]) / system_.measures().unit(a) / (first_step * point.measure);
+        (beside.multipliers[a] - point.at.multipliers[a]) / system_.measures().rate(a) / (first_step * point.measure);
   }
   active_[a] = false;
   return slope;
@@ -155,7 +155,7 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
   const double way = -up * system_.measures().sign(a);             // shortens with its tension
   const double begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
   Measured low{begin, here.actuation[a], at, last_, 0, here.share};
-  low.at.multipliers[a] = system_.measures().unit(a) * low.load;
+  low.at.multipliers[a] = system_.measures().given(a, low.load);
   const auto gain = [&](const Measured& point) { return up * way * slope_at(a, here, point); };
   const auto at_maximum = [&](const Measured& point) {
     return std::abs(point.gain) * point.measure < flat * std::abs(point.load);
@@ -221,7 +221,7 @@ Continuation::Climb Continuation::arrive_at(const Demand& to, const Measured& ne
                                             Newton::Policy policy) {
   Iterate trial = near.at;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (system_.measures().given_load(a)) trial.multipliers[a] = system_.measures().unit(a) * to.actuation[a];
+    if (system_.measures().given_load(a)) trial.multipliers[a] = system_.measures().given(a, to.actuation[a]);
   const auto outcome = settle(to, policy, trial);
   if (outcome == Newton::Outcome::interrupted) return Climb::interrupted;
   const bool found = outcome == Newton::Outcome::converged ||
@@ -249,7 +249,8 @@ Continuation::Climb Continuation::stop_at(Index a, double way, double begin, con
     keep(a, from, to, summit, at);
     return Climb::summit;
   }
-  const InPrecision twice(work_, linear::MixedLdlt::Precision::twice);  // so short a step is near what rounding hides
+  const InPrecision twice(work_.saddle,
+                          linear::MixedLdlt::Precision::twice);  // so short a step is near what rounding hides
   const std::optional<Measured> kept = at_measure(a, summit.measure - way * before, to, summit, false, nullptr);
   if (interrupted_) {
     keep(a, from, to, summit, at);

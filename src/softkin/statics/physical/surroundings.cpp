@@ -22,27 +22,11 @@ double firm_slope(double command) {
 }  // namespace
 
 Surroundings::Surroundings(const Model& model)
-    : model_(model), stiffest_(firmness * model.contact.modulus_MPa * model.diagonal_mm) {
-  for (const Actuator& actuator : model.actuators)
-    vertices_of_.push_back(actuator.kind == ActuatorKind::motion ? model.vertices_of_part(actuator.other)
-                                                                 : std::array<Index, 2>{0, 0});
-}
-
-void Surroundings::place(const Eigen::VectorXd& actuation, Points& positions) const {
-  for (std::size_t a = 0; a < vertices_of_.size(); ++a)
-    for (Index v = vertices_of_[a][0]; v < vertices_of_[a][1]; ++v)
-      positions(v, model_.actuators[a].axis) += actuation[static_cast<Index>(a)];
-}
+    : model_(model), stiffest_(firmness * model.contact.modulus_MPa * model.diagonal_mm) {}
 
 bool Surroundings::loads(Index command) const {
   const ActuatorKind kind = model_.actuators[static_cast<std::size_t>(command)].kind;
   return kind == ActuatorKind::force || kind == ActuatorKind::hold;
-}
-
-double Surroundings::moved(Index actuator, const Points& positions) const {
-  const Index first = vertices_of_[static_cast<std::size_t>(actuator)][0];
-  const int axis = model_.actuators[static_cast<std::size_t>(actuator)].axis;
-  return positions(first, axis) - model_.rest(first, axis);
 }
 
 /// Adds what a body's springs pull with.
@@ -120,13 +104,6 @@ void Surroundings::add_derivative(Index command, const Demand& demand, const Poi
     return add_spring(body, stiffest_ * firm_slope(demand.actuation[command]), positions, force);
   for (std::size_t i = 0; i < body.center.vertices.size(); ++i)
     force(body.center.vertices[i], actuator.axis) -= body.center.weights[i];
-}
-
-void Surroundings::motion(Index actuator, Points& moves) const {
-  moves.setZero(model_.rest.rows(), 3);
-  const auto& [first, end] = vertices_of_[static_cast<std::size_t>(actuator)];
-  if (end > first)
-    moves.col(model_.actuators[static_cast<std::size_t>(actuator)].axis).segment(first, end - first).setOnes();
 }
 
 }  // namespace softkin::physical

@@ -5,8 +5,7 @@
 
 namespace softkin::physical {
 
-/// What is done to bodies and obstacles: springs that hold bodies where they are at rest, forces on bodies, motions of
-/// obstacles.
+/// What is done to bodies: springs that hold them where they are at rest, forces on them.
 ///
 /// A body is held by a spring at each of its vertices. Of a command between 0 and 1 their stiffness falls by the same
 /// factor for every part of the way, to nothing at 0: the body settles where it is free while it is being released.
@@ -17,12 +16,6 @@ class Surroundings : public Term {
 
   /// Are there bodies?
   [[nodiscard]] bool any_body() const { return !model_.bodies.empty(); }
-
-  /// Adds the motions of obstacles to positions at which these are where they stand at rest.
-  void place(const Eigen::VectorXd& actuation, Points& positions) const;
-
-  /// How far an obstacle is from where it stands at rest, along its command's axis [mm].
-  [[nodiscard]] double moved(Index actuator, const Points& positions) const;
 
   /// Energy of the springs, less the work of the forces.
   void evaluate(const Iterate& at, const Demand& demand, Scratch& scratch, Sum& sum, Team& team) const override;
@@ -43,15 +36,12 @@ class Surroundings : public Term {
   /// Of a force or a hold.
   void add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& scratch, Points& force,
                       Team& team) const override;
-  /// Derivative of the positions by the command of a motion, #V by 3.
-  void motion(Index actuator, Points& moves) const;
 
  private:
   void add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const;
 
   const Model& model_;
-  double stiffest_ = 0;                            // of a body that is held [N/mm]
-  std::vector<std::array<Index, 2>> vertices_of_;  // per actuator: of the obstacle that it moves
+  double stiffest_ = 0;  // of a body that is held [N/mm]
   std::int64_t first_slot_ = 0;
 };
 

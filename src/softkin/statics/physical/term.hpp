@@ -26,6 +26,9 @@ class Term {
   };
   [[nodiscard]] virtual std::unique_ptr<Scratch> new_scratch() const { return std::make_unique<Scratch>(); }
 
+  /// Is the gradient that of the energy?
+  [[nodiscard]] virtual bool conservative() const { return true; }
+
   /// The terms so far at one shape.
   struct Sum {
     Points& gradient;         // #V by 3 [N]

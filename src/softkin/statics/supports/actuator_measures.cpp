@@ -147,7 +147,7 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
         actuator.kind != ActuatorKind::dea && drives(actuator) && actuator.control == Control::ratio;
     const bool given_load = !constrains && (measures(a) || under_voltage(actuator));
     roles_.push_back({constrains, given_load, cable && !actuator.pushes, cable ? 1.0 : -1.0,
-                      actuator.kind == ActuatorKind::pneumatic ? 1e-3 : 1.0});
+                      actuator.kind == ActuatorKind::pneumatic ? 1e-3 : 1.0, actuator.factor, actuator.offset});
   }
 }
 

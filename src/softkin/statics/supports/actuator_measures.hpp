@@ -12,6 +12,8 @@ class ActuatorMeasures {
  public:
   explicit ActuatorMeasures(const Model& model);
 
+  /// Of actuators, of all kinds.
+  [[nodiscard]] Index count() const { return static_cast<Index>(rest_.size()); }
   /// Is actuator a a cable or a chamber?
   [[nodiscard]] bool measures(Index actuator) const { return !terms_[actuator].empty(); }
   /// At rest.
@@ -28,6 +30,18 @@ class ActuatorMeasures {
   [[nodiscard]] double sign(Index actuator) const { return roles_[actuator].sign; }
   /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
   [[nodiscard]] double unit(Index actuator) const { return roles_[actuator].unit; }
+  /// The multiplier of a load by its command: what the scene's factor and offset make of it. They never make a cable
+  /// push.
+  [[nodiscard]] double given(Index actuator, double command) const {
+    const Role& role = roles_[actuator];
+    const double load = role.factor * command + role.offset;
+    return role.unit * (role.only_pulls && load < 0 && command >= 0 ? 0 : load);
+  }
+  /// The other way round, and the derivative of the first.
+  [[nodiscard]] double command(Index actuator, double multiplier) const {
+    return (multiplier / roles_[actuator].unit - roles_[actuator].offset) / roles_[actuator].factor;
+  }
+  [[nodiscard]] double rate(Index actuator) const { return roles_[actuator].unit * roles_[actuator].factor; }
   /// A cable, which gives way where it would push.
   [[nodiscard]] bool only_pulls(Index actuator) const { return roles_[actuator].only_pulls; }
   /// Demanded measure [mm, mm^3] by a command.
@@ -64,7 +78,7 @@ class ActuatorMeasures {
 
   struct Role {
     bool constrains, given_load, only_pulls;
-    double sign, unit;
+    double sign, unit, factor, offset;
   };
 
   [[nodiscard]] Vec3 at(Index node, const Points& positions) const;

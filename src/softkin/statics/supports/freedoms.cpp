@@ -13,6 +13,13 @@ Freedoms::Freedoms(const Model& model, const linear::BlockPattern& pattern)
   number(model, pattern);
 }
 
+Freedoms::Freedoms(const Freedoms& like, const Model& model) : Freedoms(like) {
+  held_ = model.held;
+  std::vector<std::array<bool, 3>> fixed = model.fixed;
+  std::vector<RigidBody> bodies = movable_bodies(model, fixed, held_);
+  for (std::size_t i = 0; i < bodies.size(); ++i) static_cast<RigidBody&>(regions_[i]) = std::move(bodies[i]);
+}
+
 void Freedoms::find_regions(const Model& model) {
   for (RigidBody& body : movable_bodies(model, fixed_, held_)) {
     Region region{std::move(body), {}, {}};
@@ -199,6 +206,18 @@ Mat3 Freedoms::bend_of(const Region& region, const Points& gradient, const Point
     bend += 0.5 * (force * arm.transpose() + arm * force.transpose()) - force.dot(arm) * Mat3::Identity();
   }
   return bend / (region.reach * region.reach);
+}
+
+Freedoms::Size Freedoms::size_of(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const Points& positions) const {
+  Points moves;
+  expand(unknowns, positions, moves);
+  double largest = 0, sum = 0;
+  for (Index v = 0; v < moves.rows(); ++v) {
+    const double square = moves.row(v).squaredNorm();
+    if (!(square <= largest)) largest = square;  // also where it is not a number
+    sum += square;
+  }
+  return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(moves.rows()))};
 }
 
 void Freedoms::add_turning(const Points& gradient, const Points& positions,

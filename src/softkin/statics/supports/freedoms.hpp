@@ -13,6 +13,8 @@ namespace softkin::supports {
 class Freedoms {
  public:
   Freedoms(const Model& model, const linear::BlockPattern& pattern);
+  /// The same unknowns of a model that is held elsewhere by the same.
+  Freedoms(const Freedoms& like, const Model& model);
 
   [[nodiscard]] Index size() const { return unknowns_.back(); }
 
@@ -30,6 +32,12 @@ class Freedoms {
 
   /// Moves positions by scale u: rigid regions turn, all else is x + scale T u.
   void move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double scale, Points& positions) const;
+
+  /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
+  struct Size {
+    double largest = 0, mean = 0;
+  };
+  [[nodiscard]] Size size_of(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const Points& positions) const;
 
   /// Adds what the gradient adds for turns to that second derivative, times unknowns.
   void add_turning(const Points& gradient, const Points& positions, const Eigen::Ref<const Eigen::VectorXd>& unknowns,

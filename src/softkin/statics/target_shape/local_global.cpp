@@ -64,8 +64,7 @@ class Stall {
 
 double largest_marker_move(const Model& model, const Points& before, const Points& after) {
   double largest = 0;
-  for (const Marker& marker : model.markers)
-    largest = std::max(largest, (marker.point.at(after) - marker.point.at(before)).norm());
+  for (const Marker& marker : model.markers) largest = std::max(largest, (marker.at(after) - marker.at(before)).norm());
   return largest;
 }
 

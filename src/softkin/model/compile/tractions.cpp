@@ -1,0 +1,115 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/triangle_points.hpp>
+
+namespace softkin {
+
+namespace {
+
+constexpr double megapascals = 1e-3;  // in a kPa
+
+std::string title(const TractionSpec& spec) {
+  return "traction '" + spec.name + "'";
+}
+
+/// The faces of the body that a region is, with normals outwards; a quad is the mean of its two ways to be triangles.
+class BodyFaces {
+ public:
+  explicit BodyFaces(const Compilation& c)
+      : c_(c), boundary_(boundary_of(c.model.tetrahedra, c.model.prisms)), edges_(c.regions.edges()) {}
+
+  [[nodiscard]] std::vector<LoadedFace> of(const TractionSpec& spec) const {
+    const Region region = c_.regions.resolve(spec.where);
+    const bool named = region.dimension == 2;  // a group of faces: these; else all between its vertices
+    std::set<std::vector<Index>> wanted;
+    if (named) {
+      for (const Index i : region.triangles) wanted.insert(sorted(c_.mesh.triangles[i]));
+      for (const Index i : region.quads) wanted.insert(sorted(c_.mesh.quads[i]));
+    }
+    std::vector<bool> inside(c_.model.used.size());
+    for (const Index v : region.vertices) inside[v] = true;
+    const auto is_loaded = [&](const auto& face) {
+      if (named) return wanted.erase(sorted(face)) > 0;
+      return std::all_of(face.begin(), face.end(), [&](Index v) { return inside[v]; });
+    };
+    std::vector<LoadedFace> faces;
+    for (const Triangle& t : boundary_.triangles)
+      if (is_loaded(t)) faces.push_back(loaded(t, 1));
+    for (const Quad& q : boundary_.quads)
+      if (is_loaded(q))
+        for (int i = 0; i < 4; ++i) faces.push_back(loaded({q[i], q[(i + 1) % 4], q[(i + 2) % 4]}, 0.5));
+    refuse_others(spec, wanted, faces);
+    return faces;
+  }
+
+ private:
+  template <class Face>
+  static std::vector<Index> sorted(const Face& face) {
+    std::vector<Index> vertices(face.begin(), face.end());
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  }
+
+  [[nodiscard]] LoadedFace loaded(const Triangle& corners, double share) const {
+    LoadedFace face{{corners}, share};
+    if (!edges_.empty()) face.face.edges = edges_.of(corners);
+    return face;
+  }
+
+  static void refuse_others(const TractionSpec& spec, const std::set<std::vector<Index>>& others,
+                            const std::vector<LoadedFace>& faces) {
+    if (!others.empty())
+      throw InvalidInput(spec.where.origin, title(spec) + " is on " + counted(others.size(), "face", "faces") +
+                                                " that " + (others.size() == 1 ? "is" : "are") +
+                                                " not on the surface of the body");
+    if (faces.empty())
+      throw InvalidInput(spec.where.origin,
+                         title(spec) + " is on " + label(spec.where) + ", which holds no face of the body's surface");
+  }
+
+  const Compilation& c_;
+  const Boundary boundary_;
+  const EdgeTable& edges_;
+};
+
+void check(const TractionSpec& spec) {
+  const auto refuse = [&](const std::string& why) { throw InvalidInput(spec.where.origin, title(spec) + why); };
+  if (!spec.kilopascals.allFinite() || !std::isfinite(spec.pressure_kPa)) refuse(" is not finite");
+  if (spec.kilopascals.isZero(0) && spec.pressure_kPa == 0) refuse(" is 0: give it a value, or leave it out");
+}
+
+/// Of a traction that keeps its direction, on the area at rest.
+void add_dead(Model& model, const Vec3& traction_MPa, const LoadedFace& loaded) {
+  const std::vector<Index> nodes = nodes_of(loaded.face);
+  for (const TrianglePoint& point : triangle_points(nodes.size())) {
+    const SurfaceEdges edges(point, nodes, model.rest);
+    const double area = loaded.share * point.weight * edges.u.cross(edges.v).norm();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      model.dead_load.row(nodes[i]) += area * point.shape[static_cast<Eigen::Index>(i)] * traction_MPa.transpose();
+  }
+}
+
+}  // namespace
+
+void compile_tractions(Compilation& c) {
+  if (c.spec.tractions.empty()) return;
+  const BodyFaces body(c);
+  std::set<std::string> names;
+  for (const TractionSpec& spec : c.spec.tractions) {
+    check(spec);
+    if (!names.insert(spec.name).second)
+      throw InvalidInput(spec.where.origin, "there are two tractions '" + spec.name + "'");
+    std::vector<LoadedFace> faces = body.of(spec);
+    const Vec3 traction = megapascals * spec.kilopascals;
+    if (spec.follows)
+      c.model.tractions.push_back({traction, megapascals * spec.pressure_kPa, std::move(faces)});
+    else
+      for (const LoadedFace& face : faces) add_dead(c.model, traction, face);
+  }
+}
+
+}  // namespace softkin

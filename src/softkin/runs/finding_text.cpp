@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <softkin/core/text.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/finding_text.hpp>
+
+namespace softkin::runs {
+
+namespace {
+
+std::string percent(double share) {
+  return decimal(100 * share, 1) + " %";
+}
+
+/// share  of the normal force, that slips
+std::string slipping_text(double share) {
+  if (share <= 0) return "; it sticks";
+  return share >= 1 ? "; it slips" : "; " + number(100 * share, 3) + " % of it slips";
+}
+
+constexpr const char* units_text = " (mm, MPa, kPa, kV, N, kg/m^3, m/s^2)";
+
+/// "(1.25, 0, -3)" of three numbers of a finding
+std::string place_text(const double* xyz) {
+  return softkin::point_text({xyz[0], xyz[1], xyz[2]}, 4, 1e-6);
+}
+
+/// "air by its volume: 0 kPa at 1, 9.1 kPa at 2.4, ..."
+std::string branch_text(const Model& model, const Finding& finding) {
+  const auto is_it = [&](const Actuator& actuator) { return actuator.name == finding.name; };
+  const Actuator& actuator = *std::find_if(model.actuators.begin(), model.actuators.end(), is_it);
+  std::string text = finding.name + " by its " + (actuator.kind == ActuatorKind::cable ? "length" : "volume") + " [-]:";
+  for (std::size_t i = 0; i + 1 < finding.values.size(); i += 2)
+    text += (i > 0 ? ", " : " ") + number(finding.values[i + 1], 4) + " " + command_unit(actuator) + " at " +
+            number(finding.values[i], 4);
+  return text;
+}
+
+}  // namespace
+
+std::string overlap_cause(const Model& model) {
+  const bool stopped = model.contact.any() && model.contact.pair(0, 0).touch;
+  return (stopped ? "; parts that are closer at rest than " + number(2 * model.contact.distance_mm, 3) +
+                        " mm, twice the contact distance, do not stop each other"
+                  : std::string("; parts that meet do not stop each other here")) +
+         ", so what lies beyond the first touch is not what the robot does: ask for less";
+}
+
+std::string depth_text(double deepest_mm, const Vec3& where) {
+  const auto axis = [&](Index i) { return decimal(where[i], 2); };
+  return number(deepest_mm, 2) + " mm at (" + axis(0) + ", " + axis(1) + ", " + axis(2) + ") mm";
+}
+
+std::string finding_text(const Model& model, const Finding& finding) {
+  using Kind = Finding::Kind;
+  const std::vector<double>& v = finding.values;
+  switch (finding.kind) {
+    case Kind::strain:
+      return "principal strain of the body: " + percent(v[0]) + " to " + percent(v[1]) +
+             ", 95 % of the volume within " + percent(v[2]);
+    case Kind::beyond_linear_range:
+      return percent(v[0]) + " of region '" + finding.name + "' is strained beyond its linear range of " +
+             percent(v[1]);
+    case Kind::inverted:
+      return "warning: " + counted(static_cast<std::size_t>(v[0]), "element") + (v[0] == 1 ? " is" : " are") +
+             " inverted";
+    case Kind::slack:
+      return "cable '" + finding.name + "' is slack: its path is " + number(v[0], 5) +
+             " of its length at rest, the cable " + number(v[1], 5);
+    case Kind::charged:
+      return "dea '" + finding.name + "' holds " + number(v[0], 4) + " nC, " + number(v[1], 4) +
+             " pF; the field in its layer is at most " + number(v[2], 4) + " kV/mm, where it is " + number(v[3], 4) +
+             " mm thick, at " + place_text(&v[4]) + " mm";
+    case Kind::self_overlap:
+      return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
+             " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +
+             depth_text(v[1], {v[2], v[3], v[4]}) + overlap_cause(model);
+    case Kind::motionless:
+      return "warning: nothing moved: the largest displacement is " + number(v[0], 2) +
+             " mm; are what is asked for and the moduli in the right units?" + units_text;
+    case Kind::far_strained:
+      return "warning: the body is strained by up to " + percent(v[0]) +
+             ", where most elastomers have broken; are the loads and the moduli in the right units?" + units_text;
+    case Kind::far_moved:
+      return "warning: a point moved by " + number(v[0], 4) + " mm, and the robot is " + number(v[1], 4) +
+             " mm across; are the loads and the moduli in the right units?" + units_text;
+    case Kind::accuracy:
+      return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
+             number(v[1], 2) + " mm" +
+             (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 3) + " N"
+                           : "");
+    case Kind::stress:
+      return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + place_text(&v[1]) + " mm" +
+             (finding.name.empty() ? "" : " in region '" + finding.name + "'") + "; principal " + number(v[5], 4) +
+             " to " + number(v[4], 4) + " MPa";
+    case Kind::reaction:
+      return "support '" + finding.name + "' exerts " + place_text(&v[0]) + " N and " + place_text(&v[3]) +
+             " N mm about " + place_text(&v[6]) + " mm";
+    case Kind::contact:
+      return finding.name +
+             (finding.other.empty() ? " presses on itself with " + number(v[9], 4) + " N"
+                                    : " exerts " + place_text(&v[0]) + " N and " + place_text(&v[3]) + " N mm") +
+             " about " + place_text(&v[6]) + " mm" + (finding.other.empty() ? "" : " on " + finding.other) +
+             ", at most " + number(v[10], 4) + " kPa over " + number(v[11], 4) + " mm^2; least gap " +
+             number(v[12], 3) + " mm" + (v.size() > 13 ? slipping_text(v[13]) : "");
+    case Kind::magnetic:
+      return "magnetic fields exert " + place_text(&v[0]) + " N and " + place_text(&v[3]) + " N mm about " +
+             place_text(&v[6]) + " mm";
+    case Kind::untouched:
+      return "nothing touches";
+    case Kind::unstable:
+      return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
+             ": the robot would buckle or snap away from it; --stable looks for the shape that it goes to";
+    case Kind::buckled:
+      return "the robot left " +
+             counted(static_cast<std::size_t>(v[0]), "unstable equilibrium", "unstable equilibria") +
+             " for a stable one, moving by up to " + number(v[1], 3) + " mm";
+    case Kind::snapped:
+      return "warning: at " + percent(v[1]) + " of the way the shape jumps by " + number(v[0], 3) +
+             " mm: the robot snaps through, and what it does there depends on how fast it is moved";
+    case Kind::unstable_way:
+      return "warning: from " + percent(v[0]) +
+             " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
+             "another one; --stable looks for it";
+    case Kind::branch:
+      return branch_text(model, finding);
+    case Kind::diverged:
+      break;
+  }
+  return "warning: the iteration diverged";
+}
+
+}  // namespace softkin::runs

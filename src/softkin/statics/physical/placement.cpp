@@ -1,0 +1,86 @@
+#include <softkin/statics/physical/placement.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+/// Moves shorter than this share of the robot's diagonal turn nothing that matters.
+constexpr double least_turning = 1e-4;
+/// What turns add to moves grows with their square; where something touches, no more than so many times that over the
+/// diagonal is believed.
+constexpr double most_turning = 30;
+
+}  // namespace
+
+Placement::Placement(const Model& model, const Body& body, const supports::Freedoms& freedoms, const Placement* like)
+    : model_(model),
+      body_(body),
+      freedoms_(freedoms),
+      contact_(model.contact.any()),
+      supports_(model),
+      turning_(like ? like->turning_
+                    : std::make_shared<const supports::GlobalStep>(model, body.laplacian(), freedoms.vertex_order())) {
+  for (const Actuator& actuator : model.actuators)
+    vertices_of_.push_back(actuator.kind == ActuatorKind::motion ? model.vertices_of_part(actuator.other)
+                                                                 : std::array<Index, 2>{0, 0});
+}
+
+void Placement::hold(const Demand& demand, Points& positions) const {
+  freedoms_.hold(demand.share, positions);
+  supports_.place(demand.actuation, demand.share, positions);
+  for (std::size_t a = 0; a < vertices_of_.size(); ++a)
+    for (Index v = vertices_of_[a][0]; v < vertices_of_[a][1]; ++v)
+      positions(v, model_.actuators[a].axis) += demand.actuation[static_cast<Index>(a)];
+}
+
+bool Placement::changes(const Demand& from, const Demand& to) const {
+  if (from.share != to.share) return true;
+  for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+    const ActuatorKind kind = model_.actuators[a].kind;
+    const Index i = static_cast<Index>(a);
+    if ((kind == ActuatorKind::motion || kind == ActuatorKind::turn) && from.actuation[i] != to.actuation[i])
+      return true;
+  }
+  return false;
+}
+
+void Placement::velocity(Index actuator, const Demand& demand, Points& moves) const {
+  moves.setZero(model_.rest.rows(), 3);
+  const auto& [first, end] = vertices_of_[static_cast<std::size_t>(actuator)];
+  if (end > first)
+    moves.col(model_.actuators[static_cast<std::size_t>(actuator)].axis).segment(first, end - first).setOnes();
+  supports_.add_velocity(actuator, demand.actuation, demand.share, moves);
+}
+
+double Placement::command_of(Index actuator, const Points& positions) const {
+  const Actuator& moved = model_.actuators[static_cast<std::size_t>(actuator)];
+  if (moved.kind == ActuatorKind::turn) return supports_.angle(actuator, positions);
+  const Index first = vertices_of_[static_cast<std::size_t>(actuator)][0];
+  return positions(first, moved.axis) - model_.rest(first, moved.axis);
+}
+
+void Placement::advance(const Eigen::VectorXd& step, double scale, Scratch& scratch, Body::Scratch& elastic,
+                        Points& positions, Team& team, const Demand* held) const {
+  freedoms_.expand(scale * step, positions, scratch.moves);
+  if (held && !contact_) {  // where things touch the turns that it brings meet more of them
+    Points there = positions;
+    hold(*held, there);
+    scratch.moves += there - positions;
+  }
+  const auto move = [&] {
+    freedoms_.move(step, scale, positions);
+    if (held) hold(*held, positions);
+  };
+  const double length = scratch.moves.cwiseAbs().maxCoeff();
+  if (length < least_turning * model_.diagonal_mm) return move();
+  body_.turning(positions, scratch.moves, elastic, scratch.lacking, team);
+  move();
+  const Points straight = contact_ ? positions : Points();
+  std::vector<supports::Pose> poses = turning_->poses(positions);
+  turning_->step(scratch.lacking, positions, poses, team);
+  // what holds a body by contact alone is not in the way of its turns
+  if (contact_ && largest_move(straight, positions) > most_turning * length * length / model_.diagonal_mm)
+    positions = straight;
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,178 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <softkin/statics/physical/tractions.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+using Plane = Eigen::Matrix<double, 3, 2>;
+
+}  // namespace
+
+/// Load on a place per area at rest [MPa]: J (R t - p n), with J the area over that at rest.
+///
+/// With the surface's deformation F = [f g] over the frame at rest, C = F^T F and s^2 = tr C + 2 J, the stretch is
+/// U = (C + J) / s and J R t = F (s - U) t in the plane; J n = f x g.
+class Tractions::Load {
+ public:
+  Load(const Face& face, const Place& place, const Points& positions)
+      : along_(place.along_MPa), outwards_(place.outwards_MPa - face.pressure_MPa) {
+    const SurfaceEdges edges(*place.point, face.nodes, positions);
+    Plane both;
+    both << edges.u, edges.v;
+    deformation_ = both * place.to_frame;
+    metric_ = deformation_.transpose() * deformation_;
+    normal_ = deformation_.col(0).cross(deformation_.col(1));
+    area_ = normal_.norm();
+    root_ = std::sqrt(metric_.trace() + 2 * area_);
+    turned_ = root_ * along_ - (metric_ * along_ + area_ * along_) / root_;
+  }
+
+  [[nodiscard]] Vec3 whole() const { return outwards_ * normal_ + deformation_ * turned_; }
+  /// Without the pressure.
+  [[nodiscard]] Vec3 traction(double pressure_MPa) const { return whole() + pressure_MPa * normal_; }
+  /// Times the area at rest: the area vector.
+  [[nodiscard]] const Vec3& normal() const { return normal_; }
+
+  /// How it changes with the deformation.
+  [[nodiscard]] Vec3 change(const Plane& by) const {
+    const Vec3 normal = by.col(0).cross(deformation_.col(1)) + deformation_.col(0).cross(by.col(1));
+    const Eigen::Matrix2d half = deformation_.transpose() * by, metric = half + half.transpose();
+    const double area = area_ > 0 ? normal_.dot(normal) / area_ : 0;
+    const double root = (metric.trace() + 2 * area) / (2 * root_);
+    const Eigen::Vector2d turned = root * along_ - (metric * along_ + area * along_) / root_ +
+                                   root / (root_ * root_) * (metric_ * along_ + area_ * along_);
+    return outwards_ * normal + by * turned_ + deformation_ * turned;
+  }
+
+ private:
+  Eigen::Vector2d along_;
+  double outwards_;
+  Plane deformation_;
+  Eigen::Matrix2d metric_;
+  Vec3 normal_;
+  double area_, root_;
+  Eigen::Vector2d turned_;
+};
+
+Tractions::Tractions(const Model& model) : model_(model) {
+  double count = 0;
+  for (const FollowingTraction& traction : model.tractions)
+    for (const LoadedFace& loaded : traction.faces) {
+      Face face{traction.pressure_MPa, nodes_of(loaded.face), {}, 0};
+      for (const Index v : face.nodes) middle_ += vertex_at(model.rest, v);
+      count += static_cast<double>(face.nodes.size());
+      for (const TrianglePoint& point : triangle_points(face.nodes.size())) {
+        const SurfaceEdges edges(point, face.nodes, model.rest);
+        const Vec3 normal = edges.u.cross(edges.v).normalized(), first = edges.u.normalized();
+        Plane both, frame;
+        both << edges.u, edges.v;
+        frame << first, normal.cross(first);
+        const Eigen::Matrix2d edges_in_frame = frame.transpose() * both;
+        face.places.push_back({&point, loaded.share * point.weight * edges_in_frame.determinant(),
+                               edges_in_frame.inverse(), frame.transpose() * traction.traction_MPa,
+                               normal.dot(traction.traction_MPa)});
+      }
+      faces_.push_back(std::move(face));
+    }
+  middle_ /= count;
+}
+
+template <class Visit>
+void Tractions::each_place(const Points& positions, const Visit& visit) const {
+  for (const Face& face : faces_)
+    for (const Place& place : face.places) visit(face, place, Load(face, place, positions));
+}
+
+void Tractions::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
+                         Team& /*team*/) const {
+  static_cast<Scratch&>(scratch).share = demand.share;
+  double energy = 0;
+  each_place(at.positions, [&](const Face& face, const Place& place, const Load& load) {
+    const Vec3 force = demand.share * place.area_mm2 * load.whole();
+    Vec3 x = -middle_, move = Vec3::Zero();
+    for (std::size_t i = 0; i < face.nodes.size(); ++i) {
+      const double shape = place.point->shape[static_cast<Eigen::Index>(i)];
+      sum.gradient.row(face.nodes[i]) -= shape * force.transpose();
+      x += shape * vertex_at(at.positions, face.nodes[i]);
+      move += shape * (vertex_at(at.positions, face.nodes[i]) - vertex_at(model_.rest, face.nodes[i]));
+    }
+    energy +=
+        place.area_mm2 * (face.pressure_MPa * load.normal().dot(x) / 3 - load.traction(face.pressure_MPa).dot(move));
+  });
+  sum.energy += demand.share * energy;
+}
+
+void Tractions::add_cliques(linear::Cliques& cliques) {
+  for (Face& face : faces_) {
+    face.slot = cliques.slots.back();
+    cliques.add(face.nodes);
+  }
+}
+
+/// Derivatives of the gradient of a face's nodes by its nodes, at a share of 1.
+Tractions::Blocks Tractions::slopes(const Face& face, const Points& positions) const {
+  Blocks blocks;
+  for (auto& row : blocks) row.fill(Mat3::Zero());
+  for (const Place& place : face.places) {
+    const Load load(face, place, positions);
+    Mat3 by[2];
+    for (int side = 0; side < 2; ++side)
+      for (int axis = 0; axis < 3; ++axis) {
+        Plane change = Plane::Zero();
+        change(axis, side) = 1;
+        by[side].col(axis) = place.area_mm2 * load.change(change);
+      }
+    const TrianglePoint& point = *place.point;
+    for (std::size_t j = 0; j < face.nodes.size(); ++j) {
+      const auto k = static_cast<Eigen::Index>(j);
+      const Eigen::RowVector2d slope = Eigen::RowVector2d(point.along_u[k], point.along_v[k]) * place.to_frame;
+      const Mat3 change = slope[0] * by[0] + slope[1] * by[1];
+      for (std::size_t i = 0; i < face.nodes.size(); ++i)
+        blocks[i][j] -= point.shape[static_cast<Eigen::Index>(i)] * change;
+    }
+  }
+  return blocks;
+}
+
+void Tractions::stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& /*scratch*/,
+                          LargeVector<double>& slots, Team& team) const {
+  using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  team.pieces(static_cast<Index>(faces_.size()), [&](Index begin, Index end) {
+    for (Index f = begin; f < end; ++f) {
+      const Face& face = faces_[static_cast<std::size_t>(f)];
+      const Blocks blocks = slopes(face, at.positions);
+      double* out = slots.data() + 9 * face.slot;
+      const double share = projected ? 0 : demand.share / 2;  // a load has no positive part of its own
+      for (std::size_t i = 0; i < face.nodes.size(); ++i)
+        for (std::size_t j = 0; j <= i; ++j, out += 9)
+          Block(out, 3, 3) = share * (blocks[i][j] + blocks[j][i].transpose());
+    }
+  });
+}
+
+void Tractions::add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch,
+                             Points& force) const {
+  const double share = static_cast<const Scratch&>(scratch).share / 2;
+  for (const Face& face : faces_) {
+    const Blocks blocks = slopes(face, at.positions);
+    for (std::size_t i = 0; i < face.nodes.size(); ++i)
+      for (std::size_t j = 0; j < face.nodes.size(); ++j)
+        force.row(face.nodes[i]) +=
+            (share * (blocks[i][j] - blocks[j][i].transpose()) * vertex_at(moves, face.nodes[j])).transpose();
+  }
+}
+
+void Tractions::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& /*scratch*/,
+                           Points& force, Team& /*team*/) const {
+  const double change = to.share - from.share;
+  if (change == 0) return;
+  each_place(positions, [&](const Face& face, const Place& place, const Load& load) {
+    const Vec3 more = change * place.area_mm2 * load.whole();
+    for (std::size_t i = 0; i < face.nodes.size(); ++i)
+      force.row(face.nodes[i]) -= place.point->shape[static_cast<Eigen::Index>(i)] * more.transpose();
+  });
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,25 @@
+#include <softkin/statics/physical/system.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+std::vector<std::unique_ptr<Term::Scratch>> scratches(const std::vector<const Term*>& terms) {
+  std::vector<std::unique_ptr<Term::Scratch>> all;
+  for (const Term* term : terms) all.push_back(term->new_scratch());
+  return all;
+}
+
+}  // namespace
+
+Workspace::Workspace(const System& system)
+    : terms(scratches(system.terms())),
+      elastic(static_cast<Body::Scratch&>(*terms[0])),
+      fading(static_cast<FadingLoads::Scratch&>(*terms[2])),
+      contacts(system.contacts() ? &static_cast<Contacts::Scratch&>(*terms.back()) : nullptr),
+      layout(system.layout()),
+      slots(9 * static_cast<std::size_t>(layout->slots)),
+      slopes(system.model().actuators.size()),
+      saddle(system.measures(), layout, contacts ? Saddle::Precision::good : Saddle::Precision::enough) {}
+
+}  // namespace softkin::physical

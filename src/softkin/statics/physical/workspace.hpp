@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <softkin/statics/physical/body.hpp>
+#include <softkin/statics/physical/contacts.hpp>
+#include <softkin/statics/physical/loads.hpp>
+#include <softkin/statics/physical/placement.hpp>
+#include <softkin/statics/physical/saddle.hpp>
+#include <softkin/statics/physical/trail.hpp>
+
+namespace softkin::physical {
+
+class System;
+
+/// Everything that is written while solving; one per thread of control. Nothing is allocated per iteration.
+struct Workspace {
+  explicit Workspace(const System& system);
+
+  std::vector<std::unique_ptr<Term::Scratch>> terms;  // of each
+  Body::Scratch& elastic;
+  FadingLoads::Scratch& fading;
+  Contacts::Scratch* contacts;  // where there is contact
+
+  bool left_field = false;               // was a shape where a field is not known, as outside a grid
+  std::uint64_t evaluated = 0;           // times
+  std::uint64_t assembled = 0;           // by which the exact stiffness in the slots is; 0: none is there
+  std::shared_ptr<const Layout> layout;  // of the slots
+  LargeVector<double> slots, blocks, values;
+  Points gradient;             // of the Lagrangian in x
+  Points moves;                // of multiply()
+  Placement::Scratch placing;  // of advance()
+  std::vector<Points> slopes;  // of each active measure
+
+  Saddle saddle;                    // the last factorisation,
+  std::uint64_t factorised_by = 0;  // of which evaluation,
+  Points factorised;                // in which shape,
+  bool exact = false;               // of the stiffness neither made positive nor shifted,
+  /// Nearly its softest change of shape that the constraints leave, of length 1, and its curvature.
+  struct Softest {
+    Eigen::VectorXd direction;
+    double curvature;
+  };
+  std::optional<Softest> softest;  // of the factorisation, where it was asked for
+
+  Points home;      // equilibrium at which the last solve ended, and near which it factorised
+  Trail trail;      // that led there
+  Slopes tangents;  // of an equilibrium
+};
+
+}  // namespace softkin::physical

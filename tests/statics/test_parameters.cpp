@@ -1,0 +1,177 @@
+#include <softkin/core/error.hpp>
+
+#include "statics/magnetic_samples.hpp"
+#include "statics/sensitivity_samples.hpp"
+
+/// Derivatives of equilibria by numbers of the robot, against differences of equilibria.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// A number of a robot: adds to it.
+struct Number {
+  const char* name;
+  std::function<void(RobotSpec&, double)> add;
+  double size;  // what it is of the order of
+};
+
+Model changed(const RobotSpec& spec, const Number& number, double by) {
+  RobotSpec other = spec;
+  number.add(other, by);
+  return compile(other);
+}
+
+/// Fourth-order differences of the equilibria of four other robots.
+Difference difference_by(const RobotSpec& spec, const Number& number, const State& at) {
+  const double step = 3e-3 * number.size, h = 1 / (12 * step);
+  Difference sum{Points::Zero(at.positions.rows(), 3), Eigen::VectorXd::Zero(at.actuation.size())};
+  for (const auto& [steps, weight] : {std::pair{-2, h}, std::pair{-1, -8 * h}, std::pair{1, 8 * h}, std::pair{2, -h}}) {
+    const Model model = changed(spec, number, steps * step);
+    State start;
+    start.positions = at.positions;
+    const Equilibrium found = Statics(model).solve(at.actuation, start, tight(1e-10));
+    EXPECT_EQ(found.report.status, Status::converged) << number.name << ": " << found.report.remark;
+    sum.positions += weight * found.state.positions;
+    sum.multipliers += weight * found.state.multipliers;
+  }
+  return sum;
+}
+
+void expect_derivatives(const RobotSpec& spec, const Actuation& actuation, const std::vector<Number>& numbers,
+                        double tolerance = 1e-6) {
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, actuation, tight(1e-10));
+  std::vector<Model> models;
+  models.reserve(2 * numbers.size());
+  std::vector<Perturbed> perturbed;
+  for (const Number& number : numbers) {
+    const double half = 1e-5 * number.size;
+    const Model& more = models.emplace_back(changed(spec, number, half));
+    const Model& less = models.emplace_back(changed(spec, number, -half));
+    perturbed.push_back({more, less, 2 * half});
+  }
+  const ParameterSensitivity slopes = Perturbations(statics, perturbed).at(found.state);
+  ASSERT_TRUE(slopes.regular);
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    const Difference expected = difference_by(spec, numbers[p], found.state);
+    EXPECT_GT(expected.positions.cwiseAbs().maxCoeff() * numbers[p].size, 1e-6) << numbers[p].name;
+    EXPECT_LT(off_by(slopes.positions[p], expected.positions), tolerance) << numbers[p].name;
+    const Eigen::VectorXd multipliers = slopes.multipliers.col(static_cast<Index>(p));
+    EXPECT_LE((multipliers - expected.multipliers).cwiseAbs().maxCoeff(),
+              tolerance * expected.multipliers.cwiseAbs().maxCoeff() + 1e-9 / numbers[p].size)
+        << numbers[p].name;
+  }
+}
+
+RobotSpec loaded_finger() {
+  RobotSpec spec = bending_finger();
+  spec.actuators.push_back(cable("tendon", {{2, 6, 14}, {31.4, 6.3, 13.2}, {58, 6, 14}}));
+  spec.materials[0].density = 1100;
+  spec.gravity = {0, 0, -9.81};
+  spec.forces.push_back({"payload", {std::string("x_high"), {}}, {0.002, 0, -0.01}});
+  spec.tractions = {{"water", {std::string("y_high"), {}}, true, {0, 0, 0}, 0.5}};
+  add_volume_region(spec.mesh, "root", [](const Vec3& p) { return p.x() < 20; });
+  MaterialSpec root = spec.materials[0];
+  root.region = "root";
+  root.elastic = elastic(Law::yeoh, 1.4, 0.45);
+  root.elastic->c20 = 0.02;
+  spec.materials.push_back(root);
+  spec.fixed[0].displacement = {0, 0, 1};
+  return spec;
+}
+
+const std::vector<Number> numbers_of_finger{
+    {"youngs_modulus", [](RobotSpec& s, double by) { *s.materials[0].elastic->youngs_modulus += by; }, 1},
+    {"poisson_ratio", [](RobotSpec& s, double by) { *s.materials[0].elastic->poisson_ratio += by; }, 0.1},
+    {"c10", [](RobotSpec& s, double by) { *s.materials[1].elastic->c10 += by; }, 0.2},
+    {"c20", [](RobotSpec& s, double by) { *s.materials[1].elastic->c20 += by; }, 0.02},
+    {"density", [](RobotSpec& s, double by) { s.materials[0].density += by; }, 1000},
+    {"gravity", [](RobotSpec& s, double by) { s.gravity.y() += by; }, 5},
+    {"payload", [](RobotSpec& s, double by) { s.forces[0].force.z() += by; }, 0.01},
+    {"pressure", [](RobotSpec& s, double by) { s.tractions[0].pressure_kPa += by; }, 0.5},
+    {"displacement", [](RobotSpec& s, double by) { s.fixed[0].displacement.z() += by; }, 1},
+    {"cable", [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[1].points[1].point).z() += by; }, 1}};
+
+}  // namespace
+
+TEST(Parameters, OfARobotDrivenByVolumeAndLength) {
+  expect_derivatives(loaded_finger(), values({1.4, 0.93}), numbers_of_finger);
+}
+
+TEST(Parameters, OfARobotDrivenByPressureAndTension) {
+  RobotSpec spec = loaded_finger();
+  for (ActuatorSpec& actuator : spec.actuators) actuator = by_load(actuator);
+  std::vector<Number> numbers = numbers_of_finger;
+  numbers.push_back({"factor", [](RobotSpec& s, double by) { s.actuators[1].factor += by; }, 1});
+  numbers.push_back({"offset", [](RobotSpec& s, double by) { s.actuators[0].offset += by; }, 5});
+  expect_derivatives(spec, values({20, 0.2}), numbers);
+}
+
+TEST(Parameters, OfLayersUnderVoltage) {
+  RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {24, 6, 1}, Split::prisms));
+  spec.materials[0].elastic = elastic(Law::gent, 0.2, 0.45);
+  spec.materials[0].elastic->jm = 3;
+  spec.materials[0].permittivity = 4.7;
+  add_volume_region(spec.mesh, "upper", [](const Vec3& p) { return p.z() > 0.5; });
+  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 20, true);
+  skin.region = "upper";
+  skin.control = Control::load;
+  skin.rest = 0;
+  skin.prestretch = 1.1;
+  spec.actuators = {skin};
+  expect_differences_at(spec, values({8}));
+  expect_derivatives(
+      spec, values({8}),
+      {{"permittivity", [](RobotSpec& s, double by) { *s.materials[0].permittivity += by; }, 4},
+       {"prestretch", [](RobotSpec& s, double by) { s.actuators[0].prestretch += by; }, 0.1},
+       {"jm", [](RobotSpec& s, double by) { *s.materials[0].elastic->jm += by; }, 3},
+       {"shear_modulus", [](RobotSpec& s, double by) { *s.materials[0].elastic->shear_modulus += by; }, 0.07}});
+}
+
+TEST(Parameters, OfMagnetsInFields) {
+  RobotSpec spec = physical_robot(block_mesh({6, 1, 1}, {30, 6, 2}));
+  magnetise(spec, {120, 0, 30}, Magnetisation::turns);
+  add_uniform(spec);
+  const auto remanence = [](RobotSpec& s, double by) {
+    RobotSpec other = s;
+    magnetise(other, {120, 0, 30 + by}, Magnetisation::turns);
+    s.materials[0].remanence = other.materials[0].remanence;
+  };
+  expect_derivatives(spec, values({0, 0, 8}), {{"remanence", remanence, 30}});
+}
+
+TEST(Parameters, AreRefusedWhereMoreThanNumbersDiffers) {
+  const RobotSpec spec = bending_finger();
+  RobotSpec held = spec;
+  held.fixed.push_back({{std::string("x_high"), {}}, {false, true, false}});
+  const Model model = compile(spec), other = compile(held), moved = compile([&] {
+                                                              RobotSpec s = spec;
+                                                              s.mesh.vertices *= 1.01;
+                                                              return s;
+                                                            }());
+  const Statics statics(model);
+  EXPECT_THROW(Perturbations(statics, {{other, model, 1}}), InvalidInput);
+  EXPECT_THROW(Perturbations(statics, {{moved, model, 1}}), InvalidInput);
+  EXPECT_THROW(Perturbations(statics, {{model, model, 0}}), InvalidInput);
+  EXPECT_THROW(Statics(other, statics), InvalidInput);
+  const Model shapes = compile(finger_robot(true));
+  EXPECT_THROW(Perturbations(Statics(shapes), {}), InvalidInput);
+}
+
+/// What another robot shares changes nothing of what it finds.
+TEST(Parameters, ARobotThatSharesPatternsHasTheSameEquilibria) {
+  const RobotSpec spec = loaded_finger();
+  RobotSpec softer = spec;
+  *softer.materials[0].elastic->youngs_modulus = 0.7;
+  const Model model = compile(spec), other = compile(softer);
+  const Statics statics(model), alone(other), sharing(other, statics);
+  const Equilibrium expected = settled(alone, values({1.4, 0.93})), found = settled(sharing, values({1.4, 0.93}));
+  EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-8);
+  EXPECT_GT(distance(settled(statics, values({1.4, 0.93})).state.positions, expected.state.positions), 0.01);
+}
+
+}  // namespace softkin
