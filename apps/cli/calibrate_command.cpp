@@ -296,10 +296,11 @@ void add_calibrate(CLI::App& app, Run& run) {
   calibrate.require_subcommand(0, 1);  // "1" would hide the name of one that does not exist
   calibrate.callback([&calibrate] {
     if (calibrate.get_subcommands().empty())
-      throw CLI::RequiredError("a subcommand of calibrate (material, relaxation, pressure, dea)");
+      throw CLI::RequiredError("a subcommand of calibrate (material, robot, relaxation, pressure, dea)");
   });
   calibrate.footer("Example:\n  softkin calibrate material specimens.csv");
   add_calibrate_material(calibrate, run);
+  add_calibrate_robot(calibrate, run);
   add_command<RelaxationOptions>(
       calibrate, run, "relaxation",
       "Viscosity from relaxation, creep and cycles of a strip: a law and Maxwell branches",

@@ -63,6 +63,7 @@ inline CLI::Validator must_be(const std::string& what, const std::function<bool(
 
 void add_calibrate(CLI::App& app, Run& run);
 void add_calibrate_material(CLI::App& calibrate, Run& run);
+void add_calibrate_robot(CLI::App& calibrate, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_drive(CLI::App& app, Run& run);
 void add_examples(CLI::App& app, Run& run);

@@ -1,4 +1,4 @@
-"""Parameters of the model from measurements: docs/calibration.md, docs/pressure.md, docs/voltage.md."""
+"""Parameters of the model from measurements: docs/calibration.md, docs/poses.md, docs/pressure.md, docs/voltage.md."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 from . import _core
 from ._arrays import Floats
 from .errors import SoftkinWarning
-from .robot import Robot
+from .robot import Robot, _yaml_text, load
 from .table import Table
 
 __all__ = [
@@ -24,10 +24,12 @@ __all__ = [
     "Curve",
     "ModulusCheck",
     "Prediction",
+    "RobotFit",
     "dea",
     "material",
     "pressure",
     "relaxation",
+    "robot",
     "tensile",
 ]
 
@@ -407,3 +409,109 @@ def dea(
         raise ValueError("prestretch_across is for loading='constrained'")
     properties = (shear_modulus_MPa, permittivity, thickness_mm, prestretch, prestretch_across, stretch_limit, breakdown_kV_mm)
     return Curve(_core.calibrate_dea(files, law or "", loading or "", *properties))
+
+
+class RobotFit:
+    """Numbers of a robot, and how they were found from its poses."""
+
+    def __init__(self, core: _core.RobotCalibration, scene: str, changes: Mapping[str, object]) -> None:
+        self._core = core
+        self._scene = scene
+        self._changes = dict(changes)
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """What `softkin calibrate robot --json` prints."""
+        report: dict[str, Any] = json.loads(self._core.json)
+        return report
+
+    @property
+    def converged(self) -> bool:
+        """Was a minimum found, with an equilibrium in every pose?"""
+        return bool(self.report["status"] == "converged")
+
+    @property
+    def values(self) -> dict[str, float]:
+        """By name, in the scene's units; of base and camera [mm, degrees]."""
+        return {number["name"]: number["value"] for number in self.report["numbers"]}
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation by name; NaN: the poses do not tell it."""
+        known = {number["name"]: number["deviation"] for number in self.report["numbers"]}
+        return {name: np.nan if deviation is None else deviation for name, deviation in known.items()}
+
+    @property
+    def readings(self) -> Table:
+        """Measured, computed and their difference, a row each."""
+        return Table(self._core.readings)
+
+    def robot(self) -> Robot:
+        """The scene's robot with the fitted numbers; base and camera are of the measurements, not of it."""
+        own = {name: value for name, value in self.values.items() if name.split(".")[0] not in ("base", "camera")}
+        return load(self._scene, changes={**self._changes, **own})
+
+    def save_plot(self, path: PathLike) -> None:
+        """Measured and computed markers: an .svg."""
+        self._core.save_plot(os.fspath(path))
+
+    def __repr__(self) -> str:
+        return self._core.text.rstrip("\n")
+
+
+def _fitted_number(name: str, value: object) -> str:
+    if value is None:
+        return name
+    if isinstance(value, str):
+        return f"{name}={value}"
+    values = value if isinstance(value, Sequence) else [value]
+    return f"{name}=" + ",".join(repr(float(each)) for each in values)
+
+
+def robot(
+    scene: PathLike,
+    poses: PathLike,
+    *,
+    fit: Mapping[str, float | Sequence[float] | str | None] | Sequence[str] = (),
+    changes: Mapping[str, object] | None = None,
+    loss: str = "squares",
+    deviation_mm: float | None = None,
+    deviation_kPa: float | None = None,
+    deviation_N: float | None = None,
+    keep: int = 0,
+    threads: int = 0,
+    progress: Callable[[int, float], object] | None = None,
+) -> RobotFit:
+    """Numbers of a robot from its measured poses, by Levenberg's and Marquardt's method through equilibria.
+
+    scene      YAML, physical formulation
+    poses      CSV: commands as in a path, then tip_x_mm, ... of markers, air_pressure_kPa, tendon_tension_N; empty
+               cells were not read
+    fit        by path: a start, (start, low, high), "mean+-deviation" (known before) or None, the scene's; or texts as
+               of --fit; base.x, base.rx, ...: where the robot stands in the measuring frame [mm, degrees]; camera.x, ...:
+               the same, gravity turns along. Empty: the poses are foretold as the scene is
+    changes    of the scene, by path
+    loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
+    deviation  of a coordinate [mm], pressure [kPa], tension [N] as read; None: by what is left
+    keep       poses that are not fitted to but foretold, spread evenly
+    threads    poses side by side; 0: as many as the machine has
+    progress   called with the iteration and the root mean square of the markers [mm], now and then
+    raises     InvalidInput naming the file, line and column, or the number
+    """
+    if loss not in ("squares", "huber", "cauchy"):
+        raise ValueError(f"loss must be 'squares', 'huber' or 'cauchy', not {loss!r}")
+    for name, given in (("deviation_mm", deviation_mm), ("deviation_kPa", deviation_kPa), ("deviation_N", deviation_N)):
+        if given is not None and not given > 0:
+            raise ValueError(f"{name} must be greater than 0, not {given}")
+    if keep < 0:
+        raise ValueError(f"keep must be at least 0, not {keep}")
+    task = _core.PosesTask()
+    task.scene, task.poses, task.loss = os.fspath(scene), os.fspath(poses), loss
+    if isinstance(fit, Mapping):
+        task.numbers = [_fitted_number(name, value) for name, value in fit.items()]
+    else:
+        task.numbers = list(fit)
+    task.changes = [f"{path}={_yaml_text(value)}" for path, value in (changes or {}).items()]
+    task.deviation_mm, task.deviation_kPa, task.deviation_N = deviation_mm or 0, deviation_kPa or 0, deviation_N or 0
+    task.keep, task.threads = keep, threads
+    return RobotFit(_core.calibrate_robot(task, progress), task.scene, changes or {})

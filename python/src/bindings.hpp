@@ -21,6 +21,7 @@ void bind_map(nanobind::module_& module);
 void bind_page(nanobind::module_& module);
 void bind_compare(nanobind::module_& module);
 void bind_calibrate(nanobind::module_& module);
+void bind_calibrate_robot(nanobind::module_& module);
 void bind_drive(nanobind::module_& module);
 
 }  // namespace softkin::python

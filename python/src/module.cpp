@@ -35,5 +35,6 @@ NB_MODULE(_core, module) {
   python::bind_page(module);
   python::bind_compare(module);
   python::bind_calibrate(module);
+  python::bind_calibrate_robot(module);
   python::bind_drive(module);
 }

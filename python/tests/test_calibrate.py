@@ -209,3 +209,43 @@ def test_the_shipped_syringe_reads_what_the_chamber_did(examples: Path, tmp_path
         nearest = int(abs(found.unloading.input - p).argmin())
         assert found.unloading.input[nearest] == pytest.approx(p, abs=1e-4)
         assert found.unloading.ratio[nearest] == pytest.approx(ratio, abs=1e-5)
+
+
+def test_a_robot_from_its_poses(examples: Path, command: str, tmp_path: Path) -> None:
+    scenes = examples.parent / "docs" / "scenes"
+    scene, poses = scenes / "finger_order_1.yaml", scenes / "finger_poses.csv"
+    told: list[tuple[int, float]] = []
+    found = calibrate.robot(
+        scene,
+        poses,
+        fit={"materials.body.youngs_modulus": (45, 10, 100), "base.ry": None, "base.z": 0.0},
+        keep=2,
+        progress=lambda iteration, rms_mm: told.append((iteration, rms_mm)),
+    )
+    assert found.converged and told
+    assert found.values["materials.body.youngs_modulus"] == pytest.approx(38, abs=0.1)
+    assert found.values["base.z"] == pytest.approx(1.5, abs=3 * found.deviations["base.z"])
+    options = ["--fit", "materials.body.youngs_modulus=45,10,100", "--fit", "base.ry", "--fit", "base.z", "--keep", "2", "--json"]
+    printed = json.loads(subprocess.run([command, "calibrate", "robot", scene, poses, *options], capture_output=True, check=True).stdout)
+    for report in (printed, found.report):
+        report.pop("seconds")
+    assert printed["numbers"] == found.report["numbers"]
+    assert len(found.readings) == 7 * 5 - 3  # three were not read
+    bent = found.robot().solve({"air": 1.5})
+    assert bent.actuators["air"].pressure_kPa == pytest.approx(965, abs=4)
+    found.save_plot(tmp_path / "fit.svg")
+    assert "measured" in (tmp_path / "fit.svg").read_text()
+
+
+def test_a_robot_from_its_poses_refuses(examples: Path, tmp_path: Path) -> None:
+    scenes = examples.parent / "docs" / "scenes"
+    scene, poses = scenes / "finger_order_1.yaml", scenes / "finger_poses.csv"
+    with pytest.raises(softkin.InvalidInput, match="youngs"):
+        calibrate.robot(scene, poses, fit={"materials.body.youngs": None})
+    with pytest.raises(ValueError, match="loss"):
+        calibrate.robot(scene, poses, loss="least")
+    with pytest.raises(softkin.InvalidInput, match="7 poses"):
+        calibrate.robot(scene, poses, fit=["base.z"], keep=7)
+    (tmp_path / "poses.csv").write_text("air,top_x_mm\n1,120\n")
+    with pytest.raises(softkin.InvalidInput, match="no marker 'top'"):
+        calibrate.robot(scene, tmp_path / "poses.csv")

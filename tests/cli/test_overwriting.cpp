@@ -53,6 +53,7 @@ struct Workshop : BlockFolder {
     write("drive.csv", "t_s,tendon,air_kPa\n0,1,0\n1,0.9,5\n");
     write("syringe.csv", syringe());
     write("dea.csv", "voltage_kv,area_ratio\n0,1\n1,1.02\n2,1.09\n3,1.2\n");
+    write("poses.csv", "tendon,air_kPa,tip_x_mm,tip_z_mm\n1,0,20,6\n0.95,5,19.9,6.2\n");
     write("tensile.csv", "strain,stress_mpa\n0,0\n0.1,0.1\n0.2,0.19\n0.3,0.28\n0.4,0.36\n0.5,0.44\n");
     write("relaxation.csv", relaxation());
     EXPECT_EQ(run({"fk", "block.yaml", "--path", "path.csv", "--report", "new.json"}).exit_code, 0);
@@ -106,6 +107,7 @@ std::vector<Written> all_outputs() {
   const Words pressure{"calibrate", "pressure",         "syringe.csv", "--syringe-volume",
                        "600mm3",    "--chamber-volume", "0.192mL"};
   const Words dea{"calibrate", "dea", "dea.csv"}, tensile{"calibrate", "material", "--tensile", "tensile.csv"};
+  const Words robot{"calibrate", "robot", "drive.yaml", "poses.csv"};
   const Words relaxation{"calibrate", "relaxation", "relaxation.csv"}, convert{"mesh", "convert", "block.msh"};
   return {
       {"fk", "-o", fk, "a.vtu"},
@@ -165,6 +167,9 @@ std::vector<Written> all_outputs() {
       {"calibrate material", "-o", tensile, "m.yaml"},
       {"calibrate material", "--plot", tensile, "a.svg"},
       {"calibrate material", "--residuals", tensile, "t.csv"},
+      {"calibrate robot", "--report", robot, "b.json"},
+      {"calibrate robot", "--table", robot, "t.csv"},
+      {"calibrate robot", "--plot", robot, "a.svg"},
       {"calibrate relaxation", "-o", relaxation, "m.yaml"},
       {"calibrate relaxation", "--plot", relaxation, "a.svg"},
       {"calibrate relaxation", "--residuals", relaxation, "t.csv"},
@@ -229,7 +234,7 @@ std::vector<std::pair<std::string, std::string>> file_options(const std::string&
 
 Words all_commands() {
   Words all{"fk", "ik", "follow", "walk", "workspace", "grasp", "map", "map export", "drive", "compare", "view"};
-  for (const char* kind : {"pressure", "dea", "material", "relaxation"})
+  for (const char* kind : {"pressure", "dea", "material", "relaxation", "robot"})
     all.push_back(std::string("calibrate ") + kind);
   for (const char* kind : {"info", "check", "convert"}) all.push_back(std::string("mesh ") + kind);
   for (const char* kind : {"list", "copy"}) all.push_back(std::string("examples ") + kind);

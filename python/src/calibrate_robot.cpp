@@ -1,0 +1,103 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <softkin/calibration/robot_report.hpp>
+#include <softkin/io/table/measured_poses.hpp>
+
+#include "bindings.hpp"
+#include "watch.hpp"
+
+namespace softkin::python {
+
+namespace {
+
+/// Measured poses and what is asked of them, as the Python layer has it.
+struct PosesTask {
+  std::string scene, poses, loss = "squares";
+  std::vector<std::string> numbers, changes;
+  double deviation_mm = 0, deviation_kPa = 0, deviation_N = 0;  // 0: by what is left
+  int keep = 0, threads = 0;
+};
+
+/// A fit with what is told of it.
+struct RobotCalibration {
+  std::string text, json;
+  Table readings;
+  std::optional<Plot> plot;  // none: no marker was measured
+};
+
+RobotCalibration fit(const PosesTask& task,
+                     const std::optional<nb::typed<nb::callable, nb::object(int, double)>>& tell) {
+  std::optional<RobotCalibration> told;
+  Watch watch{std::nullopt};
+  std::atomic<int> iteration = 0;
+  std::atomic<double> rms_mm = 0;
+  const auto work = [&] {
+    AskedScene asked;
+    asked.scene = task.scene;
+    asked.changes = task.changes;
+    std::vector<std::filesystem::path> inputs;
+    std::vector<calibration::FittedNumber> numbers;
+    for (const std::string& text : task.numbers) numbers.push_back(calibration::parse_fitted_number("fit", text));
+    const calibration::NumberedRobot robot(asked, numbers, inputs);
+    const Model model = robot.model(robot.start());
+    const MeasuredPoses poses = read_measured_poses(task.poses, model);
+    calibration::RobotFitOptions options;
+    for (std::size_t i = 0; i < std::size(calibration::loss_names); ++i)
+      if (task.loss == calibration::loss_names[i]) options.loss = static_cast<calibration::Loss>(i);
+    options.deviation_mm = task.deviation_mm;
+    options.deviation_kPa = task.deviation_kPa;
+    options.deviation_N = task.deviation_N;
+    options.kept = calibration::kept_aside(task.keep, poses.commands.size());
+    options.threads = task.threads;
+    const auto progress = [&](const calibration::FitProgress& p) {
+      iteration = p.iteration;
+      rms_mm = p.rms_mm;
+      return watch.go_on();
+    };
+    const calibration::RobotFit found = numbers.empty()
+                                            ? calibration::predict_poses(robot, poses, robot.start(), options, progress)
+                                            : calibration::fit_robot(robot, poses, options, progress);
+    if (found.status == Status::interrupted) return;
+    const calibration::RobotFitReport report{robot, poses, options, found, model};
+    told = RobotCalibration{robot_fit_text(report), robot_fit_json(report), robot_fit_table(report), {}};
+    for (const PoseColumn& column : poses.columns)
+      if (column.marker >= 0 && !told->plot) told->plot = robot_fit_plot(report);
+  };
+  watch.watch(work, [&] {
+    if (tell) (*tell)(iteration.load(), rms_mm.load());
+  });
+  return std::move(told).value();
+}
+
+}  // namespace
+
+void bind_calibrate_robot(nb::module_& module) {
+  nb::class_<PosesTask>(module, "PosesTask", "Measured poses of a robot and what is fitted to them.")
+      .def(nb::init<>())
+      .def_rw("scene", &PosesTask::scene)
+      .def_rw("poses", &PosesTask::poses)
+      .def_rw("loss", &PosesTask::loss)
+      .def_rw("numbers", &PosesTask::numbers)
+      .def_rw("changes", &PosesTask::changes)
+      .def_rw("deviation_mm", &PosesTask::deviation_mm)
+      .def_rw("deviation_kPa", &PosesTask::deviation_kPa)
+      .def_rw("deviation_N", &PosesTask::deviation_N)
+      .def_rw("keep", &PosesTask::keep)
+      .def_rw("threads", &PosesTask::threads);
+  nb::class_<RobotCalibration>(module, "RobotCalibration", "Numbers of a robot and how they were found.")
+      .def_ro("text", &RobotCalibration::text)
+      .def_ro("json", &RobotCalibration::json)
+      .def_ro("readings", &RobotCalibration::readings)
+      .def(
+          "save_plot",
+          [](const RobotCalibration& c, const std::string& path) {
+            if (!c.plot) throw nb::value_error("a plot shows markers, and none was measured");
+            write_svg(path, *c.plot);
+          },
+          nb::arg("path"));
+  module.def("calibrate_robot", &fit, nb::arg("task"), nb::arg("progress").none());
+}
+
+}  // namespace softkin::python

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <softkin/calibration/robot_parameters.hpp>
+#include <softkin/model/measured_poses.hpp>
+#include <softkin/statics/statics.hpp>
+
+namespace softkin::calibration {
+
+/// What a reading counts that is far off: its square; or no more than its distance (huber); or hardly more than a near
+/// one (cauchy).
+enum class Loss { squares, huber, cauchy };
+
+constexpr const char* loss_names[] = {"squares", "huber", "cauchy"};
+
+struct RobotFitOptions {
+  StaticsOptions solver{};
+  Loss loss = Loss::squares;
+  double deviation_mm = 0, deviation_kPa = 0, deviation_N = 0;  // of readings; 0: told by what is left
+  int max_iterations = 30;
+  int threads = 0;           // poses side by side; 0: as many as the machine has
+  std::vector<bool> kept{};  // per pose: not fitted to; empty: none
+};
+
+/// What the robot does where numbers are as they are.
+struct ComputedPoses {
+  Eigen::MatrixXd values;               // as MeasuredPoses::values; NaN where a pose has no equilibrium
+  std::vector<Equilibrium> equilibria;  // per pose
+};
+
+/// The root mean square of readings.
+struct Misfit {
+  double rms = 0, largest = 0;
+  std::size_t readings = 0;
+};
+
+struct RobotFit {
+  Status status = Status::not_converged;  // interrupted: the best so far
+  std::string remark{};                   // why it is not converged
+  Eigen::VectorXd values, deviations;     // deviation NaN: the poses do not tell it
+  Eigen::MatrixXd correlations;           // of those that are told; else 0
+  std::vector<int> at_bound;              // per number: -1 low, +1 high, else 0
+  ComputedPoses computed;
+  double scale_mm = 0, scale_kPa = 0, scale_N = 0;  // deviation of a reading: given, or by what is left; 0: none of it
+  Misfit markers_mm;                                // distances of markers, of poses that were fitted to
+  Misfit kept_mm;                                   // of the others
+  int iterations = 0;
+  int without_equilibrium = 0;  // poses
+  double seconds = 0;
+};
+
+struct FitProgress {
+  int iteration = 0, poses_done = 0, poses = 0;
+  double rms_mm = 0;  // of the last iteration; 0: none yet
+};
+/// False: stop.
+using FitCallback = std::function<bool(const FitProgress&)>;
+
+/// So many poses, spread evenly, that are not fitted to.
+///
+/// throws  InvalidInput naming --keep: none would be left
+[[nodiscard]] std::vector<bool> kept_aside(int keep, std::size_t poses);
+
+/// The numbers at which the robot does what was measured, by Levenberg's and Marquardt's method through equilibria,
+/// with exact derivatives.
+///
+/// minimises  sum over readings of loss((computed - measured) / scale) + sum over priors of
+///            ((value - mean) / deviation)^2 within the bounds; a marker's coordinates are one reading
+/// deviations of the normal equations at the end, scaled by the deviation of readings
+/// throws     InvalidInput: a target-shape robot, no pose to fit to, fewer readings than numbers
+[[nodiscard]] RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
+                                 const FitCallback& progress = {});
+
+/// The poses of a robot whose numbers are given, and how far they are from what was measured.
+[[nodiscard]] RobotFit predict_poses(const NumberedRobot& robot, const MeasuredPoses& poses,
+                                     const Eigen::VectorXd& values, const RobotFitOptions& options,
+                                     const FitCallback& progress = {});
+
+}  // namespace softkin::calibration

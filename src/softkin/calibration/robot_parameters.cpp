@@ -1,0 +1,196 @@
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <softkin/calibration/robot_parameters.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/io/mesh/text_mesh_tools.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/scanner.hpp>
+#include <softkin/io/scene/changes.hpp>
+
+namespace softkin::calibration {
+
+namespace {
+
+constexpr std::array<const char*, 6> frame_parts{"x", "y", "z", "rx", "ry", "rz"};
+
+/// Which coordinate of the frame a name is; 0 to 5.
+std::optional<int> frame_part(const std::string& name, const std::string& frame) {
+  for (std::size_t i = 0; i < frame_parts.size(); ++i)
+    if (name == frame + "." + frame_parts[i]) return static_cast<int>(i);
+  return std::nullopt;
+}
+
+bool is_of_frame(const std::string& name) {
+  return frame_part(name, "base") || frame_part(name, "camera");
+}
+
+/// Turns about x, then y, then z of the frame that stands still.
+Mat3 turned(const Vec3& degrees) {
+  const Vec3 angle = degrees * std::numbers::pi / 180;
+  return (Eigen::AngleAxisd(angle.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vec3::UnitY()) *
+          Eigen::AngleAxisd(angle.x(), Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+struct Six {
+  Vec3 place{0, 0, 0}, degrees{0, 0, 0};
+};
+
+Six six_of(const std::vector<FittedNumber>& numbers, const Eigen::VectorXd& values, const std::string& frame) {
+  Six six;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (const auto part = frame_part(numbers[i].name, frame))
+      (*part < 3 ? six.place[*part] : six.degrees[*part - 3]) = values[static_cast<Index>(i)];
+  return six;
+}
+
+std::string digits_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+}  // namespace
+
+FittedNumber parse_fitted_number(const std::string& option, const std::string& text) {
+  const auto refuse = [&](const std::string& why) { throw InvalidInput(option + " " + excerpt(text) + ": " + why); };
+  const auto number = [&](std::string_view part) {
+    double value = 0;
+    if (!parse_real(part, value)) refuse("expected a finite number, not " + excerpt(part));
+    return value;
+  };
+  FittedNumber fitted;
+  const std::size_t equals = text.find('=');
+  fitted.name = text.substr(0, equals);
+  if (fitted.name.empty()) refuse("expected NAME, NAME=START, NAME=START,LOW,HIGH or NAME=MEAN+-DEVIATION");
+  if (equals == std::string::npos) return fitted;
+  std::string_view rest = std::string_view(text).substr(equals + 1);
+  const std::size_t comma = rest.find(',');
+  std::string_view first = rest.substr(0, comma);
+  if (const std::size_t sign = first.find("+-"); sign != std::string_view::npos) {
+    fitted.deviation = number(trimmed(first.substr(sign + 2)));
+    if (!(*fitted.deviation > 0)) refuse("the deviation must be above 0");
+    first = first.substr(0, sign);
+  }
+  fitted.start = number(trimmed(first));
+  if (comma == std::string_view::npos) return fitted;
+  rest = rest.substr(comma + 1);
+  const std::size_t second = rest.find(',');
+  if (second == std::string_view::npos) refuse("expected both bounds, as NAME=START,LOW,HIGH");
+  fitted.low = number(trimmed(rest.substr(0, second)));
+  fitted.high = number(trimmed(rest.substr(second + 1)));
+  if (!(fitted.low < fitted.high)) refuse("the low bound must be below the high one");
+  if (*fitted.start < fitted.low || *fitted.start > fitted.high) refuse("the start is outside its bounds");
+  return fitted;
+}
+
+/// What files hold, read once.
+struct NumberedRobot::Cache {
+  template <class Value>
+  const Value& of(std::map<std::string, Value>& known, const std::filesystem::path& path,
+                  Value (*read)(const std::filesystem::path&)) {
+    const std::lock_guard lock(mutex);
+    const auto found = known.find(path.string());
+    if (found != known.end()) return found->second;
+    files.push_back(path);
+    return known.emplace(path.string(), read(path)).first->second;
+  }
+
+  std::mutex mutex;
+  std::vector<std::filesystem::path> files;
+  std::map<std::string, Mesh> meshes;
+  std::map<std::string, TriangleSurface> surfaces;
+  std::map<std::string, Sidecar> sidecars;
+  std::map<std::string, ActuatorCurve> curves;
+  std::map<std::string, std::string> texts;
+  std::map<std::string, FieldSamples> samples;
+};
+
+SceneFiles NumberedRobot::reading_once() const {
+  const std::shared_ptr<Cache> cache = cache_;
+  using Path = std::filesystem::path;
+  return {[cache](const Path& path) {
+            return cache->of<Mesh>(cache->meshes, path, [](const Path& p) { return read_mesh(p); });
+          },
+          [cache](const Path& path) {
+            return cache->of<TriangleSurface>(cache->surfaces, path, [](const Path& p) { return read_stl(p); });
+          },
+          [cache](const Path& path) {
+            return cache->of<Sidecar>(cache->sidecars, path, [](const Path& p) { return read_sidecar(p); });
+          },
+          [cache](const Path& path) {
+            return cache->of<ActuatorCurve>(cache->curves, path, [](const Path& p) { return read_actuator_curve(p); });
+          },
+          [cache](const Path& path) {
+            return cache->of<std::string>(cache->texts, path, [](const Path& p) { return read_file(p); });
+          },
+          [cache](const Path& path) {
+            return cache->of<FieldSamples>(cache->samples, path, [](const Path& p) { return read_field_samples(p); });
+          }};
+}
+
+NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
+                             std::vector<std::filesystem::path>& inputs)
+    : file_(asked.scene), asked_(asked), numbers_(numbers), cache_(std::make_shared<Cache>()) {
+  root_ = scene::parse_yaml(read_file(asked.scene), asked.scene);
+  for (const std::string& material : asked.materials)
+    root_ = scene::changed(root_, "--material", material, "materials");
+  for (const std::string& each : asked.changes) root_ = scene::changed(root_, "--change", each, "");
+  for (FittedNumber& number : numbers_) {
+    if (!number.start) number.start = is_of_frame(number.name) ? 0.0 : scene::number_at(root_, "--fit", number.name);
+    if (*number.start < number.low || *number.start > number.high)
+      throw InvalidInput("--fit " + number.name + ": its start, " + softkin::number(*number.start) +
+                         ", is outside its bounds");
+    for (const FittedNumber& other : numbers_)
+      if (&other != &number && other.name == number.name)
+        throw InvalidInput("--fit " + number.name + ": the number is given twice");
+    const bool bounded = std::isfinite(number.high - number.low);
+    const bool turns = number.name.find(".r") != std::string::npos && is_of_frame(number.name);
+    sizes_.push_back(*number.start != 0 ? std::abs(*number.start)
+                     : number.deviation ? *number.deviation
+                     : bounded          ? 0.5 * (number.high - number.low)
+                     : turns            ? 10.0
+                                        : 1.0);
+  }
+  (void)spec(start());
+  inputs.insert(inputs.end(), cache_->files.begin(), cache_->files.end());
+}
+
+Eigen::VectorXd NumberedRobot::start() const {
+  Eigen::VectorXd values(static_cast<Index>(numbers_.size()));
+  for (std::size_t i = 0; i < numbers_.size(); ++i) values[static_cast<Index>(i)] = *numbers_[i].start;
+  return values;
+}
+
+RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
+  std::shared_ptr<const scene::Node> root = root_;
+  for (std::size_t i = 0; i < numbers_.size(); ++i)
+    if (!is_of_frame(numbers_[i].name))
+      root = scene::changed(root, "--fit", numbers_[i].name + "=" + digits_of(values[static_cast<Index>(i)]), "");
+  RobotSpec spec = parse_scene(*root, file_, reading_once());
+  change(spec, asked_);
+  spec.gravity = turned(six_of(numbers_, values, "base").degrees).transpose() * spec.gravity;
+  return spec;
+}
+
+Model NumberedRobot::model(const Eigen::VectorXd& values) const {
+  return compile(spec(values));
+}
+
+MeasuringFrame NumberedRobot::frame(const Eigen::VectorXd& values) const {
+  const Six base = six_of(numbers_, values, "base"), camera = six_of(numbers_, values, "camera");
+  const Mat3 rotation = turned(camera.degrees);
+  return {rotation * turned(base.degrees), rotation * base.place + camera.place};
+}
+
+bool NumberedRobot::of_camera(std::size_t number) const {
+  return frame_part(numbers_[number].name, "camera").has_value() ||
+         frame_part(numbers_[number].name, "base").value_or(5) < 3;
+}
+
+}  // namespace softkin::calibration

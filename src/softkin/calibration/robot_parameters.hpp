@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <softkin/io/scene/scene.hpp>
+#include <softkin/model/model.hpp>
+#include <string>
+#include <vector>
+
+namespace softkin::calibration {
+
+/// A number that is fitted: of the scene by its path, as --change has it, or a coordinate of the frame in which was
+/// measured: base.x, base.y, base.z [mm], base.rx, base.ry, base.rz [degrees], where the robot's frame stands in it;
+/// camera.x and so on, the same where gravity turns along, as when nothing but the camera was moved.
+struct FittedNumber {
+  std::string name;
+  std::optional<double> start{};  // none: the scene's
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  std::optional<double> deviation{};  // of the start as a prior; none: nothing is known before
+};
+
+/// "NAME", "NAME=start", "NAME=start,low,high", "NAME=mean+-deviation" or "NAME=mean+-deviation,low,high".
+///
+/// throws  InvalidInput naming option and text
+[[nodiscard]] FittedNumber parse_fitted_number(const std::string& option, const std::string& text);
+
+/// Where the robot's frame stands in that of the measurements: x = rotation X + place.
+struct MeasuringFrame {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 place{0, 0, 0};
+};
+
+/// A robot as a function of some of its numbers. Files are read once.
+class NumberedRobot {
+ public:
+  /// inputs  the files that the scene names are added
+  /// throws  InvalidInput: what reading the scene throws; numbers that it does not have, starts outside their bounds
+  NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
+                std::vector<std::filesystem::path>& inputs);
+
+  [[nodiscard]] const std::vector<FittedNumber>& numbers() const { return numbers_; }
+  [[nodiscard]] Eigen::VectorXd start() const;
+  /// What a number is of the order of: what steps of it are measured by.
+  [[nodiscard]] double size(std::size_t number) const { return sizes_[number]; }
+
+  [[nodiscard]] Model model(const Eigen::VectorXd& values) const;
+  [[nodiscard]] MeasuringFrame frame(const Eigen::VectorXd& values) const;
+  /// Is it one of the frame alone, which the robot does not know of?
+  [[nodiscard]] bool of_camera(std::size_t number) const;
+
+ private:
+  [[nodiscard]] SceneFiles reading_once() const;
+  [[nodiscard]] RobotSpec spec(const Eigen::VectorXd& values) const;
+
+  std::string file_;
+  AskedScene asked_;
+  std::shared_ptr<const scene::Node> root_;
+  std::vector<FittedNumber> numbers_;
+  std::vector<double> sizes_;
+  struct Cache;
+  std::shared_ptr<Cache> cache_;
+};
+
+}  // namespace softkin::calibration

@@ -1,0 +1,349 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <softkin/calibration/robot_problem.hpp>
+#include <softkin/core/error.hpp>
+#include <thread>
+
+namespace softkin::calibration {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+/// By which numbers are perturbed, of what they are of the order of.
+constexpr double perturbation = 1e-5;
+/// Of the distances of readings whose deviation is not known: median over deviation, of one, two and three coordinates.
+constexpr double medians[3] = {0.6745, 1.1774, 1.5382};
+/// Distances over the deviation from which a reading counts less: 95 % efficiency where all errors are normal.
+/// source  Huber 1981; Rey 1983
+constexpr double huber_at = 1.345, cauchy_at = 2.385;
+
+}  // namespace
+
+/// Robots with a number a little larger and smaller, and the frame's changes.
+struct RobotProblem::Changes {
+  std::vector<Model> models;   // those of a number side by side
+  std::vector<Index> numbers;  // of which they are
+  std::unique_ptr<Perturbations> perturbations;
+  std::vector<double> differences;  // per number of the robot
+  std::vector<MeasuringFrame> more, less;
+
+  Changes(const NumberedRobot& robot, const RobotPoint& point) {
+    const auto count = static_cast<Index>(robot.numbers().size());
+    models.reserve(2 * robot.numbers().size());
+    std::vector<Perturbed> perturbed;
+    for (Index i = 0; i < count; ++i) {
+      const double half = perturbation * robot.size(static_cast<std::size_t>(i));
+      Eigen::VectorXd above = point.values, below = point.values;
+      above[i] += half;
+      below[i] -= half;
+      differences.push_back(above[i] - below[i]);
+      more.push_back(robot.frame(above));
+      less.push_back(robot.frame(below));
+      if (robot.of_camera(static_cast<std::size_t>(i))) continue;
+      const Model& larger = models.emplace_back(robot.model(above));
+      const Model& smaller = models.emplace_back(robot.model(below));
+      perturbed.push_back({larger, smaller, differences.back()});
+      numbers.push_back(i);
+    }
+    perturbations = std::make_unique<Perturbations>(*point.statics, perturbed);
+  }
+};
+
+RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
+                           const FitCallback& progress)
+    : robot_(robot), poses_(poses), options_(options), progress_(progress) {
+  for (Index c = 0; c < static_cast<Index>(poses.columns.size()); ++c) {
+    const PoseColumn& column = poses.columns[static_cast<std::size_t>(c)];
+    const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
+      return column.marker >= 0 && group.marker == column.marker;
+    });
+    if (same == groups_.end())
+      groups_.push_back({{c}, column.marker, column.actuator});
+    else
+      same->columns.push_back(c);
+  }
+  first_model_ = std::make_shared<const Model>(robot.model(robot.start()));
+  if (first_model_->formulation != Formulation::physical)
+    throw InvalidInput({.file = first_model_->name},
+                       "a robot is fitted in the physical formulation; this scene is of target shapes");
+  first_statics_ = std::make_shared<const Statics>(*first_model_);
+  each_reading([&](Index pose, const Group& group, Index) {
+    ++readings_;
+    for (const Index c : group.columns) rows_ += read(pose, c);
+  });
+  for (const FittedNumber& number : robot.numbers()) rows_ += number.deviation.has_value();
+}
+
+bool RobotProblem::read(Index pose, Index column) const {
+  return !std::isnan(poses_.values(pose, column));
+}
+
+RobotProblem::Kind RobotProblem::kind_of(const Group& group) const {
+  if (group.marker >= 0) return Kind::marker;
+  const Actuator& actuator = first_model_->actuators[static_cast<std::size_t>(group.actuator)];
+  return actuator.kind == ActuatorKind::cable ? Kind::tension : Kind::pressure;
+}
+
+Eigen::VectorXd RobotProblem::miss(const RobotPoint& point, Index pose, const Group& group) const {
+  std::vector<double> all;
+  for (const Index c : group.columns)
+    if (read(pose, c)) all.push_back(point.computed(pose, c) - poses_.values(pose, c));
+  return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Index>(all.size()));
+}
+
+template <class Visit>
+void RobotProblem::each_reading(const Visit& visit) const {
+  Index row = 0;
+  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose) {
+    if (!fits(pose)) continue;
+    for (const Group& group : groups_) {
+      const auto count =
+          std::count_if(group.columns.begin(), group.columns.end(), [&](Index column) { return read(pose, column); });
+      if (count == 0) continue;
+      visit(pose, group, row);
+      row += static_cast<Index>(count);
+    }
+  }
+}
+
+/// That of a coordinate: as given, or by the median of distances, which a few wrong readings do not move.
+double RobotProblem::scale(const RobotPoint& point, Kind kind) const {
+  const double given = kind == Kind::marker     ? options_.deviation_mm
+                       : kind == Kind::pressure ? options_.deviation_kPa
+                                                : options_.deviation_N;
+  std::vector<double> distances;
+  double squares = 0;
+  std::size_t count = 0;
+  each_reading([&](Index pose, const Group& group, Index) {
+    if (kind_of(group) != kind) return;
+    const Eigen::VectorXd off = miss(point, pose, group);
+    if (!off.allFinite()) return;
+    squares += off.squaredNorm();
+    count += static_cast<std::size_t>(off.size());
+    distances.push_back(off.norm() / medians[std::min<Eigen::Index>(off.size(), 3) - 1]);
+  });
+  if (count == 0) return 0;
+  if (given > 0) return given;
+  constexpr double least = 1e-9;  // of what is fitted without any miss
+  if (options_.loss == Loss::squares) {
+    std::size_t told = 0;  // freedoms that the numbers take
+    for (const FittedNumber& number : robot_.numbers()) told += !number.deviation;
+    const double freedoms = std::max(1.0, static_cast<double>(count) - static_cast<double>(told));
+    return std::max(least, std::sqrt(squares / freedoms));
+  }
+  std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2),
+                   distances.end());
+  return std::max(least, distances[distances.size() / 2]);
+}
+
+Scales RobotProblem::scales(const RobotPoint& point) const {
+  return {scale(point, Kind::marker), scale(point, Kind::pressure), scale(point, Kind::tension)};
+}
+
+Eigen::VectorXd RobotProblem::residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const {
+  Eigen::VectorXd all(static_cast<Index>(rows_));
+  Index rows = 0;
+  each_reading([&](Index pose, const Group& group, Index row) {
+    const Eigen::VectorXd off = miss(point, pose, group);
+    all.segment(row, off.size()) = off;
+    rows = row + static_cast<Index>(off.size());
+  });
+  for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
+    if (robot_.numbers()[i].deviation) all[rows++] = point.values[static_cast<Index>(i)] - *robot_.numbers()[i].start;
+  for (Index i = 0; i < static_cast<Index>(all.size()); ++i)
+    if (!std::isfinite(all[i])) all[i] = 0;  // of a pose without equilibrium, which is told apart
+  return weights.cwiseSqrt().cwiseProduct(all);
+}
+
+Linearised RobotProblem::linearised(const RobotPoint& point) const {
+  Linearised linear;
+  const auto count = static_cast<Index>(robot_.numbers().size());
+  linear.weights.setZero(static_cast<Index>(rows_));
+  linear.slopes.setZero(static_cast<Index>(rows_), count);
+  const Scales of = scales(point);
+  Index rows = 0;
+  each_reading([&](Index pose, const Group& group, Index row) {
+    const Eigen::VectorXd off = miss(point, pose, group);
+    const Kind kind = kind_of(group);
+    const double scale = kind == Kind::marker ? of.mm : kind == Kind::pressure ? of.kPa : of.N;
+    const double distance = off.norm() / scale;
+    double weight = 1 / (scale * scale);
+    if (options_.loss == Loss::huber && distance > huber_at) weight *= huber_at / distance;
+    if (options_.loss == Loss::cauchy) weight /= 1 + distance * distance / (cauchy_at * cauchy_at);
+    const bool known = off.allFinite();
+    Index r = row;
+    for (const Index c : group.columns) {
+      if (!read(pose, c)) continue;
+      linear.weights[r] = known ? weight : 0;
+      if (known) linear.slopes.row(r) = point.slopes[static_cast<std::size_t>(pose)].row(c);
+      ++r;
+    }
+    rows = r;
+  });
+  for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
+    if (robot_.numbers()[i].deviation) {
+      linear.weights[rows] = 1 / (*robot_.numbers()[i].deviation * *robot_.numbers()[i].deviation);
+      linear.slopes(rows++, static_cast<Index>(i)) = 1;
+    }
+  linear.slopes = linear.weights.cwiseSqrt().asDiagonal() * linear.slopes;
+  linear.residuals = residuals(point, linear.weights);
+  return linear;
+}
+
+double RobotProblem::cost(const RobotPoint& point, const Eigen::VectorXd& weights) const {
+  return residuals(point, weights).squaredNorm();
+}
+
+Misfit RobotProblem::marker_misfit(const RobotPoint& point, bool kept) const {
+  Misfit misfit;
+  double squares = 0;
+  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose) {
+    if (fits(pose) == kept) continue;
+    for (const Group& group : groups_) {
+      const Eigen::VectorXd off = miss(point, pose, group);
+      if (group.marker < 0 || off.size() == 0 || !off.allFinite()) continue;
+      squares += off.squaredNorm();
+      misfit.largest = std::max(misfit.largest, off.norm());
+      ++misfit.readings;
+    }
+  }
+  misfit.rms = misfit.readings > 0 ? std::sqrt(squares / static_cast<double>(misfit.readings)) : 0;
+  return misfit;
+}
+
+/// Poses side by side. False: the user stopped it.
+bool RobotProblem::each_pose(const std::function<bool(Index, const ProgressCallback&)>& act) {
+  const auto count = static_cast<int>(poses_.commands.size());
+  const int asked = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
+  std::atomic<int> next = 0, done = 0;
+  std::atomic<bool> stopped = false;
+  std::mutex mutex;
+  std::exception_ptr error;
+  const ProgressCallback go_on = [&](const Progress&) {
+    const std::lock_guard lock(mutex);
+    if (stopped || !progress_) return !stopped;
+    progress_state_.poses = count;
+    progress_state_.poses_done = done;
+    stopped = !progress_(progress_state_);
+    return !stopped;
+  };
+  const auto work = [&] {
+    for (int pose = next++; pose < count && !stopped; pose = next++) {
+      try {
+        if (!act(pose, go_on)) stopped = true;
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        error = std::current_exception();
+        stopped = true;
+      }
+      ++done;
+      (void)go_on({});
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int t = 1; t < std::clamp(asked, 1, count); ++t) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  if (error) std::rethrow_exception(error);
+  return !stopped;
+}
+
+/// What was read, as the robot does it.
+void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose) const {
+  const Equilibrium& found = point.equilibria[static_cast<std::size_t>(pose)];
+  for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
+    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+    double& value = point.computed(pose, c);
+    if (found.report.status != Status::converged)
+      value = nan;
+    else if (column.marker >= 0)
+      value = (point.frame.rotation *
+                   point.model->markers[static_cast<std::size_t>(column.marker)].at(found.state.positions) +
+               point.frame.place)[column.axis];
+    else
+      value = found.state.multipliers[column.actuator];
+  }
+  if (changes && found.report.status == Status::converged) add_slopes(point, *changes, pose);
+}
+
+void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index pose) const {
+  const State& state = point.equilibria[static_cast<std::size_t>(pose)].state;
+  StaticsOptions solver = options_.solver;
+  solver.threads = 1;
+  const ParameterSensitivity found = changes.perturbations->at(state, solver);
+  const auto count = static_cast<Index>(robot_.numbers().size());
+  Eigen::MatrixXd& slopes = point.slopes[static_cast<std::size_t>(pose)];
+  slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
+  for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
+    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+    if (column.marker < 0) continue;
+    const Vec3 place = point.model->markers[static_cast<std::size_t>(column.marker)].at(state.positions);
+    for (Index i = 0; i < count; ++i) {
+      const MeasuringFrame &more = changes.more[static_cast<std::size_t>(i)],
+                           &less = changes.less[static_cast<std::size_t>(i)];
+      slopes(c, i) = ((more.rotation - less.rotation) * place + more.place - less.place)[column.axis] /
+                     changes.differences[static_cast<std::size_t>(i)];
+    }
+  }
+  if (!found.regular) return;
+  for (std::size_t k = 0; k < changes.numbers.size(); ++k) {
+    const Index i = changes.numbers[k];
+    const auto p = static_cast<Index>(k);
+    for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
+      const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+      if (column.marker < 0) {
+        slopes(c, i) += found.multipliers(column.actuator, p);
+        continue;
+      }
+      const auto m = static_cast<std::size_t>(column.marker);
+      const Vec3 own = (changes.models[2 * k].markers[m].at(state.positions) -
+                        changes.models[2 * k + 1].markers[m].at(state.positions)) /
+                       changes.differences[static_cast<std::size_t>(i)];
+      const Vec3 moved = point.model->markers[m].velocity(state.positions, found.positions[k]) + own;
+      slopes(c, i) += (point.frame.rotation * moved)[column.axis];
+    }
+  }
+}
+
+std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, const RobotPoint* near, bool slopes) {
+  RobotPoint point;
+  point.values = values;
+  point.frame = robot_.frame(values);
+  std::optional<Changes> changes;
+  try {
+    point.model = std::make_shared<const Model>(robot_.model(values));
+    point.statics = std::make_shared<const Statics>(*point.model, *first_statics_);
+    if (slopes) changes.emplace(robot_, point);
+  } catch (const InvalidInput& error) {
+    if (!near) throw;
+    point.refusal = error.what();
+    return point;
+  }
+  const auto count = poses_.commands.size();
+  point.equilibria.resize(count);
+  point.slopes.resize(slopes ? count : 0);
+  point.computed.resize(static_cast<Index>(count), static_cast<Index>(poses_.columns.size()));
+  StaticsOptions solver = options_.solver;
+  solver.threads = 1;
+  solver.keep_history = false;
+  const bool whole = each_pose([&](Index pose, const ProgressCallback& progress) {
+    const auto p = static_cast<std::size_t>(pose);
+    const bool begun = near && near->equilibria[p].report.status == Status::converged;
+    const State start = begun ? near->equilibria[p].state : point.statics->rest();
+    point.equilibria[p] = point.statics->solve(poses_.commands[p], start, solver, progress);
+    if (begun && point.equilibria[p].report.status != Status::converged && !point.equilibria[p].report.stopped)
+      point.equilibria[p] = point.statics->solve(poses_.commands[p], point.statics->rest(), solver, progress);
+    if (point.equilibria[p].report.stopped) return false;
+    compute(point, changes ? &*changes : nullptr, pose);
+    return true;
+  });
+  if (!whole) return std::nullopt;
+  for (const Equilibrium& found : point.equilibria)
+    point.without_equilibrium += found.report.status != Status::converged;
+  return point;
+}
+
+}  // namespace softkin::calibration

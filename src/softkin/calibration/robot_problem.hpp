@@ -1,0 +1,99 @@
+#pragma once
+
+#include <chrono>
+#include <softkin/calibration/robot_fit.hpp>
+
+namespace softkin::calibration {
+
+/// The robot with some numbers, and its poses.
+struct RobotPoint {
+  Eigen::VectorXd values;
+  std::shared_ptr<const Model> model;
+  std::shared_ptr<const Statics> statics;
+  MeasuringFrame frame;
+  std::vector<Equilibrium> equilibria;  // per pose
+  Eigen::MatrixXd computed;             // as MeasuredPoses::values; NaN where a pose has no equilibrium
+  std::vector<Eigen::MatrixXd> slopes;  // per pose: of the computed by the numbers; none: not asked for
+  int without_equilibrium = 0;
+  std::string refusal;  // why the scene refuses the values, of which then nothing is known; empty: it does not
+};
+
+/// Deviations of readings.
+struct Scales {
+  double mm = 0, kPa = 0, N = 0;  // 0: there is no such reading
+};
+
+/// Residuals of readings and priors, each times the root of its weight, and their derivatives.
+struct Linearised {
+  Eigen::VectorXd residuals;
+  Eigen::MatrixXd slopes;
+  Eigen::VectorXd weights;  // per residual: by the loss, over the square of its scale
+};
+
+/// Least squares of the readings of poses in the numbers of a robot.
+class RobotProblem {
+ public:
+  /// All must outlive the object.
+  RobotProblem(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
+               const FitCallback& progress);
+
+  /// Readings that are fitted to; a marker's coordinates are one each.
+  [[nodiscard]] std::size_t readings() const { return readings_; }
+  /// near    a point from whose shapes the search begins; null: from rest
+  /// none    the user stopped it
+  /// throws  InvalidInput where it begins at rest and the scene refuses the values
+  [[nodiscard]] std::optional<RobotPoint> solve(const Eigen::VectorXd& values, const RobotPoint* near, bool slopes);
+  /// Of a point with slopes.
+  [[nodiscard]] Linearised linearised(const RobotPoint& point) const;
+  /// Sum of squares by weights that are held, with the priors: comparable between points.
+  [[nodiscard]] double cost(const RobotPoint& point, const Eigen::VectorXd& weights) const;
+  [[nodiscard]] Scales scales(const RobotPoint& point) const;
+  /// Distances of markers. kept: of the poses that are not fitted to
+  [[nodiscard]] Misfit marker_misfit(const RobotPoint& point, bool kept) const;
+
+  void begin_iteration(int iteration, double rms_mm) {
+    progress_state_.iteration = iteration;
+    progress_state_.rms_mm = rms_mm;
+  }
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  /// Columns of a pose that were read together: a marker's coordinates, or a load.
+  struct Group {
+    std::vector<Index> columns;
+    Index marker, actuator;
+  };
+
+  [[nodiscard]] bool fits(Index pose) const {
+    return options_.kept.empty() || !options_.kept[static_cast<std::size_t>(pose)];
+  }
+  [[nodiscard]] bool read(Index pose, Index column) const;
+  enum class Kind { marker, pressure, tension };
+  [[nodiscard]] Kind kind_of(const Group& group) const;
+  /// Of a pose's readings together, what the robot does less what was read.
+  [[nodiscard]] Eigen::VectorXd miss(const RobotPoint& point, Index pose, const Group& group) const;
+  /// visit(pose, group, row of the first of its residuals) of what is fitted to.
+  template <class Visit>
+  void each_reading(const Visit& visit) const;
+  [[nodiscard]] double scale(const RobotPoint& point, Kind kind) const;
+  [[nodiscard]] Eigen::VectorXd residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const;
+  struct Changes;
+  void compute(RobotPoint& point, const Changes* changes, Index pose) const;
+  void add_slopes(RobotPoint& point, const Changes& changes, Index pose) const;
+  bool each_pose(const std::function<bool(Index, const ProgressCallback&)>& act);
+
+  const NumberedRobot& robot_;
+  const MeasuredPoses& poses_;
+  const RobotFitOptions& options_;
+  const FitCallback& progress_;
+  std::vector<Group> groups_;
+  std::size_t readings_ = 0, rows_ = 0;
+  std::shared_ptr<const Model> first_model_;  // whose patterns all others share
+  std::shared_ptr<const Statics> first_statics_;
+  FitProgress progress_state_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace softkin::calibration

@@ -1,0 +1,294 @@
+#include <cmath>
+#include <softkin/calibration/report_parts.hpp>
+#include <softkin/calibration/robot_report.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
+#include <softkin/model/names.hpp>
+
+namespace softkin::calibration {
+
+namespace {
+
+constexpr double alike = 0.95;  // correlation from which two numbers are said not to be told apart
+constexpr double vague = 0.5;   // deviation over the value from which a number is hardly told
+
+bool of_frame(const FittedNumber& number) {
+  return number.name.starts_with("base.") || number.name.starts_with("camera.");
+}
+
+/// Distance of a marker in a pose from where it was measured; NaN: it was not, or there is no equilibrium.
+double marker_error(const RobotFitReport& r, Index pose, Index marker) {
+  double squares = 0;
+  bool any = false;
+  for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
+    const double measured = r.poses.values(pose, c);
+    if (r.poses.columns[static_cast<std::size_t>(c)].marker != marker || std::isnan(measured)) continue;
+    squares += std::pow(r.fit.computed.values(pose, c) - measured, 2);
+    any = true;
+  }
+  return any ? std::sqrt(squares) : std::nan("");
+}
+
+std::vector<Index> markers_of(const RobotFitReport& r) {
+  std::vector<Index> markers;
+  for (const PoseColumn& column : r.poses.columns)
+    if (column.marker >= 0 && std::find(markers.begin(), markers.end(), column.marker) == markers.end())
+      markers.push_back(column.marker);
+  return markers;
+}
+
+bool kept(const RobotFitReport& r, Index pose) {
+  return !r.options.kept.empty() && r.options.kept[static_cast<std::size_t>(pose)];
+}
+
+double rms_of(const std::vector<double>& errors) {
+  double squares = 0;
+  std::size_t count = 0;
+  for (const double error : errors)
+    if (std::isfinite(error)) squares += error * error, ++count;
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : std::nan("");
+}
+
+Cell known(double value) {
+  return std::isfinite(value) ? Cell(value) : Cell("-");
+}
+
+std::string numbers_text(const RobotFitReport& r) {
+  Table table{{{.key = "number", .left = true},
+               significant("fitted", "", 5),
+               significant("deviation", "", 2),
+               significant("start", "", 5),
+               {.key = "", .left = true}}};
+  int untold = 0;
+  for (std::size_t i = 0; i < r.robot.numbers().size(); ++i) {
+    const FittedNumber& number = r.robot.numbers()[i];
+    const auto k = static_cast<Index>(i);
+    untold += r.fit.at_bound[i] == 0 && !std::isfinite(r.fit.deviations[k]);
+    const double value = r.fit.values[k], deviation = r.fit.deviations[k];
+    std::string remark;
+    if (r.fit.at_bound[i] != 0)
+      remark = r.fit.at_bound[i] < 0 ? "at its low bound" : "at its high bound";
+    else if (!std::isfinite(deviation))
+      remark = "the poses do not tell it";
+    else if (!number.deviation && deviation > vague * std::abs(value) && !of_frame(number))
+      remark = "hardly told";
+    table.rows.push_back({number.name, value, known(deviation), *number.start, remark});
+  }
+  std::string text = text_of(table);
+  if (untold > 1)
+    text +=
+        "what the poses do not tell may be told by them where one of these numbers is known: leave one out of the "
+        "fit\n";
+  for (Index i = 0; i < static_cast<Index>(r.fit.correlations.rows()); ++i)
+    for (Index j = 0; j < i; ++j)
+      if (std::abs(r.fit.correlations(i, j)) > alike)
+        text += "not told apart: " + r.robot.numbers()[static_cast<std::size_t>(j)].name + " and " +
+                r.robot.numbers()[static_cast<std::size_t>(i)].name + " (correlation " +
+                decimal(r.fit.correlations(i, j), 3) + ")\n";
+  return text;
+}
+
+std::string errors_text(const RobotFitReport& r) {
+  const std::vector<Index> markers = markers_of(r);
+  if (markers.empty()) return "";
+  Table table{{{.key = "pose"}, {.key = "line"}}};
+  for (const Actuator& actuator : r.model.actuators)
+    table.columns.push_back({.key = actuator.name, .unit = command_unit(actuator), .digits = 4});
+  for (const Index m : markers)
+    table.columns.push_back(decimals(r.model.markers[static_cast<std::size_t>(m)].name + " off by", "mm", 2));
+  table.columns.push_back({.key = "", .left = true});
+  std::vector<std::vector<double>> errors(markers.size());
+  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
+    const auto p = static_cast<std::size_t>(pose);
+    Row row{static_cast<std::int64_t>(pose + 1), count_cell(r.poses.lines[p])};
+    for (const double command : r.poses.commands[p]) row.emplace_back(command);
+    for (std::size_t m = 0; m < markers.size(); ++m) {
+      const double error = marker_error(r, pose, markers[m]);
+      if (!kept(r, pose)) errors[m].push_back(error);
+      row.push_back(known(error));
+    }
+    const Equilibrium& found = r.fit.computed.equilibria[p];
+    row.emplace_back(found.report.status != Status::converged ? std::string(name_of(found.report.status))
+                     : kept(r, pose)                          ? std::string("kept aside")
+                                                              : std::string());
+    table.rows.push_back(std::move(row));
+  }
+  std::string text = text_of(table) + "\n";
+  double sum = 0;
+  int seen = 0;
+  for (std::size_t m = 0; m < markers.size(); ++m) {
+    const double rms = rms_of(errors[m]);
+    if (std::isnan(rms)) continue;  // in poses that were kept aside alone
+    sum += rms;
+    ++seen;
+    text += "marker " + r.model.markers[static_cast<std::size_t>(markers[m])].name + ": " + decimal(rms, 2) +
+            " mm root mean square\n";
+  }
+  if (seen > 1) text += "mean over the markers: " + decimal(sum / seen, 2) + " mm\n";
+  return text;
+}
+
+/// What of the fit the scene takes.
+std::string scene_text(const RobotFitReport& r) {
+  std::string text;
+  for (std::size_t i = 0; i < r.robot.numbers().size(); ++i)
+    if (!of_frame(r.robot.numbers()[i]))
+      text += "  --change " + r.robot.numbers()[i].name + "=" + number(r.fit.values[static_cast<Index>(i)], 6) + "\n";
+  return text.empty() ? "" : "in the scene, or of every command that solves:\n" + text;
+}
+
+std::string scale_text(const char* what, double scale, double given, const char* unit) {
+  if (scale == 0) return "";
+  return std::string("deviation of a ") + what + " as read: " + number(scale, 3) + " " + unit +
+         (given > 0 ? " (given)" : " (by what is left)") + "\n";
+}
+
+Json misfit_json(const Misfit& misfit) {
+  return {{"rms_mm", misfit.rms}, {"largest_mm", misfit.largest}, {"readings", misfit.readings}};
+}
+
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+}  // namespace
+
+std::string robot_fit_text(const RobotFitReport& r) {
+  const RobotFit& fit = r.fit;
+  std::string text = std::string(name_of(fit.status)) + (fit.remark.empty() ? "" : ": " + fit.remark) + ", " +
+                     counted(static_cast<std::size_t>(fit.iterations), "iteration") + ", " + decimal(fit.seconds, 1) +
+                     " s\n\n";
+  if (!r.robot.numbers().empty() && fit.deviations.size() > 0) text += numbers_text(r) + "\n";
+  text += errors_text(r) + scale_text("coordinate", fit.scale_mm, r.options.deviation_mm, "mm") +
+          scale_text("pressure", fit.scale_kPa, r.options.deviation_kPa, "kPa") +
+          scale_text("tension", fit.scale_N, r.options.deviation_N, "N");
+  if (fit.markers_mm.readings > 0)
+    text += "all markers: " + decimal(fit.markers_mm.rms, 2) + " mm root mean square, " +
+            decimal(fit.markers_mm.largest, 2) + " mm at most\n";
+  if (fit.kept_mm.readings > 0)
+    text += "poses kept aside: " + decimal(fit.kept_mm.rms, 2) + " mm root mean square, " +
+            decimal(fit.kept_mm.largest, 2) + " mm at most\n";
+  return text + (fit.deviations.size() > 0 ? "\n" + scene_text(r) : "");
+}
+
+std::string robot_fit_json(const RobotFitReport& r) {
+  Json numbers = Json::array(), poses = Json::array();
+  for (std::size_t i = 0; i < r.robot.numbers().size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    const bool told = r.fit.deviations.size() > 0;
+    Json correlations = Json::object();
+    for (std::size_t j = 0; told && j < r.robot.numbers().size(); ++j)
+      if (j != i) correlations[r.robot.numbers()[j].name] = r.fit.correlations(k, static_cast<Index>(j));
+    numbers.push_back({{"name", r.robot.numbers()[i].name},
+                       {"value", r.fit.values[k]},
+                       {"deviation", told ? finite(r.fit.deviations[k]) : Json()},
+                       {"start", *r.robot.numbers()[i].start},
+                       {"at_bound", told ? Json(r.fit.at_bound[i]) : Json()},
+                       {"correlations", correlations}});
+  }
+  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
+    const auto p = static_cast<std::size_t>(pose);
+    Json errors = Json::object(), commands = Json::object();
+    for (const Index m : markers_of(r))
+      errors[r.model.markers[static_cast<std::size_t>(m)].name] = finite(marker_error(r, pose, m));
+    for (std::size_t a = 0; a < r.model.actuators.size(); ++a)
+      commands[r.model.actuators[a].name] = r.poses.commands[p][static_cast<Index>(a)];
+    poses.push_back({{"line", r.poses.lines[p]},
+                     {"commands", commands},
+                     {"status", name_of(r.fit.computed.equilibria[p].report.status)},
+                     {"kept", kept(r, pose)},
+                     {"error_mm", errors}});
+  }
+  return text_of(Json{{"softkin_robot_fit", 1},
+                      {"status", name_of(r.fit.status)},
+                      {"remark", r.fit.remark},
+                      {"iterations", r.fit.iterations},
+                      {"seconds", r.fit.seconds},
+                      {"numbers", numbers},
+                      {"poses", poses},
+                      {"deviation_mm", r.fit.scale_mm},
+                      {"deviation_kPa", r.fit.scale_kPa},
+                      {"deviation_N", r.fit.scale_N},
+                      {"markers", misfit_json(r.fit.markers_mm)},
+                      {"kept", misfit_json(r.fit.kept_mm)}});
+}
+
+Table robot_fit_table(const RobotFitReport& r) {
+  Table table = csv_table({"pose", "line", "column", "measured", "computed", "difference", "kept"});
+  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
+    for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
+      const double measured = r.poses.values(pose, c), computed = r.fit.computed.values(pose, c);
+      if (std::isnan(measured)) continue;
+      const bool found = std::isfinite(computed);
+      table.rows.push_back({static_cast<std::int64_t>(pose + 1),
+                            count_cell(r.poses.lines[static_cast<std::size_t>(pose)]),
+                            r.poses.columns[static_cast<std::size_t>(c)].name, ten_digits(measured),
+                            found ? ten_digits(computed) : Cell(), found ? ten_digits(computed - measured) : Cell(),
+                            std::int64_t{kept(r, pose)}});
+    }
+  return table;
+}
+
+Plot robot_fit_plot(const RobotFitReport& r) {
+  const std::vector<Index> markers = markers_of(r);
+  if (markers.empty()) throw InvalidInput("a plot shows markers, and none was measured");
+  Plot plot;
+  plot.title = "measured and computed markers";
+  plot.panel_height = 320;
+  plot.rows.emplace_back();
+  for (const auto& [across, up] : {std::pair{0, 2}, std::pair{1, 2}, std::pair{0, 1}}) {
+    constexpr const char* names[3] = {"x [mm]", "y [mm]", "z [mm]"};
+    PlotPanel panel = panel_of("", names[across], names[up]);
+    panel.equal = true;
+    PlotSeries measured, computed, apart;
+    measured.label = "measured";
+    computed.label = "computed";
+    measured.line = computed.line = apart.marks = false;
+    apart.pairs = apart.pale = true;
+    for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
+      for (const Index m : markers) {
+        Vec3 there = Vec3::Constant(std::nan("")), here = there;
+        for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
+          const PoseColumn& column = r.poses.columns[static_cast<std::size_t>(c)];
+          if (column.marker != m) continue;
+          there[column.axis] = r.poses.values(pose, c);
+          here[column.axis] = r.fit.computed.values(pose, c);
+        }
+        const double all = there[across] + there[up] + here[across] + here[up];
+        if (!std::isfinite(all)) continue;
+        for (const auto& [series, point] : {std::pair{&measured, &there}, std::pair{&computed, &here},
+                                            std::pair{&apart, &there}, std::pair{&apart, &here}}) {
+          series->x.push_back((*point)[across]);
+          series->y.push_back((*point)[up]);
+        }
+      }
+    if (measured.x.empty()) continue;
+    panel.series = {apart, measured, computed};
+    plot.rows.back().push_back(std::move(panel));
+  }
+  if (plot.rows.back().empty())
+    throw InvalidInput("no marker was measured along two axes in any pose: nothing to plot");
+  return plot;
+}
+
+Eigen::VectorXd fitted_values(const std::string& file, const std::vector<FittedNumber>& numbers) {
+  const auto refuse = [&](const std::string& why) { throw InvalidInput({file}, why); };
+  Json json;
+  try {
+    json = Json::parse(read_file(file));
+    if (json.at("softkin_robot_fit") != 1) refuse("is no report of a robot's fit of this version");
+    const Json& found = json.at("numbers");
+    if (found.size() != numbers.size()) refuse("is of other numbers than those asked for");
+    Eigen::VectorXd values(static_cast<Index>(numbers.size()));
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (found[i].at("name").get<std::string>() != numbers[i].name) refuse("is of other numbers than those asked for");
+      values[static_cast<Index>(i)] = found[i].at("value").get<double>();
+    }
+    return values;
+  } catch (const Json::exception&) {
+    refuse("is no report of a robot's fit");
+  }
+  return {};
+}
+
+}  // namespace softkin::calibration

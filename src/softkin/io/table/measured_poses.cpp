@@ -1,0 +1,109 @@
+#include <cmath>
+#include <optional>
+#include <softkin/core/text.hpp>
+#include <softkin/io/plain_text.hpp>
+#include <softkin/io/table/commands.hpp>
+#include <softkin/io/table/csv.hpp>
+#include <softkin/io/table/measured_poses.hpp>
+#include <softkin/model/names.hpp>
+
+namespace softkin {
+
+namespace {
+
+class Columns {
+ public:
+  Columns(const CsvTable& table, const Model& model) : table_(table), model_(model) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      if (const auto read = reading(table.columns[c])) {
+        readings_.push_back(*read);
+        at_.push_back(c);
+      } else {
+        commands_.push_back(c);
+      }
+    }
+    if (readings_.empty())
+      table.fail_header(
+          "no column is a reading: a coordinate such as tip_x_mm, a pressure such as air_pressure_kPa or "
+          "a tension such as tendon_tension_N");
+  }
+
+  [[nodiscard]] MeasuredPoses poses() const {
+    MeasuredPoses poses;
+    poses.file = table_.file;
+    poses.columns = readings_;
+    poses.lines = table_.lines;
+    if (commands_.empty())
+      poses.commands.resize(table_.rows.size(), model_.rest_actuation());
+    else
+      for (const ActuationStep& step : actuation_steps(model_, commands(), Settings(model_.actuators.size())))
+        poses.commands.push_back(step.actuation);
+    poses.values.resize(static_cast<Index>(table_.rows.size()), static_cast<Index>(at_.size()));
+    for (std::size_t row = 0; row < table_.rows.size(); ++row)
+      for (std::size_t c = 0; c < at_.size(); ++c)
+        poses.values(static_cast<Index>(row), static_cast<Index>(c)) = table_.rows[row][at_[c]];
+    if (!(poses.values.array() == poses.values.array()).any()) table_.fail_header("every reading is missing");
+    return poses;
+  }
+
+ private:
+  /// A table of the commands alone.
+  [[nodiscard]] CsvTable commands() const {
+    CsvTable some = table_;
+    some.columns.clear();
+    for (auto& row : some.rows) row.clear();
+    for (const std::size_t c : commands_) {
+      some.columns.push_back(table_.columns[c]);
+      for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+        if (std::isnan(table_.rows[row][c]))
+          table_.fail(row, "column " + excerpt(table_.columns[c]) + ": a command is missing");
+        some.rows[row].push_back(table_.rows[row][c]);
+      }
+    }
+    return some;
+  }
+
+  [[nodiscard]] std::optional<PoseColumn> reading(const std::string& column) const {
+    constexpr const char* axes[3] = {"x", "y", "z"};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string end = std::string(axes[axis]) + "_mm";
+      if (column == end && model_.markers.size() == 1) return PoseColumn{column, 0, axis};
+      if (!column.ends_with("_" + end)) continue;
+      const std::string name = column.substr(0, column.size() - end.size() - 1);
+      for (std::size_t m = 0; m < model_.markers.size(); ++m)
+        if (model_.markers[m].name == name) return PoseColumn{column, static_cast<Index>(m), axis};
+      std::vector<std::string> names;
+      for (const Marker& marker : model_.markers) names.push_back(marker.name);
+      table_.fail_header("column " + excerpt(column) + ": no marker " + excerpt(name) +
+                         (names.empty() ? "; the scene has none" : suggest_name(name, names)));
+    }
+    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
+      const Actuator& actuator = model_.actuators[a];
+      const char* unit = actuator.kind == ActuatorKind::cable       ? "_tension_N"
+                         : actuator.kind == ActuatorKind::pneumatic ? "_pressure_kPa"
+                                                                    : nullptr;
+      if (unit == nullptr || column != actuator.name + unit) continue;
+      if (actuator.control == Control::load)
+        table_.fail_header("column " + excerpt(column) + ": " + actuator.name +
+                           " is commanded by that, so it is no "
+                           "reading; its command is column '" +
+                           command_column(actuator) + "'");
+      return PoseColumn{column, -1, -1, static_cast<Index>(a)};
+    }
+    return std::nullopt;
+  }
+
+  const CsvTable& table_;
+  const Model& model_;
+  std::vector<PoseColumn> readings_;
+  std::vector<std::size_t> at_, commands_;
+};
+
+}  // namespace
+
+MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model) {
+  const CsvTable table = read_csv_with_gaps(file);
+  return Columns(table, model).poses();
+}
+
+}  // namespace softkin

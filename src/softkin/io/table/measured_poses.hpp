@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <softkin/model/measured_poses.hpp>
+#include <softkin/model/model.hpp>
+
+namespace softkin {
+
+/// Reads a table of measured poses: a row each, columns of commands as paths have them (read_actuation_path), of
+/// coordinates of markers as those of targets (tip_x_mm; x_mm of the only marker), and of what actuators answer with,
+/// air_pressure_kPa, tendon_tension_N. A reading that is missing is an empty cell. Without a command the robot rests.
+///
+/// throws  InvalidInput naming file, line and column: what these refuse; a command that is missing; no reading
+[[nodiscard]] MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model);
+
+}  // namespace softkin

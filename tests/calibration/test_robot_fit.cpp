@@ -1,0 +1,303 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <softkin/calibration/robot_report.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/table/measured_poses.hpp>
+
+#include "model/block_mesh.hpp"
+#include "support/temporary_folder.hpp"
+
+/// Numbers of made-up robots from their poses.
+
+namespace softkin::calibration {
+
+namespace {
+
+using namespace softkin::testing;
+
+/// An arm of 60 x 10 x 10 mm that hangs along x under its weight, with a tendon along its top, by its tension, and a
+/// marker on a stem.
+const char* const scene = R"(softkin: 1
+mesh: {file: arm.msh}
+materials: [{region: body, youngs_modulus: 0.3, poisson_ratio: 0.45, density: 1100}]
+fixed: [{region: x_low}]
+gravity: [0, 0, -9.81]
+actuators:
+  - {name: t1, kind: cable, control: tension, range: [0, 2], points: [[0, 5, 9], [20, 5, 9], [40, 5, 9], [60, 5, 9]]}
+  - {name: t2, kind: cable, control: tension, range: [0, 2], points: [[0, 9, 5], [20, 9, 5], [40, 9, 5], [60, 9, 5]]}
+markers:
+  - {name: tip, region: x_high, offset: [3, 0, 8]}
+  - {name: half, point: [30, 0, 5]}
+)";
+
+class Arm {
+ public:
+  explicit Arm(const std::string& text = scene) {
+    write_mesh(folder_ / "arm.msh", block_mesh({6, 2, 2}, {60, 10, 10}));
+    std::ofstream(folder_ / "arm.yaml") << text;
+  }
+
+  [[nodiscard]] NumberedRobot robot(const std::vector<std::string>& numbers) const {
+    std::vector<FittedNumber> all;
+    for (const std::string& text : numbers) all.push_back(parse_fitted_number("--fit", text));
+    std::vector<std::filesystem::path> inputs;
+    AskedScene asked;
+    asked.scene = folder_ / "arm.yaml";
+    return {asked, all, inputs};
+  }
+
+  /// Its poses where it has these numbers, with noise and some readings far off.
+  [[nodiscard]] MeasuredPoses poses(const std::vector<std::string>& numbers, double noise = 0, unsigned seed = 1,
+                                    double wrong = 0) const {
+    const NumberedRobot truth = robot(numbers);
+    MeasuredPoses poses = empty(truth.model(truth.start()));
+    const RobotFit found = predict_poses(truth, poses, truth.start(), {});
+    poses.values = found.computed.values;
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> normal(0, 1);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (Index pose = 0; pose < static_cast<Index>(poses.values.rows()); ++pose)
+      for (Index c = 0; c < static_cast<Index>(poses.values.cols()); c += 3) {
+        const Vec3 way(normal(engine), normal(engine), normal(engine));
+        const bool off = share(engine) < wrong;
+        for (Index axis = 0; axis < 3; ++axis)
+          poses.values(pose, c + axis) += noise * normal(engine) + (off ? 30 * way.normalized()[axis] : 0);
+      }
+    return poses;
+  }
+
+ private:
+  [[nodiscard]] static MeasuredPoses empty(const Model& model) {
+    MeasuredPoses poses;
+    poses.file = "poses.csv";
+    for (Index m = 0; m < 2; ++m)
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::string name = model.markers[static_cast<std::size_t>(m)].name;
+        poses.columns.push_back({name + "_" + std::string(1, "xyz"[axis]) + "_mm", m, axis});
+      }
+    for (const auto& [one, two] : {std::pair{0.0, 0.0}, std::pair{0.1, 0.0}, std::pair{0.2, 0.0}, std::pair{0.0, 0.1},
+                                   std::pair{0.0, 0.2}, std::pair{0.1, 0.1}}) {
+      Actuation command(2);
+      command << one, two;
+      poses.commands.push_back(command);
+      poses.lines.push_back(poses.commands.size() + 1);
+    }
+    poses.values = Eigen::MatrixXd::Zero(6, 6);
+    return poses;
+  }
+
+  TemporaryFolder folder_;
+};
+
+const std::vector<std::string> truth{"materials.body.youngs_modulus=0.2",
+                                     "materials.body.density=1000",
+                                     "actuators.t1.factor=0.85",
+                                     "base.ry=4",
+                                     "base.z=2",
+                                     "markers.tip.offset.3=9"};
+const std::vector<std::string> asked{"materials.body.youngs_modulus=0.3,0.05,2",
+                                     "materials.body.density",
+                                     "actuators.t1.factor=1",
+                                     "base.ry",
+                                     "base.z",
+                                     "markers.tip.offset.3"};
+
+double value_of(const std::string& text) {
+  return std::stod(text.substr(text.find('=') + 1));
+}
+
+}  // namespace
+
+/// What made the poses is found again, whatever kind of number it is.
+TEST(RobotFit, FindsTheNumbersThatMadeThePoses) {
+  const Arm arm;
+  const MeasuredPoses poses = arm.poses(truth);
+  const NumberedRobot robot = arm.robot(asked);
+  const RobotFit fit = fit_robot(robot, poses, {});
+  EXPECT_EQ(fit.status, Status::converged) << fit.remark;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double expected = value_of(truth[i]);
+    EXPECT_NEAR(fit.values[static_cast<Index>(i)], expected, 1e-4 * std::abs(expected)) << truth[i];
+  }
+  EXPECT_LT(fit.markers_mm.rms, 1e-4);
+  EXPECT_EQ(fit.without_equilibrium, 0);
+}
+
+/// Readings that are missing do not count, and neither do poses that are kept aside, which are foretold.
+TEST(RobotFit, LeavesOutWhatIsMissingOrKept) {
+  const Arm arm;
+  MeasuredPoses poses = arm.poses(truth);
+  poses.values(2, 1) = poses.values(3, 4) = std::nan("");
+  poses.values.row(5).array() += 7;  // wrong, and kept
+  RobotFitOptions options;
+  options.kept = {false, false, false, false, false, true};
+  const RobotFit fit = fit_robot(arm.robot(asked), poses, options);
+  EXPECT_EQ(fit.status, Status::converged);
+  EXPECT_NEAR(fit.values[0], 0.2, 1e-4);
+  EXPECT_EQ(fit.markers_mm.readings, 10u);
+  EXPECT_EQ(fit.kept_mm.readings, 2u);
+  EXPECT_NEAR(fit.kept_mm.rms, 7 * std::sqrt(3.0), 1e-2);
+}
+
+/// Without weight tensions over moduli alone count: the two cannot be told apart, and that is said.
+TEST(RobotFit, SaysWhatCannotBeToldApart) {
+  std::string light = scene;
+  light.replace(light.find("gravity"), std::string("gravity: [0, 0, -9.81]").size(), "weights: printed");
+  const Arm arm(light);
+  const MeasuredPoses poses = arm.poses({"materials.body.youngs_modulus=0.2"}, 0.05, 3);
+  RobotFitOptions options;
+  options.max_iterations = 15;
+  const std::vector<std::string> numbers{"materials.body.youngs_modulus=0.25,0.05,2", "actuators.t1.factor=1,0.2,5",
+                                         "actuators.t2.factor=1,0.2,5", "materials.body.density"};
+  const NumberedRobot robot = arm.robot(numbers);
+  const RobotFit fit = fit_robot(robot, poses, options);
+  EXPECT_TRUE(std::isnan(fit.deviations[3])) << "nothing weighs anything";
+  const bool apart = std::isnan(fit.deviations[0]) || fit.correlations(0, 1) > 0.999;
+  EXPECT_TRUE(apart) << fit.deviations.transpose() << "\n" << fit.correlations;
+  const Model model = robot.model(robot.start());
+  const std::string text = robot_fit_text({robot, poses, options, fit, model});
+  EXPECT_NE(text.find("the poses do not tell it"), std::string::npos) << text;
+  // a prior of one of them settles both
+  std::vector<std::string> known = numbers;
+  known.pop_back();
+  known[0] = "materials.body.youngs_modulus=0.2+-0.01";
+  const RobotFit settled = fit_robot(arm.robot(known), poses, options);
+  EXPECT_EQ(settled.status, Status::converged) << settled.remark;
+  EXPECT_NEAR(settled.values[1], 1, 0.1);
+  EXPECT_NEAR(settled.deviations[0], 0.01, 0.002);
+}
+
+/// Nine of ten intervals of 1.645 deviations hold the truth.
+TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
+  const Arm arm;
+  const std::vector<std::string> made{truth[0], truth[2]}, fitted{asked[0], asked[2]};
+  const NumberedRobot robot = arm.robot(fitted);
+  const MeasuredPoses exact = arm.poses(made);
+  int inside = 0;
+  constexpr int draws = 40;
+  for (unsigned draw = 1; draw <= draws; ++draw) {
+    MeasuredPoses poses = exact;
+    std::mt19937 engine(draw);
+    std::normal_distribution<double> normal(0, 0.5);
+    for (Index i = 0; i < static_cast<Index>(poses.values.size()); ++i) poses.values.data()[i] += normal(engine);
+    const RobotFit fit = fit_robot(robot, poses, {});
+    EXPECT_NEAR(fit.scale_mm, 0.5, 0.2);
+    for (Index i = 0; i < 2; ++i)
+      inside += std::abs(fit.values[i] - value_of(made[static_cast<std::size_t>(i)])) < 1.645 * fit.deviations[i];
+  }
+  EXPECT_GE(inside, 0.82 * 2 * draws);
+  EXPECT_LE(inside, 0.97 * 2 * draws);
+}
+
+/// Readings that are 30 mm off move nothing by more than a deviation.
+TEST(RobotFit, WrongReadingsHardlyCount) {
+  const Arm arm;
+  const std::vector<std::string> made{truth[0], truth[2], truth[3]}, fitted{asked[0], asked[2], asked[3]};
+  const NumberedRobot robot = arm.robot(fitted);
+  for (const Loss loss : {Loss::huber, Loss::cauchy}) {
+    RobotFitOptions options;
+    options.loss = loss;
+    const RobotFit good = fit_robot(robot, arm.poses(made, 0.5, 5), options);
+    const RobotFit bad = fit_robot(robot, arm.poses(made, 0.5, 5, 0.1), options);
+    EXPECT_GT(bad.markers_mm.largest, 20);
+    EXPECT_EQ(bad.status, Status::converged) << bad.remark;
+    for (Index i = 0; i < 3; ++i) EXPECT_LT(std::abs(bad.values[i] - good.values[i]), good.deviations[i]) << i;
+  }
+}
+
+/// A tendon that seems to push: its factor cannot be negative.
+TEST(RobotFit, SaysWhereTheSceneRefusesWhatWouldFitBetter) {
+  const Arm arm;
+  MeasuredPoses poses = arm.poses({"actuators.t1.factor=0.01"});
+  for (Index pose = 0; pose < static_cast<Index>(poses.values.rows()); ++pose)
+    if (poses.commands[static_cast<std::size_t>(pose)][0] > 0) poses.values(pose, 2) -= 5;
+  const RobotFit fit = fit_robot(arm.robot({"actuators.t1.factor=0.5"}), poses, {});
+  EXPECT_EQ(fit.status, Status::not_converged);
+  EXPECT_NE(fit.remark.find("give bounds"), std::string::npos) << fit.remark;
+  EXPECT_NE(fit.remark.find("greater than 0"), std::string::npos) << fit.remark;
+  EXPECT_LT(fit.values[0], 0.3);
+  EXPECT_GT(fit.values[0], 0);
+  const RobotFit bounded = fit_robot(arm.robot({"actuators.t1.factor=0.5,0.1,2"}), poses, {});
+  EXPECT_EQ(bounded.status, Status::converged);
+  EXPECT_EQ(bounded.at_bound[0], -1);
+}
+
+TEST(RobotFit, StopsWhereTheUserSays) {
+  const Arm arm;
+  const MeasuredPoses poses = arm.poses(truth);
+  int calls = 0;
+  const RobotFit fit = fit_robot(arm.robot(asked), poses, {}, [&](const FitProgress& p) {
+    ++calls;
+    return p.iteration < 2;
+  });
+  EXPECT_EQ(fit.status, Status::interrupted);
+  EXPECT_EQ(fit.values.size(), 6) << "the best so far";
+  EXPECT_GT(calls, 6);
+}
+
+TEST(RobotFit, RefusesWithAReason) {
+  const Arm arm;
+  const auto refused = [](const auto& act, const std::string& why) {
+    try {
+      act();
+      ADD_FAILURE() << "not refused: " << why;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  for (const auto& [text, why] :
+       std::vector<std::pair<std::string, std::string>>{{"", "expected NAME"},
+                                                        {"E=", "finite number"},
+                                                        {"E=1,2", "both bounds"},
+                                                        {"E=1,3,2", "low bound must be below"},
+                                                        {"E=5,1,2", "start is outside"},
+                                                        {"E=1+-0", "deviation must be above 0"},
+                                                        {"E=1+-x", "finite number"}})
+    refused([&, text = text] { (void)parse_fitted_number("--fit", text); }, why);
+  refused([&] { (void)arm.robot({"materials.bdy.youngs_modulus"}); }, "bdy");
+  refused([&] { (void)arm.robot({"materials.body.youngs_modulos"}); }, "the scene has no such number");
+  refused([&] { (void)arm.robot({"actuators.t1.range"}); }, "it is no number");
+  refused([&] { (void)arm.robot({"base.x", "base.x"}); }, "given twice");
+  refused([&] { (void)arm.robot({"base.q"}); }, "base");
+  MeasuredPoses none = arm.poses(truth);
+  none.values.setConstant(std::nan(""));
+  refused([&] { (void)fit_robot(arm.robot(asked), none, {}); }, "no reading");
+}
+
+TEST(MeasuredPoses, AreReadWithGaps) {
+  const Arm arm;
+  const Model model = arm.robot({}).model(Eigen::VectorXd(0));
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& text) {
+    std::ofstream(folder / "poses.csv") << text;
+    return read_measured_poses(folder / "poses.csv", model);
+  };
+  const MeasuredPoses poses = read("t1_N,tip_x_mm,half_z_mm\n0.1,61,5\n0.2,,4.5\n");
+  ASSERT_EQ(poses.commands.size(), 2u);
+  EXPECT_EQ(poses.commands[1][0], 0.2);
+  EXPECT_EQ(poses.commands[1][1], 0);
+  EXPECT_TRUE(std::isnan(poses.values(1, 0)));
+  EXPECT_EQ(poses.values(1, 1), 4.5);
+  EXPECT_EQ(poses.columns[1].marker, 1);
+  EXPECT_EQ(poses.columns[1].axis, 2);
+  for (const auto& [text, why] :
+       std::vector<std::pair<std::string, std::string>>{{"t1,tap_x_mm\n0,1\n", "no marker 'tap'"},
+                                                        {"t1,tip_x\n0,1\n", "tip_x"},
+                                                        {"t1,tip_x_mm\n,1\n", "a command is missing"},
+                                                        {"t1\n0\n", "no column is a reading"},
+                                                        {"t1,tip_x_mm\n0,\n", "every reading is missing"},
+                                                        {"t1,t1_tension_N\n0,1\n", "commanded by that"}})
+    try {
+      (void)read(text);
+      ADD_FAILURE() << "not refused: " << why;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace softkin::calibration

@@ -1,0 +1,98 @@
+#include <nlohmann/json.hpp>
+
+#include "fk_samples.hpp"
+
+namespace {
+
+using namespace softkin::testing;
+using nlohmann::json;
+
+/// The block with a named material, its loads commanded.
+std::string arm_scene(const std::string& modulus = "1") {
+  return replaced(loaded_scene(), "{youngs_modulus: 1,", "{region: all, youngs_modulus: " + modulus + ",");
+}
+
+struct Poses : BlockFolder {
+  Poses() : BlockFolder(arm_scene()) {
+    const std::string path = write("path.csv", "air_kPa,tendon_N\n0,0\n100,0\n0,3\n150,2\n");
+    const std::string soft = write("soft.yaml", arm_scene("0.8"));
+    const ProgramResult made = run_fk(soft, {"--path", path, "--report", *this / "made.json"});
+    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    std::string text = "air_kPa,tendon_N,tip_x_mm,tip_y_mm,tip_z_mm,corner_x_mm\n";
+    const json report = json::parse(read_text(*this / "made.json"));
+    for (const json& step : report["steps"]) {
+      text += number(step["actuation"]["air"]) + "," + number(step["actuation"]["tendon"]);
+      for (const json& coordinate : step["markers"]["tip"]) text += "," + number(coordinate);
+      text += step["actuation"]["air"] == 100 ? ",\n" : "," + number(step["markers"]["corner"][0]) + "\n";
+    }
+    poses = write("poses.csv", text);
+  }
+
+  static std::string number(const json& value) { return value.dump(); }
+
+  [[nodiscard]] ProgramResult calibrate(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"calibrate", "robot", scene, poses};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  }
+
+  std::string poses;
+};
+
+const char* const modulus = "materials.all.youngs_modulus";
+
+TEST(CalibrateRobot, FindsTheModulusBehindThePoses) {
+  const Poses folder;
+  const std::string report = folder / "fit.json";
+  const ProgramResult fitted = folder.calibrate(
+      {"--fit", modulus, "--report", report, "--plot", folder / "fit.svg", "--table", folder / "fit.csv"});
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
+  expect_words(fitted.output,
+               {"converged", "pose  line", "tip off by [mm]", "--change materials.all.youngs_modulus=0.8",
+                "all markers: 0.00 mm root mean square", "readings: ", "plot: "});
+  const json found = json::parse(read_text(report));
+  EXPECT_NEAR(found["numbers"][0]["value"].get<double>(), 0.8, 1e-5);
+  EXPECT_EQ(found["poses"].size(), 4u);
+  expect_words(read_text(folder / "fit.csv"), {"pose,line,column,measured,computed,difference,kept", "corner_x_mm"});
+  const ProgramResult again = folder.calibrate({"--fit", modulus, "--report", report, "--resume", "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_NEAR(json::parse(again.output)["numbers"][0]["start"].get<double>(), 0.8, 1e-5);
+}
+
+TEST(CalibrateRobot, ForetellsWhatIsKeptAside) {
+  const Poses folder;
+  const ProgramResult fitted = folder.calibrate({"--fit", std::string(modulus) + "=1,0.5,2", "--keep", "1", "--json"});
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
+  const json found = json::parse(fitted.output);
+  EXPECT_LT(found["kept"]["rms_mm"].get<double>(), 1e-3);
+  EXPECT_EQ(found["kept"]["readings"], 2);
+  const ProgramResult foretold = folder.calibrate({"--json"});  // as the scene is: a quarter too stiff
+  ASSERT_EQ(foretold.exit_code, 0) << foretold.errors;
+  EXPECT_GT(json::parse(foretold.output)["markers"]["rms_mm"].get<double>(), 0.02);
+}
+
+TEST(CalibrateRobot, RefusesWithAReason) {
+  const Poses folder;
+  const auto expect_bad = [&](const std::vector<std::string>& more, const std::vector<std::string>& words) {
+    std::vector<std::string> all{"--report", folder / "bad.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const ProgramResult result = folder.calibrate(all);
+    EXPECT_EQ(result.exit_code, 2) << result.output;
+    EXPECT_EQ(result.output, "");
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    expect_words(result.errors, words);
+    EXPECT_FALSE(std::filesystem::exists(folder / "bad.json"));
+  };
+  expect_bad({"--fit", "materials.all.youngs"}, {"materials.all.youngs"});
+  expect_bad({"--fit", std::string(modulus) + "=3,1,2"}, {modulus, "3"});
+  expect_bad({"--fit", modulus, "--keep", "4"}, {"--keep 4", "4 poses"});
+  expect_bad({"--fit", modulus, "--resume"}, {"bad.json"});
+  folder.write("poses.csv", "air_kPa,tendon_N,top_x_mm\n0,0,20\n");
+  expect_bad({"--fit", modulus}, {"poses.csv:1", "top_x_mm", "no marker 'top'"});
+  folder.write("poses.csv", "air_kPa,tendon_N,tip_x_mm\n0,,20\n");
+  expect_bad({"--fit", modulus}, {"poses.csv:2", "tendon_N", "a command is missing"});
+  folder.write("poses.csv", "air_kPa,tendon_N\n0,0\n");
+  expect_bad({"--fit", modulus}, {"poses.csv:1", "no column is a reading"});
+}
+
+}  // namespace

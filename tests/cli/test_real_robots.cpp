@@ -1,0 +1,72 @@
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "fk_samples.hpp"
+
+/// The commands of examples/real, where the measurements are there.
+
+namespace {
+
+using namespace softkin::testing;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+/// The example's files and what its script makes of the measurements; empty: these are absent.
+class RealRobot {
+ public:
+  explicit RealRobot(const std::string& name) {
+    const char* named = std::getenv("SOFTKIN_REAL");
+    const fs::path measured = fs::path(named ? named : SOFTKIN_SOURCE_DIR "/../shared/real") / name;
+    if (!fs::exists(measured)) return;
+    const fs::path example = fs::path(SOFTKIN_SOURCE_DIR) / "examples/real" / name;
+    for (const auto& entry : fs::directory_iterator(example))
+      if (entry.path().extension() == ".py" || entry.path().extension() == ".yaml")
+        fs::copy_file(entry.path(), folder_ / entry.path().filename().string());
+    const std::string script = folder_ / ("make_" + name + ".py");
+    there_ =
+        std::system(
+            ("python3 " + shell_quoted(script) + " " + shell_quoted(measured.string()) + " > /dev/null").c_str()) == 0;
+    EXPECT_TRUE(there_);
+    words_ = {"calibrate", "robot", folder_ / (name + ".yaml"), folder_ / "poses.csv", "--json"};
+  }
+
+  [[nodiscard]] bool is_there() const { return there_; }
+  [[nodiscard]] json calibrated(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = words_;
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = run_program(words);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return json::parse(result.output);
+  }
+
+ private:
+  TemporaryFolder folder_;
+  bool there_ = false;
+  std::vector<std::string> words_;
+};
+
+constexpr const char* absent = "the measurements of examples/real are absent; SOFTKIN_REAL names their folder";
+
+/// The modulus is near the 0.2638 MPa that its measurers found by another method.
+TEST(RealRobots, ABeamsModulusForetellsItsLoad) {
+  const RealRobot beam("beam");
+  if (!beam.is_there()) GTEST_SKIP() << absent;
+  const json weight = beam.calibrated({"--fit", "materials.all.youngs_modulus", "--keep", "1"});
+  EXPECT_NEAR(weight["numbers"][0]["value"].get<double>(), 0.2638, 0.01);
+  EXPECT_LT(weight["kept"]["rms_mm"].get<double>(), 1.4);
+  const json both = beam.calibrated({"--fit", "materials.all.youngs_modulus"});
+  EXPECT_NEAR(both["numbers"][0]["value"].get<double>(), 0.2638, 0.01);
+  EXPECT_LT(both["markers"]["rms_mm"].get<double>(), 0.75);
+}
+
+/// Every pose of the real one has an equilibrium.
+TEST(RealRobots, ATentacleStandsWhereItStood) {
+  const RealRobot tentacle("tentacle");
+  if (!tentacle.is_there()) GTEST_SKIP() << absent;
+  const json found = tentacle.calibrated({"--change", "materials.all.youngs_modulus=0.3"});
+  EXPECT_EQ(found["poses"].size(), 14u);
+  for (const json& pose : found["poses"]) EXPECT_EQ(pose["status"], "converged");
+  EXPECT_LT(found["markers"]["rms_mm"].get<double>(), 20);
+}
+
+}  // namespace
