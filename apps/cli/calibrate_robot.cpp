@@ -38,7 +38,7 @@ calibration::RobotFitOptions fit_options(const RobotOptions& options, std::size_
   fit.deviation_mm = options.deviation_mm.value_or(0);
   fit.deviation_kPa = options.deviation_kPa.value_or(0);
   fit.deviation_N = options.deviation_N.value_or(0);
-  fit.kept = calibration::kept_aside(options.keep, poses);
+  fit.kept = calibration::kept_aside("--keep", options.keep, poses);
   return fit;
 }
 

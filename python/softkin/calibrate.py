@@ -459,7 +459,7 @@ class RobotFit:
         return self._core.text.rstrip("\n")
 
 
-def _fitted_number(name: str, value: object) -> str:
+def _fitted_number(name: str, value: float | Sequence[float] | str | None) -> str:
     if value is None:
         return name
     if isinstance(value, str):

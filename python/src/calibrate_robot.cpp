@@ -49,7 +49,7 @@ RobotCalibration fit(const PosesTask& task,
     options.deviation_mm = task.deviation_mm;
     options.deviation_kPa = task.deviation_kPa;
     options.deviation_N = task.deviation_N;
-    options.kept = calibration::kept_aside(task.keep, poses.commands.size());
+    options.kept = calibration::kept_aside("keep", task.keep, poses.commands.size());
     options.threads = task.threads;
     const auto progress = [&](const calibration::FitProgress& p) {
       iteration = p.iteration;

@@ -47,9 +47,8 @@ TEST(CalibrateRobot, FindsTheModulusBehindThePoses) {
   const ProgramResult fitted = folder.calibrate(
       {"--fit", modulus, "--report", report, "--plot", folder / "fit.svg", "--table", folder / "fit.csv"});
   ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
-  expect_words(fitted.output,
-               {"converged", "pose  line", "tip off by [mm]", "--change materials.all.youngs_modulus=0.8",
-                "all markers: 0.00 mm root mean square", "readings: ", "plot: "});
+  expect_words(fitted.output, {"converged", "pose  line", "tip off by [mm]", "  materials.all.youngs_modulus=0.8",
+                               "all markers: 0.00 mm root mean square", "readings: ", "plot: "});
   const json found = json::parse(read_text(report));
   EXPECT_NEAR(found["numbers"][0]["value"].get<double>(), 0.8, 1e-5);
   EXPECT_EQ(found["poses"].size(), 4u);

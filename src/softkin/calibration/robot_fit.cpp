@@ -130,10 +130,10 @@ RobotFit predict_poses(const NumberedRobot& robot, const MeasuredPoses& poses, c
   return fit;
 }
 
-std::vector<bool> kept_aside(int keep, std::size_t poses) {
+std::vector<bool> kept_aside(const std::string& option, int keep, std::size_t poses) {
   if (keep == 0) return {};
   if (static_cast<std::size_t>(keep) >= poses)
-    throw InvalidInput("--keep " + std::to_string(keep) + ": there are " + counted(poses, "pose") +
+    throw InvalidInput(option + " " + std::to_string(keep) + ": there are " + counted(poses, "pose") +
                        ", of which some must be left to fit to");
   std::vector<bool> kept(poses);
   for (int k = 0; k < keep; ++k)

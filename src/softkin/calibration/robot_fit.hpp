@@ -58,8 +58,8 @@ using FitCallback = std::function<bool(const FitProgress&)>;
 
 /// So many poses, spread evenly, that are not fitted to.
 ///
-/// throws  InvalidInput naming --keep: none would be left
-[[nodiscard]] std::vector<bool> kept_aside(int keep, std::size_t poses);
+/// throws  InvalidInput naming the option: none would be left
+[[nodiscard]] std::vector<bool> kept_aside(const std::string& option, int keep, std::size_t poses);
 
 /// The numbers at which the robot does what was measured, by Levenberg's and Marquardt's method through equilibria,
 /// with exact derivatives.

@@ -65,6 +65,7 @@ FittedNumber parse_fitted_number(const std::string& option, const std::string& t
     return value;
   };
   FittedNumber fitted;
+  fitted.option = option;
   const std::size_t equals = text.find('=');
   fitted.name = text.substr(0, equals);
   if (fitted.name.empty()) refuse("expected NAME, NAME=START, NAME=START,LOW,HIGH or NAME=MEAN+-DEVIATION");
@@ -142,13 +143,14 @@ NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNu
     root_ = scene::changed(root_, "--material", material, "materials");
   for (const std::string& each : asked.changes) root_ = scene::changed(root_, "--change", each, "");
   for (FittedNumber& number : numbers_) {
-    if (!number.start) number.start = is_of_frame(number.name) ? 0.0 : scene::number_at(root_, "--fit", number.name);
+    if (!number.start)
+      number.start = is_of_frame(number.name) ? 0.0 : scene::number_at(root_, number.option, number.name);
     if (*number.start < number.low || *number.start > number.high)
-      throw InvalidInput("--fit " + number.name + ": its start, " + softkin::number(*number.start) +
+      throw InvalidInput(number.option + " " + number.name + ": its start, " + softkin::number(*number.start) +
                          ", is outside its bounds");
     for (const FittedNumber& other : numbers_)
       if (&other != &number && other.name == number.name)
-        throw InvalidInput("--fit " + number.name + ": the number is given twice");
+        throw InvalidInput(number.option + " " + number.name + ": the number is given twice");
     const bool bounded = std::isfinite(number.high - number.low);
     const bool turns = number.name.find(".r") != std::string::npos && is_of_frame(number.name);
     sizes_.push_back(*number.start != 0 ? std::abs(*number.start)
@@ -171,7 +173,8 @@ RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
   std::shared_ptr<const scene::Node> root = root_;
   for (std::size_t i = 0; i < numbers_.size(); ++i)
     if (!is_of_frame(numbers_[i].name))
-      root = scene::changed(root, "--fit", numbers_[i].name + "=" + digits_of(values[static_cast<Index>(i)]), "");
+      root = scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + digits_of(values[static_cast<Index>(i)]),
+                            "");
   RobotSpec spec = parse_scene(*root, file_, reading_once());
   change(spec, asked_);
   spec.gravity = turned(six_of(numbers_, values, "base").degrees).transpose() * spec.gravity;

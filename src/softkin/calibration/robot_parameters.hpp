@@ -19,6 +19,7 @@ struct FittedNumber {
   std::optional<double> start{};  // none: the scene's
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   std::optional<double> deviation{};  // of the start as a prior; none: nothing is known before
+  std::string option{};               // that asks for it, for messages
 };
 
 /// "NAME", "NAME=start", "NAME=start,low,high", "NAME=mean+-deviation" or "NAME=mean+-deviation,low,high".

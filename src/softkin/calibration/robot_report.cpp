@@ -133,8 +133,8 @@ std::string scene_text(const RobotFitReport& r) {
   std::string text;
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i)
     if (!of_frame(r.robot.numbers()[i]))
-      text += "  --change " + r.robot.numbers()[i].name + "=" + number(r.fit.values[static_cast<Index>(i)], 6) + "\n";
-  return text.empty() ? "" : "in the scene, or of every command that solves:\n" + text;
+      text += "  " + r.robot.numbers()[i].name + "=" + number(r.fit.values[static_cast<Index>(i)], 6) + "\n";
+  return text.empty() ? "" : "for the scene, by path:\n" + text;
 }
 
 std::string scale_text(const char* what, double scale, double given, const char* unit) {

@@ -109,7 +109,7 @@ std::string finding_text(const Model& model, const Finding& finding) {
       return "nothing touches";
     case Kind::unstable:
       return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
-             ": the robot would buckle or snap away from it; --stable looks for the shape that it goes to";
+             ": the robot would buckle or snap away from it";
     case Kind::buckled:
       return "the robot left " +
              counted(static_cast<std::size_t>(v[0]), "unstable equilibrium", "unstable equilibria") +
@@ -120,7 +120,7 @@ std::string finding_text(const Model& model, const Finding& finding) {
     case Kind::unstable_way:
       return "warning: from " + percent(v[0]) +
              " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
-             "another one; --stable looks for it";
+             "another one";
     case Kind::branch:
       return branch_text(model, finding);
     case Kind::diverged:
