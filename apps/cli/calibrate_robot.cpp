@@ -22,6 +22,7 @@ struct RobotOptions {
   std::vector<std::string> numbers;
   std::optional<double> deviation_mm, deviation_kPa, deviation_N;
   int keep = 0;
+  bool ordered = false;
   bool json = false, resume = false, may_replace = false;
 
   [[nodiscard]] std::vector<Output> outputs() const {
@@ -39,6 +40,7 @@ calibration::RobotFitOptions fit_options(const RobotOptions& options, std::size_
   fit.deviation_kPa = options.deviation_kPa.value_or(0);
   fit.deviation_N = options.deviation_N.value_or(0);
   fit.kept = calibration::kept_aside("--keep", options.keep, poses);
+  fit.ordered = options.ordered;
   return fit;
 }
 
@@ -117,6 +119,10 @@ void add_options(CLI::App& command, RobotOptions& options) {
             positive_force());
   add_value(command, "--keep", options.keep, "N", "Poses that are not fitted to but foretold, spread evenly",
             CLI::Range(0, 100000).description(""));
+  command.add_flag(
+      "--ordered", options.ordered,
+      "The poses were taken in this order: where something rubs,\neach goes on from the one before, the first "
+      "from rest;\nelse each from rest");
   add_value(command, "--report", options.report, "F.json", "All that is told, as JSON");
   add_value(command, "--table", options.table, "F.csv", "Every reading, measured and computed");
   add_value(command, "--plot", options.plot, "F.svg", "Measured and computed markers");

@@ -479,6 +479,7 @@ def robot(
     deviation_kPa: float | None = None,
     deviation_N: float | None = None,
     keep: int = 0,
+    ordered: bool = False,
     threads: int = 0,
     progress: Callable[[int, float], object] | None = None,
 ) -> RobotFit:
@@ -494,6 +495,7 @@ def robot(
     loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
     deviation  of a coordinate [mm], pressure [kPa], tension [N] as read; None: by what is left
     keep       poses that are not fitted to but foretold, spread evenly
+    ordered    where something rubs: each pose goes on from the one before, the first from rest; else each from rest
     threads    poses side by side; 0: as many as the machine has
     progress   called with the iteration and the root mean square of the markers [mm], now and then
     raises     InvalidInput naming the file, line and column, or the number
@@ -513,5 +515,5 @@ def robot(
         task.numbers = list(fit)
     task.changes = [f"{path}={_yaml_text(value)}" for path, value in (changes or {}).items()]
     task.deviation_mm, task.deviation_kPa, task.deviation_N = deviation_mm or 0, deviation_kPa or 0, deviation_N or 0
-    task.keep, task.threads = keep, threads
+    task.keep, task.threads, task.ordered = keep, threads, ordered
     return RobotFit(_core.calibrate_robot(task, progress), task.scene, changes or {})

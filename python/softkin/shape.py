@@ -59,6 +59,10 @@ class ActuatorState:
     """between them [pF]"""
     field_kV_mm: float | None = None
     """the largest true field in its layer [kV/mm]"""
+    end_tension_N: float | None = None
+    """of a cable that rubs, at its far end [N]; `load` is that at the motor"""
+    sticking: float | None = None
+    """the share of its friction in which it sticks [-]"""
 
     def _load_of(self, kind: str, what: str) -> float:
         if self.kind != kind:
@@ -257,9 +261,11 @@ class Shape(Saving):
         """By name: ratio, pressure, tension or voltage."""
         return {
             info.name: ActuatorState(
-                info.name, info.kind, requested, info.unit, ratio, measure, load, curve, slack, *(layer or ())
+                *(info.name, info.kind, requested, info.unit, ratio, measure, load, curve, slack),
+                *(layer or (None, None, None)),
+                *(tendon or (None, None)),
             )
-            for info, (requested, ratio, measure, load, curve, slack, layer) in zip(
+            for info, (requested, ratio, measure, load, curve, slack, layer, tendon) in zip(
                 self._robot.actuator_infos, self._core.actuators()
             )
         }

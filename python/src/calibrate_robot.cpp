@@ -18,6 +18,7 @@ struct PosesTask {
   std::vector<std::string> numbers, changes;
   double deviation_mm = 0, deviation_kPa = 0, deviation_N = 0;  // 0: by what is left
   int keep = 0, threads = 0;
+  bool ordered = false;
 };
 
 /// A fit with what is told of it.
@@ -50,6 +51,7 @@ RobotCalibration fit(const PosesTask& task,
     options.deviation_kPa = task.deviation_kPa;
     options.deviation_N = task.deviation_N;
     options.kept = calibration::kept_aside("keep", task.keep, poses.commands.size());
+    options.ordered = task.ordered;
     options.threads = task.threads;
     const auto progress = [&](const calibration::FitProgress& p) {
       iteration = p.iteration;
@@ -85,6 +87,7 @@ void bind_calibrate_robot(nb::module_& module) {
       .def_rw("deviation_kPa", &PosesTask::deviation_kPa)
       .def_rw("deviation_N", &PosesTask::deviation_N)
       .def_rw("keep", &PosesTask::keep)
+      .def_rw("ordered", &PosesTask::ordered)
       .def_rw("threads", &PosesTask::threads);
   nb::class_<RobotCalibration>(module, "RobotCalibration", "Numbers of a robot and how they were found.")
       .def_ro("text", &RobotCalibration::text)

@@ -43,6 +43,7 @@ void members(A& archive, Equilibrium& e) {
   archive(e.state.positions, e.state.actuation, e.state.multipliers, e.state.share, e.state.anchors, e.actuation,
           e.report, e.state.elapsed_s);
   remembered(archive, e.state.history);
+  archive(e.state.eyelets);
 }
 template <class A>
 void members(A& archive, StaticsOptions& o) {

@@ -44,21 +44,27 @@ std::string report_of(const Shape& shape) {
 
 /// Of a layer under voltage: charge, capacitance, largest field.
 using LayerOut = std::array<double, 3>;
-/// An actuator in a shape: requested, ratio, measure, load, input by its curve, slack, layer.
-using ActuatorOut =
-    std::tuple<double, double, double, std::optional<double>, std::optional<double>, bool, std::optional<LayerOut>>;
+/// Of a cable that rubs: tension at its far end, share that sticks.
+using TendonOut = std::array<double, 2>;
+/// An actuator in a shape: requested, ratio, measure, load, input by its curve, slack, layer, tendon.
+using ActuatorOut = std::tuple<double, double, double, std::optional<double>, std::optional<double>, bool,
+                               std::optional<LayerOut>, std::optional<TendonOut>>;
 ActuatorOut actuator_of(const Shape& shape, std::size_t a, const runs::ActuatorRecord& record) {
   const Actuator& actuator = shape.model().actuators[a];
   const bool loaded = !multiplier_key(actuator).empty() && shape.model().formulation == Formulation::physical;
   std::optional<LayerOut> layer;
   if (record.layer) layer = {record.layer->charge_nC, record.layer->capacitance_pF, record.layer->field_kV_mm};
+  std::optional<TendonOut> tendon;
+  if (rubs(actuator))
+    if (const auto& of = shape.deformation().tendons.at(a)) tendon = {of->end_N, of->sticks};
   return {record.requested,
           record.achieved,
           record.achieved * actuator.rest_measure,
           loaded ? std::optional(record.multiplier) : std::nullopt,
           record.by_curve,
           record.slack,
-          layer};
+          layer,
+          tendon};
 }
 
 void bind_fields(nb::class_<Shape>& type) {

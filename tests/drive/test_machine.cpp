@@ -115,7 +115,7 @@ TEST_F(HardwareFile, RefusesSyringesByLine) {
   syringe(whole + "plunger_area_mm2: 600", "has both 'plunger_area_mm2' and 'mL_per_mm': give one of them");
   syringe("syringe_mL: 0, mL_per_mm: 0.6", "must be greater than 0");
   syringe("syringe_mL: 60, plunger_area_mm2: -3", "must be greater than 0");
-  syringe(whole + "dead_volume_mL: -1", "must not be negative: -1");
+  syringe(whole + "dead_volume_mL: -1", "must be 0 or more, not -1");
   syringe(whole + "dead_volume_ml: 1", "did you mean 'dead_volume_mL'?");
   syringe(whole + "steps_per_revolution: 3200", "steps_per_revolution needs lead_mm beside it");
   syringe(whole + "lead_mm: 0", "must be greater than 0");
@@ -149,8 +149,8 @@ TEST_F(HardwareFile, RefusesByLine) {
   tendon("steps_per_revolution: 3200", "steps_per_revolution needs drum_radius_mm beside it");
   tendon("steps_per_mm: .nan", "must be a finite number");
   tendon("direction: 2", "must be 1 or -1, not 2");
-  tendon("slack_offset_mm: -1", "must not be negative: -1");
-  tendon("backlash_mm: -0.1", "must not be negative: -0.1");
+  tendon("slack_offset_mm: -1", "must be 0 or more, not -1");
+  tendon("backlash_mm: -0.1", "must be 0 or more, not -0.1");
   tendon("length_limits_mm: [40, 20]", "must be [low, high], but 40 is above 20");
   tendon("length_limits_mm: [0, 20]", "must be greater than 0");
   tendon("max_speed_mm_per_s: 0", "must be greater than 0");

@@ -96,7 +96,8 @@ TEST(Measures, GradientAndSecondDerivativeAgreeWithDifferences) {
       EXPECT_LT((gradient - slope).norm(), 1e-8 * gradient.norm()) << "actuator " << a;
 
       Team pair(2);
-      measures.second_derivatives(positions, -1.7 * Eigen::VectorXd::Unit(5, a), slots, pair);
+      measures.second_derivatives(positions, -1.7 * Eigen::VectorXd::Unit(5, a), std::vector<Eigen::VectorXd>(5), slots,
+                                  pair);
       pattern.gather(slots, blocks, alone);
       for (unsigned seed = 1; seed <= 3; ++seed) {
         const Points direction = noise(n, 1, seed);
@@ -131,7 +132,7 @@ TEST(Measures, ASegmentWithoutLengthPullsNowhere) {
   EXPECT_TRUE(gradient.allFinite());
   LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 0.0);
   Team pair(2);
-  measures.second_derivatives(flat, Eigen::VectorXd::Ones(1), slots, pair);
+  measures.second_derivatives(flat, Eigen::VectorXd::Ones(1), std::vector<Eigen::VectorXd>(1), slots, pair);
   for (const double value : slots) EXPECT_TRUE(std::isfinite(value));
 }
 

@@ -19,6 +19,8 @@ struct RobotFitOptions {
   double deviation_mm = 0, deviation_kPa = 0, deviation_N = 0;  // of readings; 0: told by what is left
   int max_iterations = 30;
   int threads = 0;           // poses side by side; 0: as many as the machine has
+  bool ordered = false;      // where something rubs: each pose goes on from the one before, the first from rest; else
+                             // each from rest
   std::vector<bool> kept{};  // per pose: not fitted to; empty: none
 };
 

@@ -37,8 +37,9 @@ struct RobotProblem::Changes {
     for (Index i = 0; i < count; ++i) {
       const double half = perturbation * robot.size(static_cast<std::size_t>(i));
       Eigen::VectorXd above = point.values, below = point.values;
-      above[i] += half;
-      below[i] -= half;
+      const FittedNumber& number = robot.numbers()[static_cast<std::size_t>(i)];
+      above[i] = std::min(number.high, above[i] + half);
+      below[i] = std::max(number.low, below[i] - half);
       differences.push_back(above[i] - below[i]);
       more.push_back(robot.frame(above));
       less.push_back(robot.frame(below));
@@ -214,8 +215,8 @@ Misfit RobotProblem::marker_misfit(const RobotPoint& point, bool kept) const {
   return misfit;
 }
 
-/// Poses side by side. False: the user stopped it.
-bool RobotProblem::each_pose(const std::function<bool(Index, const ProgressCallback&)>& act) {
+/// Poses side by side, or one after another. False: the user stopped it.
+bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act) {
   const auto count = static_cast<int>(poses_.commands.size());
   const int asked = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
   std::atomic<int> next = 0, done = 0;
@@ -244,7 +245,7 @@ bool RobotProblem::each_pose(const std::function<bool(Index, const ProgressCallb
     }
   };
   std::vector<std::thread> threads;
-  for (int t = 1; t < std::clamp(asked, 1, count); ++t) threads.emplace_back(work);
+  for (int t = 1; t < std::clamp(asked, 1, std::min(count, most_threads)); ++t) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
   if (error) std::rethrow_exception(error);
@@ -329,17 +330,25 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
   StaticsOptions solver = options_.solver;
   solver.threads = 1;
   solver.keep_history = false;
-  const bool whole = each_pose([&](Index pose, const ProgressCallback& progress) {
-    const auto p = static_cast<std::size_t>(pose);
-    const bool begun = near && near->equilibria[p].report.status == Status::converged;
-    const State start = begun ? near->equilibria[p].state : point.statics->rest();
-    point.equilibria[p] = point.statics->solve(poses_.commands[p], start, solver, progress);
-    if (begun && point.equilibria[p].report.status != Status::converged && !point.equilibria[p].report.stopped)
-      point.equilibria[p] = point.statics->solve(poses_.commands[p], point.statics->rest(), solver, progress);
-    if (point.equilibria[p].report.stopped) return false;
-    compute(point, changes ? &*changes : nullptr, pose);
-    return true;
-  });
+  // what rubs is elsewhere on another way
+  const bool way_counts = rubs(*point.model), chained = way_counts && options_.ordered;
+  if (chained) solver.threads = options_.threads;
+  const bool whole =
+      each_pose(chained ? 1 : static_cast<int>(count), [&](Index pose, const ProgressCallback& progress) {
+        const auto p = static_cast<std::size_t>(pose);
+        const Equilibrium* from = chained               ? (p > 0 ? &point.equilibria[p - 1] : nullptr)
+                                  : way_counts || !near ? nullptr
+                                                        : &near->equilibria[p];
+        const bool begun = from && from->report.status == Status::converged;
+        State start = begun ? from->state : point.statics->rest();
+        if (!chained) start.eyelets.clear(), start.anchors.clear();
+        point.equilibria[p] = point.statics->solve(poses_.commands[p], start, solver, progress);
+        if (begun && point.equilibria[p].report.status != Status::converged && !point.equilibria[p].report.stopped)
+          point.equilibria[p] = point.statics->solve(poses_.commands[p], point.statics->rest(), solver, progress);
+        if (point.equilibria[p].report.stopped) return false;
+        compute(point, changes ? &*changes : nullptr, pose);
+        return true;
+      });
   if (!whole) return std::nullopt;
   for (const Equilibrium& found : point.equilibria)
     point.without_equilibrium += found.report.status != Status::converged;

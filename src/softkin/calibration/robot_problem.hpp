@@ -82,7 +82,7 @@ class RobotProblem {
   struct Changes;
   void compute(RobotPoint& point, const Changes* changes, Index pose) const;
   void add_slopes(RobotPoint& point, const Changes& changes, Index pose) const;
-  bool each_pose(const std::function<bool(Index, const ProgressCallback&)>& act);
+  bool each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act);
 
   const NumberedRobot& robot_;
   const MeasuredPoses& poses_;

@@ -37,8 +37,9 @@ struct State {
   Actuation actuation{};          // of which positions is an equilibrium; empty: not known
   Eigen::VectorXd multipliers{};  // m: tension [N], gauge pressure [kPa], voltage [kV], else 0; empty: not known
   double share = 1;  // of dead loads, prestretch and displacements of supports; -1: of no equilibrium that is known [-]
-  std::vector<Anchor> anchors{};                    // of friction, sorted by vertex, then part; empty: nothing rubs yet
-  std::shared_ptr<const ViscousHistory> history{};  // viscous: at the beginning of the time step
+  std::vector<Anchor> anchors{};  // of friction, sorted by vertex, then part; empty: nothing rubs yet
+  std::vector<double> eyelets{};  // cables that rub: lengths beyond where they turn, at which they would not [mm]
+  std::shared_ptr<const ViscousHistory> history{};             // viscous: at the beginning of the time step
   double elapsed_s = std::numeric_limits<double>::infinity();  // since then; 0: instant, infinity: relaxed
 
   /// Whether it tells of which actuation, of so many values, positions is an equilibrium.

@@ -107,6 +107,7 @@ class Hash {
     add(a.name, a.kind, a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.tetrahedra, a.cavity,
         a.prisms, a.points, a.surface, a.gaps, a.other, a.axis, a.rest_measure);
     if (a.factor != 1 || a.offset != 0) add(a.factor, a.offset);
+    if (a.friction != 0 || a.sheath != 0) add(a.friction, a.sheath);
     if (under_voltage(a)) add(a.shares, a.prestretch);
     if (a.distribution == Distribution::proportional) add(a.distribution);
   }
@@ -194,6 +195,15 @@ std::array<Index, 2> Model::vertices_of_part(Index part) const {
 bool drives(const Actuator& actuator) {
   return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
          actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::magnetic;
+}
+
+bool rubs(const Actuator& actuator) {
+  return actuator.friction > 0 || actuator.sheath > 0;
+}
+
+bool rubs(const Model& model) {
+  return model.contact.rubs() || std::any_of(model.actuators.begin(), model.actuators.end(),
+                                             [](const Actuator& actuator) { return rubs(actuator); });
 }
 
 bool under_voltage(const Actuator& actuator) {

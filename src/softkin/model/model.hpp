@@ -64,6 +64,7 @@ struct Actuator {
                                        // magnetic: index into Magnetism::sources; turn: into Model::turns
   int axis = -1;                       // motion, force; magnetic: which of the source's commands
   bool pushes = false;                 // cable: held to its length whatever that takes, as a rod would be
+  double friction = 0, sheath = 0;     // cable, physical: where it turns; of its sheath, times the sheath's turns [-]
   double factor = 1, offset = 0;       // load control: what acts is factor times the command plus offset [N, kPa]
   double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
                                        // a dea's ratio 1
@@ -178,6 +179,10 @@ struct Model {
 [[nodiscard]] bool drives(const Actuator& actuator);
 /// A dea that is commanded by its voltage: the field in its layer is its load.
 [[nodiscard]] bool under_voltage(const Actuator& actuator);
+/// A cable whose tension falls or rises where it turns.
+[[nodiscard]] bool rubs(const Actuator& actuator);
+/// Does anything, so that its shapes depend on the way to them.
+[[nodiscard]] bool rubs(const Model& model);
 /// Does it, and has its range more than one value.
 [[nodiscard]] bool varies(const Actuator& actuator);
 

@@ -132,15 +132,17 @@ struct ActuatorSpec {
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
   double spacing = 0;                      // cable: how often it is guided inside the body [mm]; 0: at its points
-  Control control = Control::ratio;        // load: physical formulation
-  double low = 0, high = 0;                // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
-                                           // pressure [kPa]: any
-  double rest = 1;                         // value where none is asked for: a dea's prestretch; load control: 0; else 1
-  double factor = 1, offset = 0;           // tension and pressure: of a command, what acts is this times it plus that
-                                           // [N, kPa]; factor > 0
-  double prestretch = 1;                   // dea under voltage: area that its layer has without force, over that in the
-                                           // mesh [-], > 0
-  double weight = 5;                       // w of Eq. (9), > 0
+  double friction = 0;  // cable: Coulomb's, where it turns, >= 0; pulled at its first point; physical
+  double sheath_friction = 0, sheath_turns_degrees = 0;  // the same of a sheath before that
+  Control control = Control::ratio;                      // load: physical formulation
+  double low = 0, high = 0;       // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
+                                  // pressure [kPa]: any
+  double rest = 1;                // value where none is asked for: a dea's prestretch; load control: 0; else 1
+  double factor = 1, offset = 0;  // tension and pressure: of a command, what acts is this times it plus that
+                                  // [N, kPa]; factor > 0
+  double prestretch = 1;          // dea under voltage: area that its layer has without force, over that in the
+                                  // mesh [-], > 0
+  double weight = 5;              // w of Eq. (9), > 0
   Distribution distribution = Distribution::least_norm;
   std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
   Branch branch = Branch::loading;         // of the curve, where a command names none

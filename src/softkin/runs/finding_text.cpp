@@ -70,6 +70,9 @@ std::string finding_text(const Model& model, const Finding& finding) {
       return "dea '" + finding.name + "' holds " + number(v[0], 4) + " nC, " + number(v[1], 4) +
              " pF; the field in its layer is at most " + number(v[2], 4) + " kV/mm, where it is " + number(v[3], 4) +
              " mm thick, at " + place_text(&v[4]) + " mm";
+    case Kind::rubbing:
+      return "cable '" + finding.name + "' rubs: of " + number(v[0], 4) + " N at the motor " + number(v[1], 4) +
+             " N are left at its far end; it sticks in " + percent(v[2]) + " of its friction";
     case Kind::self_overlap:
       return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
              " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +

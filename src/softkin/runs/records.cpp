@@ -66,12 +66,14 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
     record.shape_load_share = found.state.share;
   }
   record.anchors = found.state.anchors;
+  record.eyelets = found.state.eyelets;
   record.inverted_elements = static_cast<std::size_t>(
       std::count_if(deformation.volume_ratio.begin(), deformation.volume_ratio.end(), [](double j) { return j <= 0; }));
   record.largest_displacement_mm = largest_move(model.rest, found.state.positions);
   for (const Marker& marker : model.markers) record.markers.push_back(marker.at(found.state.positions));
   record.marker_turns = marker_turns(model, found.state.positions);
   record.actuators = actuator_records(model, found);
+  for (std::size_t a = 0; a < deformation.tendons.size(); ++a) record.actuators[a].tendon = deformation.tendons[a];
   record.strain = strain_histogram(model, deformation);
   if (model.formulation == Formulation::physical && record.status == Status::limit && !record.answered())
     record.worst = worst_place(model, found.state.positions, deformation);
@@ -136,6 +138,7 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     state.multipliers[static_cast<Index>(a)] = record.actuators[a].multiplier;
   state.anchors = record.anchors;
+  state.eyelets = record.eyelets;
   return state;
 }
 
@@ -272,6 +275,11 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
                        model.actuators[a].name,
                        {layer->charge_nC, layer->capacitance_pF, layer->field_kV_mm, layer->thickness_mm, layer->at.x(),
                         layer->at.y(), layer->at.z()}});
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (const ActuatorRecord& actuator = record.actuators[a]; actuator.tendon && actuator.multiplier != 0)
+      found.push_back({Finding::Kind::rubbing,
+                       model.actuators[a].name,
+                       {actuator.multiplier, actuator.tendon->end_N, actuator.tendon->sticks}});
   add_forces(model, record, found);
   add_implausible(model, record, found);
   if (model.formulation == Formulation::physical && record.status != Status::converged)

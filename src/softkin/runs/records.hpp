@@ -26,6 +26,7 @@ struct ActuatorRecord {
   double multiplier = 0;                 // tension [N], gauge pressure [kPa] or voltage [kV]; physical
   bool slack = false;                    // a cable that carries nothing because its path is shorter than it
   std::optional<ElectricLayer> layer{};  // of a dea under voltage
+  std::optional<TendonForces> tendon{};  // of a cable that rubs
 };
 
 /// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read
@@ -36,6 +37,7 @@ struct StepRecord : SolveReport {
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
   double shape_load_share = 1;
   std::vector<Anchor> anchors{};  // of friction
+  std::vector<double> eyelets{};  // of cables that rub; see State
   std::size_t inverted_elements = 0;
   double largest_displacement_mm = 0;  // of a vertex from its place at rest
   SelfOverlap self_overlap;            // of the shape, set by who makes the record
@@ -102,6 +104,7 @@ struct Finding {
     slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
     charged,              // name: dea; values: charge [nC], capacitance [pF], the largest field in its layer [kV/mm],
                           // thickness [mm] and place [mm] (3) there
+    rubbing,              // name: cable; values: tension at the motor and at its far end [N], share that sticks [-]
     self_overlap,         // values: points inside, depth of the deepest and its place [mm]
     motionless,           // something is asked for and nothing moves; values: largest displacement [mm]
     far_strained,         // values: greatest strain [-]

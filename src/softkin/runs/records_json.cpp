@@ -189,6 +189,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
   if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
   if (model.contact.rubs()) json["friction_change"] = known(record.friction_change);
   if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
+  if (!record.eyelets.empty()) json["eyelets_mm"] = record.eyelets;
   return json;
 }
 
@@ -205,6 +206,7 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
     if (const Json& load = json.at("magnetic"); !load.is_null())
       record.magnetic = {point_of(load.at("force_N")), point_of(load.at("moment_N_mm")),
                          point_of(load.at("center_mm"))};
+  if (json.contains("eyelets_mm")) record.eyelets = json.at("eyelets_mm").get<std::vector<double>>();
   if (!model.contact.any()) return;
   if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);
   if (model.contact.rubs()) record.friction_change = number_or_nan(json.at("friction_change"));
@@ -246,6 +248,10 @@ Json actuator_json(const Model& model, const Actuator& actuator, const ActuatorR
   if (model.formulation != Formulation::physical || key.empty()) return json;
   json[key] = known(record.multiplier);
   if (actuator.kind == ActuatorKind::cable) json["slack"] = record.slack;
+  if (record.tendon) {
+    json["end_tension_N"] = known(record.tendon->end_N);
+    json["sticking"] = known(record.tendon->sticks);
+  }
   if (under_voltage(actuator)) json.update(layer_json(record.layer));
   return json;
 }
@@ -259,6 +265,8 @@ ActuatorRecord actuator_of(const Model& model, const Actuator& actuator, const J
   if (model.formulation != Formulation::physical || key.empty()) return record;
   record.multiplier = number_or_nan(json.at(key));
   if (actuator.kind == ActuatorKind::cable) record.slack = json.at("slack").get<bool>();
+  if (json.contains("end_tension_N"))
+    record.tendon = {number_or_nan(json.at("end_tension_N")), number_or_nan(json.at("sticking"))};
   if (under_voltage(actuator)) record.layer = layer_of(json);
   return record;
 }

@@ -110,7 +110,7 @@ void add_surroundings(const Model& model, VtuContent& content) {
 
 // What read_state() reads.
 constexpr const char *state_share = "state_share", *state_elapsed = "state_elapsed_s", *state_anchors = "state_anchors",
-                     *state_history = "state_history";
+                     *state_history = "state_history", *state_eyelets = "state_eyelets";
 const std::string state_command = "state_command_", state_multiplier = "state_multiplier_";
 constexpr int anchor_values = 7;
 constexpr double same_mesh = 1e-9;  // of the diagonal
@@ -128,6 +128,7 @@ void add_state(const Model& model, const State& state, VtuContent& content) {
   }
   if (std::isfinite(state.elapsed_s)) content.constants.emplace_back(state_elapsed, state.elapsed_s);
   if (state.history) content.arrays.push_back({state_history, 6, state.history->strains});
+  if (!state.eyelets.empty()) content.arrays.push_back({state_eyelets, 1, state.eyelets});
   if (state.anchors.empty()) return;
   Field anchors{state_anchors, anchor_values, {}};
   for (const Anchor& anchor : state.anchors)
@@ -201,6 +202,7 @@ State read_state(const fs::path& path, const Model& model) {
   state.elapsed_s = number_of(state_elapsed).value_or(state.elapsed_s);
   if (const auto history = arrays.find(state_history); history != arrays.end())
     state.history = std::make_shared<const ViscousHistory>(ViscousHistory{history->second});
+  if (const auto eyelets = arrays.find(state_eyelets); eyelets != arrays.end()) state.eyelets = eyelets->second;
   if (const auto anchors = arrays.find(state_anchors); anchors != arrays.end())
     for (std::size_t i = 0; i + anchor_values <= anchors->second.size(); i += anchor_values) {
       const double* v = &anchors->second[i];

@@ -24,6 +24,12 @@ struct MagneticLoad {
   Vec3 center = Vec3::Zero();  // of the volume of what is magnetic, where it is [mm]
 };
 
+/// What a cable that rubs is like in a shape.
+struct TendonForces {
+  double end_N = 0;   // tension at its far end [N]
+  double sticks = 0;  // share of all that could rub which sticks [-]
+};
+
 /// Deformation of every element, tetrahedra first, then prisms (their strain at the centre). Of order 2: the least
 /// volume ratio, det F, at the corners and at the four points with which the energy is integrated, and the strain at
 /// that of the four where its magnitude is largest.
@@ -37,8 +43,9 @@ struct ElementDeformation {
   ElementStress stress;
   Eigen::VectorXd multipliers;  // m: tension [N], gauge pressure [kPa], voltage of a dea [kV]
   Points reactions;  // #V by 3: what supports push and pull at the vertices that they hold [N]; 0 along free axes
-  std::optional<ContactForces> contacts;  // where the robot may touch anything
-  std::optional<MagneticLoad> magnetic;   // where there is a magnetic field
+  std::optional<ContactForces> contacts;               // where the robot may touch anything
+  std::optional<MagneticLoad> magnetic;                // where there is a magnetic field
+  std::vector<std::optional<TendonForces>> tendons{};  // per actuator where any cable rubs; of those
 };
 [[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
 

@@ -41,6 +41,13 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
            anchor.triangle >= 0 && anchor.triangle < static_cast<Index>(model.contact.triangles.size()) &&
            anchor.weights.allFinite();
   };
+  std::size_t eyelets = 0;
+  for (const Actuator& actuator : model.actuators)
+    if (rubs(actuator)) eyelets += actuator.points.size() - 1;
+  if (!start.eyelets.empty() &&
+      (start.eyelets.size() != eyelets ||
+       !std::all_of(start.eyelets.begin(), start.eyelets.end(), [](double length) { return std::isfinite(length); })))
+    throw InvalidInput("the start's cables rub elsewhere than the robot's");
   if (!std::all_of(start.anchors.begin(), start.anchors.end(), lies_on_model))
     throw InvalidInput("the start's friction is of another robot");
   if (!(options.step_tolerance_mm >= 0) || options.max_iterations < 1 || options.anderson < 0 ||

@@ -17,8 +17,8 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region",     "surface", "points",        "apexes", "spacing",
-                     "prestretch", "curve",   "voltage_share", "factor", "offset"};
+const Keys kind_keys{"region", "surface",       "points", "apexes", "spacing",  "prestretch",
+                     "curve",  "voltage_share", "factor", "offset", "friction", "sheath"};
 
 Keys all_kind_keys() {
   Keys all = kind_keys;
@@ -32,7 +32,10 @@ const std::vector<Kind>& kinds() {
        "pneumatic",
        {"volume", "pressure"},
        {"region", "surface", "curve", "factor", "offset"}},
-      {ActuatorKind::cable, "cable", {"length", "tension"}, {"points", "apexes", "spacing", "factor", "offset"}},
+      {ActuatorKind::cable,
+       "cable",
+       {"length", "tension"},
+       {"points", "apexes", "spacing", "factor", "offset", "friction", "sheath"}},
       {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}},
       {ActuatorKind::magnetic, "magnetic", {}, field_keys()}};
   return all;
@@ -172,6 +175,19 @@ void read_share(const Map& map, ActuatorSpec& actuator) {
   if (offset != nullptr) actuator.offset = number(*offset);
 }
 
+/// Where a cable turns inside the robot, and in a sheath before that.
+void read_rubbing(const Map& map, Formulation formulation, ActuatorSpec& actuator) {
+  const Node *friction = map.find("friction"), *sheath = map.find("sheath");
+  for (const Node* node : {friction, sheath})
+    if (node != nullptr && formulation != Formulation::physical)
+      fail(*node, node->name + " belongs to the physical formulation, which knows tensions");
+  if (friction != nullptr) actuator.friction = not_negative(*friction);
+  if (sheath == nullptr) return;
+  const Map keys(*sheath, {"turns_degrees", "friction"});
+  actuator.sheath_friction = not_negative(keys.at("friction"));
+  actuator.sheath_turns_degrees = not_negative(keys.at("turns_degrees"));
+}
+
 std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
   ActuatorSpec actuator;
   actuator.origin = map.node().origin;
@@ -189,6 +205,7 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
     (actuator.control == Control::ratio ? actuator.rest : actuator.prestretch) = positive(*node);
   if (const Node* node = map.find("voltage_share")) actuator.shares = read_shares(context, *node, actuator);
   read_share(map, actuator);
+  read_rubbing(map, formulation, actuator);
   if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
   if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);
   if (kind.kind == ActuatorKind::cable) read_cable(context, map, actuator);

@@ -4,12 +4,6 @@ namespace softkin::scene {
 
 namespace {
 
-double read_friction(const Node& node) {
-  const double friction = number(node);
-  if (friction < 0) fail(node, node.name + " must be 0 or more, not " + node.text);
-  return friction;
-}
-
 Capsule read_capsule(const Context& context, const Node& node) {
   const auto [start, end, radius] = read_cylinder(context, node);
   return {start, end, radius};
@@ -54,7 +48,7 @@ std::vector<ObstacleSpec> read_obstacles(const Context& context, const Node& nod
     spec.name = names.add_label(map.at("name"));
     const Node::Entry& shape = map.one_of(shapes);
     spec.shape = read_shape(context, shape.key, *shape.value);
-    if (const Node* friction = map.find("friction")) spec.friction = read_friction(*friction);
+    if (const Node* friction = map.find("friction")) spec.friction = not_negative(*friction);
     if (const Node* motion = map.find("motion")) spec.motion = read_axes(*motion);
     spec.origin = item->origin;
     obstacles.push_back(std::move(spec));
@@ -75,7 +69,7 @@ std::vector<BodySpec> read_bodies(const Context& context, const Node& node) {
     const Node::Entry& shape = map.one_of(shapes);
     spec.shape = read_shape(context, shape.key, *shape.value);
     if (const Node* density = map.find("density")) spec.density = read_density(*density);
-    if (const Node* friction = map.find("friction")) spec.friction = read_friction(*friction);
+    if (const Node* friction = map.find("friction")) spec.friction = not_negative(*friction);
     spec.origin = item->origin;
     bodies.push_back(std::move(spec));
   }
@@ -84,13 +78,13 @@ std::vector<BodySpec> read_bodies(const Context& context, const Node& node) {
 
 ContactPairSpec read_pair(const Node& node) {
   const Map map(node, {"a", "b", "friction"});
-  return {text(map.at("a")), text(map.at("b")), read_friction(map.at("friction")), node.origin};
+  return {text(map.at("a")), text(map.at("b")), not_negative(map.at("friction")), node.origin};
 }
 
 void read_contact_keys(const Context& context, const Node& node, ContactSpec& spec) {
   const Map map(node, {"distance", "friction", "self", "pairs"});
   if (const Node* distance = map.find("distance")) spec.distance_mm = read_positive_length(context, *distance);
-  if (const Node* friction = map.find("friction")) spec.friction = read_friction(*friction);
+  if (const Node* friction = map.find("friction")) spec.friction = not_negative(*friction);
   if (const Node* self = map.find("self")) spec.self = choice(*self, {"false", "true"}) == 1;
   if (const Node* pairs = map.find("pairs"))
     for (const auto& item : list(*pairs)) spec.pairs.push_back(read_pair(*item));

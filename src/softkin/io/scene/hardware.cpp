@@ -20,12 +20,6 @@ std::optional<Value> optional(const Map& map, const char* key, const Read& read)
   return node ? std::optional<Value>(read(*node)) : std::nullopt;
 }
 
-double not_negative(const Node& node) {
-  const double value = scene::number(node);
-  if (value < 0) scene::fail(node, node.name + " must not be negative: " + node.text);
-  return value;
-}
-
 std::array<double, 2> limits(const Node& node) {
   const auto& items = scene::list_of(2, node);
   const std::array<double, 2> result{scene::number(*items[0]), scene::number(*items[1])};
@@ -76,7 +70,7 @@ void read_motor(const Map& map, const char* turn, scene::Names& actuators, scene
     scene::fail(map.at("steps_per_revolution"), std::string("steps_per_revolution needs ") + turn + " beside it");
   motor.steps_per_mm = optional<double>(map, "steps_per_mm", scene::positive);
   motor.direction = optional<int>(map, "direction", direction);
-  motor.backlash_mm = optional<double>(map, "backlash_mm", not_negative);
+  motor.backlash_mm = optional<double>(map, "backlash_mm", scene::not_negative);
   motor.max_speed_mm_per_s = optional<double>(map, "max_speed_mm_per_s", scene::positive);
   motor.max_acceleration_mm_per_s2 = optional<double>(map, "max_acceleration_mm_per_s2", scene::positive);
 }
@@ -88,7 +82,7 @@ TendonSpec read_tendon(const Node& node, scene::Names& actuators, scene::Names& 
   read_motor(map, "drum_radius_mm", actuators, axes, tendon);
   tendon.rest_length_mm = optional<double>(map, "rest_length_mm", scene::positive);
   tendon.drum_radius_mm = optional<double>(map, "drum_radius_mm", scene::positive);
-  tendon.slack_offset_mm = optional<double>(map, "slack_offset_mm", not_negative);
+  tendon.slack_offset_mm = optional<double>(map, "slack_offset_mm", scene::not_negative);
   tendon.length_limits_mm = optional<std::array<double, 2>>(map, "length_limits_mm", length_limits);
   return tendon;
 }
@@ -111,7 +105,7 @@ SyringeSpec read_syringe(const Node& node, scene::Names& actuators, scene::Names
   read_motor(map, "lead_mm", actuators, axes, syringe);
   syringe.chamber_mL = optional<double>(map, "chamber_mL", scene::positive);
   syringe.syringe_mL = scene::positive(map.at("syringe_mL"));
-  syringe.dead_volume_mL = optional<double>(map, "dead_volume_mL", not_negative);
+  syringe.dead_volume_mL = optional<double>(map, "dead_volume_mL", scene::not_negative);
   syringe.mL_per_mm = ml_per_mm(map, node);
   syringe.lead_mm = optional<double>(map, "lead_mm", scene::positive);
   syringe.travel_limits_mm = optional<std::array<double, 2>>(map, "travel_limits_mm", limits);

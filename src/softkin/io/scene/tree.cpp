@@ -255,6 +255,12 @@ double positive(const Node& node) {
   return value;
 }
 
+double not_negative(const Node& node) {
+  const double value = number(node);
+  if (value < 0) fail(node, node.name + " must be 0 or more, not " + node.text);
+  return value;
+}
+
 std::int64_t integer(const Node& node) {
   std::int64_t value = 0;
   if (node.kind != Node::Kind::scalar || !node.plain || !parse_integer(node.text, value)) fail_type(node, "an integer");

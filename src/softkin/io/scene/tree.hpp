@@ -65,6 +65,7 @@ void check_version(const Node& root, const std::string& key, const std::string& 
 // Each fails, naming key and line, where the value is not of its kind.
 [[nodiscard]] double number(const Node& node);
 [[nodiscard]] double positive(const Node& node);
+[[nodiscard]] double not_negative(const Node& node);
 [[nodiscard]] std::int64_t integer(const Node& node);
 [[nodiscard]] const std::string& text(const Node& node);
 [[nodiscard]] Vec3 read_vector(const Node& node);  // three numbers

@@ -42,11 +42,6 @@ bool answers_with_ratio(const Model& model, const Actuator& actuator) {
   return has_measure(actuator) && (!answers_with_load(model, actuator) || is_cable(model, actuator));
 }
 
-bool rubs(const Model& model) {
-  return std::any_of(model.contact.pairs.begin(), model.contact.pairs.end(),
-                     [](const ContactPair& pair) { return pair.touch && pair.friction > 0; });
-}
-
 }  // namespace
 
 MapData outline_of(const Model& model) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/magnetic_field.hpp>
@@ -82,6 +83,17 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
     refuse(spec, "needs a prestretch above 0, not " + number(spec.prestretch));
 }
 
+void check_friction(const ActuatorSpec& spec, Formulation formulation) {
+  const bool any = spec.friction != 0 || spec.sheath_friction != 0 || spec.sheath_turns_degrees != 0;
+  if (!any) return;
+  if (spec.kind != ActuatorKind::cable) refuse(spec, "takes no friction and no sheath: only a cable does");
+  if (formulation != Formulation::physical)
+    refuse(spec, "takes no friction and no sheath: they belong to the physical formulation, which knows tensions");
+  for (const double value : {spec.friction, spec.sheath_friction, spec.sheath_turns_degrees})
+    if (!(value >= 0 && std::isfinite(value)))
+      refuse(spec, "needs a friction and a sheath of 0 or more, not " + number(value));
+}
+
 void check_members(const ActuatorSpec& spec, Formulation formulation) {
   const bool acts =
       spec.control == Control::load && (spec.kind == ActuatorKind::cable || spec.kind == ActuatorKind::pneumatic);
@@ -95,6 +107,7 @@ void check_members(const ActuatorSpec& spec, Formulation formulation) {
   if (!cable && spec.spacing != 0) refuse(spec, "takes no spacing: only a cable does");
   if (!(spec.spacing >= 0 && std::isfinite(spec.spacing)))
     refuse(spec, "needs a spacing of 0 or more, not " + number(spec.spacing));
+  check_friction(spec, formulation);
   if (cable && (spec.region || spec.surface || spec.wall))
     refuse(spec, "is a cable: it takes points, no region and no surface");
   if (spec.kind == ActuatorKind::magnetic && (spec.region || spec.surface || spec.wall))
@@ -265,6 +278,8 @@ void compile_actuator_elements(Compilation& c) {
     actuator.prestretch = spec.prestretch;
     actuator.factor = spec.factor;
     actuator.offset = spec.offset;
+    actuator.friction = spec.friction;
+    actuator.sheath = spec.sheath_friction * spec.sheath_turns_degrees * std::numbers::pi / 180;
     actuator.curve = spec.curve;
     actuator.branch = spec.branch;
     if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);

@@ -6,6 +6,8 @@ void ActuatorLoads::evaluate(const Iterate& at, const Demand& demand, const std:
                              std::vector<Points>& slopes, Points& gradient, Balance& balance) const {
   balance.constraint.setZero(measures_.count());
   balance.load_energy = 0;
+  if (tendons_.any()) balance.slips = tendons_.slips(at);
+  Points pulls;
   for (Index a = 0; a < measures_.count(); ++a) {
     if (!measures_.measures(a) || (!active[a] && at.multipliers[a] == 0)) continue;
     const double value = measures_.value(a, at.positions, &slopes[a]);
@@ -13,14 +15,19 @@ void ActuatorLoads::evaluate(const Iterate& at, const Demand& demand, const std:
       balance.constraint[a] = value - measures_.target(a, demand.actuation);
     else
       balance.load_energy += measures_.sign(a) * at.multipliers[a] * value;
-    gradient += measures_.sign(a) * at.multipliers[a] * slopes[a];
+    if (tendons_.rubs(a)) tendons_.pull(a, at, pulls);
+    gradient += measures_.sign(a) * at.multipliers[a] * (tendons_.rubs(a) ? pulls : slopes[a]);
   }
 }
 
 void ActuatorLoads::stiffness(const Iterate& at, LargeVector<double>& slots, Team& team) const {
   Eigen::VectorXd scale(measures_.count());
-  for (Index a = 0; a < measures_.count(); ++a) scale[a] = measures_.sign(a) * at.multipliers[a];
-  measures_.second_derivatives(at.positions, scale, slots, team);
+  std::vector<Eigen::VectorXd> shares(static_cast<std::size_t>(measures_.count()));
+  for (Index a = 0; a < measures_.count(); ++a) {
+    scale[a] = measures_.sign(a) * at.multipliers[a];
+    if (tendons_.rubs(a)) shares[static_cast<std::size_t>(a)] = tendons_.shares(a, at);
+  }
+  measures_.second_derivatives(at.positions, scale, shares, slots, team);
 }
 
 void ActuatorLoads::add_moves(const std::vector<bool>& active, const Points& positions, const Points& moves,
@@ -32,25 +39,36 @@ void ActuatorLoads::add_moves(const std::vector<bool>& active, const Points& pos
   }
 }
 
-void ActuatorLoads::add_change(const Demand& from, const Demand& to, const std::vector<bool>& active,
-                               const Points& positions, std::vector<Points>& slopes, Eigen::VectorXd& constraint,
-                               Points& force) const {
+void ActuatorLoads::add_change(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
+                               std::vector<Points>& slopes, Eigen::VectorXd& constraint, Points& force) const {
   for (Index a = 0; a < measures_.count(); ++a) {
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0 || !measures_.measures(a)) continue;
     if (active[a]) {
       constraint[a] += measures_.target(a, from.actuation) - measures_.target(a, to.actuation);
     } else if (!measures_.constrains(a)) {
-      (void)measures_.value(a, positions, &slopes[a]);
+      pull(a, at, slopes[a]);
       force += measures_.sign(a) * measures_.rate(a) * change * slopes[a];
     }
   }
 }
 
-void ActuatorLoads::derivative(Index actuator, const Points& positions, Points& force) const {
-  force.setZero(positions.rows(), 3);
+void ActuatorLoads::add_response(const Iterate& at, const Points& moves, Points& force) const {
+  for (Index a = 0; tendons_.any() && a < measures_.count(); ++a)
+    if (tendons_.rubs(a) && at.multipliers[a] != 0) tendons_.add_response(a, at.multipliers[a], at, moves, force);
+}
+
+void ActuatorLoads::pull(Index actuator, const Iterate& at, Points& force) const {
+  if (tendons_.rubs(actuator))
+    tendons_.pull(actuator, at, force);
+  else
+    (void)measures_.value(actuator, at.positions, &force);
+}
+
+void ActuatorLoads::derivative(Index actuator, const Iterate& at, Points& force) const {
+  force.setZero(at.positions.rows(), 3);
   if (!measures_.measures(actuator)) return;
-  (void)measures_.value(actuator, positions, &force);
+  pull(actuator, at, force);
   force *= measures_.sign(actuator) * measures_.rate(actuator);
 }
 

@@ -11,6 +11,8 @@ struct Balance {
   Eigen::VectorXd constraint;    // m: measure minus demand, 0 where not active [mm, mm^3]
   double energy = 0;             // elastic and of contact, less the work of dead loads [mJ]
   double load_energy = 0;        // of measures whose multipliers are given [mJ]
+  Eigen::VectorXd slips{};       // of tendons that rub, see Tendons
+  Eigen::VectorXd growth{};      // m: of tensions where a demand changes, over what they are [-]; empty: none
   bool inverted = false;         // an element
   bool forbidden = false;        // inverted where the law has no energy
   std::uint64_t evaluation = 0;  // of the workspace

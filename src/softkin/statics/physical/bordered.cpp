@@ -7,12 +7,13 @@ namespace softkin::physical {
 
 void Bordered::set(const Iterate& at, const Balance& balance) {
   at_ = &at;
-  system_.reduce_slopes(at, balance, work_, slopes_);
+  system_.reduce_slopes(at, balance, work_, slopes_, pulls_);
 }
 
 void Bordered::set_factorised(const Iterate& at) {
   at_ = &at;
   slopes_ = saddle_.slopes();
+  pulls_ = saddle_.pulls();
 }
 
 /// Solves with the factor, in place.
@@ -28,7 +29,7 @@ void Bordered::precondition(Columns& columns) {
 void Bordered::multiply(const Columns& columns, Columns& product) {
   product.moves.resizeLike(columns.moves);
   system_.multiply(*at_, columns.moves, work_, product.moves, team_);
-  product.moves.noalias() += slopes_ * columns.multipliers;
+  product.moves.noalias() += pulls() * columns.multipliers;
   product.multipliers.noalias() = slopes_.transpose() * columns.moves;
 }
 
@@ -48,7 +49,7 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
   // moves and multipliers in one norm: that of the moves, and of those that would cost the multipliers' energy
   const Columns& about = guess != nullptr ? *guess : begin;
   const double squares = about.moves.squaredNorm();
-  const double energy = std::abs(about.moves.cwiseProduct(right.moves - slopes_ * about.multipliers).sum());
+  const double energy = std::abs(about.moves.cwiseProduct(right.moves - pulls() * about.multipliers).sum());
   const double stiffness = squares > 0 && energy > 0 ? energy / squares : 1;
   Eigen::VectorXd weights(count);
   for (Index i = 0; i < count; ++i) weights[i] = 1 / (saddle_.scale()[i] * std::sqrt(stiffness));

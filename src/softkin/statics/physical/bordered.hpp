@@ -10,8 +10,8 @@ struct Columns {
   Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the active measures
 };
 
-/// K X + G L = right.moves, G^T X = right.multipliers with the stiffness K and the slopes G of one shape, solved by
-/// Krylov's method with the factor that the workspace has, of a shape nearby, or of a lower precision.
+/// K X + P L = right.moves, G^T X = right.multipliers with the stiffness K, the slopes G and what multipliers
+/// pull with, P, which is G where no tendon rubs, of one shape, solved by Krylov's method with the factor that the workspace has, of a shape nearby, or of a lower precision.
 class Bordered {
  public:
   /// All must outlive the object.
@@ -39,13 +39,14 @@ class Bordered {
  private:
   void precondition(Columns& columns);
   void multiply(const Columns& columns, Columns& product);
+  [[nodiscard]] const Eigen::MatrixXd& pulls() const { return pulls_.cols() > 0 ? pulls_ : slopes_; }
 
   const System& system_;
   Workspace& work_;
   Saddle& saddle_;
   Team& team_;
   const Iterate* at_ = nullptr;
-  Eigen::MatrixXd slopes_;  // G
+  Eigen::MatrixXd slopes_, pulls_;  // G; P where it is another
 };
 
 }  // namespace softkin::physical

@@ -155,13 +155,15 @@ struct Found {
 };
 
 Found found_by(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
-               const std::shared_ptr<const ViscousHistory>& history, double elapsed_s, Team& team) {
+               const Eigen::VectorXd& slips, const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
+               Team& team) {
   Workspace work(system);
   Iterate own = at;  // what acts of a command may be one of the numbers
   for (Index a = 0; a < system.actuators(); ++a)
     if (system.measures().measures(a) && system.measures().given_load(a))
       own.multipliers[a] = system.measures().given(a, demand.actuation[a]);
   system.set_time(history, elapsed_s, work, team);
+  own.eyelets = system.tendons().lengths(own.positions, slips);  // what slips goes on
   hold_friction(system, own, work, team);
   Balance balance;
   system.evaluate(own, demand, active, work, balance, team);
@@ -186,8 +188,8 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
   Eigen::MatrixXd loads(system_.actuators(), count);  // those that are given
   for (Index p = 0; p < count; ++p) {
     const Perturbation& each = perturbations[static_cast<std::size_t>(p)];
-    Found more = found_by(*each.more, at, demand, active_, history, elapsed_s, team_);
-    const Found less = found_by(*each.less, at, demand, active_, history, elapsed_s, team_);
+    Found more = found_by(*each.more, at, demand, active_, balance_.slips, history, elapsed_s, team_);
+    const Found less = found_by(*each.less, at, demand, active_, balance_.slips, history, elapsed_s, team_);
     Points force = (more.gradient - less.gradient) / each.difference;
     Points moves = (more.held - less.held) / each.difference;
     loads.col(p) = (more.multipliers - less.multipliers) / each.difference;

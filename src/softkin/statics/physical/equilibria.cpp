@@ -86,9 +86,10 @@ bool Equilibria::comes_to(const Points& from, const Points& to, Workspace& work,
 void Equilibria::begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
                              Workspace& work, Iterate& at, SolveReport& report) const {
   const std::string remark = report.remark;
-  Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators())};
+  Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators()), {}, {}};
   Demand from = at_rest(system_.model(), to.actuation);
   system_.placement().hold(from, fresh.positions);
+  fresh.eyelets = system_.tendons().lengths(fresh.positions);
   Continuation continuation(system_, work, team, options, progress, report);
   if (system_.viscous()) {
     hold_friction(system_, fresh, work, team);
@@ -120,8 +121,9 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
 
   Demand from = demand_of(system_, model, start, actuation);
   const Demand to{actuation, 1};
-  Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors};
+  Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors, start.eyelets};
   system_.placement().hold(from, at.positions);
+  if (at.eyelets.empty()) at.eyelets = system_.tendons().lengths(at.positions);
   if (start.multipliers.size() > 0)
     for (Index a = 0; a < system_.actuators(); ++a)
       at.multipliers[a] = system_.measures().measures(a) && system_.measures().given_load(a)
@@ -146,7 +148,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
     report.remark = "the start's supports are elsewhere, and something is in the way from there";
   }
   // what rubs remembers the way to its equilibrium, and from rest comes to another one
-  const bool remembers = system_.friction() && start.knows(system_.actuators());
+  const bool remembers = (system_.friction() || system_.tendons().any()) && start.knows(system_.actuators());
   if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest && !remembers &&
       !continuation.at_summit())
     begin_again(to, options, progress, team, lease.work(), at, report);
@@ -154,6 +156,7 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   report.estimated_error_mm = report.step_mm;
   result.state.positions = std::move(at.positions);
   result.state.anchors = std::move(at.anchors);
+  result.state.eyelets = std::move(at.eyelets);
   result.state.actuation = actuation;
   if (report.status != Status::converged && report.reached < 1) {
     result.state.actuation = clear ? continuation.here().actuation : from.actuation;

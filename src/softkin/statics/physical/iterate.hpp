@@ -19,6 +19,7 @@ struct Iterate {
   Points positions;               // #V by 3 [mm]
   Eigen::VectorXd multipliers;    // m: tension [N], gauge pressure [MPa], voltage of a dea [kV]
   std::vector<Anchor> anchors{};  // of friction
+  std::vector<double> eyelets{};  // of tendons that rub, see Tendons; empty: they do not yet
 };
 
 /// How an equilibrium changes with the commands: what a derivative found.

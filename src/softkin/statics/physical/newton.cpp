@@ -164,7 +164,8 @@ double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
 /// if that is why, and the next factors are in double precision.
 bool Newton::refine_first(const Iterate& at) {
   constexpr double slow = 0.25, much = 0.15;
-  if (rounding_looked_at_ || work_.saddle.factor().in_double() || system_.contact()) return false;
+  if (rounding_looked_at_ || work_.saddle.factor().in_double() || system_.contact() || system_.tendons().any())
+    return false;
   if (next_.size.mean < slow * step_.size.mean) return false;
   rounding_looked_at_ = true;
   refines_ = refine(balance_, at, step_) > much;
@@ -429,7 +430,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;
   if (!meets_constraints()) return Outcome::unmet;
-  work_.saddle.correct_multipliers(balance_, at.multipliers);
+  work_.saddle.correct_multipliers(balance_, at.multipliers, team_);
   if (negative_ != 0 && doubtful_) make_sure(at);
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }

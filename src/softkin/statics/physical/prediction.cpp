@@ -39,7 +39,8 @@ struct Tangent {
     }
     Balance balance;
     const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
-    const bool refined = !of_here || !work.saddle.factor().in_double();
+    // of what rubs the saddle alone knows whether it goes on or back
+    const bool refined = (!of_here || !work.saddle.factor().in_double()) && !system.tendons().any();
     const bool assembled = work.assembled != 0 && work.assembled == work.factorised_by;
     if (refined || here.fading != there.fading || here.share != there.share ||
         (!assembled && system.placement().changes(here, there))) {
@@ -209,6 +210,7 @@ State Predictor::predict(const Actuation& actuation, Team& team) {
               std::move(there.multipliers),
               1,
               std::move(there.anchors),
+              std::move(there.eyelets),
               at_.history,
               at_.elapsed_s};
   for (Index a = 0; a < system_.actuators(); ++a) {

@@ -43,7 +43,7 @@ void Saddle::factorise(const Matrix& matrix, const Balance* step, Team& team) {
     layout_ = matrix.layout;
   }
   solve_factorised(matrix, precision_, step, team);
-  if (!factor_.trusted() && (spectrum_.unstable == 0 || !loses_energy(matrix, team)))
+  if (!factor_.trusted() && (spectrum_.unstable == 0 || tendons_.count() > 0 || !loses_energy(matrix, team)))
     solve_factorised(matrix, Precision::twice, step, team);
 }
 
@@ -83,11 +83,11 @@ bool Saddle::loses_energy(const Matrix& matrix, Team& team) {
 
 void Saddle::couple(Team& team) {
   ask(nullptr);
-  solve(solutions_, team);
+  solve_without_tendons(solutions_, team);
   close();
 }
 
-void Saddle::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+void Saddle::solve_without_tendons(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   const supports::ReducedMatrix& reduced = layout_->reduced;
   if (reduced.in_order()) return factor_.solve(right_sides, team);
   reduced.to_columns(right_sides, in_columns_);
@@ -95,37 +95,157 @@ void Saddle::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   reduced.to_unknowns(in_columns_, right_sides);
 }
 
-/// What a factorisation is to solve for: the active constraints' slopes, and for a step the force of the balance.
+void Saddle::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
+  solve_without_tendons(right_sides, team);
+  if (tendons_.count() == 0) return;
+  const Eigen::MatrixXd tensions =
+      tendons_.turning.transpose() * right_sides + rates_ * (tendons_.along.transpose() * right_sides);
+  right_sides -= along_ * (inverse_ * tensions);
+}
+
+/// What a factorisation is to solve for: what the active constraints pull with, the segments of tendons that rub, and
+/// for a step the force of the balance.
 void Saddle::ask(const Balance* step) {
-  const Eigen::Index count = slopes_.cols();
-  solutions_.resize(slopes_.rows(), count + (step ? 1 : 0));
-  solutions_.leftCols(count) = slopes_;
-  if (step) solutions_.col(count) = -step->force;
+  const Eigen::Index count = slopes_.cols(), segments = tendons_.count();
+  solutions_.resize(slopes_.rows(), count + segments + (step ? 1 : 0));
+  solutions_.leftCols(count) = pulls_.cols() > 0 ? pulls_ : slopes_;
+  solutions_.middleCols(count, segments) = tendons_.along;
+  if (step) solutions_.col(count + segments) = -step->force;
 }
 
 /// What the constraints leave of the stiffness, from their responses.
 void Saddle::close() {
   const Index count = static_cast<Index>(active_.size());
   spectrum_.unstable = spectrum_.negative;
+  if (tendons_.count() == 0) {
+    responses_ = solutions_.leftCols(count);
+  } else {
+    free_ = solutions_.leftCols(count);
+    along_ = solutions_.middleCols(count, tendons_.count());
+    stretches_ = tendons_.along.transpose() * along_;
+    const Eigen::MatrixXd rates = tendons_.rates(slips_, Eigen::VectorXd::Zero(tendons_.count()), {});
+    spectrum_.unstable = negative_with_tendons(rates);
+    set_rates(rates);
+  }
+  close_constraints();
+  if (count > 0)
+    spectrum_.unstable -= static_cast<int>((symmetric_eigenvalues(schur_matrix_).array() < -dependent).count());
+}
+
+/// How tensions of tendons follow their lengths, in what was factorised.
+void Saddle::set_rates(const Eigen::MatrixXd& rates) {
+  const Eigen::Index segments = tendons_.count();
+  rates_ = rates;
+  inverse_ = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turning.transpose() * along_ +
+                        rates_ * stretches_);
+  responses_ =
+      free_ -
+      along_ * (inverse_ * (tendons_.turning.transpose() * free_ + rates_ * (tendons_.along.transpose() * free_)));
+}
+
+/// Negative eigenvalues of the stiffness with what sticking tendons add to it by their lengths, made symmetric: of rates
+/// S_jk T_j with a symmetric S, S_jk sqrt(T_j T_k), which never takes stiffness away as the mean of both would.
+///
+/// source  Haynsworth 1968: the inertia of K + W D W^T is that of K and of -1/D - W^T K^-1 W, less that of -1/D
+int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {
+  constexpr double nothing = 1e-12;
+  const SymmetricEigen eigen = symmetric_eigen(rates.cwiseProduct(rates.transpose()).cwiseMax(0).cwiseSqrt());
+  const double largest = eigen.values.maxCoeff();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < eigen.values.size(); ++i)
+    if (eigen.values[i] > nothing * largest) kept.push_back(i);
+  if (kept.empty()) return spectrum_.negative;
+  Eigen::MatrixXd vectors(eigen.vectors.rows(), static_cast<Eigen::Index>(kept.size()));
+  Eigen::VectorXd inverse(vectors.cols());
+  for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
+    vectors.col(i) = eigen.vectors.col(kept[static_cast<std::size_t>(i)]);
+    inverse[i] = 1 / eigen.values[kept[static_cast<std::size_t>(i)]];
+  }
+  Eigen::MatrixXd inner = vectors.transpose() * stretches_ * vectors;
+  inner = -0.5 * (inner + inner.transpose()).eval();
+  inner.diagonal() -= inverse;
+  const auto below = (symmetric_eigenvalues(inner).array() < 0).count();
+  return spectrum_.negative + static_cast<int>(below - inner.rows());
+}
+
+/// Tensions of held lengths, over what they are, after a change of their multipliers.
+void Saddle::grow(const Eigen::VectorXd& change, Eigen::VectorXd& growth) const {
+  for (const TendonColumns::Tendon& tendon : tendons_.tendons)
+    for (std::size_t i = 0; i < active_.size(); ++i)
+      if (active_[i] == tendon.actuator) growth[active_[i]] = 1 + change[static_cast<Index>(i)] / tendon.tension;
+}
+
+void Saddle::close_constraints() {
+  const Index count = static_cast<Index>(active_.size());
   if (count == 0) return;
-  responses_ = solutions_.leftCols(count);
   Eigen::MatrixXd schur = slopes_.transpose() * responses_;
   scale_.resize(count);
   for (Index i = 0; i < count; ++i) scale_[i] = schur(i, i) != 0 ? 1 / std::sqrt(std::abs(schur(i, i))) : 1;
-  schur = scale_.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * scale_.asDiagonal();
-  schur_ = MinimumNorm(schur, dependent);
-  spectrum_.unstable -= static_cast<int>((symmetric_eigenvalues(schur).array() < -dependent).count());
+  schur_matrix_ = scale_.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * scale_.asDiagonal();
+  if (tendons_.count() == 0 && pulls_.cols() == 0)
+    schur_ = MinimumNorm(schur_matrix_, dependent);
+  else
+    schur_ = MinimumNorm(scale_.asDiagonal() * schur * scale_.asDiagonal(), dependent);
+}
+
+/// Turns a step without tendons' columns, K^-1 of what is asked, into that with them and with the constraints, with
+/// friction by its secants over it; by its slopes, where the balance knows no slips.
+void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) {
+  constexpr int most_rounds = 60;
+  constexpr double settled = 1e-6;  // of lengthenings, over the largest
+  const bool known = balance.slips.size() > 0;
+  const Eigen::VectorXd& slips = known ? balance.slips : slips_;
+  const Index count = static_cast<Index>(active_.size());
+  // of the step without tendons, then of what the constraints pull with: by the few numbers that tendons and
+  // constraints know of them
+  Eigen::MatrixXd all(step.size(), 1 + count);
+  all << step, free_;
+  const Eigen::MatrixXd turned = tendons_.turning.transpose() * all, stretched = tendons_.along.transpose() * all,
+                        turns = tendons_.turning.transpose() * along_, met = slopes_.transpose() * all,
+                        held = slopes_.transpose() * along_;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(tendons_.count(), tendons_.count());
+  Eigen::VectorXd lengthening = Eigen::VectorXd::Zero(tendons_.count());
+  Eigen::VectorXd growth = balance.growth.size() > 0 ? balance.growth : Eigen::VectorXd::Ones(measures_.count());
+  Eigen::MatrixXd rates;
+  for (int round = 0; round < most_rounds; ++round) {
+    rates = tendons_.rates(slips, lengthening, growth);
+    const Eigen::MatrixXd tensions = inverse_of(one + turns + rates * stretches_) * (turned + rates * stretched);
+    const Eigen::MatrixXd lengths = stretched - stretches_ * tensions;
+    Eigen::VectorXd now = lengths.col(0);
+    if (count > 0) {
+      const Eigen::MatrixXd left = met - held * tensions;
+      Eigen::VectorXd asked = left.col(0);
+      for (Index i = 0; i < count; ++i) asked[i] += measures_.sign(active_[i]) * balance.constraint[active_[i]];
+      const Eigen::VectorXd more = MinimumNorm(left.rightCols(count), dependent).solve(asked);
+      now -= lengths.rightCols(count) * more;
+      if (known) grow(more, growth);
+    }
+    const double moved = (now - lengthening).cwiseAbs().maxCoeff();
+    lengthening = now;
+    if (!known || !now.allFinite() || moved <= settled * now.cwiseAbs().maxCoeff()) break;
+  }
+  set_rates(rates);
+  close_constraints();
+  step -= along_ * (inverse_ * (turned.col(0) + rates * stretched.col(0)));
+  meet_constraints(balance, step, change);
 }
 
 void Saddle::step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change, Team& team) {
   step = -balance.force;
-  if (!step.isZero(0)) solve(step, team);  // where constraints alone change there is nothing to solve for
-  meet_constraints(balance, step, change);
+  if (!step.isZero(0))
+    solve_without_tendons(step, team);  // where constraints alone change there is nothing to solve for
+  if (tendons_.count() > 0)
+    rub(balance, step, change);
+  else
+    meet_constraints(balance, step, change);
 }
 
-void Saddle::first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) const {
-  step = solutions_.col(static_cast<Index>(active_.size()));
-  meet_constraints(balance, step, change);
+void Saddle::first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) {
+  step = solutions_.col(static_cast<Index>(active_.size()) + tendons_.count());
+  if (tendons_.count() > 0)
+    rub(balance, step, change);
+  else
+    meet_constraints(balance, step, change);
 }
 
 /// Change of the multipliers that closes the constraints, of which a step without them misses so much more.
@@ -145,8 +265,14 @@ void Saddle::meet_constraints(const Balance& balance, Eigen::VectorXd& step, Eig
   for (Index i = 0; i < static_cast<Index>(multipliers.size()); ++i) change[active_[i]] = multipliers[i];
 }
 
-void Saddle::correct_multipliers(const Balance& balance, Eigen::VectorXd& multipliers) const {
+void Saddle::correct_multipliers(const Balance& balance, Eigen::VectorXd& multipliers, Team& team) {
   if (active_.empty()) return;
+  if (tendons_.count() > 0 || pulls_.cols() > 0) {
+    Eigen::VectorXd step, change;
+    this->step(balance, step, change, team);
+    multipliers += change;
+    return;
+  }
   const Eigen::VectorXd change = closing(balance, -(responses_.transpose() * balance.force));
   for (Index i = 0; i < static_cast<Index>(change.size()); ++i) multipliers[active_[i]] += change[i];
 }

@@ -4,6 +4,7 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/linear/mixed_ldlt.hpp>
 #include <softkin/statics/physical/balance.hpp>
+#include <softkin/statics/physical/tendons.hpp>
 #include <softkin/statics/supports/actuator_measures.hpp>
 #include <softkin/statics/supports/reduced_matrix.hpp>
 #include <utility>
@@ -23,6 +24,9 @@ struct Layout {
 /// stiffness K over the unknowns and a column of G per active constraint: its slope with its sign. Where constraints
 /// contradict each other, what misses them least.
 ///
+/// Tendons that rub add few columns: K becomes K + U V^T, by Woodbury's formula, and a measure's multiplier pulls with
+/// another column than its slope. As friction is either whole or stiff, a step takes it by its secants over that step.
+///
 /// source  Nocedal, Wright 2006, Numerical optimization, section 16.2: the Schur complement of the constraints
 class Saddle {
  public:
@@ -35,6 +39,11 @@ class Saddle {
   void activate(const std::vector<bool>& active);
   /// G, to be written for these before factorise() or couple().
   [[nodiscard]] Eigen::MatrixXd& slopes() { return slopes_; }
+  /// What the multipliers pull with; no columns: with G.
+  [[nodiscard]] Eigen::MatrixXd& pulls() { return pulls_; }
+  [[nodiscard]] TendonColumns& tendons() { return tendons_; }
+  /// The slips at which what the last factorisation holds is to be taken; see Balance.
+  [[nodiscard]] Eigen::VectorXd& slips() { return slips_; }
 
   /// What is factorised.
   struct Matrix {
@@ -54,9 +63,10 @@ class Saddle {
   /// Newton step of a balance; change: of all multipliers.
   void step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change, Team& team);
   /// That of the balance with which the last factorisation was made.
-  void first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
-  /// What the next step would change multipliers by, without one: G^T K^-1 force needs no solve.
-  void correct_multipliers(const Balance& balance, Eigen::VectorXd& multipliers) const;
+  void first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change);
+  /// What the next step would change multipliers by, without one: G^T K^-1 force needs no solve, but with tendons that
+  /// rub.
+  void correct_multipliers(const Balance& balance, Eigen::VectorXd& multipliers, Team& team);
 
   [[nodiscard]] linear::MixedLdlt& factor() { return factor_; }
   [[nodiscard]] const linear::MixedLdlt& factor() const { return factor_; }
@@ -64,11 +74,11 @@ class Saddle {
   [[nodiscard]] Precision& precision() { return precision_; }
   /// Constraints of the factorisation.
   [[nodiscard]] const std::vector<Index>& active() const { return active_; }
-  /// K^-1 G
+  /// K^-1 pulls
   [[nodiscard]] const Eigen::MatrixXd& responses() const { return responses_; }
   /// S, which makes the diagonal of the next 1.
   [[nodiscard]] const Eigen::VectorXd& scale() const { return scale_; }
-  /// S G^T K^-1 G S; singular where constraints depend on each other.
+  /// S G^T K^-1 pulls S; singular where constraints depend on each other.
   [[nodiscard]] const MinimumNorm& schur() const { return schur_; }
 
   /// Of the last factorisation.
@@ -84,7 +94,13 @@ class Saddle {
   void solve_factorised(const Matrix& matrix, Precision precision, const Balance* step, Team& team);
   bool loses_energy(const Matrix& matrix, Team& team);
   void ask(const Balance* step);
+  void solve_without_tendons(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
   void close();
+  void close_constraints();
+  void set_rates(const Eigen::MatrixXd& rates);
+  [[nodiscard]] int negative_with_tendons(const Eigen::MatrixXd& rates) const;
+  void grow(const Eigen::VectorXd& change, Eigen::VectorXd& growth) const;
+  void rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change);
   [[nodiscard]] Eigen::VectorXd closing(const Balance& balance, const Eigen::VectorXd& more) const;
   void meet_constraints(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
@@ -93,10 +109,18 @@ class Saddle {
   linear::MixedLdlt factor_;
   Precision precision_;
   std::vector<Index> active_;
-  Eigen::MatrixXd slopes_, responses_;
+  Eigen::MatrixXd slopes_, pulls_, responses_;
+  TendonColumns tendons_;
+  Eigen::VectorXd slips_;
+  Eigen::MatrixXd free_;        // K^-1 of the pulls without tendons' columns,
+  Eigen::MatrixXd along_;       // and of their U
+  Eigen::MatrixXd stretches_;   // U^T along
+  Eigen::MatrixXd rates_;       // with which V^T is turning^T + rates U^T
+  Eigen::MatrixXd inverse_;     // (1 + V^T along)^-1
   Eigen::MatrixXd solutions_;   // of the last factorisation: responses, then the step without constraints
   Eigen::MatrixXd in_columns_;  // right-hand sides in the order of the layout, where it has its own
   Eigen::VectorXd scale_;
+  Eigen::MatrixXd schur_matrix_;  // its symmetric part
   MinimumNorm schur_;
   Spectrum spectrum_;
 };

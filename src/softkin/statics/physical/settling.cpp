@@ -105,6 +105,7 @@ Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Pol
 void Continuation::take(Iterate& at, Iterate&& found) {
   at = std::move(found);
   slide_friction(system_, at, work_, team_);
+  if (system_.tendons().any()) system_.tendons().slide(at.positions, at.eyelets);
   from_ = at.positions;
 }
 

@@ -161,17 +161,29 @@ void System::couple(const Iterate& at, const std::vector<bool>& active, const Ba
 void System::ask(const Iterate& at, const std::vector<bool>& active, const Balance& balance, Workspace& work) const {
   work.saddle.activate(active);
   work.softest.reset();
-  reduce_slopes(at, balance, work, work.saddle.slopes());
+  reduce_slopes(at, balance, work, work.saddle.slopes(), work.saddle.pulls());
+  if (!tendons().any()) return;
+  work.saddle.tendons() = tendons().columns(at, *freedoms_);
+  work.saddle.slips() = balance.slips;
 }
 
-void System::reduce_slopes(const Iterate& at, const Balance& balance, const Workspace& work,
-                           Eigen::MatrixXd& slopes) const {
+void System::reduce_slopes(const Iterate& at, const Balance& balance, const Workspace& work, Eigen::MatrixXd& slopes,
+                           Eigen::MatrixXd& pulls) const {
   require_last(balance, work);
   const std::vector<Index>& active = work.saddle.active();
   slopes.resize(freedoms_->size(), static_cast<Index>(active.size()));
   for (Index i = 0; i < static_cast<Index>(slopes.cols()); ++i) {
     freedoms_->reduce(work.slopes[active[i]], at.positions, slopes.col(i));
     slopes.col(i) *= measures().sign(active[i]);
+  }
+  if (std::none_of(active.begin(), active.end(), [&](Index a) { return tendons().rubs(a); })) return pulls.resize(0, 0);
+  pulls = slopes;
+  Points pull;
+  for (Index i = 0; i < static_cast<Index>(slopes.cols()); ++i) {
+    if (!tendons().rubs(active[i])) continue;
+    actuator_loads_.pull(active[i], at, pull);
+    freedoms_->reduce(pull, at.positions, pulls.col(i));
+    pulls.col(i) *= measures().sign(active[i]);
   }
 }
 
@@ -188,7 +200,14 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     work.layout->pattern.multiply(work.blocks, moves, force, team);
     actuator_loads_.add_moves(active, at.positions, moves, work.slopes, balance.constraint);
   }
-  actuator_loads_.add_change(from, to, active, at.positions, work.slopes, balance.constraint, force);
+  actuator_loads_.add_change(at, from, to, active, work.slopes, balance.constraint, force);
+  if (tendons().any()) {
+    balance.slips = tendons().slips(at);
+    balance.growth = Eigen::VectorXd::Ones(actuators());
+    for (Index a = 0; a < actuators(); ++a)
+      if (tendons().rubs(a) && measures().given_load(a) && at.multipliers[a] != 0)
+        balance.growth[a] = measures().given(a, to.actuation[a]) / at.multipliers[a];
+  }
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.add_change(from, to, at.positions, scratch, force, team);
   });
@@ -205,6 +224,11 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
     for (int axis = 0; axis < 3; ++axis)
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.tell(at, demand, scratch, out, team); });
+  for (Index a = 0; tendons().any() && a < actuators(); ++a) {
+    if (!tendons().rubs(a)) continue;
+    out.tendons.resize(static_cast<std::size_t>(actuators()));
+    out.tendons[static_cast<std::size_t>(a)] = tendons().forces(a, at.multipliers[a], at);
+  }
 }
 
 bool System::multiplies_unknowns(const Workspace& work) const {
@@ -234,6 +258,7 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
     work.layout->pattern.multiply(work.blocks, work.moves, force, team);
     each_term(work,
               [&](const Term& term, Term::Scratch& scratch) { term.add_response(at, work.moves, scratch, force); });
+    actuator_loads_.add_response(at, work.moves, force);
     freedoms_->reduce(force, at.positions, product.col(i));
     freedoms_->add_turning(work.gradient, at.positions, vectors.col(i), product.col(i));
   }
@@ -242,7 +267,7 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
 void System::command_force(const Iterate& at, const Demand& demand, const Balance& balance, Index actuator,
                            Workspace& work, Points& force, Points& moves, Team& team) const {
   placement_->velocity(actuator, demand, moves);
-  actuator_loads_.derivative(actuator, at.positions, force);
+  actuator_loads_.derivative(actuator, at, force);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.add_derivative(actuator, demand, at.positions, scratch, force, team);
   });
@@ -256,6 +281,7 @@ void System::add_pull(const Iterate& at, const Demand& demand, const Balance& ba
   Points pulled;
   work.layout->pattern.multiply(work.blocks, moves, pulled, team);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.add_response(at, moves, scratch, pulled); });
+  actuator_loads_.add_response(at, moves, pulled);
   force += pulled;
 }
 
@@ -264,11 +290,13 @@ bool System::loads(Index actuator) const {
 }
 
 bool System::symmetric() const {
-  return std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->symmetric(); });
+  return !tendons().any() &&
+         std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->symmetric(); });
 }
 
 bool System::conservative() const {
-  return std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->conservative(); });
+  return !tendons().any() &&
+         std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->conservative(); });
 }
 
 bool System::any_dead_load() const {

@@ -85,7 +85,10 @@ class System {
                 Points& force, Team& team) const;
 
   /// Slopes of the active measures by the unknowns, with their signs, at an iterate.
-  void reduce_slopes(const Iterate& at, const Balance& balance, const Workspace& work, Eigen::MatrixXd& slopes) const;
+  ///
+  /// pulls  what their multipliers pull with, where it is something else; else no columns
+  void reduce_slopes(const Iterate& at, const Balance& balance, const Workspace& work, Eigen::MatrixXd& slopes,
+                     Eigen::MatrixXd& pulls) const;
 
   /// Balance that a change of demand upsets, to first order: for the tangent predictor. Where it moves supports the
   /// stiffness is to be assembled.
@@ -113,10 +116,12 @@ class System {
   [[nodiscard]] const supports::Freedoms& freedoms() const { return *freedoms_; }
   [[nodiscard]] const Placement& placement() const { return *placement_; }
   [[nodiscard]] const supports::ActuatorMeasures& measures() const { return actuator_loads_.measures(); }
+  [[nodiscard]] const Tendons& tendons() const { return actuator_loads_.tendons(); }
   [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
   /// Of a shape whose multipliers are known.
   [[nodiscard]] Iterate iterate(const State& at) const {
-    Iterate shape{at.positions, at.multipliers, at.anchors};
+    Iterate shape{at.positions, at.multipliers, at.anchors, at.eyelets};
+    if (shape.eyelets.empty()) shape.eyelets = tendons().lengths(at.positions);
     for (Index a = 0; a < actuators(); ++a) shape.multipliers[a] *= measures().unit(a);
     return shape;
   }

@@ -219,7 +219,7 @@ void ActuatorMeasures::add_cliques(linear::Cliques& cliques) {
 }
 
 void ActuatorMeasures::second_derivative(const Clique& clique, const Points& positions, double scale,
-                                         LargeVector<double>& slots) const {
+                                         const Eigen::VectorXd& shares, LargeVector<double>& slots) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   const auto count = static_cast<std::int64_t>(clique.vertices.size());
   double* out = slots.data() + 9 * clique.slot;
@@ -231,20 +231,25 @@ void ActuatorMeasures::second_derivative(const Clique& clique, const Points& pos
     Vec3 nodes[6];
     for (int i = 0; i < term.count; ++i) nodes[i] = at(term.nodes[i], positions);
     term_second_derivative(term.count, nodes, blocks);
+    const double share = shares.size() > 0 ? scale * shares[t] : scale;
     for (int i = 0; i < term.count; ++i)
       for (int j = 0; j < term.count; ++j)
         for (const auto& [row, row_weight] : term.parts[i])
           for (const auto& [column, column_weight] : term.parts[j])
             if (row >= column)
               Block(out + 9 * (static_cast<std::int64_t>(row) * (row + 1) / 2 + column)) +=
-                  scale * row_weight * column_weight * blocks[i][j];
+                  share * row_weight * column_weight * blocks[i][j];
   }
 }
 
 void ActuatorMeasures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
-                                          LargeVector<double>& slots, Team& team) const {
+                                          const std::vector<Eigen::VectorXd>& shares, LargeVector<double>& slots,
+                                          Team& team) const {
   team.pieces(static_cast<Index>(cliques_.size()), [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) second_derivative(cliques_[i], positions, scale[cliques_[i].actuator], slots);
+    for (Index i = begin; i < end; ++i) {
+      const Index a = cliques_[i].actuator;
+      second_derivative(cliques_[i], positions, scale[a], shares[static_cast<std::size_t>(a)], slots);
+    }
   });
 }
 

@@ -56,8 +56,10 @@ class ActuatorMeasures {
   void add_cliques(linear::Cliques& cliques);
 
   /// Writes scale[a] times the second derivative of each actuator's measure into its slots, 9 values each.
-  void second_derivatives(const Points& positions, const Eigen::VectorXd& scale, LargeVector<double>& slots,
-                          Team& team) const;
+  ///
+  /// shares  per actuator, of each of its parts; empty: 1
+  void second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
+                          const std::vector<Eigen::VectorXd>& shares, LargeVector<double>& slots, Team& team) const;
 
  private:
   /// A vertex by its place in a clique, and the share of a node that it has.
@@ -84,7 +86,8 @@ class ActuatorMeasures {
   [[nodiscard]] Vec3 at(Index node, const Points& positions) const;
   void spread(Index node, const Vec3& vector, Points& gradient) const;
   [[nodiscard]] std::vector<std::vector<Part>> parts_of(const Term& term) const;
-  void second_derivative(const Clique& clique, const Points& positions, double scale, LargeVector<double>& slots) const;
+  void second_derivative(const Clique& clique, const Points& positions, double scale, const Eigen::VectorXd& shares,
+                         LargeVector<double>& slots) const;
 
   Index vertices_;
   std::vector<const EmbeddedPoint*> points_;

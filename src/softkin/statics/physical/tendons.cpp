@@ -1,0 +1,275 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical/tendons.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+/// Way that sticks as friction grows to its limit, over the cable's length at rest.
+constexpr double creep_share = 1e-4;
+/// Turn below which it counts less than it is [rad].
+constexpr double straight = 2e-3;
+
+/// Of a slip over the creep, from which it goes on slipping: what is remembered follows to 1 but for rounding.
+constexpr double whole = 1 - 1e-6;
+
+/// Share of the limit, towards the motor, at a slip over the creep.
+double friction_share(double slip) {
+  return std::clamp(slip, -1.0, 1.0);
+}
+
+double friction_slope(double slip) {
+  return std::abs(slip) >= whole ? 0 : 1;
+}
+
+double friction_secant(double slip, double change) {
+  constexpr double least = 1e-9;
+  if (std::abs(change) < least) return friction_slope(slip);
+  return (friction_share(slip + change) - friction_share(slip)) / change;
+}
+
+/// theta^2 / sqrt(theta^2 + straight^2) of two directions, and that by their scalar product, times -1.
+struct Turn {
+  double angle = 0, slope = 0;
+  Turn(const Vec3& before, const Vec3& after) {
+    constexpr double least = 1e-9;
+    const double sine = before.cross(after).norm(), theta = std::atan2(sine, before.dot(after));
+    const double root = std::sqrt(theta * theta + straight * straight);
+    angle = theta * theta / root;
+    const double over_sine = sine > least ? theta / sine : theta < 1 ? 1 : theta / least;
+    slope = over_sine * (theta * theta + 2 * straight * straight) / (root * root * root);
+  }
+};
+
+}  // namespace
+
+/// A cable in a shape: n segments, n eyelets where they begin; the first is that of its sheath.
+struct Tendons::Way {
+  std::vector<Vec3> points, directions;
+  Eigen::VectorXd lengths, beyond;           // of segments; of the way beyond the eyelets [mm]
+  Eigen::VectorXd limits, slips, share;      // mu theta; slip over the creep; tensions over that at the motor
+  std::vector<std::array<Vec3, 3>> turns{};  // slopes of the angles by the point before, the eyelet, the one after
+};
+
+Tendons::Tendons(const Model& model) : model_(model), cables_(model.actuators.size()) {
+  for (std::size_t a = 0; a < cables_.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    if (!softkin::rubs(actuator)) continue;
+    cables_[a] = {remembered_, actuator.friction, actuator.sheath, creep_share * actuator.rest_measure};
+    remembered_ += static_cast<Index>(actuator.points.size()) - 1;
+  }
+}
+
+Tendons::Way Tendons::way(Index actuator, const Points& positions) const {
+  const Cable& cable = cables_[static_cast<std::size_t>(actuator)];
+  Way way;
+  for (const EmbeddedPoint& point : model_.actuators[static_cast<std::size_t>(actuator)].points)
+    way.points.push_back(point.at(positions));
+  const auto count = static_cast<Index>(way.points.size()) - 1;
+  way.lengths.resize(count);
+  way.beyond.resize(count);
+  way.limits.setZero(count);
+  way.turns.resize(static_cast<std::size_t>(count), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+  for (Index j = 0; j < count; ++j) {
+    const Vec3 step = way.points[j + 1] - way.points[j];
+    way.lengths[j] = step.norm();
+    way.directions.emplace_back(step / way.lengths[j]);
+  }
+  double beyond = 0;
+  for (Index j = count; j-- > 0;) way.beyond[j] = beyond += way.lengths[j];
+  way.limits[0] = cable.sheath;
+  for (Index j = 1; j < count; ++j) {
+    const Vec3 &before = way.directions[j - 1], &after = way.directions[j];
+    const Turn turn(before, after);
+    way.limits[j] = cable.friction * turn.angle;
+    const double cosine = before.dot(after);
+    auto& slopes = way.turns[j];
+    slopes[0] = turn.slope / way.lengths[j - 1] * (after - cosine * before);
+    slopes[2] = -turn.slope / way.lengths[j] * (before - cosine * after);
+    slopes[1] = -slopes[0] - slopes[2];
+  }
+  return way;
+}
+
+Tendons::Way Tendons::way(Index actuator, const Iterate& at) const {
+  Way found = way(actuator, at.positions);
+  const Cable& cable = cables_[static_cast<std::size_t>(actuator)];
+  const Index count = static_cast<Index>(found.lengths.size());
+  found.slips.setZero(count);
+  found.share.resize(count);
+  double exponent = 0;
+  for (Index j = 0; j < count; ++j) {
+    if (!at.eyelets.empty())
+      found.slips[j] = (at.eyelets[static_cast<std::size_t>(cable.memory + j)] - found.beyond[j]) / cable.creep;
+    exponent += found.limits[j] * friction_share(found.slips[j]);
+    found.share[j] = std::exp(-exponent);
+  }
+  return found;
+}
+
+void Tendons::spread(Index actuator, const std::vector<Vec3>& vectors, Points& force) const {
+  const auto& points = model_.actuators[static_cast<std::size_t>(actuator)].points;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t k = 0; k < points[i].vertices.size(); ++k)
+      force.row(points[i].vertices[k]) += points[i].weights[k] * vectors[i].transpose();
+}
+
+std::vector<double> Tendons::lengths(const Points& positions) const {
+  return lengths(positions, Eigen::VectorXd::Zero(remembered_));
+}
+
+std::vector<double> Tendons::lengths(const Points& positions, const Eigen::VectorXd& slips) const {
+  std::vector<double> all;
+  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
+    if (!rubs(a)) continue;
+    for (const double beyond : way(a, positions).beyond)
+      all.push_back(beyond + cables_[static_cast<std::size_t>(a)].creep *
+                                 (slips.size() == remembered_ ? slips[static_cast<Index>(all.size())] : 1));
+  }
+  return all;
+}
+
+void Tendons::slide(const Points& positions, std::vector<double>& eyelets) const {
+  const std::vector<double> now = lengths(positions);
+  if (eyelets.empty()) eyelets = now;
+  for (const Cable& cable : cables_) {
+    if (cable.memory < 0) continue;
+    const auto a = static_cast<std::size_t>(&cable - cables_.data());
+    for (std::size_t i = static_cast<std::size_t>(cable.memory), left = model_.actuators[a].points.size() - 1; left > 0;
+         ++i, --left)
+      eyelets[i] = std::clamp(eyelets[i], now[i] - cable.creep, now[i] + cable.creep);
+  }
+}
+
+Eigen::VectorXd Tendons::slips(const Iterate& at) const {
+  Eigen::VectorXd all(remembered_);
+  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
+    if (!rubs(a)) continue;
+    const Way found = way(a, at);
+    all.segment(cables_[static_cast<std::size_t>(a)].memory, found.slips.size()) = found.slips;
+  }
+  return all;
+}
+
+Eigen::VectorXd Tendons::shares(Index actuator, const Iterate& at) const {
+  return way(actuator, at).share;
+}
+
+void Tendons::pull(Index actuator, const Iterate& at, Points& force) const {
+  const Way found = way(actuator, at);
+  std::vector<Vec3> vectors(found.points.size(), Vec3::Zero());
+  for (Index j = 0; j < static_cast<Index>(found.share.size()); ++j) {
+    vectors[j] -= found.share[j] * found.directions[j];
+    vectors[j + 1] += found.share[j] * found.directions[j];
+  }
+  force.setZero(at.positions.rows(), 3);
+  spread(actuator, vectors, force);
+}
+
+void Tendons::add_response(Index actuator, double tension, const Iterate& at, const Points& moves,
+                           Points& force) const {
+  const Way found = way(actuator, at);
+  const double creep = cables_[static_cast<std::size_t>(actuator)].creep;
+  const auto count = static_cast<Index>(found.share.size());
+  std::vector<Vec3> steps, vectors(found.points.size(), Vec3::Zero());
+  for (const EmbeddedPoint& point : model_.actuators[static_cast<std::size_t>(actuator)].points)
+    steps.push_back(point.at(moves));
+  Eigen::VectorXd slip(count);  // of the moves
+  double shorter = 0;
+  for (Index j = count; j-- > 0;) slip[j] = shorter -= found.directions[j].dot(steps[j + 1] - steps[j]);
+  double change = 0;  // of the logarithm of the tension
+  for (Index j = 0; j < count; ++j) {
+    double turn = 0;
+    if (j > 0)
+      for (int k = 0; k < 3; ++k) turn += found.turns[j][k].dot(steps[j - 1 + k]);
+    change -= cables_[static_cast<std::size_t>(actuator)].friction * turn * friction_share(found.slips[j]) +
+              found.limits[j] * friction_slope(found.slips[j]) * slip[j] / creep;
+    const Vec3 more = tension * found.share[j] * change * found.directions[j];
+    vectors[j] -= more;
+    vectors[j + 1] += more;
+  }
+  spread(actuator, vectors, force);
+}
+
+TendonForces Tendons::forces(Index actuator, double tension, const Iterate& at) const {
+  const Way found = way(actuator, at);
+  double sticks = 0;
+  for (Index j = 0; j < static_cast<Index>(found.slips.size()); ++j)
+    if (std::abs(found.slips[j]) < whole) sticks += found.limits[j];
+  const double all = found.limits.sum();
+  return {tension * found.share[found.share.size() - 1], all > 0 ? sticks / all : 0};
+}
+
+TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& freedoms) const {
+  TendonColumns columns;
+  Index count = 0;
+  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
+    if (!rubs(a) || at.multipliers[a] == 0) continue;
+    const Cable& cable = cables_[static_cast<std::size_t>(a)];
+    const auto segments = static_cast<Index>(model_.actuators[static_cast<std::size_t>(a)].points.size()) - 1;
+    columns.tendons.push_back({count, segments, a, cable.memory, cable.creep, at.multipliers[a]});
+    count += segments;
+  }
+  columns.along.resize(freedoms.size(), count);
+  columns.turning.resize(freedoms.size(), count);
+  columns.tensions.resize(count);
+  columns.limits.resize(count);
+  Points slope;
+  auto tendon = columns.tendons.begin();
+  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
+    if (!rubs(a) || at.multipliers[a] == 0) continue;
+    const Way found = way(a, at);
+    const double friction = cables_[static_cast<std::size_t>(a)].friction;
+    columns.tensions.segment(tendon->begin, tendon->count) = at.multipliers[a] * found.share;
+    columns.limits.segment(tendon->begin, tendon->count) = found.limits;
+    std::vector<Vec3> vectors(found.points.size()), turned(found.points.size(), Vec3::Zero());
+    for (Index j = 0; j < tendon->count; ++j) {
+      std::fill(vectors.begin(), vectors.end(), Vec3::Zero());
+      vectors[j] = -found.directions[j];
+      vectors[j + 1] = found.directions[j];
+      slope.setZero(at.positions.rows(), 3);
+      spread(a, vectors, slope);
+      freedoms.reduce(slope, at.positions, columns.along.col(tendon->begin + j));
+      if (j > 0)
+        for (int k = 0; k < 3; ++k) turned[j - 1 + k] -= friction * friction_share(found.slips[j]) * found.turns[j][k];
+      slope.setZero(at.positions.rows(), 3);
+      spread(a, turned, slope);
+      freedoms.reduce(slope, at.positions, columns.turning.col(tendon->begin + j));
+      columns.turning.col(tendon->begin + j) *= columns.tensions[tendon->begin + j];
+    }
+    ++tendon;
+  }
+  return columns;
+}
+
+Eigen::MatrixXd TendonColumns::rates(const Eigen::VectorXd& slips, const Eigen::VectorXd& lengthening,
+                                     const Eigen::VectorXd& growth) const {
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(count(), count());
+  for (const Tendon& tendon : tendons) {
+    Eigen::VectorXd stiffness(tendon.count), change(tendon.count);  // limit times slope; of the tension's logarithm
+    double shorter = 0;
+    for (Index j = tendon.count; j-- > 0;) {
+      shorter -= lengthening[tendon.begin + j];
+      const double slope = friction_secant(slips[tendon.memory + j], shorter / tendon.creep) / tendon.creep;
+      stiffness[j] = limits[tendon.begin + j] * slope;
+      change[j] = -stiffness[j] * shorter;
+    }
+    const double grown = growth.size() > 0 ? std::max(0.0, growth[tendon.actuator]) : 1;
+    double exponent = 0, sum = 0;
+    std::vector<double> sums;
+    for (Index j = 0; j < tendon.count; ++j) {
+      constexpr double small = 1e-6;
+      exponent += change[j];
+      sums.push_back(sum += stiffness[j]);
+      const double secant = std::abs(exponent) > small ? std::expm1(exponent) / exponent : 1;
+      const double scale = grown * tensions[tendon.begin + j] * secant;
+      for (Index k = 0; k < tendon.count; ++k)
+        rates(tendon.begin + j, tendon.begin + k) = scale * sums[static_cast<std::size_t>(std::min(j, k))];
+    }
+  }
+  return rates;
+}
+
+}  // namespace softkin::physical
