@@ -294,6 +294,21 @@ def test_budget_and_start_from_a_file(robot: softkin.Robot, shape: softkin.Shape
         robot.solve(start=str(tmp_path / "none.vtu"))
 
 
+def test_a_tendon_that_rubs_remembers(robot: softkin.Robot) -> None:
+    points = [[0, 4, 4], [8, 4, 7], [16, 4, 4], [24, 4, 7], [32, 4, 4]]
+    tendon = {"name": "pull", "kind": "cable", "control": "tension", "range": [0, 2], "points": points, "friction": 0.3}
+    rubs = beam(8, 2, actuators=[tendon])
+    pulled = rubs.solve(pull=0.4).require()
+    state = pulled.actuators["pull"]
+    assert state.end_tension_N is not None and 0.4 * 0.3 < state.end_tension_N < 0.4 * 0.8 and state.sticking == 0
+    let_go = rubs.solve(pull=0.36, start=pulled).require()
+    assert let_go.actuators["pull"].sticking == 1
+    again = rubs.solve(pull=0.36, start=pickle.loads(pickle.dumps(pulled))).require()
+    np.testing.assert_allclose(again.positions, let_go.positions, atol=1e-9)
+    first = next(iter(robot.solve().actuators.values()))
+    assert first.end_tension_N is None and first.sticking is None
+
+
 def test_bodies_and_motions() -> None:
     floor = {"name": "floor", "halfspace": {"point": [0, 0, -20.06], "normal": [0, 0, 1]}, "motion": ["z"]}
     cube = {"name": "cube", "box": [[0, 40, -20], [20, 60, 0]], "density": 1000}

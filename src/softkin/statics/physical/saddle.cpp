@@ -98,8 +98,7 @@ void Saddle::solve_without_tendons(Eigen::Ref<Eigen::MatrixXd> right_sides, Team
 void Saddle::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   solve_without_tendons(right_sides, team);
   if (tendons_.count() == 0) return;
-  const Eigen::MatrixXd tensions =
-      tendons_.turning.transpose() * right_sides + rates_ * (tendons_.along.transpose() * right_sides);
+  const Eigen::MatrixXd tensions = tendons_.turned(right_sides) + rates_ * (tendons_.along.transpose() * right_sides);
   right_sides -= along_ * (inverse_ * tensions);
 }
 
@@ -109,7 +108,7 @@ void Saddle::ask(const Balance* step) {
   const Eigen::Index count = slopes_.cols(), segments = tendons_.count();
   solutions_.resize(slopes_.rows(), count + segments + (step ? 1 : 0));
   solutions_.leftCols(count) = pulls_.cols() > 0 ? pulls_ : slopes_;
-  solutions_.middleCols(count, segments) = tendons_.along;
+  if (segments > 0) solutions_.middleCols(count, segments) = Eigen::MatrixXd(tendons_.along);
   if (step) solutions_.col(count + segments) = -step->force;
 }
 
@@ -136,11 +135,8 @@ void Saddle::close() {
 void Saddle::set_rates(const Eigen::MatrixXd& rates) {
   const Eigen::Index segments = tendons_.count();
   rates_ = rates;
-  inverse_ = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turning.transpose() * along_ +
-                        rates_ * stretches_);
-  responses_ =
-      free_ -
-      along_ * (inverse_ * (tendons_.turning.transpose() * free_ + rates_ * (tendons_.along.transpose() * free_)));
+  inverse_ = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turned(along_) + rates_ * stretches_);
+  responses_ = free_ - along_ * (inverse_ * (tendons_.turned(free_) + rates_ * (tendons_.along.transpose() * free_)));
 }
 
 /// Negative eigenvalues of the stiffness with what sticking tendons add to it by their lengths, made symmetric: of rates
@@ -200,8 +196,8 @@ void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd&
   // constraints know of them
   Eigen::MatrixXd all(step.size(), 1 + count);
   all << step, free_;
-  const Eigen::MatrixXd turned = tendons_.turning.transpose() * all, stretched = tendons_.along.transpose() * all,
-                        turns = tendons_.turning.transpose() * along_, met = slopes_.transpose() * all,
+  const Eigen::MatrixXd turned = tendons_.turned(all), stretched = tendons_.along.transpose() * all,
+                        turns = tendons_.turned(along_), met = slopes_.transpose() * all,
                         held = slopes_.transpose() * along_;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(tendons_.count(), tendons_.count());
   Eigen::VectorXd lengthening = Eigen::VectorXd::Zero(tendons_.count());

@@ -115,7 +115,7 @@ class Saddle {
   Eigen::MatrixXd free_;        // K^-1 of the pulls without tendons' columns,
   Eigen::MatrixXd along_;       // and of their U
   Eigen::MatrixXd stretches_;   // U^T along
-  Eigen::MatrixXd rates_;       // with which V^T is turning^T + rates U^T
+  Eigen::MatrixXd rates_;       // with which V^T is that by the turns and rates U^T
   Eigen::MatrixXd inverse_;     // (1 + V^T along)^-1
   Eigen::MatrixXd solutions_;   // of the last factorisation: responses, then the step without constraints
   Eigen::MatrixXd in_columns_;  // right-hand sides in the order of the layout, where it has its own

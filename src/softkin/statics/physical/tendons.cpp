@@ -212,8 +212,7 @@ TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& free
     columns.tendons.push_back({count, segments, a, cable.memory, cable.creep, at.multipliers[a]});
     count += segments;
   }
-  columns.along.resize(freedoms.size(), count);
-  columns.turning.resize(freedoms.size(), count);
+  Eigen::MatrixXd along(freedoms.size(), count), turns = Eigen::MatrixXd::Zero(freedoms.size(), count);
   columns.tensions.resize(count);
   columns.limits.resize(count);
   Points slope;
@@ -224,24 +223,36 @@ TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& free
     const double friction = cables_[static_cast<std::size_t>(a)].friction;
     columns.tensions.segment(tendon->begin, tendon->count) = at.multipliers[a] * found.share;
     columns.limits.segment(tendon->begin, tendon->count) = found.limits;
-    std::vector<Vec3> vectors(found.points.size()), turned(found.points.size(), Vec3::Zero());
+    std::vector<Vec3> vectors(found.points.size());
     for (Index j = 0; j < tendon->count; ++j) {
       std::fill(vectors.begin(), vectors.end(), Vec3::Zero());
       vectors[j] = -found.directions[j];
       vectors[j + 1] = found.directions[j];
       slope.setZero(at.positions.rows(), 3);
       spread(a, vectors, slope);
-      freedoms.reduce(slope, at.positions, columns.along.col(tendon->begin + j));
-      if (j > 0)
-        for (int k = 0; k < 3; ++k) turned[j - 1 + k] -= friction * friction_share(found.slips[j]) * found.turns[j][k];
+      freedoms.reduce(slope, at.positions, along.col(tendon->begin + j));
+      const double share = friction * friction_share(found.slips[j]);
+      if (j == 0 || share == 0) continue;
+      std::fill(vectors.begin(), vectors.end(), Vec3::Zero());
+      for (int k = 0; k < 3; ++k) vectors[j - 1 + k] = share * found.turns[j][k];
       slope.setZero(at.positions.rows(), 3);
-      spread(a, turned, slope);
-      freedoms.reduce(slope, at.positions, columns.turning.col(tendon->begin + j));
-      columns.turning.col(tendon->begin + j) *= columns.tensions[tendon->begin + j];
+      spread(a, vectors, slope);
+      freedoms.reduce(slope, at.positions, turns.col(tendon->begin + j));
     }
     ++tendon;
   }
+  columns.along = along.sparseView();
+  columns.turns = turns.sparseView();
   return columns;
+}
+
+Eigen::MatrixXd TendonColumns::turned(const Eigen::Ref<const Eigen::MatrixXd>& moves) const {
+  Eigen::MatrixXd all = turns.transpose() * moves;
+  for (const Tendon& tendon : tendons) {
+    for (Index j = 1; j < tendon.count; ++j) all.row(tendon.begin + j) += all.row(tendon.begin + j - 1);
+    for (Index j = 0; j < tendon.count; ++j) all.row(tendon.begin + j) *= -tensions[tendon.begin + j];
+  }
+  return all;
 }
 
 Eigen::MatrixXd TendonColumns::rates(const Eigen::VectorXd& slips, const Eigen::VectorXd& lengthening,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <softkin/statics/physical/iterate.hpp>
@@ -18,12 +19,16 @@ struct TendonColumns {
     double tension = 0;              // at the motor [N]
   };
   std::vector<Tendon> tendons{};
-  Eigen::MatrixXd along{};     // unknowns by q: slopes of the segments' lengths
-  Eigen::MatrixXd turning{};   // the same: slopes of their tensions by the angles by which the tendon turns [N]
+  Eigen::SparseMatrix<double> along{};  // unknowns by q: slopes of the segments' lengths
+  Eigen::SparseMatrix<double>
+      turns{};                 // the same: of the tensions' logarithms by the turns where segments begin, times -1
   Eigen::VectorXd tensions{};  // of segments [N]
   Eigen::VectorXd limits{};    // mu theta of the eyelet where each begins [-]
 
   [[nodiscard]] Index count() const { return static_cast<Index>(tensions.size()); }
+
+  /// How tensions follow moves, a column each, by the turns that change [N].
+  [[nodiscard]] Eigen::MatrixXd turned(const Eigen::Ref<const Eigen::MatrixXd>& moves) const;
 
   /// How tensions follow the segments' lengths beside that [N/mm]: friction is taken by its secants from these slips to
   /// those after the segments have become longer by so much; by its slopes where that is nothing.
@@ -69,7 +74,7 @@ class Tendons {
   void add_response(Index actuator, double tension, const Iterate& at, const Points& moves, Points& force) const;
   [[nodiscard]] TendonForces forces(Index actuator, double tension, const Iterate& at) const;
 
-  /// multipliers  tensions at the motor, per actuator
+  /// Of all that rub and pull at an iterate.
   [[nodiscard]] TendonColumns columns(const Iterate& at, const supports::Freedoms& freedoms) const;
 
  private:
