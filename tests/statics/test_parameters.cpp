@@ -31,7 +31,7 @@ Difference difference_by(const RobotSpec& spec, const Number& number, const Stat
   for (const auto& [steps, weight] : {std::pair{-2, h}, std::pair{-1, -8 * h}, std::pair{1, 8 * h}, std::pair{2, -h}}) {
     const Model model = changed(spec, number, steps * step);
     State start;
-    start.positions = at.positions;
+    start.positions = rubs(model) ? model.rest : at.positions;  // what rubs remembers its way
     const Equilibrium found = Statics(model).solve(at.actuation, start, tight(1e-10));
     EXPECT_EQ(found.report.status, Status::converged) << number.name << ": " << found.report.remark;
     sum.positions += weight * found.state.positions;
@@ -109,6 +109,30 @@ TEST(Parameters, OfARobotDrivenByPressureAndTension) {
   numbers.push_back({"factor", [](RobotSpec& s, double by) { s.actuators[1].factor += by; }, 1});
   numbers.push_back({"offset", [](RobotSpec& s, double by) { s.actuators[0].offset += by; }, 5});
   expect_derivatives(spec, values({20, 0.2}), numbers);
+}
+
+TEST(Parameters, OfATendonThatRubs) {
+  RobotSpec spec = physical_robot(block_mesh({8, 1, 2}, {80, 6, 8}));
+  spec.quadratic = true;
+  spec.materials[0].elastic = elastic(Law::neo_hookean, 3, 0.4);
+  const ActuatorSpec by_length = cable("tendon", {{0, 3, 7}, {80, 3, 7}});
+  spec.actuators = {by_load(by_length)};
+  spec.actuators[0].spacing = 11;
+  spec.actuators[0].friction = 0.2;
+  spec.actuators[0].sheath_friction = 0.1;
+  spec.actuators[0].sheath_turns_degrees = 180;
+  const std::vector<Number> numbers{
+      {"youngs_modulus", [](RobotSpec& s, double by) { *s.materials[0].elastic->youngs_modulus += by; }, 1},
+      {"friction", [](RobotSpec& s, double by) { s.actuators[0].friction += by; }, 0.2},
+      {"sheath_friction", [](RobotSpec& s, double by) { s.actuators[0].sheath_friction += by; }, 0.1},
+      {"factor", [](RobotSpec& s, double by) { s.actuators[0].factor += by; }, 1},
+      {"cable", [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[0].points[0].point).z() += by; }, 1}};
+  expect_derivatives(spec, values({3}), numbers);
+  spec.actuators[0].control = by_length.control;
+  spec.actuators[0].low = by_length.low;
+  spec.actuators[0].high = by_length.high;
+  spec.actuators[0].rest = by_length.rest;
+  expect_derivatives(spec, values({0.95}), {numbers[1]});  // by length the others change the tension alone
 }
 
 TEST(Parameters, OfLayersUnderVoltage) {
