@@ -139,6 +139,8 @@ class Inverse {
     first.state.actuation = first.actuation;
     if (response_.free().empty()) return stay(std::move(first));
     const inverse::Pose start = response_.pose_of(std::move(first), true);
+    if (std::any_of(model_.actuators.begin(), model_.actuators.end(), [](const Actuator& a) { return rubs(a); }))
+      response_.come_from(start.equilibrium.state);
     inverse::SearchResult found = inverse::search_inverse(response_, start, settings);
     result_.iterations = found.iterations;
     for (int i = 1; i <= options_.other_starts && unreached(found); ++i) try_from(i, start, settings, found);

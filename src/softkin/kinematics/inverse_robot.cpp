@@ -119,7 +119,7 @@ bool RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::Vecto
     if (tension * slopes.terms.col(i).norm() < resolution_mm * rate) released[a] = longer[a];
   }
   Equilibrium found;
-  if (released == state.actuation || !any_left() || !solve(released, state, found)) return false;
+  if (released == state.actuation || !any_left() || !solve(released, origin_ ? *origin_ : state, found)) return false;
   Pose slack = pose_of(std::move(found), taut_);
   if (slack.miss > 1) return false;
   pose = std::move(slack);
@@ -129,7 +129,7 @@ bool RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::Vecto
 Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& from, Pose& to) {
   const State& state = from.equilibrium.state;
   Equilibrium found;
-  const bool converged = solve(actuation_of(shares, state.actuation), state, found);
+  const bool converged = solve(actuation_of(shares, state.actuation), origin_ ? *origin_ : state, found);
   if (interrupted_) return Outcome::interrupted;
   const bool halfway =
       found.report.status == Status::limit && found.report.reached > least_way && found.state.share == 1;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/kinematics/inverse_response.hpp>
 
@@ -35,6 +36,8 @@ class RobotResponse : public Response {
   [[nodiscard]] bool interrupted() const { return interrupted_; }
   [[nodiscard]] const std::vector<InverseTrial>& history() const { return history_; }
   [[nodiscard]] const std::vector<Index>& free() const { return free_; }
+  /// Every equilibrium is one on the way from this state: where cables rub each is told by its way.
+  void come_from(State state) { origin_ = std::move(state); }
   /// Newton's poses treat slack cables as taut ones; Algorithm 2 knows no such thing.
   void keep_slack() { taut_ = false; }
 
@@ -51,7 +54,8 @@ class RobotResponse : public Response {
   std::vector<Index> cables_;  // places in free_ of what only pulls
   const ProgressCallback& progress_;
   std::vector<InverseTrial> history_;
-  double least_error_;  // [mm]
+  std::optional<State> origin_;  // none: of the pose before
+  double least_error_;           // [mm]
   int most_;
   bool interrupted_ = false, taut_ = true;
 };
