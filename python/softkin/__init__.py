@@ -7,7 +7,7 @@ from . import calibrate, compare, drive, measure
 from ._core import ActuatorInfo
 from ._build import BuildInfo, build_info
 from ._core import version as __version__
-from ._solving import Progress
+from ._solving import Progress, Sensitivity
 from .errors import InvalidInput, NotConverged, SoftkinWarning
 from .examples import example
 from .grasp import Grasp, Pull
@@ -48,6 +48,7 @@ __all__ = [
     "Reaction",
     "Robot",
     "SelfOverlap",
+    "Sensitivity",
     "Session",
     "Shape",
     "SoftkinWarning",

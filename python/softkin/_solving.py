@@ -6,6 +6,7 @@ import math
 import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,6 +26,20 @@ Command = float | str
 Commands = ArrayLike | Mapping[str, Command]
 Target = Sequence[float | None] | Floats
 DEFAULT_ITERATIONS = 50000
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How an equilibrium changes with a number of the robot, per unit of it."""
+
+    value: float
+    """the number as it is"""
+    positions: Floats
+    """(n, 3) of the vertices [mm]"""
+    markers: Mapping[str, Floats]
+    """by name, (3,) [mm]"""
+    loads: Mapping[str, float]
+    """by actuator: of the pressure [kPa], tension [N] or voltage [kV] that it takes; 0 where it has none"""
 
 
 class Progress(NamedTuple):
@@ -213,6 +228,31 @@ class Solving:
             raise ValueError("shape is one of another robot")
         names = robot.markers if markers is None else [markers] if isinstance(markers, str) else list(markers)
         return _core.jacobian(shape._core, self._session, [robot._core.marker(name) for name in names])
+
+    def sensitivity(self, shape: Shape, numbers: str | Sequence[str]) -> dict[str, Sensitivity]:
+        """Derivatives of an equilibrium by numbers of the robot, commands held.
+
+        shape    an equilibrium that a solve of this robot returned; physical
+        numbers  one or several, each a path as of `load(changes=)`: "materials.body.youngs_modulus",
+                 "actuators.tendon.friction", "forces.payload.force.3"; not of the mesh
+        returns  by number; where cables rub, of going on in the direction in which they slipped
+        raises   InvalidInput naming the number that the robot has not, or where the shape stands at a limit of
+                 existence or a branch
+        """
+        robot = self._owner
+        if shape.robot is not robot:
+            raise ValueError("shape is one of another robot")
+        names = [numbers] if isinstance(numbers, str) else list(numbers)
+        found = _core.sensitivity(shape._core, names)
+        return {
+            name: Sensitivity(
+                value,
+                positions,
+                dict(zip(robot.markers, markers)),
+                {info.name: float(load) for info, load in zip(robot.actuator_infos, loads)},
+            )
+            for name, (value, positions, markers, loads) in zip(names, found)
+        }
 
     def _goals(
         self,

@@ -11,6 +11,7 @@ void bind_source(nanobind::module_& module);
 void bind_robot(nanobind::module_& module);
 void bind_shape(nanobind::module_& module);
 void bind_solve(nanobind::module_& module);
+void bind_sensitivity(nanobind::module_& module);
 void bind_inverse(nanobind::module_& module);
 void bind_examples(nanobind::module_& module);
 void bind_mesh_files(nanobind::module_& module);

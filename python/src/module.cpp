@@ -25,6 +25,7 @@ NB_MODULE(_core, module) {
   python::bind_robot(module);
   python::bind_shape(module);
   python::bind_solve(module);
+  python::bind_sensitivity(module);
   python::bind_inverse(module);
   python::bind_examples(module);
   python::bind_mesh_files(module);

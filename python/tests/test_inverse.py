@@ -87,6 +87,40 @@ def test_out_of_reach(robot: softkin.Robot) -> None:
         answer.require()
 
 
+def test_sensitivity(robot: softkin.Robot) -> None:
+    from beams import beam
+
+    force, modulus = "forces.payload.force.3", "materials.1.youngs_modulus"
+    description = {
+        "forces": {"payload": ("end", (0, 0, -0.01))},
+        "actuators": [{"name": "pull", "kind": "cable", "range": (0.8, 1), "points": [[0, 4, 4], [32, 4, 4], [64, 4, 4]]}],
+    }
+    loaded = beam(8, 2, **description)
+    shape = loaded.solve(pull=0.96, tolerance_mm=1e-10)
+    by = loaded.sensitivity(shape, [force, modulus])
+    assert by[force].value == -0.01 and by[modulus].value == 1
+
+    def tip(load: float, stiffness: float) -> tuple[softkin.Shape, float]:
+        other = {**description, "forces": {"payload": ("end", (0, 0, load))}}
+        found = beam(8, 2, **other, materials=[{"youngs_modulus": stiffness, "poisson_ratio": 0.4}])
+        solved = found.solve(pull=0.96, tolerance_mm=1e-10)
+        return solved, solved.actuators["pull"].tension_N
+
+    for number, more, less, step in [
+        (force, tip(-0.01 + 1e-4, 1), tip(-0.01 - 1e-4, 1), 2e-4),
+        (modulus, tip(-0.01, 1.001), tip(-0.01, 0.999), 2e-3),
+    ]:
+        moves = (more[0]["tip"] - less[0]["tip"]) / step
+        np.testing.assert_allclose(by[number].markers["tip"], moves, rtol=1e-4, atol=1e-5 * abs(moves).max())
+        positions = (more[0].positions - less[0].positions) / step
+        np.testing.assert_allclose(by[number].positions, positions, atol=1e-4 * abs(positions).max())
+        assert by[number].loads["pull"] == pytest.approx((more[1] - less[1]) / step, rel=1e-4)
+    with pytest.raises(softkin.InvalidInput, match="youngs_modulus"):
+        loaded.sensitivity(shape, "materials.1.youngs_modulos")
+    with pytest.raises(ValueError, match="another robot"):
+        robot.sensitivity(shape, force)
+
+
 def test_jacobian(robot: softkin.Robot, goal: softkin.Shape) -> None:
     slopes = robot.jacobian(goal, "tip")
     assert slopes.shape == (3, 3) and robot.jacobian(goal).shape == (3, 3)

@@ -1,0 +1,97 @@
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <softkin/io/scene/changes.hpp>
+
+#include "bindings.hpp"
+#include "convert.hpp"
+#include "robot.hpp"
+
+namespace softkin::python {
+
+namespace {
+
+/// By which a number is changed, of what it is.
+constexpr double perturbation = 1e-5;
+
+Model changed(const Source& source, const std::string& number, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  Source other = source;
+  other.tree = scene::changed(source.tree, "number", number + "=" + text, "");
+  return compile(other.spec(false));
+}
+
+/// A number that is a little larger and smaller; where the scene refuses it smaller, as it is.
+struct Changed {
+  double value;
+  Model more, less;
+  double difference;
+
+  Changed(const Source& source, const std::string& number)
+      : value(scene::number_at(source.tree, "number", number)), more(changed(source, number, value + half())) {
+    try {
+      less = changed(source, number, value - half());
+      difference = 2 * half();
+    } catch (const InvalidInput&) {
+      less = changed(source, number, value);
+      difference = half();
+    }
+  }
+  [[nodiscard]] double half() const { return perturbation * (value != 0 ? std::abs(value) : 1); }
+};
+
+/// A number as it is, and per unit of it: moves (n, 3), those of markers (k, 3), loads of actuators (m,).
+using NumberSlopes = std::tuple<double, TableOut, TableOut, VectorOut>;
+
+std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<std::string>& numbers) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  std::vector<double> values;
+  std::vector<Rows> moves, markers;
+  std::vector<Eigen::VectorXd> loads;
+  {
+    const nb::gil_scoped_release released;
+    const State& state = shape.found().state;
+    std::vector<std::unique_ptr<Changed>> all;
+    std::vector<Perturbed> perturbed;
+    for (const std::string& number : numbers) {
+      const Changed& each = *all.emplace_back(std::make_unique<Changed>(shape.robot()->source(), number));
+      perturbed.push_back({each.more, each.less, each.difference});
+    }
+    const ParameterSensitivity found = Perturbations(shape.robot()->statics(), perturbed).at(state, shape.options());
+    if (!found.regular)
+      throw InvalidInput("the shape stands at a limit of existence or a branch, where it has no derivatives");
+    for (std::size_t p = 0; p < numbers.size(); ++p) {
+      values.push_back(all[p]->value);
+      moves.emplace_back(found.positions[p]);
+      loads.emplace_back(found.multipliers.col(static_cast<Index>(p)));
+      Rows& rows = markers.emplace_back(static_cast<Eigen::Index>(shape.model().markers.size()), 3);
+      for (Eigen::Index m = 0; m < rows.rows(); ++m) {
+        const auto k = static_cast<std::size_t>(m);
+        const Vec3 own = (all[p]->more.markers[k].at(state.positions) - all[p]->less.markers[k].at(state.positions)) /
+                         all[p]->difference;
+        rows.row(m) = shape.model().markers[k].velocity(state.positions, found.positions[p]) + own;
+      }
+    }
+  }
+  const auto table = [](const Rows& rows) {
+    return table_of<double>(rows.data(), static_cast<std::size_t>(rows.rows()), static_cast<std::size_t>(rows.cols()));
+  };
+  std::vector<NumberSlopes> out;
+  for (std::size_t p = 0; p < numbers.size(); ++p)
+    out.emplace_back(values[p], table(moves[p]), table(markers[p]), vector_out(loads[p]));
+  return out;
+}
+
+}  // namespace
+
+void bind_sensitivity(nb::module_& module) {
+  module.def("sensitivity", &sensitivity_of, nb::arg("shape"), nb::arg("numbers"),
+             "Per number: its value, and by it the moves (n, 3), those of markers (k, 3) and loads (m,).");
+}
+
+}  // namespace softkin::python
