@@ -44,8 +44,9 @@ const char* const modulus = "materials.all.youngs_modulus";
 TEST(CalibrateRobot, FindsTheModulusBehindThePoses) {
   const Poses folder;
   const std::string report = folder / "fit.json";
-  const ProgramResult fitted = folder.calibrate(
-      {"--fit", modulus, "--report", report, "--plot", folder / "fit.svg", "--table", folder / "fit.csv"});
+  const std::vector<std::string> asked{"--fit",   modulus,           "--report", report, "--plot", folder / "fit.svg",
+                                       "--table", folder / "fit.csv"};
+  const ProgramResult fitted = folder.calibrate(asked);
   ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
   expect_words(fitted.output, {"converged", "pose  line", "tip off by [mm]", "  materials.all.youngs_modulus=0.8",
                                "all markers: 0.00 mm root mean square", "readings: ", "plot: "});
@@ -53,6 +54,7 @@ TEST(CalibrateRobot, FindsTheModulusBehindThePoses) {
   EXPECT_NEAR(found["numbers"][0]["value"].get<double>(), 0.8, 1e-5);
   EXPECT_EQ(found["poses"].size(), 4u);
   expect_words(read_text(folder / "fit.csv"), {"pose,line,column,measured,computed,difference,kept", "corner_x_mm"});
+  EXPECT_EQ(folder.calibrate(asked).exit_code, 0) << "what it wrote it replaces";
   const ProgramResult again = folder.calibrate({"--fit", modulus, "--report", report, "--resume", "--json"});
   ASSERT_EQ(again.exit_code, 0) << again.errors;
   EXPECT_NEAR(json::parse(again.output)["numbers"][0]["start"].get<double>(), 0.8, 1e-5);

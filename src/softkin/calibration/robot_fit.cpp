@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double enough = 1e-7;  // of the sum of squares, that an iteration gains
+constexpr double enough = 1e-6;    // of the sum of squares, that an iteration gains
+constexpr double most_step = 0.5;  // of what a number began with: a robot that is much softer at once is a knot
 constexpr double least_damping = 1e-10, most_damping = 1e8;
 
 VectorXd within_bounds(const NumberedRobot& robot, VectorXd values) {
@@ -22,6 +23,15 @@ VectorXd within_bounds(const NumberedRobot& robot, VectorXd values) {
     value = std::clamp(value, robot.numbers()[i].low, robot.numbers()[i].high);
   }
   return values;
+}
+
+/// A step, as long as it may be.
+VectorXd limited(const NumberedRobot& robot, const VectorXd& step) {
+  double longest = 0;
+  for (std::size_t i = 0; i < robot.numbers().size(); ++i)
+    if (*robot.numbers()[i].start != 0)
+      longest = std::max(longest, std::abs(step[static_cast<Index>(i)]) / robot.size(i));
+  return longest > most_step ? VectorXd(most_step / longest * step) : step;
 }
 
 int side(const FittedNumber& number, double value) {
@@ -158,7 +168,7 @@ RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const
     bool stopped = false;
     std::string refusal;
     for (; !(gained > 0) && damping <= most_damping && !stopped; damping *= 8) {
-      const VectorXd tried = within_bounds(robot, point->values + equations.step(damping));
+      const VectorXd tried = within_bounds(robot, point->values + limited(robot, equations.step(damping)));
       if ((tried - point->values).cwiseQuotient(equations.scales).norm() < 1e-12) break;
       std::optional<RobotPoint> next = problem.solve(tried, &*point, true);
       stopped = !next;

@@ -18,12 +18,14 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
 }
 
-/// {"softkin": "1.0", ... of reports and their journals, {"softkin_map": ... A scene has a number there.
+/// {"softkin": "1.0", ... of reports and their journals, {"softkin_map": ..., {"softkin_robot_fit": ... A scene has a
+/// number there.
 bool is_own_json(std::string_view text) {
   if (text.starts_with("{\"softkin_map\":")) return true;
   constexpr std::string_view key = "\"softkin\"";
   if (!text.starts_with('{')) return false;
   text = without_blanks(text.substr(1));
+  if (text.starts_with("\"softkin_robot_fit\":")) return true;
   if (!text.starts_with(key)) return false;
   text = without_blanks(text.substr(key.size()));
   return text.starts_with(':') && without_blanks(text.substr(1)).starts_with('"');
@@ -77,6 +79,7 @@ bool is_own_table(std::string_view text) {
                                Header{"p_gauge_kpa,p_abs_kpa,ratio,unloading,", ",line"},
                                Header{"run,line,t_s,stretch,stress_mpa,", ",off"},
                                Header{"line,strain,stress_mpa,linear_mpa,", ",yeoh_mpa"},
+                               Header{"pose,line,column,measured", ",kept"},
                                Header{"line,l1_mm,dl_mm,dl1_mm", "_off_mm"}};
   const std::string_view line = text.substr(0, text.find('\n'));
   return std::any_of(headers.begin(), headers.end(), [line](const Header& header) {
