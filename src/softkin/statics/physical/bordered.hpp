@@ -10,8 +10,9 @@ struct Columns {
   Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the active measures
 };
 
-/// K X + P L = right.moves, G^T X = right.multipliers with the stiffness K, the slopes G and what multipliers
-/// pull with, P, which is G where no tendon rubs, of one shape, solved by Krylov's method with the factor that the workspace has, of a shape nearby, or of a lower precision.
+/// K X + P L = right.moves, G^T X = right.multipliers with the stiffness K, the slopes G and what multipliers pull
+/// with, P, of one shape; P is G where no tendon rubs. Solved by Krylov's method with the factor that the workspace
+/// has, of a shape nearby, or of a lower precision.
 class Bordered {
  public:
   /// All must outlive the object.

@@ -139,8 +139,8 @@ void Saddle::set_rates(const Eigen::MatrixXd& rates) {
   responses_ = free_ - along_ * (inverse_ * (tendons_.turned(free_) + rates_ * (tendons_.along.transpose() * free_)));
 }
 
-/// Negative eigenvalues of the stiffness with what sticking tendons add to it by their lengths, made symmetric: of rates
-/// S_jk T_j with a symmetric S, S_jk sqrt(T_j T_k), which never takes stiffness away as the mean of both would.
+/// Negative eigenvalues of the stiffness with what sticking tendons add to it by their lengths, made symmetric: of
+/// rates S_jk T_j with a symmetric S, S_jk sqrt(T_j T_k), which never takes stiffness away as the mean of both would.
 ///
 /// source  Haynsworth 1968: the inertia of K + W D W^T is that of K and of -1/D - W^T K^-1 W, less that of -1/D
 int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {

@@ -9,8 +9,8 @@
 namespace softkin::physical {
 
 /// What tendons that rub add to a Newton step: how the tension of every segment follows moves of the shape, of all
-/// tendons that pull, q segments together. No factor holds it, as it is not symmetric and couples all of a tendon; it is
-/// of few columns.
+/// tendons that pull, q segments together. No factor holds it, as it is not symmetric and couples all of a tendon; it
+/// is of few columns.
 struct TendonColumns {
   struct Tendon {
     Index begin = 0, count = 0;      // of its segments
@@ -40,8 +40,8 @@ struct TendonColumns {
 
 /// Coulomb friction of cables, pulled at their first point, at every turn of their way: the tension behind eyelet i is
 /// that before it times exp(-mu theta_i) where the cable slips there towards the motor, times exp(+mu theta_i) where it
-/// slips away, and between where it sticks. Each eyelet remembers the length beyond it at which it does not rub; friction
-/// grows with the difference and is whole at the creep; where it slips farther what is remembered follows.
+/// slips away, and between where it sticks. Each eyelet remembers the length beyond it at which it does not rub;
+/// friction grows with the difference and is whole at the creep; where it slips farther what is remembered follows.
 ///
 /// source     Euler, Eytelwein: the capstan; design: DESIGN.md, section 10
 /// deviation  turns count theta^2 / sqrt(theta^2 + 2e-3^2), which is smooth where the way is straight
