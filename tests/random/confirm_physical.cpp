@@ -122,6 +122,36 @@ Measure length_of(const Actuator& cable, const Points& positions) {
   return measure;
 }
 
+/// The same with every segment's slope times its tension over that at the motor, where it rubs: by what its eyelets
+/// remember. memory: of the first of them
+void rub(const Actuator& cable, const Points& positions, const std::vector<double>& eyelets, std::size_t memory,
+         double rest_length, Measure& measure) {
+  const Real creep = 1e-4L * rest_length;
+  const std::size_t count = cable.points.size() - 1;
+  std::vector<RealVec3> along;
+  std::vector<Real> beyond(count + 1, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    along.push_back(place(cable.points[i + 1], positions) - place(cable.points[i], positions));
+  for (std::size_t i = count; i-- > 0;) beyond[i] = beyond[i + 1] + along[i].norm();
+  std::fill(measure.slopes.begin(), measure.slopes.end(), RealVec3::Zero());
+  Real logarithm = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Real limit = cable.sheath;
+    if (i > 0) {
+      const Real theta = std::atan2(along[i - 1].cross(along[i]).norm(), along[i - 1].dot(along[i]));
+      limit = cable.friction * theta * theta / std::sqrt(theta * theta + 4e-6L);
+    }
+    const Real slip = eyelets.empty() ? 0 : (eyelets[memory + i] - beyond[i]) / creep;
+    logarithm -= limit * std::clamp<Real>(slip, -1, 1);
+    const Real share = std::exp(logarithm);
+    measure.slopes[i] -= share * along[i].normalized();
+    measure.slopes[i + 1] += share * along[i].normalized();
+    const Real blur = sums * rounding_unit * share * limit * (beyond[0] + positions.cwiseAbs().maxCoeff()) / creep;
+    measure.blurs[i] += blur;
+    measure.blurs[i + 1] += blur;
+  }
+}
+
 /// Shape functions of a triangle of order 1 or 2 (corners, edges 01, 12, 20) and their derivatives by u and v.
 struct FaceShape {
   std::vector<Real> shape, by_u, by_v;
@@ -230,6 +260,7 @@ int open_edges(const Actuator& chamber) {
 
 void add_actuators(const Model& model, const Equilibrium& found, Forces& forces, Confirmation& out) {
   const State& state = found.state;
+  std::size_t memory = 0;  // of what rubs
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     const auto index = static_cast<Index>(a);
@@ -247,8 +278,13 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
       out.faults.push_back(
           "actuator '" + actuator.name + "': " + std::to_string(open) +
           " edges of its chamber's boundary are open or turned over: its volume depends on the origin");
-    const Measure now = measure_of(actuator, state.positions), rest = measure_of(actuator, model.rest);
+    Measure now = measure_of(actuator, state.positions);
+    const Measure rest = measure_of(actuator, model.rest);
     check_measure(actuator, now, rest, state.actuation[index], multiplier, out);
+    if (rubs(actuator)) {
+      rub(actuator, state.positions, state.eyelets, memory, static_cast<double>(rest.value), now);
+      memory += actuator.points.size() - 1;
+    }
     // kPa: 1e-3 N/mm^2, outwards
     const Real load = actuator.kind == ActuatorKind::cable ? static_cast<Real>(multiplier) : -1e-3L * multiplier;
     for (std::size_t i = 0; i < now.nodes.size(); ++i)

@@ -70,5 +70,7 @@ void make_weights(Making& m);
 /// Some supports turn, by angles that the commands say.
 void make_turns(Making& m);
 void make_tractions(Making& m);
+/// Some cables rub, in sheaths too.
+void make_friction(Making& m);
 
 }  // namespace softkin::random_robots

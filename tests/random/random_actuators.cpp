@@ -93,4 +93,15 @@ void make_actuators(Making& m) {
   }
 }
 
+void make_friction(Making& m) {
+  if (!m.physical || !m.later.chance(0.4)) return;
+  for (ActuatorSpec& spec : m.made.spec.actuators) {
+    if (spec.kind != ActuatorKind::cable) continue;
+    spec.friction = m.later.between(0.05, 0.5);
+    if (!m.later.chance(0.3)) continue;
+    spec.sheath_friction = m.later.between(0.02, 0.2);
+    spec.sheath_turns_degrees = m.later.between(30, 400);
+  }
+}
+
 }  // namespace softkin::random_robots
