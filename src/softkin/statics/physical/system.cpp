@@ -232,7 +232,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
 }
 
 bool System::multiplies_unknowns(const Workspace& work) const {
-  return symmetric() && work.layout->reduced.in_order();
+  return symmetric() && !tendons().any() && work.layout->reduced.in_order();
 }
 
 void System::gather(const Iterate& at, const Balance& balance, Workspace& work, Team& team) const {
@@ -290,8 +290,7 @@ bool System::loads(Index actuator) const {
 }
 
 bool System::symmetric() const {
-  return !tendons().any() &&
-         std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->symmetric(); });
+  return std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->symmetric(); });
 }
 
 bool System::conservative() const {
