@@ -26,6 +26,16 @@ Model changed(const Source& source, const std::string& number, double value) {
   return compile(other.spec(false));
 }
 
+/// throws  InvalidInput: with the nearest name where the scene can have no such number
+double value_of(const Source& source, const std::string& number) {
+  try {
+    return scene::number_at(source.tree, "number", number);
+  } catch (const InvalidInput&) {
+    (void)changed(source, number, 1);
+    throw InvalidInput("number " + number + ": the description does not say it; give it a value there");
+  }
+}
+
 /// A number that is a little larger and smaller; where the scene refuses it smaller, as it is.
 struct Changed {
   double value;
@@ -33,7 +43,7 @@ struct Changed {
   double difference;
 
   Changed(const Source& source, const std::string& number)
-      : value(scene::number_at(source.tree, "number", number)), more(changed(source, number, value + half())) {
+      : value(value_of(source, number)), more(changed(source, number, value + half())) {
     try {
       less = changed(source, number, value - half());
       difference = 2 * half();

@@ -92,7 +92,7 @@ def test_sensitivity(robot: softkin.Robot) -> None:
 
     force, modulus = "forces.payload.force.3", "materials.1.youngs_modulus"
     description = {
-        "forces": {"payload": ("end", (0, 0, -0.01))},
+        "forces": [{"name": "payload", "region": "end", "force": [0, 0, -0.01]}],
         "actuators": [{"name": "pull", "kind": "cable", "range": (0.8, 1), "points": [[0, 4, 4], [32, 4, 4], [64, 4, 4]]}],
     }
     loaded = beam(8, 2, **description)
@@ -101,7 +101,7 @@ def test_sensitivity(robot: softkin.Robot) -> None:
     assert by[force].value == -0.01 and by[modulus].value == 1
 
     def tip(load: float, stiffness: float) -> tuple[softkin.Shape, float]:
-        other = {**description, "forces": {"payload": ("end", (0, 0, load))}}
+        other = {**description, "forces": [{"name": "payload", "region": "end", "force": [0, 0, load]}]}
         found = beam(8, 2, **other, materials=[{"youngs_modulus": stiffness, "poisson_ratio": 0.4}])
         solved = found.solve(pull=0.96, tolerance_mm=1e-10)
         return solved, solved.actuators["pull"].tension_N

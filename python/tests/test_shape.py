@@ -303,7 +303,8 @@ def test_a_tendon_that_rubs_remembers(robot: softkin.Robot) -> None:
     assert state.end_tension_N is not None and 0.4 * 0.3 < state.end_tension_N < 0.4 * 0.8 and state.sticking == 0
     let_go = rubs.solve(pull=0.36, start=pulled).require()
     assert let_go.actuators["pull"].sticking == 1
-    again = rubs.solve(pull=0.36, start=pickle.loads(pickle.dumps(pulled))).require()
+    other, state_there = pickle.loads(pickle.dumps((rubs, pulled)))
+    again = other.solve(pull=0.36, start=state_there).require()
     np.testing.assert_allclose(again.positions, let_go.positions, atol=1e-9)
     first = next(iter(robot.solve().actuators.values()))
     assert first.end_tension_N is None and first.sticking is None
