@@ -20,7 +20,7 @@ struct RobotOptions {
   SolveOptions robot;
   std::string poses, report, table, plot, loss = "squares";
   std::vector<std::string> numbers;
-  std::optional<double> deviation_mm, deviation_kPa, deviation_N;
+  std::array<std::optional<double>, readings> deviations{};
   int keep = 0;
   bool ordered = false;
   bool json = false, resume = false, may_replace = false;
@@ -36,9 +36,7 @@ calibration::RobotFitOptions fit_options(const RobotOptions& options, std::size_
   fit.threads = options.robot.threads;
   for (std::size_t i = 0; i < std::size(calibration::loss_names); ++i)
     if (options.loss == calibration::loss_names[i]) fit.loss = static_cast<calibration::Loss>(i);
-  fit.deviation_mm = options.deviation_mm.value_or(0);
-  fit.deviation_kPa = options.deviation_kPa.value_or(0);
-  fit.deviation_N = options.deviation_N.value_or(0);
+  for (std::size_t k = 0; k < readings; ++k) fit.deviations[k] = options.deviations[k].value_or(0);
   fit.kept = calibration::kept_aside("--keep", options.keep, poses);
   fit.ordered = options.ordered;
   return fit;
@@ -111,12 +109,15 @@ void add_options(CLI::App& command, RobotOptions& options) {
             "What a reading counts that is far off: squares (default),\nhuber or cauchy, which wrong readings hardly "
             "move",
             one_of({"squares", "huber", "cauchy"}));
-  add_value(command, "--deviation", options.deviation_mm, "MM",
-            "Of a coordinate that was read (default: by what is left)", positive_length());
-  add_value(command, "--deviation-pressure", options.deviation_kPa, "KPA", "Of a pressure (default: by what is left)",
-            positive_length());
-  add_value(command, "--deviation-tension", options.deviation_N, "N", "Of a tension (default: by what is left)",
-            positive_force());
+  constexpr const char* given[][2] = {{"--deviation", "MM"},
+                                      {"--deviation-pressure", "KPA"},
+                                      {"--deviation-tension", "N"},
+                                      {"--deviation-length", "MM"},
+                                      {"--deviation-volume", "MM^3"}};
+  for (std::size_t k = 0; k < readings; ++k)
+    add_value(command, given[k][0], options.deviations[k], given[k][1],
+              std::string("Of a ") + reading_names[k] + " that was read (default: by what is left)",
+              positive(std::string("a number > 0 in ") + reading_units[k]));
   add_value(command, "--keep", options.keep, "N", "Poses that are not fitted to but foretold, spread evenly",
             CLI::Range(0, 100000).description(""));
   command.add_flag(

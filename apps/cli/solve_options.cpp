@@ -40,9 +40,6 @@ CLI::Validator finite_number(bool negative_too) {
   return CLI::Validator(check, "");
 }
 
-namespace {
-
-/// what: "a length > 0 in mm"
 CLI::Validator positive(const std::string& what) {
   const auto check = [what](const std::string& text) -> std::string {
     double value = 0;
@@ -51,8 +48,6 @@ CLI::Validator positive(const std::string& what) {
   };
   return CLI::Validator(check, "");
 }
-
-}  // namespace
 
 CLI::Validator positive_length() {
   return positive("a length > 0 in mm");

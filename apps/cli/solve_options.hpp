@@ -82,6 +82,8 @@ void check_solver(const SolveOptions& options);
 // What CLI11 says of a number in words of its own.
 [[nodiscard]] CLI::Validator integer_from(std::int64_t low, std::int64_t high);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);
+/// what: it must be
+[[nodiscard]] CLI::Validator positive(const std::string& what);
 [[nodiscard]] CLI::Validator positive_length();
 [[nodiscard]] CLI::Validator positive_force();
 [[nodiscard]] CLI::Validator positive_ratio();

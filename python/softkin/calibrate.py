@@ -478,6 +478,8 @@ def robot(
     deviation_mm: float | None = None,
     deviation_kPa: float | None = None,
     deviation_N: float | None = None,
+    deviation_length_mm: float | None = None,
+    deviation_volume_mm3: float | None = None,
     keep: int = 0,
     ordered: bool = False,
     threads: int = 0,
@@ -486,14 +488,15 @@ def robot(
     """Numbers of a robot from its measured poses, by Levenberg's and Marquardt's method through equilibria.
 
     scene      YAML, physical formulation
-    poses      CSV: commands as in a path, then tip_x_mm, ... of markers, air_pressure_kPa, tendon_tension_N; empty
-               cells were not read
+    poses      CSV: commands as in a path, then tip_x_mm, ... of markers, air_pressure_kPa, tendon_tension_N, or
+               air_volume_mm3, tendon_length_mm where loads are commanded; empty cells were not read
     fit        by path: a start, (start, low, high), "mean+-deviation" (known before) or None, the scene's; or texts as
                of --fit; base.x, base.rx, ...: where the robot stands in the measuring frame [mm, degrees]; camera.x, ...:
                the same, gravity turns along. Empty: the poses are foretold as the scene is
     changes    of the scene, by path
     loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
-    deviation  of a coordinate [mm], pressure [kPa], tension [N] as read; None: by what is left
+    deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3] as read; None: by what is
+               left
     keep       poses that are not fitted to but foretold, spread evenly
     ordered    where something rubs: each pose goes on from the one before, the first from rest; else each from rest
     threads    poses side by side; 0: as many as the machine has
@@ -502,7 +505,14 @@ def robot(
     """
     if loss not in ("squares", "huber", "cauchy"):
         raise ValueError(f"loss must be 'squares', 'huber' or 'cauchy', not {loss!r}")
-    for name, given in (("deviation_mm", deviation_mm), ("deviation_kPa", deviation_kPa), ("deviation_N", deviation_N)):
+    deviations = {
+        "deviation_mm": deviation_mm,
+        "deviation_kPa": deviation_kPa,
+        "deviation_N": deviation_N,
+        "deviation_length_mm": deviation_length_mm,
+        "deviation_volume_mm3": deviation_volume_mm3,
+    }
+    for name, given in deviations.items():
         if given is not None and not given > 0:
             raise ValueError(f"{name} must be greater than 0, not {given}")
     if keep < 0:
@@ -514,6 +524,6 @@ def robot(
     else:
         task.numbers = list(fit)
     task.changes = [f"{path}={_yaml_text(value)}" for path, value in (changes or {}).items()]
-    task.deviation_mm, task.deviation_kPa, task.deviation_N = deviation_mm or 0, deviation_kPa or 0, deviation_N or 0
+    task.deviations = [given or 0 for given in deviations.values()]
     task.keep, task.threads, task.ordered = keep, threads, ordered
     return RobotFit(_core.calibrate_robot(task, progress), task.scene, changes or {})

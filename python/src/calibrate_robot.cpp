@@ -16,7 +16,7 @@ namespace {
 struct PosesTask {
   std::string scene, poses, loss = "squares";
   std::vector<std::string> numbers, changes;
-  double deviation_mm = 0, deviation_kPa = 0, deviation_N = 0;  // 0: by what is left
+  std::vector<double> deviations;  // per kind of reading; 0: by what is left
   int keep = 0, threads = 0;
   bool ordered = false;
 };
@@ -47,9 +47,7 @@ RobotCalibration fit(const PosesTask& task,
     calibration::RobotFitOptions options;
     for (std::size_t i = 0; i < std::size(calibration::loss_names); ++i)
       if (task.loss == calibration::loss_names[i]) options.loss = static_cast<calibration::Loss>(i);
-    options.deviation_mm = task.deviation_mm;
-    options.deviation_kPa = task.deviation_kPa;
-    options.deviation_N = task.deviation_N;
+    for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = task.deviations.at(k);
     options.kept = calibration::kept_aside("keep", task.keep, poses.commands.size());
     options.ordered = task.ordered;
     options.threads = task.threads;
@@ -83,9 +81,7 @@ void bind_calibrate_robot(nb::module_& module) {
       .def_rw("loss", &PosesTask::loss)
       .def_rw("numbers", &PosesTask::numbers)
       .def_rw("changes", &PosesTask::changes)
-      .def_rw("deviation_mm", &PosesTask::deviation_mm)
-      .def_rw("deviation_kPa", &PosesTask::deviation_kPa)
-      .def_rw("deviation_N", &PosesTask::deviation_N)
+      .def_rw("deviations", &PosesTask::deviations)
       .def_rw("keep", &PosesTask::keep)
       .def_rw("ordered", &PosesTask::ordered)
       .def_rw("threads", &PosesTask::threads);

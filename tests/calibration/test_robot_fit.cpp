@@ -186,7 +186,7 @@ TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
     std::normal_distribution<double> normal(0, 0.5);
     for (Index i = 0; i < static_cast<Index>(poses.values.size()); ++i) poses.values.data()[i] += normal(engine);
     const RobotFit fit = fit_robot(robot, poses, {});
-    EXPECT_NEAR(fit.scale_mm, 0.5, 0.2);
+    EXPECT_NEAR(fit.scales[0], 0.5, 0.2);
     for (Index i = 0; i < 2; ++i)
       inside += std::abs(fit.values[i] - value_of(made[static_cast<std::size_t>(i)])) < 1.645 * fit.deviations[i];
   }

@@ -60,6 +60,30 @@ TEST(CalibrateRobot, FindsTheModulusBehindThePoses) {
   EXPECT_NEAR(json::parse(again.output)["numbers"][0]["start"].get<double>(), 0.8, 1e-5);
 }
 
+/// No camera: the cable's length by its motor, the chamber's volume by a syringe.
+TEST(CalibrateRobot, FindsTheModulusBehindLengthsAndVolumes) {
+  const Poses folder;
+  std::string text = "air_kPa,tendon_N,tendon_length_mm,air_volume_mm3\n";
+  const json made = json::parse(read_text(folder / "made.json"));
+  for (const json& step : made["steps"]) {
+    text += Poses::number(step["actuation"]["air"]) + "," + Poses::number(step["actuation"]["tendon"]);
+    const json &air = step["actuators"]["air"], &tendon = step["actuators"]["tendon"];  // 20 mm, 3 cells of 4 mm
+    text += "," + Poses::number(20 * tendon["achieved"].get<double>()) + "," +
+            Poses::number(192 * air["achieved"].get<double>()) + "\n";
+  }
+  const std::string measured = folder.write("measured.csv", text);
+  const ProgramResult fitted =
+      run_program({"calibrate", "robot", folder.scene, measured, "--fit", modulus, "--deviation-volume", "0.1"});
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
+  expect_words(fitted.output, {"materials.all.youngs_modulus=0.8", "deviation of a volume as read: 0.1 mm^3 (given)",
+                               "deviation of a length as read: "});
+  const std::string commanded = folder.write("commanded.csv", "air,air_volume_mm3\n1.1,200\n");
+  const std::string by_volume = folder.write("by_volume.yaml", physical_scene());
+  const ProgramResult refused = run_program({"calibrate", "robot", by_volume, commanded});
+  EXPECT_EQ(refused.exit_code, 2);
+  expect_words(refused.errors, {"'air_volume_mm3'", "commanded by that, so it is no reading"});
+}
+
 TEST(CalibrateRobot, ForetellsWhatIsKeptAside) {
   const Poses folder;
   const ProgramResult fitted = folder.calibrate({"--fit", std::string(modulus) + "=1,0.5,2", "--keep", "1", "--json"});

@@ -116,10 +116,7 @@ void check(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotPr
 }
 
 void finish(const RobotProblem& problem, const RobotPoint& point, RobotFit& fit) {
-  const Scales scales = problem.scales(point);
-  fit.scale_mm = scales.mm;
-  fit.scale_kPa = scales.kPa;
-  fit.scale_N = scales.N;
+  fit.scales = problem.scales(point);
   fit.values = point.values;
   fit.computed = {point.computed, point.equilibria};
   fit.markers_mm = problem.marker_misfit(point, false);

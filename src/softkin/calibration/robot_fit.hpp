@@ -16,7 +16,7 @@ constexpr const char* loss_names[] = {"squares", "huber", "cauchy"};
 struct RobotFitOptions {
   StaticsOptions solver{};
   Loss loss = Loss::squares;
-  double deviation_mm = 0, deviation_kPa = 0, deviation_N = 0;  // of readings; 0: told by what is left
+  std::array<double, readings> deviations{};  // of each kind of reading; 0: told by what is left
   int max_iterations = 30;
   int threads = 0;           // poses side by side; 0: as many as the machine has
   bool ordered = false;      // where something rubs: each pose goes on from the one before, the first from rest; else
@@ -43,9 +43,9 @@ struct RobotFit {
   Eigen::MatrixXd correlations;           // of those that are told; else 0
   std::vector<int> at_bound;              // per number: -1 low, +1 high, else 0
   ComputedPoses computed;
-  double scale_mm = 0, scale_kPa = 0, scale_N = 0;  // deviation of a reading: given, or by what is left; 0: none of it
-  Misfit markers_mm;                                // distances of markers, of poses that were fitted to
-  Misfit kept_mm;                                   // of the others
+  std::array<double, readings> scales{};  // deviation of each kind of reading: given, or by what is left; 0: none of it
+  Misfit markers_mm;                      // distances of markers, of poses that were fitted to
+  Misfit kept_mm;                         // of the others
   int iterations = 0;
   int without_equilibrium = 0;  // poses
   double seconds = 0;

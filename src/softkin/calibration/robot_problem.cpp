@@ -5,6 +5,7 @@
 #include <mutex>
 #include <softkin/calibration/robot_problem.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <thread>
 
 namespace softkin::calibration {
@@ -19,6 +20,18 @@ constexpr double medians[3] = {0.6745, 1.1774, 1.5382};
 /// Distances over the deviation from which a reading counts less: 95 % efficiency where all errors are normal.
 /// source  Huber 1981; Rey 1983
 constexpr double huber_at = 1.345, cauchy_at = 2.385;
+/// Largest move of a vertex, over the diagonal, by which lengths and volumes are differentiated along known moves.
+constexpr double small_move = 1e-6;
+
+/// Is it a length or a volume?
+bool measures(const PoseColumn& column) {
+  return column.kind == Reading::length || column.kind == Reading::volume;
+}
+
+double measure_of(const Model& model, const PoseColumn& column, const Points& positions) {
+  const Actuator& actuator = model.actuators[static_cast<std::size_t>(column.actuator)];
+  return achieved_ratio(model, actuator, positions) * actuator.rest_measure;
+}
 
 }  // namespace
 
@@ -62,7 +75,7 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
       return column.marker >= 0 && group.marker == column.marker;
     });
     if (same == groups_.end())
-      groups_.push_back({{c}, column.marker, column.actuator});
+      groups_.push_back({{c}, column.marker, column.kind});
     else
       same->columns.push_back(c);
   }
@@ -80,12 +93,6 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
 
 bool RobotProblem::read(Index pose, Index column) const {
   return !std::isnan(poses_.values(pose, column));
-}
-
-RobotProblem::Kind RobotProblem::kind_of(const Group& group) const {
-  if (group.marker >= 0) return Kind::marker;
-  const Actuator& actuator = first_model_->actuators[static_cast<std::size_t>(group.actuator)];
-  return actuator.kind == ActuatorKind::cable ? Kind::tension : Kind::pressure;
 }
 
 Eigen::VectorXd RobotProblem::miss(const RobotPoint& point, Index pose, const Group& group) const {
@@ -111,15 +118,13 @@ void RobotProblem::each_reading(const Visit& visit) const {
 }
 
 /// That of a coordinate: as given, or by the median of distances, which a few wrong readings do not move.
-double RobotProblem::scale(const RobotPoint& point, Kind kind) const {
-  const double given = kind == Kind::marker     ? options_.deviation_mm
-                       : kind == Kind::pressure ? options_.deviation_kPa
-                                                : options_.deviation_N;
+double RobotProblem::scale(const RobotPoint& point, Reading kind) const {
+  const double given = options_.deviations[static_cast<std::size_t>(kind)];
   std::vector<double> distances;
   double squares = 0;
   std::size_t count = 0;
   each_reading([&](Index pose, const Group& group, Index) {
-    if (kind_of(group) != kind) return;
+    if (group.kind != kind) return;
     const Eigen::VectorXd off = miss(point, pose, group);
     if (!off.allFinite()) return;
     squares += off.squaredNorm();
@@ -141,7 +146,10 @@ double RobotProblem::scale(const RobotPoint& point, Kind kind) const {
 }
 
 Scales RobotProblem::scales(const RobotPoint& point) const {
-  return {scale(point, Kind::marker), scale(point, Kind::pressure), scale(point, Kind::tension)};
+  Scales scales{};
+  for (int kind = 0; kind < softkin::readings; ++kind)
+    scales[static_cast<std::size_t>(kind)] = scale(point, static_cast<Reading>(kind));
+  return scales;
 }
 
 Eigen::VectorXd RobotProblem::residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const {
@@ -168,8 +176,7 @@ Linearised RobotProblem::linearised(const RobotPoint& point) const {
   Index rows = 0;
   each_reading([&](Index pose, const Group& group, Index row) {
     const Eigen::VectorXd off = miss(point, pose, group);
-    const Kind kind = kind_of(group);
-    const double scale = kind == Kind::marker ? of.mm : kind == Kind::pressure ? of.kPa : of.N;
+    const double scale = of[static_cast<std::size_t>(group.kind)];
     const double distance = off.norm() / scale;
     double weight = 1 / (scale * scale);
     if (options_.loss == Loss::huber && distance > huber_at) weight *= huber_at / distance;
@@ -264,6 +271,8 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
       value = (point.frame.rotation *
                    point.model->markers[static_cast<std::size_t>(column.marker)].at(found.state.positions) +
                point.frame.place)[column.axis];
+    else if (measures(column))
+      value = measure_of(*point.model, column, found.state.positions);
     else
       value = found.state.multipliers[column.actuator];
   }
@@ -295,6 +304,19 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
     const auto p = static_cast<Index>(k);
     for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
       const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+      if (measures(column)) {
+        const auto of = [&](const Model& model, const Points& positions) {
+          return measure_of(model, column, positions);
+        };
+        const double own =
+            (of(changes.models[2 * k], state.positions) - of(changes.models[2 * k + 1], state.positions)) /
+            changes.differences[static_cast<std::size_t>(i)];
+        const double h = small_move * point.model->diagonal_mm / (1e-300 + found.positions[k].cwiseAbs().maxCoeff());
+        slopes(c, i) += own + (of(*point.model, state.positions + h * found.positions[k]) -
+                               of(*point.model, state.positions - h * found.positions[k])) /
+                                  (2 * h);
+        continue;
+      }
       if (column.marker < 0) {
         slopes(c, i) += found.multipliers(column.actuator, p);
         continue;

@@ -18,10 +18,8 @@ struct RobotPoint {
   std::string refusal;  // why the scene refuses the values, of which then nothing is known; empty: it does not
 };
 
-/// Deviations of readings.
-struct Scales {
-  double mm = 0, kPa = 0, N = 0;  // 0: there is no such reading
-};
+/// Deviations of readings, per kind; 0: there is none of it.
+using Scales = std::array<double, readings>;
 
 /// Residuals of readings and priors, each times the root of its weight, and their derivatives.
 struct Linearised {
@@ -63,21 +61,20 @@ class RobotProblem {
   /// Columns of a pose that were read together: a marker's coordinates, or a load.
   struct Group {
     std::vector<Index> columns;
-    Index marker, actuator;
+    Index marker;
+    Reading kind;
   };
 
   [[nodiscard]] bool fits(Index pose) const {
     return options_.kept.empty() || !options_.kept[static_cast<std::size_t>(pose)];
   }
   [[nodiscard]] bool read(Index pose, Index column) const;
-  enum class Kind { marker, pressure, tension };
-  [[nodiscard]] Kind kind_of(const Group& group) const;
   /// Of a pose's readings together, what the robot does less what was read.
   [[nodiscard]] Eigen::VectorXd miss(const RobotPoint& point, Index pose, const Group& group) const;
   /// visit(pose, group, row of the first of its residuals) of what is fitted to.
   template <class Visit>
   void each_reading(const Visit& visit) const;
-  [[nodiscard]] double scale(const RobotPoint& point, Kind kind) const;
+  [[nodiscard]] double scale(const RobotPoint& point, Reading kind) const;
   [[nodiscard]] Eigen::VectorXd residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const;
   struct Changes;
   void compute(RobotPoint& point, const Changes* changes, Index pose) const;

@@ -159,9 +159,9 @@ std::string robot_fit_text(const RobotFitReport& r) {
                      counted(static_cast<std::size_t>(fit.iterations), "iteration") + ", " + decimal(fit.seconds, 1) +
                      " s\n\n";
   if (!r.robot.numbers().empty() && fit.deviations.size() > 0) text += numbers_text(r) + "\n";
-  text += errors_text(r) + scale_text("coordinate", fit.scale_mm, r.options.deviation_mm, "mm") +
-          scale_text("pressure", fit.scale_kPa, r.options.deviation_kPa, "kPa") +
-          scale_text("tension", fit.scale_N, r.options.deviation_N, "N");
+  text += errors_text(r);
+  for (std::size_t kind = 0; kind < readings; ++kind)
+    text += scale_text(reading_names[kind], fit.scales[kind], r.options.deviations[kind], reading_units[kind]);
   if (fit.markers_mm.readings > 0)
     text += "all markers: " + decimal(fit.markers_mm.rms, 2) + " mm root mean square, " +
             decimal(fit.markers_mm.largest, 2) + " mm at most\n";
@@ -206,9 +206,11 @@ std::string robot_fit_json(const RobotFitReport& r) {
                       {"seconds", r.fit.seconds},
                       {"numbers", numbers},
                       {"poses", poses},
-                      {"deviation_mm", r.fit.scale_mm},
-                      {"deviation_kPa", r.fit.scale_kPa},
-                      {"deviation_N", r.fit.scale_N},
+                      {"deviation_mm", r.fit.scales[0]},
+                      {"deviation_kPa", r.fit.scales[1]},
+                      {"deviation_N", r.fit.scales[2]},
+                      {"deviation_length_mm", r.fit.scales[3]},
+                      {"deviation_volume_mm3", r.fit.scales[4]},
                       {"markers", misfit_json(r.fit.markers_mm)},
                       {"kept", misfit_json(r.fit.kept_mm)}});
 }

@@ -1,18 +1,26 @@
 #pragma once
 
+#include <array>
 #include <softkin/model/equilibrium.hpp>
 #include <string>
 #include <vector>
 
 namespace softkin {
 
-/// What a column of measured poses holds: a coordinate of a marker [mm], or the pressure [kPa] or tension [N] with
-/// which an actuator answers.
+/// A kind of reading, and its unit: coordinates of markers; pressures and tensions with which actuators answer; lengths
+/// of cables and volumes of chambers whose loads are commanded.
+enum class Reading { coordinate, pressure, tension, length, volume };
+constexpr int readings = 5;
+constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension", "length", "volume"};
+constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3"};
+
+/// What a column of measured poses holds.
 struct PoseColumn {
   std::string name;     // as in the file
   Index marker = -1;    // of the model; -1: none
   int axis = -1;        // of it
   Index actuator = -1;  // of the model; -1: none
+  Reading kind = Reading::coordinate;
 };
 
 /// Poses of a real robot: what it was told, and what was read.

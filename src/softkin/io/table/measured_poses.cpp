@@ -24,8 +24,8 @@ class Columns {
     }
     if (readings_.empty())
       table.fail_header(
-          "no column is a reading: a coordinate such as tip_x_mm, a pressure such as air_pressure_kPa or "
-          "a tension such as tendon_tension_N");
+          "no column is a reading: a coordinate such as tip_x_mm, a pressure or volume such as air_pressure_kPa or "
+          "air_volume_mm3, a tension or length such as tendon_tension_N or tendon_length_mm");
   }
 
   [[nodiscard]] MeasuredPoses poses() const {
@@ -77,20 +77,25 @@ class Columns {
       table_.fail_header("column " + excerpt(column) + ": no marker " + excerpt(name) +
                          (names.empty() ? "; the scene has none" : suggest_name(name, names)));
     }
-    for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      const Actuator& actuator = model_.actuators[a];
-      const char* unit = actuator.kind == ActuatorKind::cable       ? "_tension_N"
-                         : actuator.kind == ActuatorKind::pneumatic ? "_pressure_kPa"
-                                                                    : nullptr;
-      if (unit == nullptr || column != actuator.name + unit) continue;
-      if (actuator.control == Control::load)
-        table_.fail_header("column " + excerpt(column) + ": " + actuator.name +
-                           " is commanded by that, so it is no "
-                           "reading; its command is column '" +
-                           command_column(actuator) + "'");
-      return PoseColumn{column, -1, -1, static_cast<Index>(a)};
-    }
+    for (std::size_t a = 0; a < model_.actuators.size(); ++a)
+      if (const auto read = reading_of(column, static_cast<Index>(a))) return read;
     return std::nullopt;
+  }
+
+  /// With what an actuator answers: a load, or where that is commanded a length or volume.
+  [[nodiscard]] std::optional<PoseColumn> reading_of(const std::string& column, Index a) const {
+    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    const bool cable = actuator.kind == ActuatorKind::cable;
+    if (!cable && actuator.kind != ActuatorKind::pneumatic) return std::nullopt;
+    const bool load = column == actuator.name + (cable ? "_tension_N" : "_pressure_kPa");
+    if (!load && column != actuator.name + (cable ? "_length_mm" : "_volume_mm3")) return std::nullopt;
+    if (load == (actuator.control == Control::load))
+      table_.fail_header("column " + excerpt(column) + ": " + actuator.name +
+                         " is commanded by that, so it is no reading; its command is column '" +
+                         command_column(actuator) + "'");
+    const Reading kind =
+        load ? (cable ? Reading::tension : Reading::pressure) : (cable ? Reading::length : Reading::volume);
+    return PoseColumn{column, -1, -1, a, kind};
   }
 
   const CsvTable& table_;
