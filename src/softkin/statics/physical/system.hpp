@@ -128,8 +128,8 @@ class System {
   [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
   /// Does a command load the robot without a measure: a voltage, a magnetic field, a force on a body, what holds it.
   [[nodiscard]] bool loads(Index actuator) const;
-  /// Is the derivative of the terms' gradient by the shape symmetric? What tendons that rub add is not, but factors hold
-  /// it.
+  /// Is the derivative of the terms' gradient by the shape symmetric? What tendons that rub add is not, but factors
+  /// hold it.
   [[nodiscard]] bool symmetric() const;
   /// Has all that loads it an energy?
   [[nodiscard]] bool conservative() const;
