@@ -480,6 +480,7 @@ def robot(
     deviation_N: float | None = None,
     deviation_length_mm: float | None = None,
     deviation_volume_mm3: float | None = None,
+    deviation_force_N: float | None = None,
     keep: int = 0,
     ordered: bool = False,
     threads: int = 0,
@@ -489,14 +490,15 @@ def robot(
 
     scene      YAML, physical formulation
     poses      CSV: commands as in a path, then tip_x_mm, ... of markers, air_pressure_kPa, tendon_tension_N, or
-               air_volume_mm3, tendon_length_mm where loads are commanded; empty cells were not read
+               air_volume_mm3, tendon_length_mm where loads are commanded, base_force_x_N, ... of supports on the robot;
+               empty cells were not read
     fit        by path: a start, (start, low, high), "mean+-deviation" (known before) or None, the scene's; or texts as
                of --fit; base.x, base.rx, ...: where the robot stands in the measuring frame [mm, degrees]; camera.x, ...:
                the same, gravity turns along. Empty: the poses are foretold as the scene is
     changes    of the scene, by path
     loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
-    deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3] as read; None: by what is
-               left
+    deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3], force [N] as read; None:
+               by what is left
     keep       poses that are not fitted to but foretold, spread evenly
     ordered    where something rubs: each pose goes on from the one before, the first from rest; else each from rest
     threads    poses side by side; 0: as many as the machine has
@@ -511,6 +513,7 @@ def robot(
         "deviation_N": deviation_N,
         "deviation_length_mm": deviation_length_mm,
         "deviation_volume_mm3": deviation_volume_mm3,
+        "deviation_force_N": deviation_force_N,
     }
     for name, given in deviations.items():
         if given is not None and not given > 0:

@@ -172,6 +172,21 @@ TEST(RobotFit, SaysWhatCannotBeToldApart) {
   EXPECT_NEAR(settled.deviations[0], 0.01, 0.002);
 }
 
+/// A load cell at the base reads the weight; the rest of the shape is not needed for the density.
+TEST(RobotFit, ForcesOfSupportsTellTheDensity) {
+  const Arm arm;
+  const NumberedRobot robot = arm.robot({"materials.body.density=1300,500,3000"});
+  MeasuredPoses poses = arm.poses({"materials.body.density=1000"});
+  poses.columns = {{"x_low_force_z_N", -1, 2, -1, Reading::force, 0},
+                   {"x_low_force_x_N", -1, 0, -1, Reading::force, 0}};
+  poses.values.resize(static_cast<Index>(poses.commands.size()), 2);
+  poses.values.col(0).setConstant(1000 * 6e-6 * 9.81);
+  poses.values.col(1).setZero();
+  const RobotFit fit = fit_robot(robot, poses, {});
+  EXPECT_EQ(fit.status, Status::converged) << fit.remark;
+  EXPECT_NEAR(fit.values[0], 1000, 1e-3);
+}
+
 /// Nine of ten intervals of 1.645 deviations hold the truth.
 TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
   const Arm arm;

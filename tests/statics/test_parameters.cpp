@@ -25,17 +25,24 @@ Model changed(const RobotSpec& spec, const Number& number, double by) {
 }
 
 /// Fourth-order differences of the equilibria of four other robots.
-Difference difference_by(const RobotSpec& spec, const Number& number, const State& at) {
+struct NumberDifference : Difference {
+  Points reactions;
+};
+
+NumberDifference difference_by(const RobotSpec& spec, const Number& number, const State& at) {
   const double step = 3e-3 * number.size, h = 1 / (12 * step);
-  Difference sum{Points::Zero(at.positions.rows(), 3), Eigen::VectorXd::Zero(at.actuation.size())};
+  NumberDifference sum{{Points::Zero(at.positions.rows(), 3), Eigen::VectorXd::Zero(at.actuation.size())},
+                       Points::Zero(at.positions.rows(), 3)};
   for (const auto& [steps, weight] : {std::pair{-2, h}, std::pair{-1, -8 * h}, std::pair{1, 8 * h}, std::pair{2, -h}}) {
     const Model model = changed(spec, number, steps * step);
     State start;
     start.positions = rubs(model) ? model.rest : at.positions;  // what rubs remembers its way
-    const Equilibrium found = Statics(model).solve(at.actuation, start, tight(1e-10));
+    const Statics statics(model);
+    const Equilibrium found = statics.solve(at.actuation, start, tight(1e-10));
     EXPECT_EQ(found.report.status, Status::converged) << number.name << ": " << found.report.remark;
     sum.positions += weight * found.state.positions;
     sum.multipliers += weight * found.state.multipliers;
+    sum.reactions += weight * statics.measured(found.state).reactions;
   }
   return sum;
 }
@@ -54,12 +61,15 @@ void expect_derivatives(const RobotSpec& spec, const Actuation& actuation, const
     const Model& less = models.emplace_back(changed(spec, number, -half));
     perturbed.push_back({more, less, 2 * half});
   }
-  const ParameterSensitivity slopes = Perturbations(statics, perturbed).at(found.state);
+  const ParameterSensitivity slopes = Perturbations(statics, perturbed).at(found.state, {}, 1e-8, true);
   ASSERT_TRUE(slopes.regular);
   for (std::size_t p = 0; p < numbers.size(); ++p) {
-    const Difference expected = difference_by(spec, numbers[p], found.state);
+    const NumberDifference expected = difference_by(spec, numbers[p], found.state);
     EXPECT_GT(expected.positions.cwiseAbs().maxCoeff() * numbers[p].size, 1e-6) << numbers[p].name;
     EXPECT_LT(off_by(slopes.positions[p], expected.positions), tolerance) << numbers[p].name;
+    EXPECT_LE((slopes.reactions[p] - expected.reactions).cwiseAbs().maxCoeff(),
+              10 * tolerance * expected.reactions.cwiseAbs().maxCoeff() + 1e-8 / numbers[p].size)
+        << numbers[p].name;
     const Eigen::VectorXd multipliers = slopes.multipliers.col(static_cast<Index>(p));
     EXPECT_LE((multipliers - expected.multipliers).cwiseAbs().maxCoeff(),
               tolerance * expected.multipliers.cwiseAbs().maxCoeff() + 1e-9 / numbers[p].size)

@@ -28,6 +28,13 @@ bool measures(const PoseColumn& column) {
   return column.kind == Reading::length || column.kind == Reading::volume;
 }
 
+/// On the robot, of a support.
+Vec3 force_of(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
+  ElementDeformation deformation;
+  deformation.reactions = at_vertices;
+  return reactions(model, positions, deformation)[static_cast<std::size_t>(column.support)].force;
+}
+
 double measure_of(const Model& model, const PoseColumn& column, const Points& positions) {
   const Actuator& actuator = model.actuators[static_cast<std::size_t>(column.actuator)];
   return achieved_ratio(model, actuator, positions) * actuator.rest_measure;
@@ -89,6 +96,11 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
     for (const Index c : group.columns) rows_ += read(pose, c);
   });
   for (const FittedNumber& number : robot.numbers()) rows_ += number.deviation.has_value();
+}
+
+bool RobotProblem::reads_forces() const {
+  return std::any_of(poses_.columns.begin(), poses_.columns.end(),
+                     [](const PoseColumn& column) { return column.support >= 0; });
 }
 
 bool RobotProblem::read(Index pose, Index column) const {
@@ -262,6 +274,8 @@ bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, c
 /// What was read, as the robot does it.
 void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose) const {
   const Equilibrium& found = point.equilibria[static_cast<std::size_t>(pose)];
+  ElementDeformation reactions;
+  if (reads_forces() && found.report.status == Status::converged) reactions = point.statics->measured(found.state);
   for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
     const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
     double& value = point.computed(pose, c);
@@ -273,28 +287,35 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
                point.frame.place)[column.axis];
     else if (measures(column))
       value = measure_of(*point.model, column, found.state.positions);
+    else if (column.support >= 0)
+      value = (point.frame.rotation *
+               force_of(*point.model, column, found.state.positions, reactions.reactions))[column.axis];
     else
       value = found.state.multipliers[column.actuator];
   }
-  if (changes && found.report.status == Status::converged) add_slopes(point, *changes, pose);
+  if (changes && found.report.status == Status::converged) add_slopes(point, *changes, pose, reactions.reactions);
 }
 
-void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index pose) const {
+void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const {
   const State& state = point.equilibria[static_cast<std::size_t>(pose)].state;
   StaticsOptions solver = options_.solver;
   solver.threads = 1;
-  const ParameterSensitivity found = changes.perturbations->at(state, solver);
+  constexpr double accuracy = 1e-8;
+  const ParameterSensitivity found = changes.perturbations->at(state, solver, accuracy, reads_forces());
   const auto count = static_cast<Index>(robot_.numbers().size());
   Eigen::MatrixXd& slopes = point.slopes[static_cast<std::size_t>(pose)];
   slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
   for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
     const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-    if (column.marker < 0) continue;
-    const Vec3 place = point.model->markers[static_cast<std::size_t>(column.marker)].at(state.positions);
+    if (column.marker < 0 && column.support < 0) continue;
+    const bool marker = column.marker >= 0;
+    const Vec3 place = marker ? point.model->markers[static_cast<std::size_t>(column.marker)].at(state.positions)
+                              : force_of(*point.model, column, state.positions, reactions);
     for (Index i = 0; i < count; ++i) {
       const MeasuringFrame &more = changes.more[static_cast<std::size_t>(i)],
                            &less = changes.less[static_cast<std::size_t>(i)];
-      slopes(c, i) = ((more.rotation - less.rotation) * place + more.place - less.place)[column.axis] /
+      const Vec3 shift = marker ? Vec3(more.place - less.place) : Vec3(Vec3::Zero());
+      slopes(c, i) = ((more.rotation - less.rotation) * place + shift)[column.axis] /
                      changes.differences[static_cast<std::size_t>(i)];
     }
   }
@@ -315,6 +336,11 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
         slopes(c, i) += own + (of(*point.model, state.positions + h * found.positions[k]) -
                                of(*point.model, state.positions - h * found.positions[k])) /
                                   (2 * h);
+        continue;
+      }
+      if (column.support >= 0) {
+        slopes(c, i) +=
+            (point.frame.rotation * force_of(*point.model, column, state.positions, found.reactions[k]))[column.axis];
         continue;
       }
       if (column.marker < 0) {

@@ -69,6 +69,7 @@ class RobotProblem {
     return options_.kept.empty() || !options_.kept[static_cast<std::size_t>(pose)];
   }
   [[nodiscard]] bool read(Index pose, Index column) const;
+  [[nodiscard]] bool reads_forces() const;
   /// Of a pose's readings together, what the robot does less what was read.
   [[nodiscard]] Eigen::VectorXd miss(const RobotPoint& point, Index pose, const Group& group) const;
   /// visit(pose, group, row of the first of its residuals) of what is fitted to.
@@ -78,7 +79,7 @@ class RobotProblem {
   [[nodiscard]] Eigen::VectorXd residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const;
   struct Changes;
   void compute(RobotPoint& point, const Changes* changes, Index pose) const;
-  void add_slopes(RobotPoint& point, const Changes& changes, Index pose) const;
+  void add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const;
   bool each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act);
 
   const NumberedRobot& robot_;

@@ -211,6 +211,7 @@ std::string robot_fit_json(const RobotFitReport& r) {
                       {"deviation_N", r.fit.scales[2]},
                       {"deviation_length_mm", r.fit.scales[3]},
                       {"deviation_volume_mm3", r.fit.scales[4]},
+                      {"deviation_force_N", r.fit.scales[5]},
                       {"markers", misfit_json(r.fit.markers_mm)},
                       {"kept", misfit_json(r.fit.kept_mm)}});
 }

@@ -8,19 +8,21 @@
 namespace softkin {
 
 /// A kind of reading, and its unit: coordinates of markers; pressures and tensions with which actuators answer; lengths
-/// of cables and volumes of chambers whose loads are commanded.
-enum class Reading { coordinate, pressure, tension, length, volume };
-constexpr int readings = 5;
-constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension", "length", "volume"};
-constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3"};
+/// of cables and volumes of chambers whose loads are commanded; what supports exert on the robot.
+enum class Reading { coordinate, pressure, tension, length, volume, force };
+constexpr int readings = 6;
+constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension",
+                                                          "length",     "volume",   "force"};
+constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3", "N"};
 
 /// What a column of measured poses holds.
 struct PoseColumn {
   std::string name;     // as in the file
   Index marker = -1;    // of the model; -1: none
-  int axis = -1;        // of it
+  int axis = -1;        // of it, or of the support's force
   Index actuator = -1;  // of the model; -1: none
   Reading kind = Reading::coordinate;
+  Index support = -1;  // of the model; -1: none
 };
 
 /// Poses of a real robot: what it was told, and what was read.

@@ -23,9 +23,10 @@ struct Perturbed {
 
 /// How an equilibrium changes with numbers of the robot under the same commands, to first order.
 struct ParameterSensitivity {
-  std::vector<Points> positions;  // per number, #V by 3 [mm per unit of it]
-  Eigen::MatrixXd multipliers;    // m by numbers: of tension [N] or pressure [kPa] of actuator i
-  bool regular = false;           // false: at a limit of existence or a branch; then all values are zero
+  std::vector<Points> positions;    // per number, #V by 3 [mm per unit of it]
+  Eigen::MatrixXd multipliers;      // m by numbers: of tension [N] or pressure [kPa] of actuator i
+  bool regular = false;             // false: at a limit of existence or a branch; then all values are zero
+  std::vector<Points> reactions{};  // per number where asked for, #V by 3: of what supports exert [N per unit of it]
 };
 
 /// Zeros, not regular.

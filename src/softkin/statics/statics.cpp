@@ -388,11 +388,12 @@ Perturbations::~Perturbations() = default;
 Perturbations::Perturbations(Perturbations&&) noexcept = default;
 Perturbations& Perturbations::operator=(Perturbations&&) noexcept = default;
 
-ParameterSensitivity Perturbations::at(const State& at, const StaticsOptions& options, double accuracy) const {
+ParameterSensitivity Perturbations::at(const State& at, const StaticsOptions& options, double accuracy,
+                                       bool reactions) const {
   Statics::Parts& statics = *parts_->statics.parts_;
   statics.check_known(at, options, "the sensitivity of a shape");
   const TeamPool::Lent team = statics.team(options);
-  return statics.physical->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, *team);
+  return statics.physical->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, reactions, *team);
 }
 
 struct Neighbourhood::Parts {

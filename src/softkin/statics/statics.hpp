@@ -164,9 +164,9 @@ class Perturbations {
   Perturbations(Perturbations&&) noexcept;
   Perturbations& operator=(Perturbations&&) noexcept;
 
-  /// As Statics::sensitivity. Several threads may ask at once.
-  [[nodiscard]] ParameterSensitivity at(const State& at, const StaticsOptions& options = {},
-                                        double accuracy = 1e-8) const;
+  /// As Statics::sensitivity. Several threads may ask at once. reactions: those of supports, too
+  [[nodiscard]] ParameterSensitivity at(const State& at, const StaticsOptions& options = {}, double accuracy = 1e-8,
+                                        bool reactions = false) const;
 
  private:
   struct Parts;

@@ -25,7 +25,8 @@ class Columns {
     if (readings_.empty())
       table.fail_header(
           "no column is a reading: a coordinate such as tip_x_mm, a pressure or volume such as air_pressure_kPa or "
-          "air_volume_mm3, a tension or length such as tendon_tension_N or tendon_length_mm");
+          "air_volume_mm3, a tension or length such as tendon_tension_N or tendon_length_mm, a support's force such as "
+          "base_force_x_N");
   }
 
   [[nodiscard]] MeasuredPoses poses() const {
@@ -79,6 +80,15 @@ class Columns {
     }
     for (std::size_t a = 0; a < model_.actuators.size(); ++a)
       if (const auto read = reading_of(column, static_cast<Index>(a))) return read;
+    return force_of(column);
+  }
+
+  /// What a support exerts: base_force_x_N.
+  [[nodiscard]] std::optional<PoseColumn> force_of(const std::string& column) const {
+    for (std::size_t s = 0; s < model_.supports.size(); ++s)
+      for (int axis = 0; axis < 3; ++axis)
+        if (column == model_.supports[s].name + "_force_" + "xyz"[axis] + "_N")
+          return PoseColumn{column, -1, axis, -1, Reading::force, static_cast<Index>(s)};
     return std::nullopt;
   }
 

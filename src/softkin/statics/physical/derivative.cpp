@@ -104,6 +104,18 @@ Eigen::VectorXd Derivative::multipliers(Index column) const {
   return multipliers;
 }
 
+/// What supports exert changes as the gradient where they hold: by the number itself, by the moves, and by what the held
+/// measures' multipliers pull with. force: the first of these
+Points Derivative::reactions(const Iterate& at, const Demand& demand, Index column, Points force) {
+  system_.add_pull(at, demand, balance_, positions(at, column), work_, force, team_);
+  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+    force += system_.measures().sign(held_[i]) * found_.multipliers(i, column) * system_.pull(held_[i], at);
+  for (Index v = 0; v < force.rows(); ++v)
+    for (int axis = 0; axis < 3; ++axis)
+      if (system_.model().support_of[v][axis] < 0) force(v, axis) = 0;
+  return force;
+}
+
 /// Solves for all right-hand sides, with the factor at hand or a new one.
 bool Derivative::find(const Iterate& at, const Demand& demand) {
   using Precision = linear::MixedLdlt::Precision;
@@ -181,11 +193,13 @@ Perturbation::Perturbation(const Perturbed& perturbed, const System& like)
 
 ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
                                     const std::vector<Perturbation>& perturbations,
-                                    const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) {
+                                    const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
+                                    bool reactions) {
   const auto count = static_cast<Index>(perturbations.size());
   hold(at, demand);
   make_room(count);
   Eigen::MatrixXd loads(system_.actuators(), count);  // those that are given
+  std::vector<Points> forces;                         // of the shape as it is
   for (Index p = 0; p < count; ++p) {
     const Perturbation& each = perturbations[static_cast<std::size_t>(p)];
     Found more = found_by(*each.more, at, demand, active_, balance_.slips, history, elapsed_s, team_);
@@ -196,6 +210,7 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
     for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
       right_.multipliers(i, p) = -system_.measures().sign(held_[i]) *
                                  (more.constraint[held_[i]] - less.constraint[held_[i]]) / each.difference;
+    if (reactions) forces.push_back(force);
     if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
     ask(at, p, force, std::move(moves));
   }
@@ -207,6 +222,10 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
     for (Index a = 0; result.regular && a < system_.actuators(); ++a)
       result.multipliers(a, p) += loads(a, p) / system_.measures().unit(a);
   }
+  for (Index p = 0; reactions && p < count; ++p)
+    result.reactions.push_back(result.regular
+                                   ? this->reactions(at, demand, p, std::move(forces[static_cast<std::size_t>(p)]))
+                                   : Points(Points::Zero(at.positions.rows(), 3)));
   return result;
 }
 
@@ -217,11 +236,11 @@ Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, double a
 }
 
 ParameterSensitivity Equilibria::sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
-                                             bool reuse_factor, double accuracy, Team& team) const {
+                                             bool reuse_factor, double accuracy, bool reactions, Team& team) const {
   Lease lease(*this, at.positions, reuse_factor);
   system_.set_time(at.history, at.elapsed_s, lease.work(), team);
   return Derivative(system_, lease.work(), accuracy, team)
-      .of(system_.iterate(at), {at.actuation, at.share}, perturbations, at.history, at.elapsed_s);
+      .of(system_.iterate(at), {at.actuation, at.share}, perturbations, at.history, at.elapsed_s, reactions);
 }
 
 }  // namespace softkin::physical

@@ -25,10 +25,11 @@ class Derivative {
   /// at  multipliers in internal units
   [[nodiscard]] Sensitivity of(const Iterate& at, const Demand& demand);
   /// By numbers of the robot: F and T are what the equations miss in the shape with more and less of them, over the
-  /// difference. history, elapsed_s: of the equilibrium
+  /// difference. history, elapsed_s: of the equilibrium. reactions: are those of supports asked for
   [[nodiscard]] ParameterSensitivity of(const Iterate& at, const Demand& demand,
                                         const std::vector<Perturbation>& perturbations,
-                                        const std::shared_ptr<const ViscousHistory>& history, double elapsed_s);
+                                        const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
+                                        bool reactions);
 
  private:
   void hold(const Iterate& at, const Demand& demand);
@@ -39,6 +40,7 @@ class Derivative {
   bool solve(const Iterate& at, bool exact_factor);
   [[nodiscard]] Points positions(const Iterate& at, Index column) const;
   [[nodiscard]] Eigen::VectorXd multipliers(Index column) const;
+  [[nodiscard]] Points reactions(const Iterate& at, const Demand& demand, Index column, Points force);
 
   const System& system_;
   Workspace& work_;

@@ -40,7 +40,7 @@ class Equilibria {
   [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
 
   [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
-                                                 bool reuse_factor, double accuracy, Team& team) const;
+                                                 bool reuse_factor, double accuracy, bool reactions, Team& team) const;
 
   /// See Statics::foresee.
   bool foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const;

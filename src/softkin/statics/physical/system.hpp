@@ -116,6 +116,12 @@ class System {
   [[nodiscard]] const supports::Freedoms& freedoms() const { return *freedoms_; }
   [[nodiscard]] const Placement& placement() const { return *placement_; }
   [[nodiscard]] const supports::ActuatorMeasures& measures() const { return actuator_loads_.measures(); }
+  /// What a measure's multiplier pulls with, #V by 3, but for its sign.
+  [[nodiscard]] Points pull(Index actuator, const Iterate& at) const {
+    Points force;
+    actuator_loads_.pull(actuator, at, force);
+    return force;
+  }
   [[nodiscard]] const Tendons& tendons() const { return actuator_loads_.tendons(); }
   [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
   /// Of a shape whose multipliers are known.
