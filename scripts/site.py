@@ -37,7 +37,7 @@ def pages() -> dict[Path, str]:
     named = {ROOT / "README.md": "index.md", ROOT / "examples/README.md": "examples.md"}
     named |= {ROOT / "CHANGELOG.md": "changes.md", ROOT / "CONTRIBUTING.md": "contributing.md"}
     named |= {file: file.name for file in sorted((ROOT / "docs").glob("*.md"))}
-    for pattern in ("*/README.md", "paper/*/README.md"):
+    for pattern in ("*/README.md", "paper/*/README.md", "real/*/README.md"):
         named |= {file: f"examples/{file.parent.name}.md" for file in sorted((ROOT / "examples").glob(pattern))}
     return named
 
