@@ -104,8 +104,8 @@ Eigen::VectorXd Derivative::multipliers(Index column) const {
   return multipliers;
 }
 
-/// What supports exert changes as the gradient where they hold: by the number itself, by the moves, and by what the held
-/// measures' multipliers pull with. force: the first of these
+/// What supports exert changes as the gradient where they hold: by the number itself, by the moves, and by what the
+/// held measures' multipliers pull with. force: the first of these
 Points Derivative::reactions(const Iterate& at, const Demand& demand, Index column, Points force) {
   system_.add_pull(at, demand, balance_, positions(at, column), work_, force, team_);
   for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
