@@ -6,6 +6,8 @@ ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
 # or it takes no file with a precompiled header
 export CCACHE_SLOPPINESS ?= pch_defines,time_macros
+# so that another clone finds what this one compiled
+export CCACHE_BASEDIR ?= $(CURDIR)
 endif
 export CTEST_OUTPUT_ON_FAILURE = 1
 
