@@ -2,9 +2,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <softkin/core/text.hpp>
 #include <softkin/io/scene/changes.hpp>
 
 #include "bindings.hpp"
@@ -18,20 +17,25 @@ namespace {
 /// By which a number is changed, of what it is.
 constexpr double perturbation = 1e-5;
 
-Model changed(const Source& source, const std::string& number, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  Source other = source;
-  other.tree = scene::changed(source.tree, "number", number + "=" + text, "");
-  return compile(other.spec(false));
-}
+/// A robot's description, of which a number at a time is changed.
+struct Description {
+  Source source;
+  std::shared_ptr<const scene::Node> tree;  // as it is
+
+  explicit Description(const Source& of) : source(of), tree(of.tree) {}
+
+  Model changed(const std::string& number, double value) {
+    source.tree = scene::changed(tree, "number", number + "=" + exact(value), "");
+    return compile(source.spec(false));
+  }
+};
 
 /// throws  InvalidInput: with the nearest name where the scene can have no such number
-double value_of(const Source& source, const std::string& number) {
+double value_of(Description& robot, const std::string& number) {
   try {
-    return scene::number_at(source.tree, "number", number);
+    return scene::number_at(robot.tree, "number", number);
   } catch (const InvalidInput&) {
-    (void)changed(source, number, 1);
+    (void)robot.changed(number, 1);
     throw InvalidInput("number " + number + ": the description does not say it; give it a value there");
   }
 }
@@ -42,13 +46,13 @@ struct Changed {
   Model more, less;
   double difference;
 
-  Changed(const Source& source, const std::string& number)
-      : value(value_of(source, number)), more(changed(source, number, value + half())) {
+  Changed(Description& robot, const std::string& number)
+      : value(value_of(robot, number)), more(robot.changed(number, value + half())) {
     try {
-      less = changed(source, number, value - half());
+      less = robot.changed(number, value - half());
       difference = 2 * half();
     } catch (const InvalidInput&) {
-      less = changed(source, number, value);
+      less = robot.changed(number, value);
       difference = half();
     }
   }
@@ -66,10 +70,11 @@ std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<s
   {
     const nb::gil_scoped_release released;
     const State& state = shape.found().state;
+    Description robot(shape.robot()->source());
     std::vector<std::unique_ptr<Changed>> all;
     std::vector<Perturbed> perturbed;
     for (const std::string& number : numbers) {
-      const Changed& each = *all.emplace_back(std::make_unique<Changed>(shape.robot()->source(), number));
+      const Changed& each = *all.emplace_back(std::make_unique<Changed>(robot, number));
       perturbed.push_back({each.more, each.less, each.difference});
     }
     const ParameterSensitivity found = Perturbations(shape.robot()->statics(), perturbed).at(state, shape.options());

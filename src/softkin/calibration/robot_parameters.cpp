@@ -49,12 +49,6 @@ Six six_of(const std::vector<FittedNumber>& numbers, const Eigen::VectorXd& valu
   return six;
 }
 
-std::string digits_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-
 }  // namespace
 
 FittedNumber parse_fitted_number(const std::string& option, const std::string& text) {
@@ -173,8 +167,8 @@ RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
   std::shared_ptr<const scene::Node> root = root_;
   for (std::size_t i = 0; i < numbers_.size(); ++i)
     if (!is_of_frame(numbers_[i].name))
-      root = scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + digits_of(values[static_cast<Index>(i)]),
-                            "");
+      root =
+          scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + exact(values[static_cast<Index>(i)]), "");
   RobotSpec spec = parse_scene(*root, file_, reading_once());
   change(spec, asked_);
   spec.gravity = turned(six_of(numbers_, values, "base").degrees).transpose() * spec.gravity;

@@ -41,12 +41,9 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
            anchor.triangle >= 0 && anchor.triangle < static_cast<Index>(model.contact.triangles.size()) &&
            anchor.weights.allFinite();
   };
-  std::size_t eyelets = 0;
-  for (const Actuator& actuator : model.actuators)
-    if (rubs(actuator)) eyelets += actuator.points.size() - 1;
-  if (!start.eyelets.empty() &&
-      (start.eyelets.size() != eyelets ||
-       !std::all_of(start.eyelets.begin(), start.eyelets.end(), [](double length) { return std::isfinite(length); })))
+  const auto finite = [](double length) { return std::isfinite(length); };
+  if (!start.eyelets.empty() && (start.eyelets.size() != physical::Tendons(model).remembered() ||
+                                 !std::all_of(start.eyelets.begin(), start.eyelets.end(), finite)))
     throw InvalidInput("the start's cables rub elsewhere than the robot's");
   if (!std::all_of(start.anchors.begin(), start.anchors.end(), lies_on_model))
     throw InvalidInput("the start's friction is of another robot");

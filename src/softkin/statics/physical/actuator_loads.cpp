@@ -54,7 +54,7 @@ void ActuatorLoads::add_change(const Iterate& at, const Demand& from, const Dema
 }
 
 void ActuatorLoads::add_response(const Iterate& at, const Points& moves, Points& force) const {
-  for (Index a = 0; tendons_.any() && a < measures_.count(); ++a)
+  for (Index a = 0; a < measures_.count(); ++a)
     if (tendons_.rubs(a) && at.multipliers[a] != 0) tendons_.add_response(a, at.multipliers[a], at, moves, force);
 }
 

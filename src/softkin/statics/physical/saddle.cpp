@@ -95,11 +95,15 @@ void Saddle::solve_without_tendons(Eigen::Ref<Eigen::MatrixXd> right_sides, Team
   reduced.to_unknowns(in_columns_, right_sides);
 }
 
+/// How tensions of tendons follow moves, V^T moves.
+Eigen::MatrixXd Saddle::followed(const Eigen::Ref<const Eigen::MatrixXd>& moves) const {
+  return tendons_.turned(moves) + rates_ * (tendons_.along.transpose() * moves);
+}
+
 void Saddle::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   solve_without_tendons(right_sides, team);
   if (tendons_.count() == 0) return;
-  const Eigen::MatrixXd tensions = tendons_.turned(right_sides) + rates_ * (tendons_.along.transpose() * right_sides);
-  right_sides -= along_ * (inverse_ * tensions);
+  right_sides -= along_ * (inverse_ * followed(right_sides));
 }
 
 /// What a factorisation is to solve for: what the active constraints pull with, the segments of tendons that rub, and
@@ -136,7 +140,7 @@ void Saddle::set_rates(const Eigen::MatrixXd& rates) {
   const Eigen::Index segments = tendons_.count();
   rates_ = rates;
   inverse_ = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turned(along_) + rates_ * stretches_);
-  responses_ = free_ - along_ * (inverse_ * (tendons_.turned(free_) + rates_ * (tendons_.along.transpose() * free_)));
+  responses_ = free_ - along_ * (inverse_ * followed(free_));
 }
 
 /// Negative eigenvalues of the stiffness with what sticking tendons add to it by their lengths, made symmetric: of
@@ -210,9 +214,7 @@ void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd&
     Eigen::VectorXd now = lengths.col(0);
     if (count > 0) {
       const Eigen::MatrixXd left = met - held * tensions;
-      Eigen::VectorXd asked = left.col(0);
-      for (Index i = 0; i < count; ++i) asked[i] += measures_.sign(active_[i]) * balance.constraint[active_[i]];
-      const Eigen::VectorXd more = MinimumNorm(left.rightCols(count), dependent).solve(asked);
+      const Eigen::VectorXd more = MinimumNorm(left.rightCols(count), dependent).solve(asked_of(balance, left.col(0)));
       now -= lengths.rightCols(count) * more;
       if (known) grow(more, growth);
     }
@@ -230,26 +232,33 @@ void Saddle::step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd
   step = -balance.force;
   if (!step.isZero(0))
     solve_without_tendons(step, team);  // where constraints alone change there is nothing to solve for
-  if (tendons_.count() > 0)
-    rub(balance, step, change);
-  else
-    meet_constraints(balance, step, change);
+  complete(balance, step, change);
 }
 
 void Saddle::first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) {
   step = solutions_.col(static_cast<Index>(active_.size()) + tendons_.count());
+  complete(balance, step, change);
+}
+
+/// Adds to a step of the stiffness alone what tendons and constraints add.
+void Saddle::complete(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) {
   if (tendons_.count() > 0)
     rub(balance, step, change);
   else
     meet_constraints(balance, step, change);
 }
 
-/// Change of the multipliers that closes the constraints, of which a step without them misses so much more.
-Eigen::VectorXd Saddle::closing(const Balance& balance, const Eigen::VectorXd& more) const {
+/// What constraints miss, and a step without them so much more.
+Eigen::VectorXd Saddle::asked_of(const Balance& balance, const Eigen::VectorXd& more) const {
   Eigen::VectorXd asked = more;
   for (Index i = 0; i < static_cast<Index>(asked.size()); ++i)
     asked[i] += measures_.sign(active_[i]) * balance.constraint[active_[i]];
-  return scale_.cwiseProduct(schur_.solve(scale_.cwiseProduct(asked)));
+  return asked;
+}
+
+/// Change of the multipliers that closes the constraints, of which a step without them misses so much more.
+Eigen::VectorXd Saddle::closing(const Balance& balance, const Eigen::VectorXd& more) const {
+  return scale_.cwiseProduct(schur_.solve(scale_.cwiseProduct(asked_of(balance, more))));
 }
 
 /// Adds to a step without constraints what closes them.

@@ -101,6 +101,9 @@ class Saddle {
   [[nodiscard]] int negative_with_tendons(const Eigen::MatrixXd& rates) const;
   void grow(const Eigen::VectorXd& change, Eigen::VectorXd& growth) const;
   void rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change);
+  void complete(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change);
+  [[nodiscard]] Eigen::MatrixXd followed(const Eigen::Ref<const Eigen::MatrixXd>& moves) const;
+  [[nodiscard]] Eigen::VectorXd asked_of(const Balance& balance, const Eigen::VectorXd& more) const;
   [[nodiscard]] Eigen::VectorXd closing(const Balance& balance, const Eigen::VectorXd& more) const;
   void meet_constraints(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 

@@ -224,7 +224,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
     for (int axis = 0; axis < 3; ++axis)
       if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.tell(at, demand, scratch, out, team); });
-  for (Index a = 0; tendons().any() && a < actuators(); ++a) {
+  for (Index a = 0; a < actuators(); ++a) {
     if (!tendons().rubs(a)) continue;
     out.tendons.resize(static_cast<std::size_t>(actuators()));
     out.tendons[static_cast<std::size_t>(a)] = tendons().forces(a, at.multipliers[a], at);
@@ -276,7 +276,8 @@ void System::command_force(const Iterate& at, const Demand& demand, const Balanc
 
 void System::add_pull(const Iterate& at, const Demand& demand, const Balance& balance, const Points& moves,
                       Workspace& work, Points& force, Team& team) const {
-  assemble(at, demand, balance, Stiffness::exact, work, team);
+  require_last(balance, work);
+  if (work.assembled != balance.evaluation) assemble(at, demand, balance, Stiffness::exact, work, team);
   work.layout->pattern.gather(work.slots, work.blocks, team);
   Points pulled;
   work.layout->pattern.multiply(work.blocks, moves, pulled, team);

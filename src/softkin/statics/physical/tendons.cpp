@@ -57,8 +57,9 @@ Tendons::Tendons(const Model& model) : model_(model), cables_(model.actuators.si
   for (std::size_t a = 0; a < cables_.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     if (!softkin::rubs(actuator)) continue;
-    cables_[a] = {remembered_, actuator.friction, actuator.sheath, creep_share * actuator.rest_measure};
-    remembered_ += static_cast<Index>(actuator.points.size()) - 1;
+    cables_[a] = {remembered_, static_cast<Index>(actuator.points.size()) - 1, actuator.friction, actuator.sheath,
+                  creep_share * actuator.rest_measure};
+    remembered_ += cables_[a].count;
   }
 }
 
@@ -135,11 +136,10 @@ void Tendons::slide(const Points& positions, std::vector<double>& eyelets) const
   const std::vector<double> now = lengths(positions);
   if (eyelets.empty()) eyelets = now;
   for (const Cable& cable : cables_) {
-    if (cable.memory < 0) continue;
-    const auto a = static_cast<std::size_t>(&cable - cables_.data());
-    for (std::size_t i = static_cast<std::size_t>(cable.memory), left = model_.actuators[a].points.size() - 1; left > 0;
-         ++i, --left)
+    for (Index j = 0; j < cable.count; ++j) {
+      const auto i = static_cast<std::size_t>(cable.memory + j);
       eyelets[i] = std::clamp(eyelets[i], now[i] - cable.creep, now[i] + cable.creep);
+    }
   }
 }
 
@@ -208,38 +208,35 @@ TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& free
   for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
     if (!rubs(a) || at.multipliers[a] == 0) continue;
     const Cable& cable = cables_[static_cast<std::size_t>(a)];
-    const auto segments = static_cast<Index>(model_.actuators[static_cast<std::size_t>(a)].points.size()) - 1;
-    columns.tendons.push_back({count, segments, a, cable.memory, cable.creep, at.multipliers[a]});
-    count += segments;
+    columns.tendons.push_back({count, cable.count, a, cable.memory, cable.creep, at.multipliers[a]});
+    count += cable.count;
   }
   Eigen::MatrixXd along(freedoms.size(), count), turns = Eigen::MatrixXd::Zero(freedoms.size(), count);
   columns.tensions.resize(count);
   columns.limits.resize(count);
   Points slope;
-  auto tendon = columns.tendons.begin();
-  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
-    if (!rubs(a) || at.multipliers[a] == 0) continue;
+  for (const TendonColumns::Tendon& tendon : columns.tendons) {
+    const Index a = tendon.actuator;
     const Way found = way(a, at);
     const double friction = cables_[static_cast<std::size_t>(a)].friction;
-    columns.tensions.segment(tendon->begin, tendon->count) = at.multipliers[a] * found.share;
-    columns.limits.segment(tendon->begin, tendon->count) = found.limits;
+    columns.tensions.segment(tendon.begin, tendon.count) = at.multipliers[a] * found.share;
+    columns.limits.segment(tendon.begin, tendon.count) = found.limits;
     std::vector<Vec3> vectors(found.points.size());
-    for (Index j = 0; j < tendon->count; ++j) {
+    for (Index j = 0; j < tendon.count; ++j) {
       std::fill(vectors.begin(), vectors.end(), Vec3::Zero());
       vectors[j] = -found.directions[j];
       vectors[j + 1] = found.directions[j];
       slope.setZero(at.positions.rows(), 3);
       spread(a, vectors, slope);
-      freedoms.reduce(slope, at.positions, along.col(tendon->begin + j));
+      freedoms.reduce(slope, at.positions, along.col(tendon.begin + j));
       const double share = friction * friction_share(found.slips[j]);
       if (j == 0 || share == 0) continue;
       std::fill(vectors.begin(), vectors.end(), Vec3::Zero());
       for (int k = 0; k < 3; ++k) vectors[j - 1 + k] = share * found.turns[j][k];
       slope.setZero(at.positions.rows(), 3);
       spread(a, vectors, slope);
-      freedoms.reduce(slope, at.positions, turns.col(tendon->begin + j));
+      freedoms.reduce(slope, at.positions, turns.col(tendon.begin + j));
     }
-    ++tendon;
   }
   columns.along = along.sparseView();
   columns.turns = turns.sparseView();

@@ -80,6 +80,7 @@ class Tendons {
  private:
   struct Cable {
     Index memory = -1;  // of its first eyelet; negative: it does not rub
+    Index count = 0;    // of its eyelets, and segments
     double friction = 0, sheath = 0, creep = 1;
   };
   struct Way;
