@@ -24,6 +24,12 @@ inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <class T, std::size_t N>
 inline constexpr bool is_plain<std::array<T, N>> = is_plain<T>;
 
+/// A value to read members into; specialised where a type has none by itself.
+template <class T>
+T blank() {
+  return T();
+}
+
 class Writer {
  public:
   template <class... Values>
@@ -132,7 +138,7 @@ class Reader {
     bool has = false;
     get(has);
     value.reset();
-    if (has) get(value.emplace());
+    if (has) get(value.emplace(blank<T>()));
   }
   template <class T>
   void get(std::shared_ptr<const T>& value) {
@@ -145,7 +151,7 @@ class Reader {
     for (std::size_t left = count(1); left > 0; --left) {
       std::string key;
       get(key);
-      get(values[key]);
+      get(values.emplace(key, blank<T>()).first->second);
     }
   }
   template <int Rows, int Columns, int Options>

@@ -112,7 +112,7 @@ void bind_source(nb::module_& module) {
              const std::vector<std::string>& changes) {
             auto tree = scene::parse_yaml(read_file(path), path);
             for (const std::string& each : changes) tree = scene::changed(tree, "changes", each, "");
-            return Source{path, tree, formulation, forces, {}, {}, {}, {}, {}, {}};
+            return Source{path, tree, formulation, forces};
           },
           nb::arg("path"), nb::arg("formulation"), nb::arg("forces"), nb::arg("changes"))
       .def_static(
@@ -123,7 +123,7 @@ void bind_source(nb::module_& module) {
             mesh_entry["file"] = mesh_in_memory;
             auto tree = node_of(description, "", "the description");
             tree->origin.file = name;
-            return Source{name, tree, formulation, forces, {{mesh_in_memory, mesh}}, {}, {}, {}, {}, {}};
+            return Source{name, tree, formulation, forces, {.meshes = {{mesh_in_memory, mesh}}}};
           },
           nb::arg("name"), nb::arg("mesh"), nb::arg("description"), nb::arg("formulation"), nb::arg("forces"))
       .def_static(

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <softkin/core/text.hpp>
 #include <softkin/io/scene/changes.hpp>
+#include <softkin/kinematics/jacobian.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -85,12 +86,9 @@ std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<s
       moves.emplace_back(found.positions[p]);
       loads.emplace_back(found.multipliers.col(static_cast<Index>(p)));
       Rows& rows = markers.emplace_back(static_cast<Eigen::Index>(shape.model().markers.size()), 3);
-      for (Eigen::Index m = 0; m < rows.rows(); ++m) {
-        const auto k = static_cast<std::size_t>(m);
-        const Vec3 own = (all[p]->more.markers[k].at(state.positions) - all[p]->less.markers[k].at(state.positions)) /
-                         all[p]->difference;
-        rows.row(m) = shape.model().markers[k].velocity(state.positions, found.positions[p]) + own;
-      }
+      for (Eigen::Index m = 0; m < rows.rows(); ++m)
+        rows.row(m) =
+            marker_slope(shape.model(), perturbed[p], static_cast<std::size_t>(m), state.positions, found.positions[p]);
     }
   }
   const auto table = [](const Rows& rows) {

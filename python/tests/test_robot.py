@@ -196,6 +196,14 @@ def test_pickle_of_a_scene_needs_no_files(examples: Path, tmp_path: Path) -> Non
     assert pickle.loads(state) is again
 
 
+def test_pickle_of_a_measured_curve(examples: Path) -> None:
+    robot = softkin.load(examples / "three_chamber_actuator/measured/actuator.yaml")
+    again = pickle.loads(pickle.dumps(robot))
+    shape, same = robot.solve(air1=1.1), again.solve(air1=1.1)
+    assert same.fingerprint == shape.fingerprint
+    assert same.actuators["air1"].by_curve == shape.actuators["air1"].by_curve is not None
+
+
 def test_several_robots_are_read_from_their_scenes(examples: Path, tmp_path: Path) -> None:
     for file in (examples / "cable_gripper").glob("cable_gripper.*"):
         (tmp_path / file.name).write_bytes(file.read_bytes())

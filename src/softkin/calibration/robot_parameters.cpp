@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numbers>
 #include <softkin/calibration/robot_parameters.hpp>
 #include <softkin/core/error.hpp>
@@ -84,54 +83,9 @@ FittedNumber parse_fitted_number(const std::string& option, const std::string& t
   return fitted;
 }
 
-/// What files hold, read once.
-struct NumberedRobot::Cache {
-  template <class Value>
-  const Value& of(std::map<std::string, Value>& known, const std::filesystem::path& path,
-                  Value (*read)(const std::filesystem::path&)) {
-    const std::lock_guard lock(mutex);
-    const auto found = known.find(path.string());
-    if (found != known.end()) return found->second;
-    files.push_back(path);
-    return known.emplace(path.string(), read(path)).first->second;
-  }
-
-  std::mutex mutex;
-  std::vector<std::filesystem::path> files;
-  std::map<std::string, Mesh> meshes;
-  std::map<std::string, TriangleSurface> surfaces;
-  std::map<std::string, Sidecar> sidecars;
-  std::map<std::string, ActuatorCurve> curves;
-  std::map<std::string, std::string> texts;
-  std::map<std::string, FieldSamples> samples;
-};
-
-SceneFiles NumberedRobot::reading_once() const {
-  const std::shared_ptr<Cache> cache = cache_;
-  using Path = std::filesystem::path;
-  return {[cache](const Path& path) {
-            return cache->of<Mesh>(cache->meshes, path, [](const Path& p) { return read_mesh(p); });
-          },
-          [cache](const Path& path) {
-            return cache->of<TriangleSurface>(cache->surfaces, path, [](const Path& p) { return read_stl(p); });
-          },
-          [cache](const Path& path) {
-            return cache->of<Sidecar>(cache->sidecars, path, [](const Path& p) { return read_sidecar(p); });
-          },
-          [cache](const Path& path) {
-            return cache->of<ActuatorCurve>(cache->curves, path, [](const Path& p) { return read_actuator_curve(p); });
-          },
-          [cache](const Path& path) {
-            return cache->of<std::string>(cache->texts, path, [](const Path& p) { return read_file(p); });
-          },
-          [cache](const Path& path) {
-            return cache->of<FieldSamples>(cache->samples, path, [](const Path& p) { return read_field_samples(p); });
-          }};
-}
-
 NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
                              std::vector<std::filesystem::path>& inputs)
-    : file_(asked.scene), asked_(asked), numbers_(numbers), cache_(std::make_shared<Cache>()) {
+    : file_(asked.scene), asked_(asked), numbers_(numbers), files_(std::make_shared<FileContents>()) {
   root_ = scene::parse_yaml(read_file(asked.scene), asked.scene);
   for (const std::string& material : asked.materials)
     root_ = scene::changed(root_, "--material", material, "materials");
@@ -154,7 +108,8 @@ NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNu
                                         : 1.0);
   }
   (void)spec(start());
-  inputs.insert(inputs.end(), cache_->files.begin(), cache_->files.end());
+  const std::vector<std::filesystem::path> read = files_->paths();
+  inputs.insert(inputs.end(), read.begin(), read.end());
 }
 
 Eigen::VectorXd NumberedRobot::start() const {
@@ -169,7 +124,7 @@ RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
     if (!is_of_frame(numbers_[i].name))
       root =
           scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + exact(values[static_cast<Index>(i)]), "");
-  RobotSpec spec = parse_scene(*root, file_, reading_once());
+  RobotSpec spec = parse_scene(*root, file_, files_->kept(true));
   change(spec, asked_);
   spec.gravity = turned(six_of(numbers_, values, "base").degrees).transpose() * spec.gravity;
   return spec;

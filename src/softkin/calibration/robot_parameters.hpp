@@ -1,10 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
-#include <softkin/io/scene/scene.hpp>
+#include <softkin/io/scene/file_contents.hpp>
 #include <softkin/model/model.hpp>
 #include <string>
 #include <vector>
@@ -33,7 +32,7 @@ struct MeasuringFrame {
   Vec3 place{0, 0, 0};
 };
 
-/// A robot as a function of some of its numbers. Files are read once.
+/// A robot as a function of some of its numbers. Files are read once. For one thread at a time.
 class NumberedRobot {
  public:
   /// inputs  the files that the scene names are added
@@ -52,7 +51,6 @@ class NumberedRobot {
   [[nodiscard]] bool of_camera(std::size_t number) const;
 
  private:
-  [[nodiscard]] SceneFiles reading_once() const;
   [[nodiscard]] RobotSpec spec(const Eigen::VectorXd& values) const;
 
   std::string file_;
@@ -60,8 +58,7 @@ class NumberedRobot {
   std::shared_ptr<const scene::Node> root_;
   std::vector<FittedNumber> numbers_;
   std::vector<double> sizes_;
-  struct Cache;
-  std::shared_ptr<Cache> cache_;
+  std::shared_ptr<FileContents> files_;
 };
 
 }  // namespace softkin::calibration

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <softkin/calibration/robot_problem.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/kinematics/jacobian.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <thread>
 
@@ -44,7 +45,8 @@ double measure_of(const Model& model, const PoseColumn& column, const Points& po
 
 /// Robots with a number a little larger and smaller, and the frame's changes.
 struct RobotProblem::Changes {
-  std::vector<Model> models;   // those of a number side by side
+  std::vector<Model> models;  // those of a number side by side
+  std::vector<Perturbed> perturbed;
   std::vector<Index> numbers;  // of which they are
   std::unique_ptr<Perturbations> perturbations;
   std::vector<double> differences;  // per number of the robot
@@ -53,7 +55,6 @@ struct RobotProblem::Changes {
   Changes(const NumberedRobot& robot, const RobotPoint& point) {
     const auto count = static_cast<Index>(robot.numbers().size());
     models.reserve(2 * robot.numbers().size());
-    std::vector<Perturbed> perturbed;
     for (Index i = 0; i < count; ++i) {
       const double half = perturbation * robot.size(static_cast<std::size_t>(i));
       Eigen::VectorXd above = point.values, below = point.values;
@@ -329,9 +330,8 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
         const auto of = [&](const Model& model, const Points& positions) {
           return measure_of(model, column, positions);
         };
-        const double own =
-            (of(changes.models[2 * k], state.positions) - of(changes.models[2 * k + 1], state.positions)) /
-            changes.differences[static_cast<std::size_t>(i)];
+        const Perturbed& number = changes.perturbed[k];
+        const double own = (of(number.more, state.positions) - of(number.less, state.positions)) / number.difference;
         const double h = small_move * point.model->diagonal_mm / (1e-300 + found.positions[k].cwiseAbs().maxCoeff());
         slopes(c, i) += own + (of(*point.model, state.positions + h * found.positions[k]) -
                                of(*point.model, state.positions - h * found.positions[k])) /
@@ -347,11 +347,8 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
         slopes(c, i) += found.multipliers(column.actuator, p);
         continue;
       }
-      const auto m = static_cast<std::size_t>(column.marker);
-      const Vec3 own = (changes.models[2 * k].markers[m].at(state.positions) -
-                        changes.models[2 * k + 1].markers[m].at(state.positions)) /
-                       changes.differences[static_cast<std::size_t>(i)];
-      const Vec3 moved = point.model->markers[m].velocity(state.positions, found.positions[k]) + own;
+      const Vec3 moved = marker_slope(*point.model, changes.perturbed[k], static_cast<std::size_t>(column.marker),
+                                      state.positions, found.positions[k]);
       slopes(c, i) += (point.frame.rotation * moved)[column.axis];
     }
   }

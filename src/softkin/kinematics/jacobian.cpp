@@ -22,4 +22,11 @@ Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equil
   return jacobian(model, equilibrium.state.positions, statics.sensitivity(equilibrium.state), markers);
 }
 
+Vec3 marker_slope(const Model& model, const Perturbed& number, std::size_t marker, const Points& positions,
+                  const Points& moves) {
+  const Vec3 own =
+      (number.more.markers[marker].at(positions) - number.less.markers[marker].at(positions)) / number.difference;
+  return model.markers[marker].velocity(positions, moves) + own;
+}
+
 }  // namespace softkin

@@ -20,4 +20,11 @@ namespace softkin {
 [[nodiscard]] Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equilibrium& equilibrium,
                                        const std::vector<Index>& markers);
 
+/// How a marker moves with a number of the robot, with the vertices and in them [mm per unit of the number].
+///
+/// number  the robot with it a little larger and smaller
+/// moves   of the vertices, #V by 3 [mm per unit of the number]
+[[nodiscard]] Vec3 marker_slope(const Model& model, const Perturbed& number, std::size_t marker,
+                                const Points& positions, const Points& moves);
+
 }  // namespace softkin
