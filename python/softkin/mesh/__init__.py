@@ -4,10 +4,10 @@ from .errors import InvalidInput, MeshWarning
 from .files import check, convert, info
 from .generate import from_surfaces
 from .gmsh_program import mesh_geo
-from .layers import stacked
 from .msh_read import read_msh
 from .quality import Quality
 from .scene import scene_text
+from .sheets import stacked
 from .surface import Surface
 from .surface_files import read_surface, write_stl
 from .volume_mesh import Volume, VolumeMesh

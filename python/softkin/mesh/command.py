@@ -10,14 +10,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from .elements import boundary_faces, check_name
 from .errors import InvalidInput, MeshWarning
 from .face_regions import choose_faces
-from .generate import check_name, from_surfaces
+from .generate import from_surfaces
 from .gmsh_program import CAD, mesh_geo
 from .msh_write import MARK
 from .scene import scene_text
 from .surface import MM_PER_UNIT
-from .volume_mesh import VolumeMesh, boundary_faces
+from .volume_mesh import VolumeMesh
 
 WIDTH = 100
 EPILOG = """\

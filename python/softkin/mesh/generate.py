@@ -12,13 +12,14 @@ import numpy as np
 from . import gmsh_program, tetwild
 from .arrays import Array
 from .deviation import deviation
+from .elements import boundary_faces, check_name, compacted, face_pairs, positive, renumbering, signed_volumes
 from .errors import InvalidInput, MeshWarning
 from .face_regions import choose_faces
 from .labels import Labels, check_clear, label, place
 from .repair import repaired
 from .snap import snapped
 from .surface import MM_PER_UNIT, Surface, SurfaceLike, as_surface
-from .volume_mesh import Volume, VolumeMesh, boundary_faces, compacted, face_pairs, positive, renumbering, signed_volumes
+from .volume_mesh import Volume, VolumeMesh
 
 METRES_BELOW = 2.0  # mm, diagonal of a body: no robot, but a robot in metres
 
@@ -129,14 +130,6 @@ def _read(
     return Given(
         one("body", body), {n: one(n, g) for n, g in chambers.items()}, {n: one(n, g) for n, g in parts.items()}
     )
-
-
-def check_name(name: str) -> None:
-    """Throws InvalidInput where a name cannot be one of a region in a scene."""
-    if not isinstance(name, str) or not name or name == "all" or any(c in ',="#' or c.isspace() for c in name):
-        raise InvalidInput(
-            f"{name!r} is no name of a region: letters without blanks, ',', '=', '\"' and '#', and not 'all'"
-        )
 
 
 def _each(change: Any, surfaces: dict[str, Surface]) -> dict[str, Surface]:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array, Flags
+from .elements import face_pairs, signed_volumes
 from .errors import InvalidInput
 from .repair import components, open_edges, shell_volumes
 from .surface import Surface
-from .volume_mesh import face_pairs, signed_volumes
 from .winding import winding_numbers
 
 UNCLEAR = 0.1  # of the volume with winding numbers above 1/4: more of it below 3/4, and the surface has no inside

@@ -1,40 +1,20 @@
-"""Layers of prisms: sheets by extrusion, and skins upon a body."""
+"""Layers of prisms upon triangles."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from .arrays import Array, Floats
+from .elements import MeshData, check_name, prism_volumes, renumbering
 from .errors import InvalidInput
-from .generate import check_name
-from .surface import Surface, SurfaceLike, as_surface
-from .volume_mesh import VolumeMesh, prism_volumes, renumbering
+from .triangles import Surface
 
 
-def stacked(surface: SurfaceLike, layers: Mapping[str, float], *, name: str = "surface") -> VolumeMesh:
-    """A sheet of layers of prisms upon a triangulated surface, such as an elastomer between its frames.
-
-    surface: what `from_surfaces` takes: a file, a Surface, (vertices, triangles); lengths in mm. It may be open, flat
-    or curved; its triangles are the faces of prisms, so they stay as they are. layers: from the surface on, along its
-    normals (counterclockwise seen from there), name to thickness in mm. Each layer is one prism thick and a region of
-    elements; the faces of the first below are the region of faces 'bottom', those of the last above 'top'. Thickness is
-    that square to each face where the surface is flat or bends along lines, and to the least squares at its corners.
-    Throws InvalidInput: no thickness, names, edges of more than two triangles, triangles that are turned against their
-    neighbours, layers thicker than the surface's bends allow.
-    """
-    given = as_surface(surface, name)
-    _check(given, layers)
-    vertices, prisms, regions, top = _layers(given.vertices, given.triangles, layers, 0)
-    number = renumbering(len(vertices), prisms)
-    faces = {"bottom": number[given.triangles[:, [0, 2, 1]]], "top": number[top]}
-    none = np.empty((0, 4), dtype=np.int64)
-    return VolumeMesh(vertices[number >= 0], none, regions, faces, prisms=number[prisms])
-
-
-def upon(mesh: VolumeMesh, region: str, layers: Mapping[str, float]) -> VolumeMesh:
-    """What VolumeMesh.with_layer makes."""
+def upon(mesh: MeshData, region: str, layers: Mapping[str, float]) -> dict[str, Any]:
+    """Arguments of the VolumeMesh that VolumeMesh.with_layer makes."""
     if region not in mesh.face_regions:
         raise InvalidInput(f"no region of faces '{region}'; there are: {', '.join(mesh.face_regions) or 'none'}")
     outer = {tuple(sorted(face)): face for face in mesh.boundary().triangles.tolist()}
@@ -42,20 +22,23 @@ def upon(mesh: VolumeMesh, region: str, layers: Mapping[str, float]) -> VolumeMe
     if None in chosen:
         raise InvalidInput(f"region '{region}' has faces that are not on the boundary of the mesh")
     below = Surface(mesh.vertices, np.array(chosen, dtype=np.int64), f"region '{region}'")
-    _check(below, layers)
+    check_layers(below, layers)
     taken = [name for name in (*layers, f"{list(layers)[-1]}_top") if name in mesh.regions]
     if taken:
         raise InvalidInput(f"'{taken[0]}' is a region already; give the layer another name")
     first = len(mesh.tetrahedra) + len(mesh.prisms)
-    vertices, prisms, regions, top = _layers(mesh.vertices, below.triangles, layers, first)
+    vertices, prisms, regions, top = prisms_upon(mesh.vertices, below.triangles, layers, first)
     faces = {**mesh.face_regions, f"{list(layers)[-1]}_top": top}
-    return VolumeMesh(
-        vertices, mesh.tetrahedra, {**mesh.volume_regions, **regions}, faces,
-        prisms=np.concatenate([mesh.prisms, prisms]),
-    )  # fmt: skip
+    return {
+        "vertices": vertices,
+        "tetrahedra": mesh.tetrahedra,
+        "volume_regions": {**mesh.volume_regions, **regions},
+        "face_regions": faces,
+        "prisms": np.concatenate([mesh.prisms, prisms]),
+    }
 
 
-def _check(surface: Surface, layers: Mapping[str, float]) -> None:
+def check_layers(surface: Surface, layers: Mapping[str, float]) -> None:
     if not layers:
         raise InvalidInput("layers: give one at least, its name and its thickness in mm")
     for name, thickness in layers.items():
@@ -70,7 +53,7 @@ def _check(surface: Surface, layers: Mapping[str, float]) -> None:
         raise InvalidInput(f"{surface.name}: neighbouring triangles are turned against each other")
 
 
-def _layers(
+def prisms_upon(
     points: Array, triangles: Array, layers: Mapping[str, float], first: int
 ) -> tuple[Floats, Array, dict[str, Array], Array]:
     """Vertices, those of the layers last; prisms; regions, numbered from `first` on; the outermost faces."""

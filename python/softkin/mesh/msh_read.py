@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from .arrays import Array
+from .elements import positive, renumbering
 from .errors import InvalidInput
-from .volume_mesh import VolumeMesh, positive, renumbering
+from .volume_mesh import VolumeMesh
 
 CORNERS = {15: 1, 1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5}  # by type of Gmsh, order 1; others are refused
 TRIANGLE, TETRAHEDRON, PRISM = 2, 4, 6

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from .arrays import Array
+from .elements import MeshData
 from .errors import InvalidInput
-from .volume_mesh import VolumeMesh
 
 MARK = b"$Comments\nmade by softkin\n$EndComments\n"  # by which softkin knows the file again
 KINDS = {3: 2, 4: 4, 6: 6}  # of Gmsh, by corners: triangle, tetrahedron, prism
 
 
-def write_msh(path: str | Path, mesh: VolumeMesh) -> None:
+def write_msh(path: str | Path, mesh: MeshData) -> None:
     """Writes .msh 4.1, binary. Elements of the same regions make one entity, whose physical groups these are."""
     blocks = _face_blocks(mesh) + _element_blocks(mesh)
     names = [(2, name) for name in mesh.face_regions] + [(3, name) for name in mesh.volume_regions]
@@ -59,7 +59,7 @@ def write_msh(path: str | Path, mesh: VolumeMesh) -> None:
 Block = tuple[int, list[int], Array]  # dimension, numbers of physical groups, elements
 
 
-def _element_blocks(mesh: VolumeMesh) -> list[Block]:
+def _element_blocks(mesh: MeshData) -> list[Block]:
     volumes = list(mesh.volume_regions.values())
     member = np.zeros((len(mesh.tetrahedra) + len(mesh.prisms), len(volumes)), dtype=bool)
     for column, region in enumerate(volumes):
@@ -72,7 +72,7 @@ def _element_blocks(mesh: VolumeMesh) -> list[Block]:
     return blocks
 
 
-def _face_blocks(mesh: VolumeMesh) -> list[Block]:
+def _face_blocks(mesh: MeshData) -> list[Block]:
     faces = list(mesh.face_regions.values())
     if not faces:
         return []

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import neighbours
 from .arrays import Array
+from .elements import MeshData, positive, renumbering
 from .errors import InvalidInput
-from .volume_mesh import VolumeMesh, positive, renumbering
 
 if TYPE_CHECKING:
     import meshio
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 TETRAHEDRON, PRISM, TRIANGLE = 10, 13, 5  # cell types of VTK
 
 
-def to_meshio(mesh: VolumeMesh) -> meshio.Mesh:
+def to_meshio(mesh: MeshData) -> meshio.Mesh:
     """A meshio.Mesh: a block of triangles (those of face regions), of tetrahedra and of wedges, regions as cell_sets, and as
     gmsh:physical and field_data, of which an element that is in several regions keeps the first. Throws ImportError."""
     faces, members = _unique_faces(mesh)
@@ -49,13 +49,13 @@ def to_meshio(mesh: VolumeMesh) -> meshio.Mesh:
     )
 
 
-def from_meshio(mesh: meshio.Mesh) -> VolumeMesh:
+def from_meshio(mesh: meshio.Mesh) -> dict[str, Any]:
     """Tetrahedra of order 1 and wedges of a meshio.Mesh; regions of elements and faces from cell_sets and gmsh:physical. Lengths as
     they are, taken for mm. Throws InvalidInput."""
-    return _made(neighbours.from_meshio(mesh))
+    return _arguments(neighbours.from_meshio(mesh))
 
 
-def to_pyvista(mesh: VolumeMesh) -> pyvista.UnstructuredGrid:
+def to_pyvista(mesh: MeshData) -> pyvista.UnstructuredGrid:
     """A pyvista.UnstructuredGrid of the tetrahedra, the wedges and, once for every face region, its triangles. Cell array `region`:
     the number of the region, -1: none (of several regions of an element the first); field data `region_NAME`: the
     number of region NAME. As .vtu softkin reads that by name. Throws ImportError."""
@@ -76,13 +76,14 @@ def to_pyvista(mesh: VolumeMesh) -> pyvista.UnstructuredGrid:
     return grid
 
 
-def from_pyvista(grid: pyvista.UnstructuredGrid) -> VolumeMesh:
+def from_pyvista(grid: pyvista.UnstructuredGrid) -> dict[str, Any]:
     """Tetrahedra of order 1 and wedges of a pyvista.UnstructuredGrid; regions of elements and faces from the cell array `region`,
     named by the field data `region_NAME`, else region_NUMBER. Lengths as they are, taken for mm. Throws InvalidInput."""
-    return _made(neighbours.from_pyvista(grid))
+    return _arguments(neighbours.from_pyvista(grid))
 
 
-def _made(read: neighbours.Elements) -> VolumeMesh:
+def _arguments(read: neighbours.Elements) -> dict[str, Any]:
+    """Of a VolumeMesh."""
     if read.tetrahedra.shape[1] != 4:
         raise InvalidInput(
             "the mesh has tetrahedra of order 2: a VolumeMesh has those of order 1; softkin.Robot takes others"
@@ -98,10 +99,16 @@ def _made(read: neighbours.Elements) -> VolumeMesh:
         parts = [region[kind] + first for kind, first in (("tetrahedra", 0), ("prisms", len(cells))) if kind in region]
         if parts:
             volumes[name] = np.concatenate(parts)
-    return VolumeMesh(vertices, positive(vertices, cells), volumes, faces, prisms=number[read.prisms])
+    return {
+        "vertices": vertices,
+        "tetrahedra": positive(vertices, cells),
+        "volume_regions": volumes,
+        "face_regions": faces,
+        "prisms": number[read.prisms],
+    }
 
 
-def _unique_faces(mesh: VolumeMesh) -> tuple[Array, dict[str, Array]]:
+def _unique_faces(mesh: MeshData) -> tuple[Array, dict[str, Array]]:
     if not mesh.face_regions:
         return np.empty((0, 3), dtype=np.int64), {}
     every = np.concatenate(list(mesh.face_regions.values()))

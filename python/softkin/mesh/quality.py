@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array
-from .volume_mesh import signed_volumes
+from .elements import face_pairs, signed_volumes
+from .repair import components
 
 EDGES = ((0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1))  # edge, the other two
 
@@ -69,9 +70,6 @@ def dihedral_angles(vertices: Array, tetrahedra: Array) -> Array:
 
 def count_parts(tetrahedra: Array) -> int:
     """Pieces that hang together by faces."""
-    from .repair import components
-    from .volume_mesh import face_pairs
-
     _, first, second = face_pairs(tetrahedra)
     inner = second >= 0
     alone = np.arange(len(tetrahedra))

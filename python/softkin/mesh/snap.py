@@ -6,9 +6,9 @@ import numpy as np
 
 from .arrays import Array
 from .distance import feet, nearest
+from .elements import boundary_faces, signed_volumes
 from .labels import Labels
 from .surface import Surface
-from .volume_mesh import boundary_faces, signed_volumes
 
 WORSE = 0.5  # of the quality before: vertices that would make a tetrahedron worse than that stay where they are
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from .arrays import Array
 from .errors import InvalidInput
-from .surface import Surface
+from .triangles import Surface
 
 PLY_TYPES = {
     "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4",
