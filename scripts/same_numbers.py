@@ -34,7 +34,7 @@ def solve(folder: Path) -> None:
         ends = np.array(robot.ranges).reshape(-1, 2)
         far = np.where(abs(ends[:, 0] - rest) > abs(ends[:, 1] - rest), ends[:, 0], ends[:, 1])
         commands = rest + 0.2 * (far - rest)
-        shape = robot.solve(commands, threads=1, tolerance_mm=LIMIT * robot.diagonal_mm).require()
+        shape = robot.solve(commands, solver=softkin.Solver(tolerance_mm=LIMIT * robot.diagonal_mm, threads=1)).require()
         np.save(folder / f"{scene.parent.name}.{scene.stem}.npy", shape.positions)
 
 

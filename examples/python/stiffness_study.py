@@ -6,6 +6,8 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 from beam import three_chamber_beam
 
+import softkin
+
 PRESSURE_KPA = 20.0
 
 
@@ -17,7 +19,7 @@ def bend(youngs_modulus: float) -> tuple[float, float]:
     rest = shape["tip"]
     while high - low > 1e-4:
         middle = (low + high) / 2
-        shape = robot.solve(air1=middle, start=shape, threads=1).require()
+        shape = robot.solve(air1=middle, start=shape, solver=softkin.Solver(threads=1)).require()
         low, high = (middle, high) if shape.actuators["air1"].pressure_kPa < PRESSURE_KPA else (low, middle)
     return youngs_modulus, float(np.linalg.norm(shape["tip"] - rest))
 

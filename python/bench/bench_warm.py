@@ -22,15 +22,15 @@ from beams import beam  # noqa: E402
 import softkin  # noqa: E402
 
 
-def overhead(robot: softkin.Robot, repeats: int, threads: int) -> None:
+def overhead(robot: softkin.Robot, repeats: int, solver: softkin.Solver) -> None:
     """Call minus C++ solve, median over warm solves along a slow ramp."""
     session = robot.session()
-    session.solve(air1=1.3, threads=threads)
+    session.solve(air1=1.3, solver=solver)
     calls, solves = [], []
     for i in range(repeats):
         ratio = 1.3 + 0.05 * math.sin(i / 20)
         begin = time.perf_counter()
-        shape = session.solve(air1=ratio, threads=threads)
+        shape = session.solve(air1=ratio, solver=solver)
         calls.append(time.perf_counter() - begin)
         solves.append(shape.seconds)
         assert shape.converged
@@ -40,14 +40,14 @@ def overhead(robot: softkin.Robot, repeats: int, threads: int) -> None:
     print(f"Python costs {middle:.1f} us more (10 % below {low:.1f}, 90 % below {high:.1f}; {repeats} pairs)")
 
 
-def inverse(robot: softkin.Robot, updates: int, threads: int, step_mm: float) -> None:
+def inverse(robot: softkin.Robot, updates: int, solver: softkin.Solver, step_mm: float) -> None:
     """A target that moves along a closed curve inside the reach, as in bench_inverse --mode drag."""
     session = robot.session()
     curve = []
     for i in range(48):
         phases = 2 * np.pi * (i / 48 + np.arange(3) / 3)
-        curve.append(session.solve(1 + 0.35 + 0.25 * np.cos(phases), threads=threads).require()["tip"])
-    session.solve(1 + 0.35 + 0.25 * np.cos(2 * np.pi * np.arange(3) / 3), threads=threads)
+        curve.append(session.solve(1 + 0.35 + 0.25 * np.cos(phases), solver=solver).require()["tip"])
+    session.solve(1 + 0.35 + 0.25 * np.cos(2 * np.pi * np.arange(3) / 3), solver=solver)
     at, following, reached, equilibria = curve[0].copy(), 1, 0, 0
     times, solves = [], []
     for _ in range(updates):
@@ -57,7 +57,7 @@ def inverse(robot: softkin.Robot, updates: int, threads: int, step_mm: float) ->
             at, following = curve[following].copy(), (following + 1) % len(curve)
         at += left * (curve[following] - at) / np.linalg.norm(curve[following] - at)
         begin = time.perf_counter()
-        answer = session.inverse(tip=at, threads=threads)
+        answer = session.inverse(tip=at, solver=solver)
         times.append(time.perf_counter() - begin)
         solves.append(answer.seconds)
         reached += answer.reached
@@ -79,8 +79,9 @@ def main() -> None:
     warnings.simplefilter("ignore", softkin.SoftkinWarning)
     robot = beam(15, 5)
     print(repr(robot))
-    overhead(robot, options.repeats, options.threads)
-    inverse(robot, options.updates, options.threads, options.step)
+    solver = softkin.Solver(threads=options.threads)
+    overhead(robot, options.repeats, solver)
+    inverse(robot, options.updates, solver, options.step)
 
 
 if __name__ == "__main__":

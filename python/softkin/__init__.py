@@ -4,10 +4,10 @@ Lengths are in mm, pressures in kPa (gauge), forces in N, ratios without unit. d
 """
 
 from . import calibrate, compare, drive, measure
-from ._core import ActuatorInfo
 from ._build import BuildInfo, build_info
+from ._core import ActuatorInfo
 from ._core import version as __version__
-from ._solving import Progress, Sensitivity
+from ._solving import Sensitivity
 from .errors import InvalidInput, NotConverged, SoftkinWarning
 from .examples import example
 from .grasp import Grasp, Pull
@@ -18,6 +18,7 @@ from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
 from .session import Session
 from .shape import ActuatorState, Contact, Deformation, MagneticLoad, Reaction, SelfOverlap, Shape
+from .solver import Progress, Solver
 from .table import Table
 from .walk import WalkRun, WalkStep
 from .workspace import Hull, Workspace
@@ -52,6 +53,7 @@ __all__ = [
     "Session",
     "Shape",
     "SoftkinWarning",
+    "Solver",
     "Table",
     "WalkRun",
     "WalkStep",

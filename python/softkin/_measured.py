@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,12 +12,12 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats
+from ._files import PathLike
+from ._of_robot import parsed
 from .table import Table
 
 if TYPE_CHECKING:
     import softkin._vision as _vision
-
-PathLike = str | os.PathLike[str]
 
 
 @dataclass(frozen=True)
@@ -97,8 +95,7 @@ class _Measured:
     @cached_property
     def report(self) -> dict[str, Any]:
         """What `softkin measure --json` prints."""
-        report: dict[str, Any] = json.loads(self._json())
-        return report
+        return parsed(self._json())
 
     @property
     def notes(self) -> list[str]:

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import os
 from abc import abstractmethod
 from pathlib import Path
+from typing import TypeVar
 
 from ._arrays import vector
 from ._core import Answer as CoreAnswer
 from ._core import Shape as CoreShape
+from ._files import PathLike
+from ._of_robot import Found
 
 View = tuple[float, float, float]
 
 
-class Saving:
-    """What has a picture, a report and a shape."""
+Core = TypeVar("Core", CoreShape, CoreAnswer)
 
-    _core: CoreShape | CoreAnswer
+
+class Saving(Found[Core]):
+    """What has a picture, a report and a shape."""
 
     @abstractmethod
     def _core_shape(self) -> CoreShape: ...
@@ -24,7 +27,7 @@ class Saving:
     @abstractmethod
     def _title(self) -> str: ...
 
-    def save(self, path: str | os.PathLike[str], *, view: View | None = None) -> None:
+    def save(self, path: PathLike, *, view: View | None = None) -> None:
         """Writes the shape as .vtu (ParaView), a picture as .png, or the report as .json.
 
         view  of a picture: from the robot to the eye

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Sequence
 from typing import Any, Generic, TypeVar
@@ -11,17 +10,17 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats
+from ._files import PathLike, listed
+from ._of_robot import parsed
 from .table import Table
 
 __all__ = ["PathComparison", "ReportComparison", "paths", "reports"]
-
-PathLike = str | os.PathLike[str]
 
 
 def _files(name: str, files: Sequence[PathLike], least: int = 2) -> list[str]:
     if isinstance(files, (str, os.PathLike)) or len(files) < least:
         raise ValueError(f"{name} must be a list of {least} files or more")
-    return [os.fspath(file) for file in files]
+    return listed(files)
 
 
 Core = TypeVar("Core", _core.ReportComparison, _core.PathReport)
@@ -36,8 +35,7 @@ class _Comparison(Generic[Core]):
     @property
     def report(self) -> dict[str, Any]:
         """What `softkin compare --json` prints."""
-        report: dict[str, Any] = json.loads(self._core.json())
-        return report
+        return parsed(self._core.json())
 
     def save_plot(self, path: PathLike) -> None:
         """An .svg: of reports turns, distances and loads over the steps, and the marker's ways; of paths these."""
@@ -149,5 +147,6 @@ def paths(
     sum_of   reports in which one actuator moves each: adds the sum of their displacements
     """
     given = _files("files", files, 1 if sum_of else 2)
-    added = [os.fspath(file) for file in sum_of]
-    return PathComparison(_core.compare_paths(given, added, marker or "", by or "", plane or "", start_s, align))
+    return PathComparison(
+        _core.compare_paths(given, listed(sum_of), marker or "", by or "", plane or "", start_s, align)
+    )

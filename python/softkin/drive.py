@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -14,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import floats
-from .robot import Robot
-from .runs import FollowRun, _times
+from ._compiled import Compiled
+from ._files import PathLike, optional
+from ._of_robot import parsed
+from .runs import FollowRun, times_of
 
 __all__ = ["Marlin", "Plan", "Sent", "plan"]
-
-PathLike = str | os.PathLike[str]
 
 
 class Plan:
@@ -56,8 +55,7 @@ class Plan:
     @property
     def report(self) -> dict[str, Any]:
         """What `softkin drive --dry-run --json` prints."""
-        report: dict[str, Any] = json.loads(self._core.json())
-        return report
+        return parsed(self._core.json())
 
     def __repr__(self) -> str:
         return f"<softkin.drive.Plan: {self.lines} lines of G-code, {self.seconds:.4g} s>"
@@ -130,9 +128,7 @@ class Marlin:
         """
         self._core = _core.Link(os.fspath(port), baud, boot_wait_s)
 
-    def send(
-        self, plan: Plan, *, log: PathLike | None = None, progress: Callable[[int], object] | None = None
-    ) -> Sent:
+    def send(self, plan: Plan, *, log: PathLike | None = None, progress: Callable[[int], object] | None = None) -> Sent:
         """Sends a plan's moves and waits until they are made. A fault of board, line or port is told by what it returns.
 
         Ctrl-C stops after the moves that the board has, a second one at once; KeyboardInterrupt is raised then, and
@@ -143,7 +139,7 @@ class Marlin:
         """
         if plan.lines == 0:
             raise ValueError("plan has no moves of motors: there is no tendon and no syringe")
-        return Sent(self._core.send(plan._core, "" if log is None else os.fspath(log), progress))
+        return Sent(self._core.send(plan._core, optional(log), progress))
 
     @property
     def last(self) -> Sent | None:
@@ -180,7 +176,7 @@ class Marlin:
 
 
 def plan(
-    robot: Robot,
+    robot: Compiled,
     commands: PathLike | FollowRun | ArrayLike,
     *,
     hardware: PathLike | None = None,
@@ -207,8 +203,7 @@ def plan(
             raise ValueError("times: a file of commands has its own, in column t_s")
         if isinstance(pressures, Mapping):
             raise ValueError("pressures: of a file of commands they come from a report or a table")
-        report = "" if pressures is None else os.fspath(pressures)
-        core = _core.Plan.of_file(robot._core, os.fspath(commands), report, os.fspath(board), return_home)
+        core = _core.Plan.of_file(robot._core, os.fspath(commands), optional(pressures), os.fspath(board), return_home)
         return Plan(core)
     given: dict[str, Any] = {}
     if isinstance(commands, FollowRun):
@@ -230,6 +225,6 @@ def plan(
     for name, values in given.items():
         table[:, robot._place(name)] = floats(f"pressures: {name}", values, (len(rows),))
     core = _core.Plan.of_rows(
-        robot._core, rows, _times(times, len(rows)), table if given else None, os.fspath(board), return_home
+        robot._core, rows, times_of(times, len(rows)), table if given else None, os.fspath(board), return_home
     )
     return Plan(core)

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from html import escape
+from typing import Any
 
 import numpy as np
 
 from . import _core
 from ._arrays import Floats, vector
-from ._solving import DEFAULT_ITERATIONS, Command, Commands, ProgressFunction, _options, _telling
-from .errors import NotConverged
-from .runs import Steps, _Runs
-from .shape import Shape
+from ._compiled import Command, Commands, Compiled
+from ._of_robot import Found
+from .runs import Steps, steps_of
+from .shape import NotConverged, Shape
+from .solver import ProgressFunction, telling
 from .table import Table
-
-if TYPE_CHECKING:
-    from .robot import Robot
 
 __all__ = ["Grasp", "Pull"]
 
@@ -51,16 +50,8 @@ class Pull:
     """the last equilibrium; its `remark` says more about what gave way"""
 
 
-class Grasp:
+class Grasp(Found[_core.Grasp]):
     """A gripper that was closed around a body and has let go of it, and what it took to pull the body out."""
-
-    def __init__(self, robot: Robot, core: _core.Grasp) -> None:
-        self._robot = robot
-        self._core = core
-
-    @property
-    def robot(self) -> Robot:
-        return self._robot
 
     @property
     def body(self) -> str:
@@ -105,9 +96,6 @@ class Grasp:
                 raise NotConverged(f"pulling along {pull.name}: {pull.status}{why}", pull.shape)
         return self
 
-    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Grasp], tuple[Robot, bytes]]:
-        return _unpickled, (self._robot, self._core.pickled())
-
     def __repr__(self) -> str:
         if not self.held:
             return f"<softkin.Grasp of {self.body!r}: {self.reason}>"
@@ -115,13 +103,7 @@ class Grasp:
         return f"<softkin.Grasp of {self.body!r}: held{'; ' + pulls if pulls else ''}>"
 
     def _repr_html_(self) -> str:
-        from html import escape
-
         return f"<p>{escape(repr(self)[1:-1])}</p>{self.table._repr_html_()}"
-
-
-def _unpickled(robot: Robot, state: bytes) -> Grasp:
-    return Grasp(robot, _core.Grasp.unpickled(robot._core, state))
 
 
 def _direction_text(direction: Direction) -> str:
@@ -130,60 +112,30 @@ def _direction_text(direction: Direction) -> str:
     return ",".join(repr(x).removesuffix(".0") for x in vector("directions", direction))
 
 
-class _Grasps(_Runs):
-    """Of a robot."""
+def grasped(
+    robot: Compiled,
+    closing: Steps | Commands | None,
+    commands: Mapping[str, Command],
+    body: str | None,
+    directions: str | Sequence[Direction],
+    most_N: float | None,
+    options: _core.SolveOptions,
+    progress: ProgressFunction | None,
+) -> _core.Grasp:
+    if most_N is not None and not most_N > 0:
+        raise ValueError(f"most_N must be a force > 0 in N, not {most_N}")
+    texts = [_direction_text(each) for each in ([directions] if isinstance(directions, str) else directions)]
+    steps = _closing(robot, closing, commands)
+    return _core.grasp(
+        robot._core, steps, body or "", texts, most_N, options, None if progress is None else telling(progress)
+    )
 
-    def grasp(
-        self,
-        closing: Steps | Commands | None = None,
-        /,
-        *,
-        body: str | None = None,
-        directions: str | Sequence[Direction] = AXES,
-        most_N: float | None = None,
-        solver: str = "newton",
-        tolerance_mm: float | None = None,
-        max_iterations: int = DEFAULT_ITERATIONS,
-        anderson: int = 6,
-        threads: int = 0,
-        stable: bool = False,
-        progress: ProgressFunction | None = None,
-        **commands: Command,
-    ) -> Grasp:
-        """Closes a gripper with the scene's bodies held, releases one, and pulls it until it slips. docs/contact.md
 
-        closing     commands as `solve` takes them, (m,) or by name; or steps as `path` takes them, (k, m), by name for
-                    each step, or a CSV file
-        body        which one is released and pulled; None: the only one
-        directions  of the pulls: 'x', '-x', 'y', '-y', 'z', '-z', or (x, y, z) of any length
-        most_N      no larger pull is tried [N]
-        progress    as solve's, of each solve; False ends the grasp with what there is
-        commands    of actuators that closing does not name
-        others      as solve's
-        returns     not being held is its `held`, not converging the status of a pull
-        raises      InvalidInput where there is no such body
-        """
-        robot = self._owner
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        if most_N is not None and not most_N > 0:
-            raise ValueError(f"most_N must be a force > 0 in N, not {most_N}")
-        asked = [directions] if isinstance(directions, str) else directions
-        core = _core.grasp(
-            robot._core,
-            self._closing(closing, commands),
-            body or "",
-            [_direction_text(direction) for direction in asked],
-            most_N,
-            options,
-            None if progress is None else _telling(progress),
-        )
-        return Grasp(robot, core)
-
-    def _closing(self, closing: Steps | Commands | None, commands: Mapping[str, Command]) -> _core.Steps:
-        """Steps, or one step."""
-        given: Any = closing
-        is_file = isinstance(given, (str, os.PathLike))
-        named = isinstance(given, Sequence) and not is_file and len(given) > 0 and isinstance(given[0], Mapping)
-        if given is None or isinstance(given, Mapping) or not (is_file or named or np.ndim(given) != 1):
-            return self._steps("closing", [self._actuation(given, commands)], None, {})
-        return self._steps("closing", given, None, commands)
+def _closing(robot: Compiled, closing: Steps | Commands | None, commands: Mapping[str, Command]) -> _core.Steps:
+    """Steps, or one step."""
+    given: Any = closing
+    is_file = isinstance(given, (str, os.PathLike))
+    named = isinstance(given, Sequence) and not is_file and len(given) > 0 and isinstance(given[0], Mapping)
+    if given is None or isinstance(given, Mapping) or not (is_file or named or np.ndim(given) != 1):
+        return steps_of(robot, "closing", [robot._actuation(given, commands)], None, {})
+    return steps_of(robot, "closing", given, None, commands)

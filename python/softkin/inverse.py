@@ -1,35 +1,31 @@
-"""Answers of inverse kinematics."""
+"""Inverse kinematics: what is asked, the search, the answer."""
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Callable
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import _core
-from ._arrays import Floats
+from ._arrays import Floats, vector
+from ._compiled import Command, Commands, Compiled
 from ._core import Answer as CoreAnswer
 from ._core import Shape as CoreShape
+from ._files import PathLike
+from ._of_robot import parsed
 from ._saving import Saving
-from .errors import NotConverged
-from .shape import Shape
-
-if TYPE_CHECKING:
-    from .robot import Robot
+from ._warning import warn
+from .shape import NotConverged, Shape
+from .solver import ProgressFunction, telling
 
 __all__ = ["Answer"]
 
+Target = Sequence[float | None] | Floats
 
-class Answer(Saving):
+
+class Answer(Saving[CoreAnswer]):
     """What inverse kinematics came to."""
-
-    _core: CoreAnswer
-
-    def __init__(self, robot: Robot, core: CoreAnswer) -> None:
-        self._robot = robot
-        self._core = core
 
     @cached_property
     def shape(self) -> Shape:
@@ -90,8 +86,7 @@ class Answer(Saving):
     @cached_property
     def report(self) -> dict[str, Any]:
         """What `softkin ik --report` writes: docs/formats.md."""
-        report: dict[str, Any] = json.loads(self._core.report())
-        return report
+        return parsed(self._core.report())
 
     def _core_shape(self) -> CoreShape:
         return self._core.shape
@@ -112,9 +107,6 @@ class Answer(Saving):
             return self
         raise NotConverged(f"{self.status}, {self.error_mm:.3g} mm off: {self.reason}", self.shape)
 
-    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Answer], tuple[Robot, bytes]]:
-        return _unpickled, (self._robot, self._core.pickled())
-
     def __repr__(self) -> str:
         if not self._core.has_shape:
             return f"<softkin.Answer {self.status}: {self.reason}>"
@@ -125,5 +117,77 @@ class Answer(Saving):
         return f"<softkin.Answer {self.status}, {self.error_mm:.3g} mm off: {commands}>"
 
 
-def _unpickled(robot: Robot, state: bytes) -> Answer:
-    return Answer(robot, _core.Answer.unpickled(robot._core, state))
+def goals_of(
+    robot: Compiled,
+    targets: Mapping[str, Target],
+    planes: Mapping[str, tuple[Sequence[float], Sequence[float]]] | None,
+    directions: Mapping[tuple[str, str], Sequence[float]] | None,
+    lever_mm: float | None,
+    weights: Mapping[str | tuple[str, str], float] | None,
+) -> _core.Goals:
+    left = dict(weights or {})
+    goals = _core.Goals(robot._core)
+    for marker, target in targets.items():
+        if len(target) != 3:
+            raise ValueError(f"the target of {marker!r} must be three coordinates [mm], not {len(target)}")
+        axes = [value is not None for value in target]
+        place = vector(f"the target of {marker!r}", [0.0 if value is None else value for value in target])
+        goals.position(marker, place, (axes[0], axes[1], axes[2]), left.pop(marker, 1.0))
+    for marker, (point, normal) in (planes or {}).items():
+        goals.plane(marker, vector("planes: point", point), vector("planes: normal", normal), left.pop(marker, 1.0))
+    for (first, second), direction in (directions or {}).items():
+        weight = left.pop((first, second), 1.0)
+        goals.direction(first, second, vector("directions", direction), lever_mm, weight)
+    if left:
+        raise ValueError(f"weights: nothing is asked of {next(iter(left))!r}")
+    for doubt in goals.check():
+        warn(doubt)
+    return goals
+
+
+def start_of(goals: _core.Goals, start: Shape | Commands | None, workspace: PathLike | None) -> Shape | Commands | None:
+    if workspace is None:
+        return start
+    if start is not None:
+        raise ValueError("workspace chooses the start: it does not go with start")
+    return goals.nearest_sample(os.fspath(workspace))
+
+
+def searched(
+    robot: Compiled,
+    goals: _core.Goals,
+    start: Shape | Commands | None,
+    last: Answer | None,
+    prefer: Mapping[str, Command] | None,
+    fix: Mapping[str, Command] | Sequence[str] | None,
+    by: _core.Session | None,
+    options: _core.InverseOptions,
+    progress: ProgressFunction | None,
+) -> CoreAnswer:
+    fixed = dict(fix) if isinstance(fix, Mapping) else dict.fromkeys(fix or ())
+    values = {name: value for name, value in fixed.items() if value is not None}
+    free = [info.name not in fixed for info in robot.actuator_infos]
+    for name in fixed:
+        robot._place(name)
+        if name in (prefer or {}):
+            raise ValueError(f"fix: {name!r} does not change, so it takes no prefer")
+    shape = start if isinstance(start, Shape) else None
+    if shape is not None and values:
+        raise ValueError("fix: with start=shape an actuator stays as it is there; give names without values")
+    begin = None if shape is not None else robot._actuation(start, values)  # type: ignore[arg-type]
+    preferred = None
+    if prefer:
+        preferred = (shape.actuation if shape is not None else begin).copy()  # type: ignore[union-attr]
+        for name, value in prefer.items():
+            preferred[robot._place(name)] = robot._number(name, value)
+    return _core.inverse(
+        goals,
+        by,
+        begin,
+        None if shape is None else shape._core,
+        None if last is None else last._core,
+        preferred,
+        free,
+        options,
+        None if progress is None else telling(progress),
+    )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import os
-import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,16 +17,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Floats, floats
-from ._solving import DEFAULT_ITERATIONS, Solving, _options
-from .errors import InvalidInput, SoftkinWarning
-from .workspace import _file
-
-if TYPE_CHECKING:
-    from .robot import Robot
+from ._compiled import Compiled
+from ._core import InvalidInput
+from ._files import PathLike, ending
+from ._warning import warn
+from .solver import Solver, options_of
 
 __all__ = ["KinematicMap", "MapAnswer", "MapCheck", "MapInput", "MapOutput", "MapProgress", "load_map"]
 
-PathLike = str | os.PathLike[str]
 Numbers = ArrayLike | Mapping[str, float]
 
 
@@ -175,7 +173,7 @@ class KinematicMap:
         self._outputs = tuple(MapOutput(*told) for told in core.outputs)
         self._places = {each.name: i for i, each in enumerate(self._inputs)}
         self._rest: Floats = np.array([each.rest for each in self._inputs])
-        self._sessions: WeakKeyDictionary[Robot, dict[bool, _core.Session]] = WeakKeyDictionary()
+        self._sessions: WeakKeyDictionary[Compiled, dict[bool, _core.Session]] = WeakKeyDictionary()
 
     @property
     def inputs(self) -> list[MapInput]:
@@ -300,25 +298,25 @@ class KinematicMap:
 
     def save(self, path: PathLike) -> None:
         """A .skmap, as `softkin map` writes it."""
-        self._core.save(_file("path", path, ".skmap"))
+        self._core.save(ending("path", path, ".skmap"))
 
     def export_c(self, path: PathLike, *, floats: bool = False) -> None:
         """A header of C99, .h, that includes nothing: outputs, Jacobian, inverse kinematics.
 
         floats  numbers of 4 bytes in place of 8
         """
-        self._core.save_c(_file("path", path, ".h"), floats)
+        self._core.save_c(ending("path", path, ".h"), floats)
 
     def export_js(self, path: PathLike) -> None:
         """A module for browsers and node, .mjs, and beside it .d.mts with its types."""
-        file = _file("path", path, ".mjs")
+        file = ending("path", path, ".mjs")
         self._core.save_js(file, os.fspath(Path(file).with_suffix(".d.mts")))
 
     def export_numpy(self, path: PathLike) -> None:
         """All arrays, .npz: examples/python/map_numpy.py reads them with numpy alone."""
-        self._core.save_npz(_file("path", path, ".npz"))
+        self._core.save_npz(ending("path", path, ".npz"))
 
-    def _session(self, robot: Robot, polish: bool) -> _core.Session:
+    def _session(self, robot: Compiled, polish: bool) -> _core.Session:
         """What answers in the solver's place, or gives it its starts."""
         made = self._sessions.setdefault(robot, {})
         if polish not in made:
@@ -333,8 +331,6 @@ class KinematicMap:
         return f"<softkin.KinematicMap of {self.robot_name}: {text}>"
 
     def _repr_html_(self) -> str:
-        from html import escape
-
         rows = "".join(
             f"<tr><td>{escape(each.column)}</td><td>{each.largest_error:.2g}</td><td>{each.mean_error:.2g}</td>"
             f"<td>{each.accuracy:.2g}</td></tr>"
@@ -356,58 +352,46 @@ def _unpickled(state: bytes, name: str) -> KinematicMap:
     return KinematicMap(_core.Map.unpickled(state, name))
 
 
-class _Maps(Solving):
-    """Of a robot."""
+def check_map(map: KinematicMap | None, polish: bool, options: _core.SolveOptions) -> None:
+    if map is None and polish:
+        raise ValueError("polish goes on from the answers of a map: it needs map")
+    if map is not None and not polish and options.for_the_solver:
+        raise ValueError("a map answers without the solver: the solver's options need polish=True")
 
-    def map(
-        self,
-        *,
-        accuracy_mm: float = 0.01,
-        load_accuracy: float | None = None,
-        shape_accuracy_mm: float | None = 0.05,
-        most: int = 2000,
-        checks: int = 200,
-        seed: int = 1,
-        store: PathLike | None = None,
-        progress: Callable[[MapProgress], Any] | None = None,
-        solver: str = "newton",
-        tolerance_mm: float | None = None,
-        max_iterations: int = DEFAULT_ITERATIONS,
-        anderson: int = 6,
-        threads: int = 0,
-        stable: bool = False,
-    ) -> KinematicMap:
-        """The robot in closed form: its markers, loads and shape as polynomials of its commands.
 
-        accuracy_mm        of markers [mm], at every check
-        load_accuracy      of pressures [kPa] and tensions [N]; None: a thousandth of the largest
-        shape_accuracy_mm  of every vertex [mm]; None: without the shape
-        most               equilibria that each set of taut cables may take
-        checks             random actuations at which the map is compared with the solver
-        seed               of these
-        store              where the map is to be, .skmap; what was found so far is kept beside it meanwhile: a map
-                           that was stopped goes on where it was
-        progress           called with a MapProgress at most 20 times a second; what it raises stops the work
-        threads            equilibria solved at once, each on one thread; 0: as many as the machine has; the map is
-                           the same
-        others             as solve's
-        returns            one less accurate than asked for is warned of (SoftkinWarning): `accurate`, `outputs`
-        raises             InvalidInput on a robot that no map is made of: without markers, with friction
-        """
-        for name, value in (("load_accuracy", load_accuracy), ("shape_accuracy_mm", shape_accuracy_mm)):
-            if value is not None and not 0 < value < math.inf:
-                raise ValueError(f"{name} must be a number > 0, or None, not {value}")
-        statics = _options(solver, tolerance_mm, max_iterations, anderson, 1, stable)
-        options = _core.MapOptions(
-            accuracy_mm, load_accuracy or 0.0, shape_accuracy_mm or 0.0, most, checks, seed, statics, threads
-        )
+def session_of(
+    robot: Compiled, map: KinematicMap | None, polish: bool, options: _core.SolveOptions, own: _core.Session | None
+) -> _core.Session | None:
+    """What solves: a map, where there is one."""
+    check_map(map, polish, options)
+    return own if map is None else map._session(robot, polish)
 
-        def told(equilibria: int, checked: int, error: float, doing: str) -> None:
-            assert progress is not None
-            progress(MapProgress(equilibria, checked, error, doing))
 
-        file = "" if store is None else _file("store", store, ".skmap")
-        core, remark = _core.make_map(self._owner._core, options, file, None if progress is None else told)
-        if remark:
-            warnings.warn(f"the map is not as accurate as was asked for: {remark}", SoftkinWarning, stacklevel=2)
-        return KinematicMap(core)
+def made(
+    robot: Compiled,
+    accuracy_mm: float,
+    load_accuracy: float | None,
+    shape_accuracy_mm: float | None,
+    most: int,
+    checks: int,
+    seed: int,
+    store: PathLike | None,
+    progress: Callable[[MapProgress], Any] | None,
+    solver: Solver,
+) -> KinematicMap:
+    for name, value in (("load_accuracy", load_accuracy), ("shape_accuracy_mm", shape_accuracy_mm)):
+        if value is not None and not 0 < value < math.inf:
+            raise ValueError(f"{name} must be a number > 0, or None, not {value}")
+    accuracies = (accuracy_mm, load_accuracy or 0.0, shape_accuracy_mm or 0.0)
+    statics = options_of(replace(solver, threads=1))
+    options = _core.MapOptions(*accuracies, most, checks, seed, statics, solver.threads)
+
+    def told(equilibria: int, checked: int, error: float, doing: str) -> None:
+        assert progress is not None
+        progress(MapProgress(equilibria, checked, error, doing))
+
+    file = "" if store is None else ending("store", store, ".skmap")
+    core, remark = _core.make_map(robot._core, options, file, None if progress is None else told)
+    if remark:
+        warn(f"the map is not as accurate as was asked for: {remark}")
+    return KinematicMap(core)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import Floats, floats
+from ._files import PathLike
 from ._measured import Angle, MarkerPlace, Picture, Pictures, Specimen, Stretch, Track
 
 if TYPE_CHECKING:
@@ -38,7 +39,6 @@ __all__ = [
     "read_camera",
 ]
 
-PathLike = str | os.PathLike[str]
 Image = NDArray[np.uint8]
 ProgressFunction = Callable[[float], object]
 Point = str | tuple[float, float]

@@ -10,14 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidInput
+from ._core import InvalidInput
 
 if TYPE_CHECKING:
     import meshio
     import pyvista
-
-    from .robot import Robot
-    from .shape import Shape
 
 VTK_KINDS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra", 13: "wedge", 21: "line3", 22: "triangle6",
              23: "quad8", 24: "tetra10"}  # as meshio names them  # fmt: skip
@@ -26,6 +23,9 @@ PLACES = {"tetra": "tetrahedra", "tetra10": "tetrahedra", "wedge": "prisms", "tr
           "triangle6": "triangles"}  # fmt: skip
 PASSED_OVER = ("vertex", "line", "quad")
 Ints = NDArray[np.int64]
+Points = NDArray[np.float64]
+Blocks = Sequence[tuple[str, NDArray[np.int32]]]  # of elements, named as meshio does
+Fields = Mapping[str, NDArray[Any]]  # of vertices or of elements, by name
 
 
 @dataclass(frozen=True)
@@ -41,13 +41,13 @@ class Elements:
     regions: dict[str, dict[str, Ints]]
     """by name: numbers of "tetrahedra" and "prisms"; or "triangles", (f, 3) vertices; or "vertices" """
 
-    def arguments(self) -> dict[str, Any]:
-        """Of a Robot."""
+    def arguments(self, regions: Mapping[str, Any] | None) -> dict[str, Any]:
+        """Of a Robot; regions: others, which come first."""
         return {
             "vertices": self.points,
             "tetrahedra": self.tetrahedra,
             "prisms": self.prisms,
-            "regions": self.regions,
+            "regions": {**self.regions, **(regions or {})},
         }
 
 
@@ -59,54 +59,23 @@ def package(name: str) -> Any:
         raise ImportError(f"this needs {name}: pip install {name} ({error})") from None
 
 
-def cells_of(robot: Robot) -> list[tuple[str, NDArray[np.int32]]]:
-    """Blocks of elements, named as meshio does: tetrahedra first."""
-    blocks = []
-    if len(robot.edge_nodes):
-        blocks.append(("tetra10", np.hstack([robot.tetrahedra, robot.edge_nodes])))
-    elif len(robot.tetrahedra):
-        blocks.append(("tetra", robot.tetrahedra))
-    if len(robot.prisms):
-        blocks.append(("wedge", robot.prisms))
-    return blocks
-
-
-def fields_of(shape: Shape) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:
-    """Of the vertices and of the elements, with the names of the .vtu that `save` writes."""
-    deformation, robot = shape.deformation, shape.robot
-    points = {"displacement_mm": shape.displacements}
-    elements: dict[str, NDArray[Any]] = {
-        "volume_ratio": deformation.volume_ratio,
-        "principal_strain_max": deformation.strain[:, 0],
-        "principal_strain_min": deformation.strain[:, 2],
-        "region": robot.element_regions,
-    }
-    if len(deformation.von_mises_MPa):
-        elements["von_mises_MPa"] = deformation.von_mises_MPa
-        points["reaction_N"] = shape.vertex_reactions
-    if len(shape.contact_pressure_kPa):
-        points["contact_pressure_kPa"] = shape.contact_pressure_kPa
-    return points, elements
-
-
-def to_meshio(shape: Shape) -> meshio.Mesh:
-    points, elements = fields_of(shape)
-    blocks = cells_of(shape.robot)
+def to_meshio(positions: Points, blocks: Blocks, points: Fields, elements: Fields) -> meshio.Mesh:
     ends = np.cumsum([len(cells) for _, cells in blocks])[:-1]
     data = {name: np.split(values, ends) for name, values in elements.items()}
-    return package("meshio").Mesh(np.array(shape.positions), blocks, point_data=points, cell_data=data)
+    return package("meshio").Mesh(np.array(positions), blocks, point_data=points, cell_data=data)
 
 
-def to_pyvista(shape: Shape) -> pyvista.UnstructuredGrid:
+def to_pyvista(
+    positions: Points, blocks: Blocks, points: Fields, elements: Fields, regions: Sequence[str]
+) -> pyvista.UnstructuredGrid:
     """Field data region_NAME: the number of region NAME, as in the .vtu that `save` writes."""
-    blocks = {VTK_NUMBERS[name]: cells for name, cells in cells_of(shape.robot)}
-    grid = package("pyvista").UnstructuredGrid(blocks, np.array(shape.positions))
-    points, elements = fields_of(shape)
+    cells = {VTK_NUMBERS[name]: block for name, block in blocks}
+    grid = package("pyvista").UnstructuredGrid(cells, np.array(positions))
     for name, values in points.items():
         grid.point_data[name] = values
     for name, values in elements.items():
         grid.cell_data[name] = values
-    for number, name in enumerate(shape.robot.region_names):
+    for number, name in enumerate(regions):
         grid.field_data[f"region_{name}"] = np.array([number], dtype=np.int32)
     return grid
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -16,182 +13,29 @@ from numpy.typing import NDArray
 from . import _core, neighbours
 from ._arrays import Floats
 from ._core import Shape as CoreShape
+from ._measures import ActuatorState, Contact, Deformation, MagneticLoad, Reaction, SelfOverlap
+from ._of_robot import parsed
 from ._saving import Saving
-from .errors import NotConverged
 
 if TYPE_CHECKING:
     import meshio
     import pyvista
 
-    from .robot import Robot
-
-__all__ = ["ActuatorState", "Contact", "Deformation", "MagneticLoad", "Reaction", "SelfOverlap", "Shape", "Views"]
-
+__all__ = ["ActuatorState", "Contact", "Deformation", "MagneticLoad", "NotConverged", "Reaction", "SelfOverlap"]
+__all__ += ["Shape", "Views"]
 
 _LOAD_UNITS = {"pneumatic": "kPa", "cable": "N", "dea": "kV"}
 
 
-@dataclass(frozen=True)
-class ActuatorState:
-    """An actuator in a shape."""
+class NotConverged(RuntimeError):
+    """A shape that was required to be an equilibrium is none. `shape` is what there is."""
 
-    name: str
-    kind: str
-    """'pneumatic', 'cable', 'dea' or 'magnetic'; 'motion', 'force' or 'hold' of what surrounds the robot,
-    'turn' of what holds it"""
-    requested: float
-    """what was commanded, in `unit`"""
-    unit: str
-    """'kPa', 'N', 'kV', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio to rest [-]"""
-    ratio: float
-    """volume, length or area over that at rest [-]; of others the command that the shape is of"""
-    measure: float
-    """volume [mm^3], length [mm] or area [mm^2]; 0 of others"""
-    load: float | None
-    """gauge pressure [kPa], tension [N] or voltage [kV]; None where the formulation or the kind has none"""
-    by_curve: float | None
-    """what the actuator's curve asks for: gauge pressure [kPa] or voltage [kV]"""
-    slack: bool
-    """a cable that carries nothing because its path is shorter than it"""
-    charge_nC: float | None = None
-    """on the electrodes of a dea under voltage [nC]; else None"""
-    capacitance_pF: float | None = None
-    """between them [pF]"""
-    field_kV_mm: float | None = None
-    """the largest true field in its layer [kV/mm]"""
-    end_tension_N: float | None = None
-    """of a cable that rubs, at its far end [N]; `load` is that at the motor"""
-    sticking: float | None = None
-    """the share of its friction in which it sticks [-]"""
+    def __init__(self, message: str, shape: Shape) -> None:
+        super().__init__(message)
+        self.shape = shape
 
-    def _load_of(self, kind: str, what: str) -> float:
-        if self.kind != kind:
-            raise AttributeError(f"actuator {self.name!r} is a {self.kind}: it has no {what}")
-        if self.load is None:
-            why = "its area is controlled" if what == "voltage" else "only the physical formulation knows it"
-            raise AttributeError(f"actuator {self.name!r} has no {what}: {why}")
-        return self.load
-
-    @property
-    def pressure_kPa(self) -> float:
-        """Gauge pressure in the chamber [kPa]; physical formulation."""
-        return self._load_of("pneumatic", "pressure")
-
-    @property
-    def tension_N(self) -> float:
-        """Tension of the cable [N]; physical formulation."""
-        return self._load_of("cable", "tension")
-
-    @property
-    def voltage_kV(self) -> float:
-        """Voltage of the dea [kV]; physical formulation, `control: voltage`."""
-        return self._load_of("dea", "voltage")
-
-    @property
-    def volume_mm3(self) -> float:
-        """Volume of the chamber [mm^3]."""
-        self._is("pneumatic", "volume")
-        return self.measure
-
-    @property
-    def length_mm(self) -> float:
-        """Length of the cable's path [mm]."""
-        self._is("cable", "length")
-        return self.measure
-
-    @property
-    def area_mm2(self) -> float:
-        """Mean area of the membrane [mm^2]."""
-        self._is("dea", "area")
-        return self.measure
-
-    def _is(self, kind: str, what: str) -> None:
-        if self.kind != kind:
-            raise AttributeError(f"actuator {self.name!r} is a {self.kind}: it has no {what}")
-
-
-@dataclass(frozen=True)
-class Reaction:
-    """What an entry of `fixed` does to the robot; physical formulation."""
-
-    name: str
-    force_N: Floats
-    """(3,) that the support exerts on the robot [N]"""
-    moment_Nmm: Floats
-    """(3,) about the centre [N mm]"""
-    center_mm: Floats
-    """(3,) mean of the vertices that it holds [mm]"""
-
-
-@dataclass(frozen=True)
-class MagneticLoad:
-    """What magnetic fields do to the robot."""
-
-    force_N: Floats
-    """(3,) [N]"""
-    moment_Nmm: Floats
-    """(3,) about `center_mm` [N mm]"""
-    center_mm: Floats
-    """(3,) of the volume of what is magnetic, where it is [mm]"""
-
-
-@dataclass(frozen=True)
-class Contact:
-    """What presses on a part of a robot; physical formulation."""
-
-    on: str
-    """'robot', or a region that `contact` names"""
-    by: str
-    """an obstacle, another such part, or the part itself"""
-    force_N: Floats
-    """(3,) that it exerts [N]; of a part on itself 0"""
-    moment_Nmm: Floats
-    """(3,) about the centre [N mm]"""
-    center_mm: Floats
-    """(3,) mean of the places that are pressed, by their normal force [mm]"""
-    normal_N: float
-    """sum of the magnitudes of all normal forces [N]"""
-    pressure_kPa: float
-    """the largest on a vertex [kPa]"""
-    area_mm2: float
-    """[mm^2]"""
-    gap_mm: float
-    """the least [mm]"""
-
-
-@dataclass(frozen=True)
-class SelfOverlap:
-    """How far a shape passes through itself."""
-
-    points: int
-    """of its surface that lie inside it; 0: none"""
-    deepest_mm: float
-    at_mm: Floats
-    """(3,) where the deepest one is [mm]"""
-
-
-@dataclass(frozen=True)
-class Deformation:
-    """Per element, tetrahedra first, then prisms."""
-
-    volume_ratio: Floats
-    """(e,) det F [-]; <= 0: inverted"""
-    strain: Floats
-    """(e, 3) principal stretches minus 1, descending [-]"""
-    von_mises_MPa: Floats
-    """(e,) physical formulation; else empty"""
-    principal_stress_MPa: Floats
-    """(e, 3) descending, tension positive; physical formulation; else empty"""
-
-    @property
-    def stretches(self) -> Floats:
-        """(e, 3) principal stretches, descending [-]."""
-        return self.strain + 1
-
-    @property
-    def inverted(self) -> NDArray[np.bool_]:
-        """(e,) elements that are turned inside out."""
-        return self.volume_ratio <= 0
+    def __reduce__(self) -> tuple[type[NotConverged], tuple[str, Shape]]:
+        return type(self), (str(self.args[0]), self.shape)
 
 
 class Views(Mapping[str, Floats]):
@@ -218,18 +62,8 @@ class Views(Mapping[str, Floats]):
         return "{" + ", ".join(f"{name!r}: {_point(self[name])}" for name in self) + "}"
 
 
-class Shape(Saving):
+class Shape(Saving[CoreShape]):
     """An equilibrium of a robot, or how far the solver came: see `status`."""
-
-    _core: CoreShape
-
-    def __init__(self, robot: Robot, core: CoreShape) -> None:
-        self._robot = robot
-        self._core = core
-
-    @property
-    def robot(self) -> Robot:
-        return self._robot
 
     @cached_property
     def positions(self) -> Floats:
@@ -361,16 +195,33 @@ class Shape(Saving):
     @cached_property
     def report(self) -> dict[str, Any]:
         """What `softkin fk --report` writes: docs/formats.md."""
-        report: dict[str, Any] = json.loads(self._core.report())
-        return report
+        return parsed(self._core.report())
 
     def to_meshio(self) -> meshio.Mesh:
         """A meshio.Mesh of it, with displacements, strains and stresses; needs meshio."""
-        return neighbours.to_meshio(self)
+        return neighbours.to_meshio(self.positions, self._robot._blocks(), *self._fields())
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
         """A pyvista.UnstructuredGrid of it, with displacements, strains and stresses; needs PyVista."""
-        return neighbours.to_pyvista(self)
+        robot = self._robot
+        return neighbours.to_pyvista(self.positions, robot._blocks(), *self._fields(), robot.region_names)
+
+    def _fields(self) -> tuple[neighbours.Fields, neighbours.Fields]:
+        """Of the vertices and of the elements, with the names of the .vtu that `save` writes."""
+        deformation = self.deformation
+        points = {"displacement_mm": self.displacements}
+        elements: dict[str, NDArray[Any]] = {
+            "volume_ratio": deformation.volume_ratio,
+            "principal_strain_max": deformation.strain[:, 0],
+            "principal_strain_min": deformation.strain[:, 2],
+            "region": self._robot.element_regions,
+        }
+        if len(deformation.von_mises_MPa):
+            elements["von_mises_MPa"] = deformation.von_mises_MPa
+            points["reaction_N"] = self.vertex_reactions
+        if len(self.contact_pressure_kPa):
+            points["contact_pressure_kPa"] = self.contact_pressure_kPa
+        return points, elements
 
     def _core_shape(self) -> CoreShape:
         return self._core
@@ -398,13 +249,6 @@ class Shape(Saving):
         places = ", ".join(f"{name} at {_point(place)} mm" for name, place in self.markers.items())
         return f"<softkin.Shape {asked or 'at rest'}: {self.status}{'; ' + places if places else ''}>"
 
-    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Shape], tuple[Robot, bytes]]:
-        return _unpickled, (self._robot, self._core.pickled())
-
 
 def _point(place: Floats) -> str:
     return "(" + ", ".join(f"{value:.6g}" for value in place) + ")"
-
-
-def _unpickled(robot: Robot, state: bytes) -> Shape:
-    return Shape(robot, _core.Shape.unpickled(robot._core, state))

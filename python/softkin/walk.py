@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Floats
-from ._solving import DEFAULT_ITERATIONS, _options
-from .runs import PathLike, Steps, _folder, _Run, _Runs
+from ._of_robot import parsed
+from .runs import _Run
 from .shape import Shape
 from .table import Table
 
@@ -49,15 +47,13 @@ class WalkStep:
         return self.shape.status
 
 
-class WalkRun(_Run[WalkStep]):
+class WalkRun(_Run[_core.WalkRun, WalkStep]):
     """A gait that is walked, step by step. Stop when you like. A step without an equilibrium is the last one."""
-
-    _core: _core.WalkRun
 
     def __next__(self) -> WalkStep:
         number = self.done
         shape = self._next_shape()
-        step: dict[str, Any] = json.loads(self._core.step())
+        step = parsed(self._core.step())
         walk = step["walk"]
         return WalkStep(
             number,
@@ -89,37 +85,3 @@ class WalkRun(_Run[WalkStep]):
 
     def __repr__(self) -> str:
         return f"<softkin.WalkRun of {self._robot.name}: {self.done} of {len(self)} steps>"
-
-
-class _Walks(_Runs):
-    """Of a robot."""
-
-    def walk(
-        self,
-        gait: Steps,
-        *,
-        cycles: int = 3,
-        times: ArrayLike | None = None,
-        store: PathLike | None = None,
-        solver: str = "newton",
-        tolerance_mm: float | None = None,
-        max_iterations: int = DEFAULT_ITERATIONS,
-        anderson: int = 6,
-        threads: int = 0,
-        stable: bool = False,
-    ) -> WalkRun:
-        """Walks on two feet that slide one way better than the other: an iterator of steps. docs/walking.md
-
-        gait    one cycle of commands as path takes them, (k, m), by name, or a CSV file; its last row is its first
-        cycles  how often it is walked, 1 to 100000
-        times   (k,) [s], ascending; they go on from cycle to cycle
-        store   folder of report.json, walk.csv, walk.svg and walk.pvd with the shapes: a walk that was stopped goes on
-                where it was, or with more cycles
-        others  as solve's
-        raises  InvalidInput where the robot has no feet, or is held or loaded along its way
-        """
-        if not 1 <= cycles <= 100_000:
-            raise ValueError(f"cycles must be a whole number from 1 to 100000, not {cycles}")
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        core = self._steps("gait", gait, times, {})
-        return WalkRun(self._owner, _core.WalkRun(self._owner._core, core, cycles, options, _folder(store)))

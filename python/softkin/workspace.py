@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from html import escape
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -14,12 +12,12 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import Floats, Indices
-from ._solving import DEFAULT_ITERATIONS, Solving, _options
+from ._compiled import Compiled
+from ._files import PathLike, ending, optional
+from ._of_robot import Found, parsed
 
 if TYPE_CHECKING:
     import pandas
-
-    from .robot import Robot
 
 __all__ = ["Hull", "ProgressBar", "Workspace"]
 
@@ -53,16 +51,8 @@ class Hull:
     """along the principal axes of the places, descending"""
 
 
-class Workspace:
+class Workspace(Found[_core.Workspace]):
     """Samples in their order, as a structured array: `samples`."""
-
-    def __init__(self, robot: Robot, core: _core.Workspace) -> None:
-        self._robot = robot
-        self._core = core
-
-    @property
-    def robot(self) -> Robot:
-        return self._robot
 
     @property
     def sampling(self) -> str:
@@ -130,31 +120,25 @@ class Workspace:
 
     def summary(self, marker: str | None = None) -> dict[str, Any]:
         """What `softkin workspace --json` prints: samples per status, reach and hull of a marker. None: the first."""
-        summary: dict[str, Any] = json.loads(self._core.summary(marker or ""))
-        return summary
+        return parsed(self._core.summary(marker or ""))
 
-    def save(self, path: str | os.PathLike[str], marker: str | None = None) -> None:
+    def save(self, path: PathLike, marker: str | None = None) -> None:
         """The places of a marker for ParaView, with commands and loads: a .vtu. None: the robot's first marker."""
-        self._core.save_cloud(_file("path", path, ".vtu"), marker or "")
+        self._core.save_cloud(ending("path", path, ".vtu"), marker or "")
 
-    def save_hull(self, path: str | os.PathLike[str], marker: str | None = None) -> None:
+    def save_hull(self, path: PathLike, marker: str | None = None) -> None:
         """The convex hull of a marker's places: a .stl or .vtu."""
-        self._core.save_hull(_file("path", path, ".stl", ".vtu"), marker or "")
+        self._core.save_hull(ending("path", path, ".stl", ".vtu"), marker or "")
 
-    def save_plot(self, path: str | os.PathLike[str], marker: str | None = None) -> None:
+    def save_plot(self, path: PathLike, marker: str | None = None) -> None:
         """The places of a marker, seen along the axes: an .svg."""
-        self._core.save_plot(_file("path", path, ".svg"), marker or "")
-
-    def __reduce__(self) -> tuple[Callable[[Robot, bytes], Workspace], tuple[Robot, bytes]]:
-        return _unpickled, (self._robot, self._core.pickled())
+        self._core.save_plot(ending("path", path, ".svg"), marker or "")
 
     def __repr__(self) -> str:
         good = int((self.status == "converged").sum())
         return f"<softkin.Workspace of {self._robot.name}: {self.sampling}; {good} of {len(self)} converged>"
 
     def _repr_html_(self) -> str:
-        from html import escape
-
         most = 10
         names = self.samples.dtype.names or ()
         head = "".join(f"<th>{escape(name)}</th>" for name in names)
@@ -165,65 +149,32 @@ class Workspace:
         return f"<p>{escape(repr(self)[1:-1])}</p><table><tr>{head}</tr>{rows}</table>"
 
 
-def _file(name: str, path: str | os.PathLike[str], *endings: str) -> str:
-    file = os.fspath(path)
-    if not file.lower().endswith(endings):
-        raise ValueError(f"{name} must end in {' or '.join(endings)}, not {os.path.basename(file)!r}")
-    return file
+def sampled(
+    robot: Compiled,
+    samples: int,
+    sampling: str,
+    seed: int,
+    store: PathLike | None,
+    progress: ProgressBar | None,
+    options: _core.SolveOptions,
+    threads: int,
+) -> _core.Workspace:
+    bar: _Bar | None = None
+    done = 0
 
+    def begin(total: int) -> None:
+        nonlocal bar
+        if progress is not None:
+            bar = progress(total=total)
 
-def _unpickled(robot: Robot, state: bytes) -> Workspace:
-    return Workspace(robot, _core.Workspace.unpickled(robot._core, state))
+    def kept(count: int) -> None:
+        nonlocal done
+        if bar is not None and count > done:
+            bar.update(count - done)
+            done = count
 
-
-class _Workspaces(Solving):
-    """Of a robot."""
-
-    def workspace(
-        self,
-        samples: int,
-        *,
-        sampling: str = "grid",
-        seed: int = 0,
-        store: str | os.PathLike[str] | None = None,
-        progress: ProgressBar | None = None,
-        solver: str = "newton",
-        tolerance_mm: float | None = None,
-        max_iterations: int = DEFAULT_ITERATIONS,
-        anderson: int = 6,
-        threads: int = 0,
-        stable: bool = False,
-    ) -> Workspace:
-        """The equilibria of many actuations inside the ranges of the actuators.
-
-        samples   how many; a grid takes the nearest number that fills it
-        sampling  'grid', 'sobol' or 'random'
-        seed      of random samples
-        store     CSV that grows meanwhile: a workspace that was stopped goes on where it was
-        progress  such as tqdm: called with total=, then told by update(n)
-        threads   samples solved at once, each on one thread; 0: as many as the machine has
-        others    as solve's
-        """
-        robot = self._owner
-        options = _options(solver, tolerance_mm, max_iterations, anderson, threads, stable)
-        bar: _Bar | None = None
-        done = 0
-
-        def begin(total: int) -> None:
-            nonlocal bar
-            if progress is not None:
-                bar = progress(total=total)
-
-        def kept(count: int) -> None:
-            nonlocal done
-            if bar is not None and count > done:
-                bar.update(count - done)
-                done = count
-
-        file = "" if store is None else os.fspath(store)
-        try:
-            core = _core.workspace(robot._core, samples, sampling, seed, options, threads, file, begin, kept)
-        finally:
-            if bar is not None:
-                bar.close()
-        return Workspace(robot, core)
+    try:
+        return _core.workspace(robot._core, samples, sampling, seed, options, threads, optional(store), begin, kept)
+    finally:
+        if bar is not None:
+            bar.close()

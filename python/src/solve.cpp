@@ -69,7 +69,7 @@ void bind_solve(nb::module_& module) {
       .def(
           "__init__",
           [](StaticsOptions* self, const std::string& solver, double tolerance_mm, int max_iterations, int anderson,
-             int threads, bool stable, std::optional<double> elapsed_s, double beyond, bool as_published) {
+             int threads, bool stable, bool as_published) {
             if (solver != "newton" && solver != "local-global")
               throw InvalidInput("solver must be 'newton' or 'local-global', not '" + solver + "'");
             auto* options = new (self) StaticsOptions();
@@ -79,20 +79,22 @@ void bind_solve(nb::module_& module) {
             options->anderson = anderson;
             options->threads = threads;
             options->stable = stable;
-            options->beyond = beyond;
             options->as_published = as_published;
-            options->elapsed_s = elapsed_s.value_or(options->elapsed_s);
           },
           nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations"), nb::arg("anderson"),
-          nb::arg("threads"), nb::arg("stable"), nb::arg("elapsed_s").none(), nb::arg("beyond"),
-          nb::arg("as_published"))
+          nb::arg("threads"), nb::arg("stable"), nb::arg("as_published"))
+      .def_ro("as_published", &StaticsOptions::as_published)
       .def(
-          "within",
-          [](StaticsOptions options, double budget_s) {
-            options.deadline = Deadline(budget_s);
+          "of_call",
+          [](StaticsOptions options, std::optional<double> elapsed_s, std::optional<double> beyond,
+             std::optional<double> budget_s) {
+            if (elapsed_s) options.elapsed_s = *elapsed_s;
+            if (beyond) options.beyond = *beyond;
+            if (budget_s) options.deadline = Deadline(*budget_s);
             return options;
           },
-          nb::arg("budget_s"), "The same, to end so many seconds from now.")
+          nb::arg("elapsed_s").none(), nb::arg("beyond").none(), nb::arg("budget_s").none(),
+          "The same, with what is asked of one call, which ends budget_s from now.")
       .def_prop_ro(
           "for_the_solver",
           [](const StaticsOptions& options) {

@@ -12,7 +12,7 @@ import softkin
 
 def test_reports(robot: softkin.Robot, command: str, tmp_path: Path) -> None:
     for name, tolerance in (("fine", None), ("coarse", 1e-3)):
-        list(robot.path([[1.1, 1, 1], [1.2, 1, 1]], tolerance_mm=tolerance, store=tmp_path / name))
+        list(robot.path([[1.1, 1, 1], [1.2, 1, 1]], solver=softkin.Solver(tolerance_mm=tolerance), store=tmp_path / name))
     files = [tmp_path / name / "report.json" for name in ("fine", "coarse")]
     found = softkin.compare.reports(files, marker="tip")
     assert found.marker == "tip" and found.distances.shape == (2, 2) and found.turns.size == 0

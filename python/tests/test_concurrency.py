@@ -51,7 +51,7 @@ INTERRUPTED = """
 import sys, threading, time
 sys.path.insert(0, {tests!r})
 from beams import beam
-import numpy as np, os, signal
+import numpy as np, os, signal, softkin
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background of a shell begins without it
 {prepare}
 sent = []
@@ -71,7 +71,7 @@ print("usable", robot.solve(air1=1.01).converged)
 
 WORK = {
     "solve": ("robot = beam(46, 13)", "robot.solve(air1=1.9, air2=1.1)"),
-    "workspace": ("robot = beam(15, 5)", "robot.workspace(3375, threads=2)"),
+    "workspace": ("robot = beam(15, 5)", "robot.workspace(3375, solver=softkin.Solver(threads=2))"),
     "follow": (
         "robot = beam(15, 5)\n"
         "a, b = robot.solve(air1=1.2)['tip'], robot.solve(air1=1.6)['tip']\n"
@@ -79,7 +79,7 @@ WORK = {
         "list(robot.follow(path))",
     ),
     "inverse": ("robot = beam(46, 13)", "robot.inverse(tip=(60, 12, 12))"),
-    "map": ("robot = beam(15, 5)", "robot.map(accuracy_mm=1e-7, threads=2)"),
+    "map": ("robot = beam(15, 5)", "robot.map(accuracy_mm=1e-7, solver=softkin.Solver(threads=2))"),
     "map that answers": ("robot = beam(4, 5)\nmade = robot.map(checks=1)", "made.solve(np.full((4 * 10**6, 3), 1.5))"),
 }
 

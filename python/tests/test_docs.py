@@ -94,7 +94,7 @@ def test_a_neo_hooke_of_abaqus() -> None:
     end = {"vertices": np.flatnonzero(vertices[:, 0] == 10).tolist(), "axes": "x", "displacement": (5, 0, 0)}
     material = {"law": "mooney-rivlin", "c10": c10, "bulk_modulus": 2 / d1}
     robot = softkin.Robot(vertices, tetrahedra, materials=[material], fixed=[*held, end])
-    shape = robot.solve(tolerance_mm=1e-9).require()
+    shape = robot.solve(solver=softkin.Solver(tolerance_mm=1e-9)).require()
 
     def energy(along: float, across: float) -> float:  # per volume at rest [MPa]
         j = along * across**2

@@ -137,6 +137,13 @@ def test_refusals(robot: softkin.Robot) -> None:
         gripper(bodies=[], gravity=None).grasp()
 
 
+def test_how_it_is_solved(robot: softkin.Robot) -> None:
+    hurried = robot.grasp(directions="x", solver=softkin.Solver(max_iterations=1))
+    assert not hurried.held
+    with pytest.warns(DeprecationWarning, match="max_iterations= of grasp is deprecated"):
+        assert robot.grasp(directions="x", max_iterations=1).reason == hurried.reason
+
+
 def scene_in(folder: Path) -> Path:
     """The gripper as a scene."""
     vertices, tetrahedra = block((2, 2, 2), (20, 20, 20))

@@ -96,14 +96,14 @@ def test_sensitivity(robot: softkin.Robot) -> None:
         "actuators": [{"name": "pull", "kind": "cable", "range": (0.8, 1), "points": [[0, 4, 4], [32, 4, 4], [64, 4, 4]]}],
     }
     loaded = beam(8, 2, **description)
-    shape = loaded.solve(pull=0.96, tolerance_mm=1e-10)
+    shape = loaded.solve(pull=0.96, solver=softkin.Solver(tolerance_mm=1e-10))
     by = loaded.sensitivity(shape, [force, modulus])
     assert by[force].value == -0.01 and by[modulus].value == 1
 
     def tip(load: float, stiffness: float) -> tuple[softkin.Shape, float]:
         other = {**description, "forces": [{"name": "payload", "region": "end", "force": [0, 0, load]}]}
         found = beam(8, 2, **other, materials=[{"youngs_modulus": stiffness, "poisson_ratio": 0.4}])
-        solved = found.solve(pull=0.96, tolerance_mm=1e-10)
+        solved = found.solve(pull=0.96, solver=softkin.Solver(tolerance_mm=1e-10))
         return solved, solved.actuators["pull"].tension_N
 
     for number, more, less, step in [

@@ -204,14 +204,15 @@ def test_progress_and_going_on(robot: softkin.Robot, made: softkin.KinematicMap,
             raise KeyError("enough")
 
     with pytest.raises(KeyError, match="enough"):
-        robot.map(**ACCURACY, store=tmp_path / "beam.skmap", progress=enough, threads=1)
+        robot.map(**ACCURACY, store=tmp_path / "beam.skmap", progress=enough, solver=softkin.Solver(threads=1))
     assert told[-1].equilibria >= 5 and told[-1].error >= 0 and told[-1].doing and told[-1].checks >= 0
     journal = tmp_path / "beam.skmap.run"
     assert journal.exists() and not (tmp_path / "beam.skmap").exists()
     with pytest.raises(softkin.InvalidInput, match="cannot be gone on with"):
         robot.map(checks=20, store=tmp_path / "beam.skmap")  # another accuracy
     journal.write_bytes(journal.read_bytes()[: journal.stat().st_size * 2 // 3])  # killed in the midst of a record
-    again = robot.map(**ACCURACY, store=tmp_path / "beam.skmap", threads=2)
+    with pytest.warns(DeprecationWarning, match=r"threads= of map .* write solver=softkin.Solver\(threads=2\)"):
+        again = robot.map(**ACCURACY, store=tmp_path / "beam.skmap", threads=2)
     assert not journal.exists()
     made.save(tmp_path / "whole.skmap")
     assert (tmp_path / "whole.skmap").read_bytes() == (tmp_path / "beam.skmap").read_bytes()
@@ -309,10 +310,10 @@ def test_what_needs_a_map_or_the_solver(robot: softkin.Robot, made: softkin.Kine
     with pytest.raises(ValueError, match="polish goes on from the answers of a map: it needs map"):
         robot.solve(polish=True)
     with pytest.raises(ValueError, match="a map answers without the solver: the solver's options need polish=True"):
-        robot.inverse(tip=(70, 10, 10), map=made, max_iterations=5)
+        robot.inverse(tip=(70, 10, 10), map=made, solver=softkin.Solver(max_iterations=5))
     with pytest.raises(ValueError, match="need polish=True"):
-        robot.follow([(70, 10, 10)], map=made, step_tolerance_mm=1)
-    assert robot.solve(map=made, polish=True, tolerance_mm=1e-7).converged
+        robot.follow([(70, 10, 10)], map=made, solver=softkin.Solver(tolerance_mm=1))
+    assert robot.solve(map=made, polish=True, solver=softkin.Solver(tolerance_mm=1e-7)).converged
 
 
 def test_slack_cables(tendons: softkin.Robot) -> None:

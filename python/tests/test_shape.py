@@ -187,12 +187,12 @@ def test_pickle(shape: softkin.Shape) -> None:
 def test_solver_options(robot: softkin.Robot, shape: softkin.Shape) -> None:
     np.testing.assert_array_equal(robot.solve([1.3, 1, 1]).positions, shape.positions)
     np.testing.assert_array_equal(robot.solve({"air1": 1.3}).positions, shape.positions)
-    np.testing.assert_array_equal(robot.solve(air1=1.3, threads=2).positions, shape.positions)
+    np.testing.assert_array_equal(robot.solve(air1=1.3, solver=softkin.Solver(threads=2)).positions, shape.positions)
     warm = robot.solve(air1=1.3, start=shape)
     assert warm.iterations < shape.iterations
     placed = robot.solve(air1=1.3, start=shape.positions)
     assert placed.converged
-    coarse = robot.solve(air1=1.3, tolerance_mm=0.1)
+    coarse = robot.solve(air1=1.3, solver=softkin.Solver(tolerance_mm=0.1))
     assert coarse.iterations <= shape.iterations
 
 
@@ -207,7 +207,7 @@ def test_solver_options(robot: softkin.Robot, shape: softkin.Shape) -> None:
         (([1, 1, np.inf],), {}, r"actuation\[2\] is inf"),
         ((), {"start": np.zeros((3, 3))}, r"start must have shape \(324, 3\), not \(3, 3\)"),
         ((), {"tolerance_mm": -1}, "the tolerance must be a length > 0 in mm, not -1"),
-        ((), {"max_iterations": 0}, "iterations >= 1"),
+        ((), {"solver": softkin.Solver(max_iterations=0)}, "iterations >= 1"),
         ((), {"solver": "local-global"}, "is for the target-shape formulation"),
         ((), {"solver": "magic"}, "solver must be 'newton' or 'local-global', not 'magic'"),
     ],
@@ -242,19 +242,20 @@ def test_target_shapes() -> None:
         shape.actuators["t"].tension_N
     algorithm = robot.solve(t=0.9, solver="local-global")
     np.testing.assert_allclose(algorithm.positions, shape.positions, atol=0.01)
-    lazy = robot.solve(t=0.9, solver="local-global", max_iterations=1, anderson=0)
+    lazy = robot.solve(t=0.9, solver=softkin.Solver("local-global", max_iterations=1, anderson=0))
     assert lazy.status == "not converged" and lazy.iterations == 1
-    stopped = robot.solve(t=0.9, solver="local-global", as_published=True)
+    published = softkin.Solver("local-global", as_published=True)
+    stopped = robot.solve(t=0.9, solver=published)
     assert stopped.converged and stopped.iterations >= 10
     assert np.abs(stopped.markers["tip"] - shape.markers["tip"]).max() > np.abs(
         algorithm.markers["tip"] - shape.markers["tip"]
     ).max()
-    (one, two) = robot.path([[0.9], [0.8]], solver="local-global", as_published=True)
+    (one, two) = robot.path([[0.9], [0.8]], solver=published)
     np.testing.assert_array_equal(one.positions, stopped.positions)
-    again = robot.solve(t=0.8, start=one, solver="local-global", as_published=True)
+    again = robot.solve(t=0.8, start=one, solver=published)
     np.testing.assert_array_equal(two.positions, again.positions)
     with pytest.raises(softkin.InvalidInput, match="to stop as published is for solver local-global"):
-        robot.solve(t=0.9, as_published=True)
+        robot.solve(t=0.9, solver=softkin.Solver(as_published=True))
     with pytest.raises(softkin.NotConverged, match="not converged at") as caught:
         lazy.require()
     assert caught.value.shape is lazy

@@ -78,11 +78,14 @@ def test_walk_goes_on_and_further(walker: softkin.Robot, tmp_path: Path) -> None
 
 
 def test_a_step_without_an_equilibrium_is_the_last(walker: softkin.Robot) -> None:
-    run = walker.walk(GAIT, tolerance_mm=1e-30, max_iterations=3)
+    run = walker.walk(GAIT, solver=softkin.Solver(tolerance_mm=1e-30, max_iterations=3))
     steps = list(run)
     assert [step.status for step in steps] == ["converged", "not converged"] and run.done == 1
     with pytest.raises(softkin.NotConverged):
         steps[1].shape.require()
+    with pytest.warns(DeprecationWarning, match="max_iterations=, tolerance_mm= of walk is deprecated"):
+        again = walker.walk(GAIT, tolerance_mm=1e-30, max_iterations=3)
+    assert [step.status for step in again] == ["converged", "not converged"]
     assert len(run.report["steps"]) == 1
 
 

@@ -57,7 +57,7 @@ def test_grid(robot: softkin.Robot) -> None:
 
 
 def test_any_number_of_threads_gives_the_same(robot: softkin.Robot) -> None:
-    one, two = (robot.workspace(12, sampling="sobol", threads=n) for n in (1, 2))
+    one, two = (robot.workspace(12, sampling="sobol", solver=softkin.Solver(threads=n)) for n in (1, 2))
     assert one.samples.tobytes() == two.samples.tobytes()
 
 

@@ -1,6 +1,7 @@
 """What can be wrong with what was given."""
 
-from ..errors import InvalidInput, SoftkinWarning
+from .._core import InvalidInput
+from .._warning import SoftkinWarning
 
 __all__ = ["InvalidInput", "MeshWarning"]
 

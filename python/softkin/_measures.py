@@ -1,0 +1,173 @@
+"""What shapes measure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import Floats
+
+
+@dataclass(frozen=True)
+class ActuatorState:
+    """An actuator in a shape."""
+
+    name: str
+    kind: str
+    """'pneumatic', 'cable', 'dea' or 'magnetic'; 'motion', 'force' or 'hold' of what surrounds the robot,
+    'turn' of what holds it"""
+    requested: float
+    """what was commanded, in `unit`"""
+    unit: str
+    """'kPa', 'N', 'kV', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio to rest [-]"""
+    ratio: float
+    """volume, length or area over that at rest [-]; of others the command that the shape is of"""
+    measure: float
+    """volume [mm^3], length [mm] or area [mm^2]; 0 of others"""
+    load: float | None
+    """gauge pressure [kPa], tension [N] or voltage [kV]; None where the formulation or the kind has none"""
+    by_curve: float | None
+    """what the actuator's curve asks for: gauge pressure [kPa] or voltage [kV]"""
+    slack: bool
+    """a cable that carries nothing because its path is shorter than it"""
+    charge_nC: float | None = None
+    """on the electrodes of a dea under voltage [nC]; else None"""
+    capacitance_pF: float | None = None
+    """between them [pF]"""
+    field_kV_mm: float | None = None
+    """the largest true field in its layer [kV/mm]"""
+    end_tension_N: float | None = None
+    """of a cable that rubs, at its far end [N]; `load` is that at the motor"""
+    sticking: float | None = None
+    """the share of its friction in which it sticks [-]"""
+
+    def _load_of(self, kind: str, what: str) -> float:
+        if self.kind != kind:
+            raise AttributeError(f"actuator {self.name!r} is a {self.kind}: it has no {what}")
+        if self.load is None:
+            why = "its area is controlled" if what == "voltage" else "only the physical formulation knows it"
+            raise AttributeError(f"actuator {self.name!r} has no {what}: {why}")
+        return self.load
+
+    @property
+    def pressure_kPa(self) -> float:
+        """Gauge pressure in the chamber [kPa]; physical formulation."""
+        return self._load_of("pneumatic", "pressure")
+
+    @property
+    def tension_N(self) -> float:
+        """Tension of the cable [N]; physical formulation."""
+        return self._load_of("cable", "tension")
+
+    @property
+    def voltage_kV(self) -> float:
+        """Voltage of the dea [kV]; physical formulation, `control: voltage`."""
+        return self._load_of("dea", "voltage")
+
+    @property
+    def volume_mm3(self) -> float:
+        """Volume of the chamber [mm^3]."""
+        self._is("pneumatic", "volume")
+        return self.measure
+
+    @property
+    def length_mm(self) -> float:
+        """Length of the cable's path [mm]."""
+        self._is("cable", "length")
+        return self.measure
+
+    @property
+    def area_mm2(self) -> float:
+        """Mean area of the membrane [mm^2]."""
+        self._is("dea", "area")
+        return self.measure
+
+    def _is(self, kind: str, what: str) -> None:
+        if self.kind != kind:
+            raise AttributeError(f"actuator {self.name!r} is a {self.kind}: it has no {what}")
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """What an entry of `fixed` does to the robot; physical formulation."""
+
+    name: str
+    force_N: Floats
+    """(3,) that the support exerts on the robot [N]"""
+    moment_Nmm: Floats
+    """(3,) about the centre [N mm]"""
+    center_mm: Floats
+    """(3,) mean of the vertices that it holds [mm]"""
+
+
+@dataclass(frozen=True)
+class MagneticLoad:
+    """What magnetic fields do to the robot."""
+
+    force_N: Floats
+    """(3,) [N]"""
+    moment_Nmm: Floats
+    """(3,) about `center_mm` [N mm]"""
+    center_mm: Floats
+    """(3,) of the volume of what is magnetic, where it is [mm]"""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What presses on a part of a robot; physical formulation."""
+
+    on: str
+    """'robot', or a region that `contact` names"""
+    by: str
+    """an obstacle, another such part, or the part itself"""
+    force_N: Floats
+    """(3,) that it exerts [N]; of a part on itself 0"""
+    moment_Nmm: Floats
+    """(3,) about the centre [N mm]"""
+    center_mm: Floats
+    """(3,) mean of the places that are pressed, by their normal force [mm]"""
+    normal_N: float
+    """sum of the magnitudes of all normal forces [N]"""
+    pressure_kPa: float
+    """the largest on a vertex [kPa]"""
+    area_mm2: float
+    """[mm^2]"""
+    gap_mm: float
+    """the least [mm]"""
+
+
+@dataclass(frozen=True)
+class SelfOverlap:
+    """How far a shape passes through itself."""
+
+    points: int
+    """of its surface that lie inside it; 0: none"""
+    deepest_mm: float
+    at_mm: Floats
+    """(3,) where the deepest one is [mm]"""
+
+
+@dataclass(frozen=True)
+class Deformation:
+    """Per element, tetrahedra first, then prisms."""
+
+    volume_ratio: Floats
+    """(e,) det F [-]; <= 0: inverted"""
+    strain: Floats
+    """(e, 3) principal stretches minus 1, descending [-]"""
+    von_mises_MPa: Floats
+    """(e,) physical formulation; else empty"""
+    principal_stress_MPa: Floats
+    """(e, 3) descending, tension positive; physical formulation; else empty"""
+
+    @property
+    def stretches(self) -> Floats:
+        """(e, 3) principal stretches, descending [-]."""
+        return self.strain + 1
+
+    @property
+    def inverted(self) -> NDArray[np.bool_]:
+        """(e,) elements that are turned inside out."""
+        return self.volume_ratio <= 0

@@ -1,0 +1,123 @@
+"""Numbers of a robot from its measured poses: docs/poses.md."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from .. import _core
+from .._description import yaml_text
+from .._files import PathLike
+from ..robot import Robot, load
+from ..table import Table
+from .fits import Fit
+
+
+class RobotFit(Fit[_core.RobotCalibration]):
+    """Numbers of a robot, and how they were found from its poses."""
+
+    def __init__(self, core: _core.RobotCalibration, scene: str, changes: Mapping[str, object]) -> None:
+        super().__init__(core)
+        self._scene = scene
+        self._changes = dict(changes)
+
+    @property
+    def converged(self) -> bool:
+        """Was a minimum found, with an equilibrium in every pose?"""
+        return bool(self.report["status"] == "converged")
+
+    @property
+    def values(self) -> dict[str, float]:
+        """By name, in the scene's units; of base and camera [mm, degrees]."""
+        return {number["name"]: number["value"] for number in self.report["numbers"]}
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation by name; NaN: the poses do not tell it."""
+        known = {number["name"]: number["deviation"] for number in self.report["numbers"]}
+        return {name: np.nan if deviation is None else deviation for name, deviation in known.items()}
+
+    @property
+    def readings(self) -> Table:
+        """Measured, computed and their difference, a row each."""
+        return Table(self._core.readings)
+
+    def robot(self) -> Robot:
+        """The scene's robot with the fitted numbers; base and camera are of the measurements, not of it."""
+        own = {name: value for name, value in self.values.items() if name.split(".")[0] not in ("base", "camera")}
+        return load(self._scene, changes={**self._changes, **own})
+
+
+def _fitted_number(name: str, value: float | Sequence[float] | str | None) -> str:
+    if value is None:
+        return name
+    if isinstance(value, str):
+        return f"{name}={value}"
+    values = value if isinstance(value, Sequence) else [value]
+    return f"{name}=" + ",".join(repr(float(each)) for each in values)
+
+
+def robot(
+    scene: PathLike,
+    poses: PathLike,
+    *,
+    fit: Mapping[str, float | Sequence[float] | str | None] | Sequence[str] = (),
+    changes: Mapping[str, object] | None = None,
+    loss: str = "squares",
+    deviation_mm: float | None = None,
+    deviation_kPa: float | None = None,
+    deviation_N: float | None = None,
+    deviation_length_mm: float | None = None,
+    deviation_volume_mm3: float | None = None,
+    deviation_force_N: float | None = None,
+    keep: int = 0,
+    ordered: bool = False,
+    threads: int = 0,
+    progress: Callable[[int, float], object] | None = None,
+) -> RobotFit:
+    """Numbers of a robot from its measured poses, by Levenberg's and Marquardt's method through equilibria.
+
+    scene      YAML, physical formulation
+    poses      CSV: commands as in a path, then tip_x_mm, ... of markers, air_pressure_kPa, tendon_tension_N, or
+               air_volume_mm3, tendon_length_mm where loads are commanded, base_force_x_N, ... of supports on the robot;
+               empty cells were not read
+    fit        by path: a start, (start, low, high), "mean+-deviation" (known before) or None, the scene's; or texts as
+               of --fit; base.x, base.rx, ...: where the robot stands in the measuring frame [mm, degrees]; camera.x, ...:
+               the same, gravity turns along. Empty: the poses are foretold as the scene is
+    changes    of the scene, by path
+    loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
+    deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3], force [N] as read; None:
+               by what is left
+    keep       poses that are not fitted to but foretold, spread evenly
+    ordered    where something rubs: each pose goes on from the one before, the first from rest; else each from rest
+    threads    poses side by side; 0: as many as the machine has
+    progress   called with the iteration and the root mean square of the markers [mm], now and then
+    raises     InvalidInput naming the file, line and column, or the number
+    """
+    if loss not in ("squares", "huber", "cauchy"):
+        raise ValueError(f"loss must be 'squares', 'huber' or 'cauchy', not {loss!r}")
+    deviations = {
+        "deviation_mm": deviation_mm,
+        "deviation_kPa": deviation_kPa,
+        "deviation_N": deviation_N,
+        "deviation_length_mm": deviation_length_mm,
+        "deviation_volume_mm3": deviation_volume_mm3,
+        "deviation_force_N": deviation_force_N,
+    }
+    for name, given in deviations.items():
+        if given is not None and not given > 0:
+            raise ValueError(f"{name} must be greater than 0, not {given}")
+    if keep < 0:
+        raise ValueError(f"keep must be at least 0, not {keep}")
+    task = _core.PosesTask()
+    task.scene, task.poses, task.loss = os.fspath(scene), os.fspath(poses), loss
+    if isinstance(fit, Mapping):
+        task.numbers = [_fitted_number(name, value) for name, value in fit.items()]
+    else:
+        task.numbers = list(fit)
+    task.changes = [f"{path}={yaml_text(value)}" for path, value in (changes or {}).items()]
+    task.deviations = [given or 0 for given in deviations.values()]
+    task.keep, task.threads, task.ordered = keep, threads, ordered
+    return RobotFit(_core.calibrate_robot(task, progress), task.scene, changes or {})

@@ -1,0 +1,141 @@
+"""How equilibria are solved, and what is told meanwhile."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import asdict, astuple, dataclass, replace
+from functools import lru_cache, wraps
+from typing import Any, ClassVar, NamedTuple, ParamSpec, TypeVar
+
+from . import _core
+from ._warning import warn
+
+__all__ = ["Progress", "Solver"]
+
+
+@dataclass(frozen=True)
+class Solver:
+    """How equilibria are solved: `solver=` of whatever solves."""
+
+    method: str = "newton"
+    """'newton', or for target shapes 'local-global': Algorithm 1 of Fang et al. 2020"""
+    tolerance_mm: float | None = None
+    """largest move of a vertex at which it stops [mm]; None: 8e-8 of the robot's size"""
+    max_iterations: int = 50000
+    """>= 1"""
+    anderson: int = 6
+    """local-global: earlier steps that are combined, 0 to 20"""
+    threads: int = 0
+    """0: as many as the machine has and the robot is worth; of workspaces and maps equilibria solved at once, each on one
+    thread; the result is the same"""
+    stable: bool = False
+    """physical: leave an unstable equilibrium along its lowest mode for a stable one"""
+    as_published: bool = False
+    """local-global, of `solve` and `path`: stop where the program of the paper's authors does, without acceleration: from
+    the tenth iteration on when no marker moves by 0.032 mm; no equilibrium"""
+    _options: ClassVar[_core.SolveOptions]  # of each value, but no field
+
+    def __post_init__(self) -> None:
+        if self.tolerance_mm is not None and not self.tolerance_mm > 0:
+            raise ValueError(f"the tolerance must be a length > 0 in mm, not {self.tolerance_mm}")
+        method, tolerance_mm, *others = astuple(self)
+        object.__setattr__(self, "_options", _core.SolveOptions(method, tolerance_mm or 0.0, *others))
+
+    def __repr__(self) -> str:
+        """What is not as usual."""
+        told = [f"{name}={value!r}" for name, value in asdict(self).items() if value != getattr(Solver, name)]
+        return f"Solver({', '.join(told)})"
+
+    def __reduce__(self) -> tuple[type[Solver], tuple[Any, ...]]:
+        return Solver, astuple(self)
+
+
+USUAL = Solver()
+
+
+class Progress(NamedTuple):
+    """What a long solve tells while it runs."""
+
+    iteration: int
+    step_mm: float
+    """largest move of a vertex in the last iteration [mm]; of inverse kinematics the least error so far [mm]"""
+    tolerance_mm: float
+    """the step, or error, at which it stops [mm]"""
+    share: float
+    """of the way to what was asked for [-]; < 0: not known"""
+
+
+ProgressFunction = Callable[[Progress], object]
+
+
+def telling(progress: ProgressFunction) -> Callable[[int, float, float, float], bool]:
+    def told(iteration: int, step_mm: float, tolerance_mm: float, share: float) -> bool:
+        return progress(Progress(iteration, step_mm, tolerance_mm, share)) is not False
+
+    return told
+
+
+_named = lru_cache(maxsize=8)(Solver)
+
+
+def value_of(solver: Solver | str) -> Solver:
+    """A method's name stands for the method as usual."""
+    if isinstance(solver, Solver):
+        return solver
+    if not isinstance(solver, str):
+        raise TypeError(f"solver must be a softkin.Solver or a method's name, not {type(solver).__name__}")
+    return _named(solver)
+
+
+def options_of(
+    solver: Solver | str,
+    *,
+    published: bool = False,
+    elapsed_s: float | None = None,
+    beyond: float | None = None,
+    budget_s: float | None = None,
+) -> _core.SolveOptions:
+    """With what is asked of one call; published: may it stop as published?"""
+    options = (solver if type(solver) is Solver else value_of(solver))._options
+    if options.as_published and not published:
+        raise ValueError("as_published is for solve and path")
+    if elapsed_s is None and beyond is None and budget_s is None:
+        return options
+    if beyond is not None and not beyond > 0:
+        raise ValueError(f"beyond must be a volume or length > 0 over that at rest, not {beyond}")
+    return options.of_call(elapsed_s, beyond, budget_s)
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+OLD = frozenset(("tolerance_mm", "max_iterations", "anderson", "threads", "stable", "as_published"))
+OLD_OF_SEARCH = OLD - {"tolerance_mm"} | {"step_tolerance_mm"}
+"""where tolerance_mm is that of goals"""
+
+
+def with_old(call: str, solver: Solver | str, names: frozenset[str], keywords: dict[str, Any]) -> Solver:
+    """What Solver has now was a keyword each in 0.1: such are taken out of the keywords, with a warning."""
+    old = sorted(names & keywords.keys())
+    result = replace(value_of(solver), **{name.removeprefix("step_"): keywords.pop(name) for name in old})
+    warn(
+        f"{', '.join(f'{name}=' for name in old)} of {call} is deprecated and goes with softkin 0.2: write "
+        f"solver=softkin.{result!r}",
+        DeprecationWarning,
+    )
+    return result
+
+
+def takes_old(function: Callable[P, R]) -> Callable[P, R]:
+    """Takes old keywords, in 0.3 us, which solve and inverse spare a control loop."""
+    names = OLD_OF_SEARCH if "tolerance_mm" in inspect.signature(function).parameters else OLD
+
+    @wraps(function)
+    def taking(*args: P.args, **keywords: P.kwargs) -> R:
+        if not names.isdisjoint(keywords):
+            given: dict[str, Any] = {**keywords}
+            given["solver"] = with_old(function.__name__, given.get("solver", USUAL), names, given)
+            return function(*args, **given)
+        return function(*args, **keywords)
+
+    return taking
