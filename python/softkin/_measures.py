@@ -115,6 +115,25 @@ class MagneticLoad:
 
 
 @dataclass(frozen=True)
+class Fibre:
+    """What a thread in the body carries."""
+
+    name: str
+    mean_N: float
+    """tension along it, the mean [N]; below 0: pressed"""
+    largest_N: float
+    """the largest [N], at `at_mm`"""
+    least_N: float
+    """the least [N]"""
+    at_mm: Floats
+    """(3,) where the tension is largest [mm]"""
+    stretch: float
+    """length over that at rest [-]"""
+    slack: float
+    """share of its length that carries nothing [-]"""
+
+
+@dataclass(frozen=True)
 class Contact:
     """What presses on a part of a robot; physical formulation."""
 

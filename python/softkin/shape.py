@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _core, neighbours
 from ._arrays import Floats
 from ._core import Shape as CoreShape
-from ._measures import ActuatorState, Contact, Deformation, MagneticLoad, Reaction, SelfOverlap
+from ._measures import ActuatorState, Contact, Deformation, Fibre, MagneticLoad, Reaction, SelfOverlap
 from ._of_robot import parsed
 from ._saving import Saving
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     import meshio
     import pyvista
 
-__all__ = ["ActuatorState", "Contact", "Deformation", "MagneticLoad", "NotConverged", "Reaction", "SelfOverlap"]
-__all__ += ["Shape", "Views"]
+__all__ = ["ActuatorState", "Contact", "Deformation", "Fibre", "MagneticLoad", "NotConverged", "Reaction"]
+__all__ += ["SelfOverlap", "Shape", "Views"]
 
 _LOAD_UNITS = {"pneumatic": "kPa", "cable": "N", "dea": "kV"}
 
@@ -168,6 +168,14 @@ class Shape(Saving[CoreShape]):
         """What magnetic fields do to the robot; None where there is none."""
         load = self._core.magnetic_load
         return None if load is None else MagneticLoad(*(np.array(vector) for vector in load))
+
+    @cached_property
+    def fibres(self) -> dict[str, Fibre]:
+        """By name; empty without `fibres` in the scene, and where a map answered."""
+        return {
+            name: Fibre(name, *forces, np.array(at), stretch, slack)
+            for name, forces, at, stretch, slack in self._core.fibres
+        }
 
     @property
     def vertex_reactions(self) -> Floats:

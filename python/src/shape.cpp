@@ -112,6 +112,18 @@ void bind_fields(nb::class_<Shape>& type) {
           },
           "Force [N], moment [N mm] and centre [mm] of magnetic fields; None where there is none.")
       .def_prop_ro(
+          "fibres",
+          [](const Shape& s) {
+            std::vector<std::tuple<std::string, std::array<double, 3>, std::array<double, 3>, double, double>> all;
+            for (std::size_t f = 0; f < s.record().fibres.size(); ++f) {
+              const FibreForces& of = s.record().fibres[f];
+              all.emplace_back(s.model().fibres[f].name, std::array{of.mean_N, of.largest_N, of.least_N},
+                               array_of(of.where), of.stretch, of.slack);
+            }
+            return all;
+          },
+          "Name, mean, largest and least tension [N], where the largest is [mm], stretch and slack share of each.")
+      .def_prop_ro(
           "contacts",
           [](const Shape& s) {
             using Three = std::array<double, 3>;

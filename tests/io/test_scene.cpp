@@ -239,6 +239,40 @@ TEST(Scene, Tractions) {
   EXPECT_EQ(water.kilopascals, Vec3(0, 0, 0));
 }
 
+TEST(Scene, Fibres) {
+  SceneFiles files = fake_files();
+  files.way = [](const std::filesystem::path& path) {
+    EXPECT_EQ(path.filename(), "way.csv");
+    return Points(Points::Constant(2, 3, 7));
+  };
+  const RobotSpec spec = parse_scene(
+      "softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh}\nfibres:\n"
+      "  - {name: belly, points: [[0, 0, 0], [1, 2, 3]], stiffness: 40, tension_only: true, region: skin}\n"
+      "  - {name: coil, helix: {start: [0, 0, 1], axis: [0, 0, 2], radius: 0.8, pitch: 0.2, turns: 3.5, handed: left,\n"
+      "      degrees: 90}, inextensible: true}\n"
+      "  - {name: drawn, file: way.csv, stiffness: 5}\n",
+      "s.yaml", files);
+  ASSERT_EQ(spec.fibres.size(), 3u);
+  const FibreSpec &belly = spec.fibres[0], &coil = spec.fibres[1], &drawn = spec.fibres[2];
+  EXPECT_EQ(belly.name, "belly");
+  EXPECT_EQ(belly.origin.line, 5u);
+  EXPECT_EQ(belly.stiffness_N, 40);
+  EXPECT_TRUE(belly.tension_only);
+  EXPECT_EQ(belly.region, "skin");
+  EXPECT_LT((std::get<std::vector<Vec3>>(belly.way)[1] - Vec3(10, 20, 30)).norm(), 1e-9);
+  const auto& helix = std::get<Helix>(coil.way);
+  EXPECT_FALSE(coil.stiffness_N);
+  EXPECT_FALSE(coil.tension_only);
+  EXPECT_LT((helix.start - Vec3(0, 0, 10)).norm(), 1e-9);
+  EXPECT_LT((helix.first - Vec3(0, 1, 0)).norm(), 1e-9);
+  EXPECT_NEAR(helix.radius, 8, 1e-9);
+  EXPECT_NEAR(helix.pitch, 2, 1e-9);
+  EXPECT_EQ(helix.turns, 3.5);
+  EXPECT_TRUE(helix.left_handed);
+  EXPECT_EQ(std::get<std::vector<Vec3>>(drawn.way).size(), 2u);
+  EXPECT_EQ(std::get<std::vector<Vec3>>(drawn.way)[0], Vec3(7, 7, 7));
+}
+
 TEST(Scene, EveryLawByItsName) {
   const std::pair<const char*, Law> laws[] = {
       {"law: st-venant-kirchhoff, youngs_modulus: 1, poisson_ratio: 0.3", Law::st_venant_kirchhoff},
@@ -436,7 +470,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 7u);
+  ASSERT_EQ(specs.size(), 8u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -449,7 +483,8 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[5].actuators.at(0).friction, 0.15);
   EXPECT_EQ(specs[5].actuators[0].sheath_friction, 0.05);
   EXPECT_EQ(specs[5].actuators[0].sheath_turns_degrees, 270);
-  EXPECT_EQ(specs[6].contact.value().obstacles.size(), 2u);
+  EXPECT_EQ(specs[6].fibres.size(), 2u);
+  EXPECT_EQ(specs[7].contact.value().obstacles.size(), 2u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

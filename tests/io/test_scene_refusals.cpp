@@ -43,6 +43,32 @@ TEST(SceneRefusals, Tractions) {
   });
 }
 
+TEST(SceneRefusals, Fibres) {
+  expect_all_refused({
+      {"fibres: [{points: [[0, 0, 0], [1, 0, 0]], stiffness: 1}]\n", "'name'", 1},
+      {"fibres: [{name: a, stiffness: 1}]\n", "'points', 'helix', 'file'", 1},
+      {"fibres: [{name: a, points: [[0, 0, 0], [1, 0, 0]]}]\n", "'stiffness', 'inextensible'", 1},
+      {"fibres: [{name: a, points: [[0, 0, 0], [1, 0, 0]], stiffness: 0}]\n", "greater than 0", 1},
+      {"fibres: [{name: a, points: [[0, 0, 0], [1, 0, 0]], inextensible: false}]\n", "give the 'stiffness'", 1},
+      {"fibres: [{name: a, points: [[0, 0, 0], [1, 0, 0]], stiffness: 1, tension_only: yes}]\n", "'false', 'true'", 1},
+      {"fibres: [{name: a, points: [[0, 0], [1, 0, 0]], stiffness: 1}]\n", "entry 1 of 'points'", 1},
+      {"fibres: [{name: a, file: no.csv, stiffness: 1}]\n", "no.csv", 1},
+      {"fibres:\n  - {name: a, helix: {start: [0, 0, 0], axis: [0, 0, 0], radius: 1, pitch: 1, turns: 1}, stiffness: "
+       "1}\n",
+       "must not be zero", 2},
+      {"fibres:\n  - {name: a, helix: {start: [0, 0, 0], axis: [0, 0, 1], radius: 1, pitch: -1, turns: 1}, stiffness: "
+       "1}\n",
+       "'pitch' must be 0 or more", 2},
+      {"fibres:\n  - {name: a, helix: {start: [0, 0, 0], axis: [0, 0, 1], radius: 1, pitch: 1, turns: 1, handed: "
+       "both},\n"
+       "     stiffness: 1}\n",
+       "'right', 'left'", 2},
+      {"fibres:\n  - {name: a, points: [[0, 0, 0], [1, 0, 0]], stiffness: 1}\n"
+       "  - {name: a, points: [[0, 0, 0], [1, 0, 0]], stiffness: 1}\n",
+       "'a'", 3},
+  });
+}
+
 TEST(SceneRefusals, WholeTexts) {
   const std::vector<Refusal> refusals{
       {"", "the scene is empty", 1},

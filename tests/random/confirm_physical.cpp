@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -8,42 +7,25 @@
 #include "random/commanded_fields.hpp"
 #include "random/confirm.hpp"
 #include "random/confirm_floor.hpp"
+#include "random/confirm_loads.hpp"
 #include "random/reference_elements.hpp"
 
 namespace softkin::random_robots {
 
 namespace {
 
-constexpr Real rounding_unit = std::numeric_limits<double>::epsilon();
 /// Of the largest force at a vertex; the solver's own criterion is a step.
 constexpr Real balanced = 1e-5L;
 /// Of what the solver's tolerance stands for: a robot that is only carried elsewhere has no force to compare with.
 constexpr Real share_of_tolerance = 1e-3L;
 /// Of the volume or length asked for.
 constexpr Real met = 1e-8L;
-/// Units in the last place that rounding may add up to.
-constexpr Real sums = 16;
 
 RealPoints nodes_at(const Points& positions, const Index* nodes, int count) {
   RealPoints at(count, 3);
   for (int i = 0; i < count; ++i) at.row(i) = positions.row(nodes[i]).cast<Real>();
   return at;
 }
-
-/// Forces at every vertex, summed over whatever acts there.
-struct Forces {
-  explicit Forces(Index vertices)
-      : sum(RealPoints::Zero(vertices, 3)), size(vertices, 0), stiffness(vertices, 0), rounding(vertices, 0) {}
-
-  RealPoints sum;                               // [N]; 0: balance
-  std::vector<Real> size, stiffness, rounding;  // [N], [N/mm], [N]: see ElementPulls
-
-  void add(Index v, const RealVec3& force, Real blur) {
-    sum.row(v) += force.transpose();
-    size[v] += force.norm();
-    rounding[v] += blur + rounding_unit * force.norm();
-  }
-};
 
 LayerDrive drive_of(const Model& model, const State& state, const ElementRole& role) {
   constexpr Real vacuum = 8.8541878128e-6L;  // MPa per (kV/mm)^2
@@ -320,37 +302,6 @@ void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
   for (std::size_t e = 0; e < model.prisms.size(); ++e) add(model.tetrahedra.size() + e, model.prisms[e].data(), 6);
 }
 
-/// Loads that follow the surface: the turn of a place by the singular vectors of what deforms surface and normal.
-void add_tractions(const Model& model, const State& state, Forces& forces) {
-  using Real2 = Eigen::Matrix<Real, 3, 2>;
-  using Real3 = Eigen::Matrix<Real, 3, 3>;
-  for (const FollowingTraction& traction : model.tractions)
-    for (const LoadedFace& loaded : traction.faces) {
-      const std::vector<Index> nodes = nodes_of(loaded.face);
-      for (const TrianglePoint& point : triangle_points(nodes.size())) {
-        Real2 rest = Real2::Zero(), now = Real2::Zero();
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-          const auto k = static_cast<Eigen::Index>(i);
-          const Eigen::Matrix<Real, 1, 2> along(point.along_u[k], point.along_v[k]);
-          rest += model.rest.row(nodes[i]).transpose().cast<Real>() * along;
-          now += state.positions.row(nodes[i]).transpose().cast<Real>() * along;
-        }
-        const RealVec3 normal_at_rest = rest.col(0).cross(rest.col(1)), normal = now.col(0).cross(now.col(1));
-        Real3 from, to;
-        from << rest, normal_at_rest.normalized();
-        to << now, normal.normalized();
-        const Eigen::JacobiSVD<Real3> parts(to * from.inverse(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const Real3 turn = parts.matrixU() * parts.matrixV().transpose();
-        const RealVec3 force = static_cast<Real>(state.share * loaded.share * point.weight) *
-                               (normal.norm() * (turn * traction.traction_MPa.cast<Real>()) -
-                                static_cast<Real>(traction.pressure_MPa) * normal);
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-          forces.add(nodes[i], -static_cast<Real>(point.shape[static_cast<Eigen::Index>(i)]) * force,
-                     sums * rounding_unit * force.norm());
-      }
-    }
-}
-
 void check_places(const Model& model, const State& state, Confirmation& out) {
   const double far = std::max(model.rest.cwiseAbs().maxCoeff(), state.positions.cwiseAbs().maxCoeff());
   std::vector<bool> of_rigid(model.used.size());
@@ -448,6 +399,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   add_actuators(model, found, forces, out);
   add_magnets(model, found, forces);
   add_tractions(model, state, forces);
+  add_fibres(model, state, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)
     forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);
   if (!forces.sum.allFinite()) {

@@ -78,6 +78,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_turns(m);
   make_tractions(m);
   make_friction(m);
+  make_fibres(m);
   spoil_number(m);
   return std::move(m.made);
 }

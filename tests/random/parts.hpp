@@ -70,6 +70,8 @@ void make_weights(Making& m);
 /// Some supports turn, by angles that the commands say.
 void make_turns(Making& m);
 void make_tractions(Making& m);
+/// Threads through some robots and around them, before what is spoilt.
+void make_fibres(Making& m);
 /// Some cables rub, in sheaths too.
 void make_friction(Making& m);
 

@@ -7,7 +7,7 @@ namespace {
 /// Draws of their own, so that robots of the same seed are otherwise what they were.
 constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72,
                         draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73,
-                        draws_of_tractions = 0x7472616374;
+                        draws_of_tractions = 0x7472616374, draws_of_fibres = 0x666962726573;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -71,6 +71,32 @@ void make_tractions(Making& m) {
     else
       spec.kilopascals = kilopascals * draw.offset();
     m.made.spec.tractions.push_back(std::move(spec));
+  }
+}
+
+void make_fibres(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_fibres);
+  if (!draw.chance(m.physical ? 0.1 : 0.01) || m.mesh().vertices.rows() == 0) return;
+  const Vec3 low = m.mesh().vertices.colwise().minCoeff().transpose(),
+             size = m.mesh().vertices.colwise().maxCoeff().transpose() - low;
+  const auto place = [&](double x, double y, double z) { return Vec3(low + size.cwiseProduct(Vec3(x, y, z))); };
+  for (int i = draw.whole(1, 2); i > 0; --i) {
+    FibreSpec fibre;
+    fibre.name = "fibre" + std::to_string(i);
+    if (draw.chance(0.4))
+      fibre.way = Helix{.start = place(draw.between(0, 0.3), 0.5, 0.5),
+                        .axis = Vec3::UnitX(),
+                        .first = Vec3(0, draw.between(-1, 1), 1),
+                        .radius = draw.between(0.2, 0.5) * std::min(size[1], size[2]),
+                        .pitch = draw.between(0.05, 0.4) * size[0],
+                        .turns = draw.between(0.3, 2),
+                        .left_handed = draw.chance(0.5)};
+    else
+      fibre.way =
+          std::vector<Vec3>{place(draw.unit(), draw.unit(), draw.unit()), place(draw.unit(), draw.unit(), draw.unit())};
+    if (draw.chance(0.9)) fibre.stiffness_N = draw.log_between(1e-3, 30) * m.modulus * size[1] * size[2];
+    fibre.tension_only = draw.chance(0.4);
+    m.made.spec.fibres.push_back(std::move(fibre));
   }
 }
 

@@ -15,7 +15,7 @@ namespace {
 using namespace testing;
 using physical::Term;
 
-constexpr int all_terms = 7;
+constexpr int all_terms = 8;
 
 /// Tetrahedra and prisms of two materials, a layer that is stretched, another one under voltage.
 RobotSpec layered_robot() {
@@ -60,6 +60,23 @@ RobotSpec loaded_robot(bool quadratic) {
   spec.tractions = {{"wind", {std::string("x_high"), {}}, true, {30, -20, 10}, 0},
                     {"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 25},
                     {"air", {std::string("z_high"), {}}, true, {0, 0, 0}, -15}};
+  return spec;
+}
+
+/// Threads across tetrahedra of either order and prisms.
+RobotSpec threaded_robot(bool quadratic) {
+  RobotSpec spec = quadratic ? physical_robot(block_mesh({2, 1, 1}, {20, 8, 6})) : layered_robot();
+  spec.quadratic = quadratic;
+  const Vec3 size = spec.mesh.vertices.colwise().maxCoeff().transpose();
+  FibreSpec thread;
+  thread.name = "thread";
+  thread.way = std::vector<Vec3>{0.02 * size, Vec3(0.9 * size.x(), 0.7 * size.y(), 0.95 * size.z())};
+  thread.stiffness_N = 3;
+  FibreSpec slack = thread;
+  slack.name = "slack";
+  slack.tension_only = true;
+  slack.way = std::vector<Vec3>{Vec3(0.1 * size.x(), 0.9 * size.y(), 0.1 * size.z()), 0.8 * size, 0.5 * size};
+  spec.fibres = {thread, slack};
   return spec;
 }
 
@@ -169,7 +186,8 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
     EXPECT_LE((change - changed).norm(), 2e-4 * change.norm() + 1e-12 * exact.norm()) << what;
     const std::array<double, 4> sizes{exact.norm(), stiff.norm(), by_commands, change.norm()};
     const bool contact = count > 4 && t == count - 1 && sample.system.contact();
-    auto& of_term = seen[contact ? all_terms - 1 : !term.conservative() ? all_terms - 2 : t];
+    const bool fibres = t == 4 && !sample.model.fibres.empty();
+    auto& of_term = seen[contact ? all_terms - 1 : !term.conservative() ? all_terms - 2 : fibres ? all_terms - 3 : t];
     for (std::size_t i = 0; i < sizes.size(); ++i) of_term[i] = std::max(of_term[i], sizes[i]);
   }
 }
@@ -184,16 +202,19 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
     for (const bool quadratic : {false, true})
       expect_derivatives(magnetic_robot(magnetisation, quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
   for (const bool quadratic : {false, true}) expect_derivatives(loaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
+  for (const bool quadratic : {false, true})
+    expect_derivatives(threaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-5, seen);
   expect_derivatives(body_on_floor({10, 10, 10}, 0.3), 1e-3, {0, 0, -0.03}, 2e-8, seen);
   for (const bool quadratic : {false, true})
     expect_derivatives(block_on_rough_floor(0.3, {0.2, 0, -0.03}, 2, quadratic), 1e-3, {0.01, 0, -0.03}, 2e-8, seen);
-  // body, dead and fading loads, what is done to bodies, magnets, tractions, contact: gradient, stiffness, by commands,
-  // by shares
+  // body, dead and fading loads, what is done to bodies, magnets, fibres, tractions, contact: gradient, stiffness, by
+  // commands, by shares
   const std::array<std::array<bool, 4>, all_terms> has{{{true, true, true, true},
                                                         {true, false, false, true},
                                                         {true, false, false, true},
                                                         {true, true, true, true},
                                                         {true, true, true, true},
+                                                        {true, true, false, false},
                                                         {true, true, false, true},
                                                         {true, true, false, false}}};
   for (std::size_t t = 0; t < has.size(); ++t)

@@ -129,6 +129,18 @@ class Joiner {
     if (marker.carrier) all.carrier = full(*marker.carrier);
     return all;
   }
+  [[nodiscard]] FibreSpec full(FibreSpec fibre) const {
+    fibre.name = placed_.name + "." + fibre.name;
+    fibre.robot = placed_.name;
+    if (fibre.region) fibre.region = full(*fibre.region);
+    if (auto* helix = std::get_if<Helix>(&fibre.way)) {
+      helix->start = placed_.place(helix->start);
+      for (Vec3* direction : {&helix->axis, &helix->first}) *direction = placed_.place.rotation * *direction;
+    } else {
+      for (Vec3& point : std::get<std::vector<Vec3>>(fibre.way)) point = placed_.place(point);
+    }
+    return fibre;
+  }
   [[nodiscard]] PointRef full(const PointRef& point) const {
     if (const auto* name = std::get_if<std::string>(&point.point)) return {full(*name), point.origin};
     return {placed_.place(std::get<Vec3>(point.point)), point.origin, placed_.name};
@@ -222,6 +234,7 @@ class Joiner {
       traction.kilopascals = placed_.place.rotation * traction.kilopascals;
       all_.tractions.push_back(std::move(traction));
     }
+    for (FibreSpec& fibre : robot_.fibres) all_.fibres.push_back(full(std::move(fibre)));
     for (const MarkerSpec& marker : robot_.markers) all_.markers.push_back(full(marker));
     for (FootSpec& foot : robot_.feet) {
       foot.marker = placed_.name + "." + foot.marker;
@@ -293,6 +306,7 @@ void add_common(RobotSpec& robots, RobotSpec common) {
   append_parts(robots.actuators, common.actuators);
   append_parts(robots.forces, common.forces);
   append_parts(robots.tractions, common.tractions);
+  append_parts(robots.fibres, common.fibres);
   append_parts(robots.markers, common.markers);
   append_parts(robots.feet, common.feet);
   robots.contact = std::move(common.contact);

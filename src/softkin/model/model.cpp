@@ -90,6 +90,8 @@ class Hash {
   void put(const LoadedFace& loaded) { add(loaded.face, loaded.share); }
   void put(const FollowingTraction& t) { add(t.traction_MPa, t.pressure_MPa, t.faces); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
+  void put(const FibrePlace& p) { add(p.vertices, p.slopes, p.length_mm); }
+  void put(const Fibre& f) { add(f.name, f.stiffness_N, f.tension_only, f.places); }
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
   void put(const Marker& marker) {
     add(marker.name, marker.point);
@@ -222,6 +224,7 @@ std::string fingerprint_of(const Model& model) {
   if (model.weights != ElementWeights::printed) hash.add(model.weights);
   if (!model.turns.empty()) hash.add(model.turns);
   if (!model.tractions.empty()) hash.add(model.tractions);
+  if (!model.fibres.empty()) hash.add(model.fibres);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {
     hash.add(model.magnetism->remanence, model.magnetism->sources);

@@ -120,6 +120,24 @@ struct FollowingTraction {
   std::vector<LoadedFace> faces;
 };
 
+/// A place of a thread, of whose length it stands for some.
+struct FibrePlace {
+  std::vector<Index> vertices;  // of the element that carries it along
+  std::vector<double> weights;  // of them: where it is
+  std::vector<double> slopes;   // by its length [1/mm]: stretch = |sum of slope x|
+  double length_mm = 0;         // at rest
+};
+
+/// A thread in the body or on it: per length its energy is E A / 2 (stretch - 1)^2, and nothing below a stretch of 1
+/// where it takes tension only.
+struct Fibre {
+  std::string name;
+  double stiffness_N = 0;  // E A
+  bool tension_only = false;
+  std::vector<FibrePlace> places;    // along it
+  std::vector<EmbeddedPoint> knots;  // along it, for pictures
+};
+
 /// What an element is made of: a material, or the actuator that it belongs to; physical: a material always, and a
 /// prism of a dea has its actuator too.
 struct ElementRole {
@@ -155,6 +173,7 @@ struct Model {
                      // or -1; a rigid region that is held is borne as a whole
   Points dead_load;  // #V by 3 [N]: weight, forces, tractions that follow nothing; physical, else empty
   std::vector<FollowingTraction> tractions;
+  std::vector<Fibre> fibres;
   ContactModel contact;
   std::shared_ptr<const Magnetism> magnetism;  // physical; none: nothing is magnetic
   std::vector<bool> used;                      // per vertex: is it a vertex of an element

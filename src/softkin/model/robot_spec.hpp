@@ -188,6 +188,27 @@ struct TractionSpec {
   double pressure_kPa = 0;    // where it follows: onto the surface, along its normal [kPa]
 };
 
+/// A thread wound about an axis at a constant pitch.
+struct Helix {
+  Vec3 start, axis;          // a point of the axis, level with where the thread begins [mm]; direction, not 0
+  Vec3 first;                // from there to where it begins, a direction that is not along the axis
+  double radius = 0;         // [mm], > 0
+  double pitch = 0;          // along the axis, per turn [mm], >= 0; 0: a ring
+  double turns = 0;          // > 0
+  bool left_handed = false;  // else it turns as a common screw does
+};
+
+/// A thread in the body or on it, which elements carry along wherever it runs.
+struct FibreSpec {
+  std::string name;
+  std::variant<std::vector<Vec3>, Helix> way;  // corners [mm], at least two
+  std::optional<double> stiffness_N;           // E A, > 0; none: it does not stretch
+  bool tension_only = false;                   // slack where it would be pressed
+  std::optional<std::string> region;           // whose elements alone carry it; none: all
+  std::string robot{};                         // of several: whose elements; empty: all
+  Origin origin{};
+};
+
 /// One of several robots that are described as one.
 struct RobotPart {
   std::string name;
@@ -214,6 +235,7 @@ struct RobotSpec {
   Origin gravity_origin;                // no file: none is given
   std::vector<ForceSpec> forces;        // physical
   std::vector<TractionSpec> tractions;  // physical
+  std::vector<FibreSpec> fibres;        // physical
   std::vector<RegionSpec> regions;
   std::vector<MaterialSpec> materials;
   std::vector<RegionRef> voids;

@@ -73,6 +73,10 @@ std::string finding_text(const Model& model, const Finding& finding) {
     case Kind::rubbing:
       return "cable '" + finding.name + "' rubs: of " + number(v[0], 4) + " N at the motor " + number(v[1], 4) +
              " N are left at its far end; it sticks in " + percent(v[2]) + " of its friction";
+    case Kind::fibre:
+      return "fibre '" + finding.name + "' carries " + number(v[0], 4) + " N in the mean, " + number(v[2], 4) + " to " +
+             number(v[1], 4) + " N, the most at " + place_text(&v[3]) + " mm; it is " + number(v[6], 6) +
+             " times as long as at rest" + (v[7] > 0 ? ", and slack in " + percent(v[7]) + " of it" : "");
     case Kind::self_overlap:
       return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
              " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +

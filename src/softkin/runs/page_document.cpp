@@ -126,8 +126,23 @@ bool is_body(const Model& model, std::size_t triangle) {
   return model.contact.parts[part].rank == ContactRank::body;
 }
 
-std::vector<Index> cable_vertices(const Model& model) {
+/// Knots of a thread, not denser than a picture shows.
+std::vector<EmbeddedPoint> drawn_knots(const Model& model, const Fibre& fibre) {
+  const double least = model.diagonal_mm / 250;
+  std::vector<EmbeddedPoint> knots;
+  for (const EmbeddedPoint& knot : fibre.knots)
+    if (knots.empty() || &knot == &fibre.knots.back() ||
+        (knot.at(model.rest) - knots.back().at(model.rest)).norm() > least)
+      knots.push_back(knot);
+  return knots;
+}
+
+/// Of cables and threads.
+std::vector<Index> line_vertices(const Model& model) {
   std::vector<Index> vertices;
+  for (const Fibre& fibre : model.fibres)
+    for (const EmbeddedPoint& point : drawn_knots(model, fibre))
+      vertices.insert(vertices.end(), point.vertices.begin(), point.vertices.end());
   for (const Actuator& actuator : model.actuators)
     if (actuator.kind == ActuatorKind::cable)
       for (const EmbeddedPoint& point : actuator.points)
@@ -155,7 +170,7 @@ PageDocument::PageDocument(const Model& model, std::string command)
   for (const Triangle& t : surface_.triangles) all.insert(all.end(), t.begin(), t.end());
   take(all);
   for (const Index v : vertices_) drawn_.extend(vertex_at(model.rest, v));
-  take(cable_vertices(model));
+  take(line_vertices(model));
   take(body_vertices(model));
 }
 
@@ -247,17 +262,32 @@ Json page_regions(const Model& model, const BodySurface& surface) {
   return page_array("u16", regions);
 }
 
+Json page_line(const std::vector<EmbeddedPoint>& embedded, const Numbering& number) {
+  Json points = Json::array();
+  for (const EmbeddedPoint& point : embedded) {
+    Json vertices = Json::array();
+    for (const Index v : point.vertices) vertices.push_back(number(v));
+    points.push_back({{"vertices", vertices}, {"weights", point.weights}});
+  }
+  return points;
+}
+
+Json page_fibres(const Model& model, const Numbering& number) {
+  Json list = Json::array();
+  for (const Fibre& fibre : model.fibres) {
+    Json points = page_line(drawn_knots(model, fibre), number);
+    for (Json& point : points)
+      for (Json& weight : point["weights"]) weight = std::round(1e4 * weight.get<double>()) / 1e4;
+    list.push_back({{"points", std::move(points)}});
+  }
+  return list;
+}
+
 Json page_cables(const Model& model, const Numbering& number) {
   Json list = Json::array();
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     if (model.actuators[a].kind != ActuatorKind::cable) continue;
-    Json points = Json::array();
-    for (const EmbeddedPoint& point : model.actuators[a].points) {
-      Json vertices = Json::array();
-      for (const Index v : point.vertices) vertices.push_back(number(v));
-      points.push_back({{"vertices", vertices}, {"weights", point.weights}});
-    }
-    list.push_back({{"actuator", a}, {"points", points}});
+    list.push_back({{"actuator", a}, {"points", page_line(model.actuators[a].points, number)}});
   }
   return list;
 }
@@ -312,6 +342,7 @@ std::string PageDocument::text(const MapData* map) const {
                   {"triangles", page_triangles(surface_.triangles, numbering)},
                   {"region", page_regions(model_, surface_)}}},
                 {"cables", page_cables(model_, numbering)}};
+  if (!model_.fibres.empty()) document["fibres"] = page_fibres(model_, numbering);
   add_what_is_around(model_, last_, drawn_, numbering, document);
   document["map"] = map == nullptr ? Json() : page_map(*map, model_, vertices_);
   std::string text = line_of(document);

@@ -81,6 +81,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   record.reactions = reactions(model, found.state.positions, deformation);
   if (deformation.contacts) record.contacts = deformation.contacts->pairs;
   record.magnetic = deformation.magnetic;
+  record.fibres = deformation.fibres;
   return record;
 }
 
@@ -280,6 +281,13 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
       found.push_back({Finding::Kind::rubbing,
                        model.actuators[a].name,
                        {actuator.multiplier, actuator.tendon->end_N, actuator.tendon->sticks}});
+  for (std::size_t f = 0; f < record.fibres.size(); ++f) {
+    const FibreForces& fibre = record.fibres[f];
+    found.push_back({Finding::Kind::fibre,
+                     model.fibres[f].name,
+                     {fibre.mean_N, fibre.largest_N, fibre.least_N, fibre.where.x(), fibre.where.y(), fibre.where.z(),
+                      fibre.stretch, fibre.slack}});
+  }
   add_forces(model, record, found);
   add_implausible(model, record, found);
   if (model.formulation == Formulation::physical && record.status != Status::converged)

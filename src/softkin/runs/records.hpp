@@ -48,6 +48,7 @@ struct StepRecord : SolveReport {
   std::optional<StressExtremes> stress{};             // physical; of a walk none
   std::vector<Reaction> reactions{};                  // the same, per support
   std::optional<MagneticLoad> magnetic{};             // where there is a magnetic field; of a walk none
+  std::vector<FibreForces> fibres{};                  // of each; of a walk none, nor where a map answered
   std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything; of a walk none
   std::optional<WorstPlace> worst{};                  // physical, where status is limit
   std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
@@ -105,6 +106,8 @@ struct Finding {
     charged,              // name: dea; values: charge [nC], capacitance [pF], the largest field in its layer [kV/mm],
                           // thickness [mm] and place [mm] (3) there
     rubbing,              // name: cable; values: tension at the motor and at its far end [N], share that sticks [-]
+    fibre,                // name; values: mean, largest, least tension [N], where the largest is [mm] (3), length over
+                          // that at rest [-], share that is slack [-]
     self_overlap,         // values: points inside, depth of the deepest and its place [mm]
     motionless,           // something is asked for and nothing moves; values: largest displacement [mm]
     far_strained,         // values: greatest strain [-]

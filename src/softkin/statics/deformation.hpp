@@ -30,6 +30,14 @@ struct TendonForces {
   double sticks = 0;  // share of all that could rub which sticks [-]
 };
 
+/// What a thread is like in a shape.
+struct FibreForces {
+  double largest_N = 0, least_N = 0, mean_N = 0;  // tension along it; below 0: pressed
+  Vec3 where = Vec3::Zero();                      // the largest [mm]
+  double stretch = 1;                             // length over that at rest [-]
+  double slack = 0;                               // share of its length that carries nothing [-]
+};
+
 /// Deformation of every element, tetrahedra first, then prisms (their strain at the centre). Of order 2: the least
 /// volume ratio, det F, at the corners and at the four points with which the energy is integrated, and the strain at
 /// that of the four where its magnitude is largest.
@@ -46,6 +54,7 @@ struct ElementDeformation {
   std::optional<ContactForces> contacts;               // where the robot may touch anything
   std::optional<MagneticLoad> magnetic;                // where there is a magnetic field
   std::vector<std::optional<TendonForces>> tendons{};  // per actuator where any cable rubs; of those
+  std::vector<FibreForces> fibres{};                   // of each
 };
 [[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
 

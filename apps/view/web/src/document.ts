@@ -11,6 +11,7 @@ export interface Actuator {
 /** body: it is the center of a rigid body. */
 export interface Marker { name: string; at: number[]; body?: boolean }
 export interface CablePoint { vertices: number[]; weights: number[] }
+export interface Fibre { points: CablePoint[] }
 export interface Cable { actuator: number; points: CablePoint[] }
 /** What the program says of a shape beside its numbers. */
 export interface Told { status: string; remark: string; iterations: number; seconds: number }
@@ -24,6 +25,7 @@ interface PackedSurface { points: Packed; triangles: Packed }
 interface PackedDocument {
   softkin: string; command: string; robot: string; formulation: string; actuators: Actuator[]; markers: Marker[];
   regions: string[]; surface: {rest: Packed; triangles: Packed; region: Packed}; cables: Cable[];
+  fibres?: Fibre[];
   obstacles: PackedSurface[]; bodies?: {triangles: Packed}; steps: PackedStep[]; map: MapDocument | null;
   live?: {path: string; model: string} | null; workspace?: {marker: number; points: Packed; colour?: Packed} | null;
 }

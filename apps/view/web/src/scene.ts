@@ -10,7 +10,7 @@ import {largestField} from './field';
 import {FieldArrow} from './field_arrow';
 import {Handles} from './handles';
 import {
-  bodyColour, CableLine, makeBodies, makeBody, makeCloud, makeGhost, makeGrid, makeObstacle, ofTheme,
+  bodyColour, CarriedLine, makeBodies, makeBody, makeCloud, makeGhost, makeGrid, makeObstacle, ofTheme,
 } from './scene_parts';
 
 export type Part = 'ghost' | 'traces' | 'markers' | 'grid' | 'clear' | 'workspace' | 'around' |
@@ -51,7 +51,8 @@ export class RobotScene {
   private readonly balls: Ball[];
   private readonly rings: Ball[];
   private readonly traces: Thread[];
-  private readonly cables: CableLine[];
+  private readonly cables: CarriedLine[];
+  private readonly fibres: CarriedLine[];
   private readonly target: Ball;
   private readonly gap = threadOf();
   private readonly wanted = threadOf();  // way of waypoints
@@ -84,7 +85,8 @@ export class RobotScene {
     this.target = new Mesh(new SphereGeometry(this.size / 55, 20, 14),
                            new MeshBasicMaterial({wireframe: true, depthTest: false, transparent: true}));
     this.traces = robot.markers.map(threadOf);
-    this.cables = robot.cables.map((cable) => new CableLine(cable));
+    this.cables = robot.cables.map(({points}) => new CarriedLine(points, 3.5));
+    this.fibres = (robot.fibres ?? []).map(({points}) => new CarriedLine(points, 1));
     for (const part of [...this.traces, this.gap, this.wanted, ...this.balls, this.target]) {
       part.frustumCulled = false;
       part.renderOrder = 4;
@@ -102,7 +104,7 @@ export class RobotScene {
     sun.position.set(-0.4, -1, 1.4);
     this.camera.add(sun);
     this.scene.add(this.ambient, this.camera, this.grid, this.body, this.ghost, ...this.around,
-                   ...this.traces, ...this.cables.flatMap(({rim, core}) => [rim, core]), ...this.balls, this.target,
+                   ...this.traces, ...[...this.cables, ...this.fibres].flatMap(({rim, core}) => [rim, core]), ...this.balls, this.target,
                    this.gap, this.wanted, this.handles.group);
     if (this.cloud) this.scene.add(this.cloud);
     if (this.field) this.scene.add(this.field.group);
@@ -131,6 +133,10 @@ export class RobotScene {
     this.scene.background = ofTheme('--stage');
     this.ambient.intensity = document.documentElement.dataset.theme === 'dark' ? 2.2 : 1.3;  // shaded sides are seen
     for (const {rim} of this.cables) rim.material.color = ofTheme('--cable');
+    for (const {rim, core} of this.fibres) {
+      rim.material.color = ofTheme('--paper');
+      core.material.color = ofTheme('--cable');
+    }
     this.ghost.material.color = ofTheme('--ghost');
     for (const ball of [...this.balls, this.target]) ball.material.color = ofTheme('--target');
     for (const ring of this.rings) ring.material.color = ofTheme('--paper');
@@ -214,7 +220,7 @@ export class RobotScene {
     this.keepInSight(positions);
     this.positions.needsUpdate = true;
     this.balls.forEach((ball, i) => { if (markers[i]) ball.position.fromArray(markers[i]); });
-    for (const cable of this.cables) cable.follow(positions);
+    for (const line of [...this.cables, ...this.fibres]) line.follow(positions);
     this.draw();
   }
 

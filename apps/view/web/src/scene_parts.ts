@@ -6,7 +6,7 @@ import {Line2} from 'three/examples/jsm/lines/Line2.js';
 import {LineGeometry} from 'three/examples/jsm/lines/LineGeometry.js';
 import {LineMaterial} from 'three/examples/jsm/lines/LineMaterial.js';
 import {paint, regionColour, scaleOf} from './colours';
-import {type Cable, noRegion, type Obstacle, type RobotDocument, type Workspace} from './document';
+import {type CablePoint, noRegion, type Obstacle, type RobotDocument, type Workspace} from './document';
 
 export const ofTheme = (name: string): Color =>
   new Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
@@ -92,23 +92,26 @@ export function makeCloud({points, colour}: Workspace): Points<BufferGeometry, P
   return cloud;
 }
 
-/** A cable: a line some pixels wide, with a rim that sets it off from what is behind. */
-export class CableLine {
-  readonly rim = this.line(6, 2);
-  readonly core = this.line(3.5, 3);
+function lineOf(width: number, order: number): Line2 {
+  const line = new Line2(new LineGeometry(), new LineMaterial({linewidth: width, depthTest: false, transparent: true}));
+  line.frustumCulled = false;
+  line.renderOrder = order;
+  return line;
+}
 
-  constructor(private readonly cable: Cable) {}
+/** A line some pixels wide through points that the mesh carries along, with a rim that sets it off from what is behind:
+    a cable, or, thinner, a thread. */
+export class CarriedLine {
+  readonly rim: Line2;
+  readonly core: Line2;
 
-  private line(width: number, order: number): Line2 {
-    const material = new LineMaterial({linewidth: width, depthTest: false, transparent: true});
-    const line = new Line2(new LineGeometry(), material);
-    line.frustumCulled = false;
-    line.renderOrder = order;
-    return line;
+  constructor(private readonly points: CablePoint[], width: number) {
+    this.rim = lineOf(width + 2.5, 2);
+    this.core = lineOf(width, 3);
   }
 
   follow(positions: Float32Array): void {
-    const places = this.cable.points.flatMap(({vertices, weights}) => [0, 1, 2].map((k) =>
+    const places = this.points.flatMap(({vertices, weights}) => [0, 1, 2].map((k) =>
       vertices.reduce((sum, v, i) => sum + weights[i] * positions[3 * v + k], 0)));
     for (const line of [this.rim, this.core]) {
       line.geometry.dispose();

@@ -13,8 +13,10 @@ SceneFiles FileContents::kept(bool read) {
       return known.emplace(path.string(), reader(path)).first->second;
     };
   };
-  return {of(meshes, read_mesh),           of(surfaces, read_stl), of(sidecars, read_sidecar),
-          of(curves, read_actuator_curve), of(scenes, read_file),  of(samples, read_field_samples)};
+  return {of(meshes, read_mesh),      of(surfaces, read_stl),
+          of(sidecars, read_sidecar), of(curves, read_actuator_curve),
+          of(scenes, read_file),      of(samples, read_field_samples),
+          of(ways, read_way)};
 }
 
 std::vector<std::filesystem::path> FileContents::paths() const {
@@ -22,7 +24,7 @@ std::vector<std::filesystem::path> FileContents::paths() const {
   const auto add = [&all](const auto& known) {
     for (const auto& [path, content] : known) all.emplace_back(path);
   };
-  add(meshes), add(surfaces), add(sidecars), add(curves), add(scenes), add(samples);
+  add(meshes), add(surfaces), add(sidecars), add(curves), add(scenes), add(samples), add(ways);
   return all;
 }
 

@@ -135,7 +135,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
     if (const Node* node = map.find(key))
       for (const auto& item : list(*node)) read(*item);
   };
-  Names forces, tractions, markers;
+  Names forces, tractions, fibres, markers;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   each("materials", [&](const Node& item) { spec.materials.push_back(read_material(context, item)); });
   spec.formulation = formulation_of(context, map, spec.materials);
@@ -150,6 +150,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
   each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
   each("tractions", [&](const Node& item) { spec.tractions.push_back(read_traction(context, item, tractions)); });
+  each("fibres", [&](const Node& item) { spec.fibres.push_back(read_fibre(context, item, fibres)); });
   each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
   if (const Node* node = map.find("feet"))
     for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
@@ -187,9 +188,10 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
 RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files) {
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
-  const scene::Map map(root, {"softkin", "units",     "mesh",    "meshes", "robots",  "formulation", "weights",
-                              "regions", "materials", "void",    "fixed",  "rigid",   "actuators",   "gravity",
-                              "forces",  "tractions", "markers", "feet",   "contact", "obstacles",   "bodies"});
+  const scene::Map map(root,
+                       {"softkin",   "units",   "mesh",  "meshes",  "robots",    "formulation", "weights", "regions",
+                        "materials", "void",    "fixed", "rigid",   "actuators", "gravity",     "forces",  "tractions",
+                        "fibres",    "markers", "feet",  "contact", "obstacles", "bodies"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);
@@ -222,7 +224,7 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const AskedScene& asked)
   for (const std::string& each : asked.changes) root = scene::changed(root, "--change", each, "");
   return parse_scene(*root, asked.scene,
                      {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve),
-                      noting(read_file), noting(read_field_samples)});
+                      noting(read_file), noting(read_field_samples), noting(read_way)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {

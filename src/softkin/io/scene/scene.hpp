@@ -6,6 +6,7 @@
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/field_samples.hpp>
+#include <softkin/io/table/way.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct SceneFiles {
   std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;
   std::function<std::string(const std::filesystem::path&)> scene = read_file;  // the text of one of `robots`
   std::function<FieldSamples(const std::filesystem::path&)> samples = read_field_samples;
+  std::function<Points(const std::filesystem::path&)> way = read_way;  // corners [mm]
 };
 
 /// As read_scene, from a text in memory. file_name is for messages; the paths given to `files` are relative to its

@@ -155,6 +155,7 @@ Model compile(const RobotSpec& spec) {
   compile_markers(c);
   compile_feet(c);
   compile_loads(c);
+  compile_fibres(c);
   check_anchoring(c.model, c.origin);
   check_hinges(c.model, c.origin);
   doubt_units(c);

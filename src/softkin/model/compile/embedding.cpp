@@ -127,14 +127,18 @@ Embedder::Embedder(const Points& vertices, const std::vector<Tetrahedron>& tetra
   if (!bounds.isEmpty()) tolerance_ = 1e-13 * bounds.diagonal().norm();
 }
 
+Embedder::Nearest Embedder::seen_from(Index element, const Vec3& point) const {
+  Vec3 corners[4];
+  for (int i = 0; i < 4; ++i) corners[i] = vertex_at(vertices_, tetrahedra_[element][i]);
+  const Barycentric weights = barycentric(corners, point);
+  return {element, std::sqrt(squared_distance(corners, weights, point)), weights};
+}
+
 Embedder::Nearest Embedder::nearest(const Vec3& point) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Nearest found{-1, infinity, Barycentric::Constant(-infinity)};
   tree_.visit_near(point, [&](Index item) {
-    Vec3 corners[4];
-    for (int i = 0; i < 4; ++i) corners[i] = vertex_at(vertices_, tetrahedra_[item][i]);
-    const Barycentric w = barycentric(corners, point);
-    const double d = std::sqrt(squared_distance(corners, w, point));
+    const auto [element, d, w] = seen_from(item, point);
     const bool nearer = d < found.distance - tolerance_;
     if (nearer || (d <= found.distance + tolerance_ && w.minCoeff() > found.coordinates.minCoeff()))
       found = {item, d, w};
@@ -146,7 +150,46 @@ Embedder::Nearest Embedder::nearest(const Vec3& point) const {
 EmbeddedPoint Embedder::embed(const Vec3& point) const {
   if (empty()) throw InvalidInput("there is no element to embed a point in");
   if (!point.allFinite()) throw InvalidInput("a point to embed is not finite");
-  auto [element, distance, weights] = nearest(point);
+  return weighted(nearest(point), point);
+}
+
+EmbeddedPoint Embedder::embed_in(Index element, const Vec3& point) const {
+  return weighted(seen_from(element, point), point);
+}
+
+std::vector<Embedder::Piece> Embedder::pieces(const Vec3& from, const Vec3& to) const {
+  constexpr double inside = -1e-9, beyond = 1e-7, outside = 0.125;  // a coordinate; shares of the longest edge
+  std::vector<Piece> pieces;
+  const double length = (to - from).norm();
+  const auto at = [&](double share) -> Vec3 { return from + share * (to - from); };
+  for (double begin = 0; begin < 1;) {
+    Nearest near = nearest(at(begin));
+    const double edge = longest_edge(vertices_, tetrahedra_[near.element]) / length;
+    const double ahead = std::min(1.0, begin + beyond * edge);
+    near = nearest(at(ahead));
+    double end = 1;
+    if (near.coordinates.minCoeff() >= inside) {
+      const Barycentric far = seen_from(near.element, to).coordinates;
+      for (int i = 0; i < 4; ++i)
+        if (far[i] < inside)
+          end = std::min(end, ahead + (1 - ahead) * (near.coordinates[i] - inside) / (near.coordinates[i] - far[i]));
+    } else {
+      end = std::min(1.0, begin + outside * edge);
+      near = nearest(at(0.5 * (begin + end)));
+    }
+    end = std::max(end, ahead);
+    if (1 - end < beyond * edge) end = 1;
+    if (!pieces.empty() && pieces.back().element == near.element)
+      pieces.back().end = end;
+    else
+      pieces.push_back({near.element, begin, end});
+    begin = end;
+  }
+  return pieces;
+}
+
+EmbeddedPoint Embedder::weighted(const Nearest& by, const Vec3& point) const {
+  auto [element, distance, weights] = by;
   EmbeddedPoint embedded;
   if (edge_nodes_.empty()) {
     add_weights(tetrahedra_[element], weights, embedded);

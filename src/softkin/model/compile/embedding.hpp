@@ -26,6 +26,17 @@ class Embedder {
   ///         curved that no coordinates in it give the point
   [[nodiscard]] EmbeddedPoint embed(const Vec3& point) const;
 
+  /// A piece of a straight line, from and to these shares of it.
+  struct Piece {
+    Index element = -1;
+    double begin = 0, end = 0;
+  };
+  /// The pieces of a straight line of which each is carried along by one element, in order: cut where it leaves an
+  /// element, by its corners; outside of all in pieces of an eighth of the nearest one's longest edge.
+  [[nodiscard]] std::vector<Piece> pieces(const Vec3& from, const Vec3& to) const;
+  /// As embed(), by the element of a piece.
+  [[nodiscard]] EmbeddedPoint embed_in(Index element, const Vec3& point) const;
+
   /// The longest edge of the element that carries the point, of its corners [mm]. There must be an element.
   [[nodiscard]] double edge_near(const Vec3& point) const;
 
@@ -36,6 +47,8 @@ class Embedder {
     Barycentric coordinates;  // by the corners
   };
   [[nodiscard]] Nearest nearest(const Vec3& point) const;
+  [[nodiscard]] Nearest seen_from(Index element, const Vec3& point) const;
+  [[nodiscard]] EmbeddedPoint weighted(const Nearest& by, const Vec3& point) const;
   /// Of order 2: weights in an element whose corners give the point the coordinates; distance is updated.
   [[nodiscard]] TetrahedronWeights quadratic_weights(Index element, const Vec3& point, Barycentric coordinates,
                                                      double& distance) const;

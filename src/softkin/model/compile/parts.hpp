@@ -163,6 +163,9 @@ void compile_loads(Compilation& c);
 /// The part of compile_loads() that is about tractions.
 void compile_tractions(Compilation& c);
 
+/// Physical, after the materials: cuts threads into the pieces that single elements carry along.
+void compile_fibres(Compilation& c);
+
 /// Refuses what can be told of contact before anything is compiled: of target shapes, numbers outside their ranges,
 /// names that are taken or that nothing has, shapes without extent.
 void check_contact(const Compilation& c);

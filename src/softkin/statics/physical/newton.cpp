@@ -192,7 +192,7 @@ bool Newton::accept(double moved_mm, Iterate& at) {
   return goes_on();
 }
 
-/// Where contacts cut step after step, a way with less to go is shorter; where what slides has nothing to stop it, step
+/// Where contacts or threads cut step after step, a way with less to go is shorter; where what slides has nothing to stop it, step
 /// after whole step is as long as the last; where there is no equilibrium a stiffness that was made positive leads
 /// down, but nowhere.
 bool Newton::labours(double damping) {
@@ -200,7 +200,7 @@ bool Newton::labours(double damping) {
   constexpr int most_poor = 8, most_same = 12, most_downhill = 5;  // in a row
   poor_ = damping < poor ? poor_ + 1 : 0;
   same_ = damping == 1 && next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
-  if (!system_.contact()) return downhill_ >= most_downhill;
+  if (!system_.kinked()) return downhill_ >= most_downhill;
   return poor_ >= most_poor || (system_.friction() && same_ >= most_same);
 }
 
@@ -228,7 +228,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   // forces that follow their normal forces have none
   // a stiffness that was made positive leads down, if not straight; where little is left it leads to no unstable shape
-  const bool potential = (system_.contact() || !work_.exact) && system_.conservative() &&
+  const bool potential = (system_.kinked() || !work_.exact) && system_.conservative() &&
                          !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
   steepest_ = std::min(steepest_, slope);

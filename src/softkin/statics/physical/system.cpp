@@ -31,6 +31,10 @@ System::System(const Model& model, const System* like)
     tractions_ = std::make_unique<Tractions>(model);
     tractions_->add_cliques(cliques_);
   }
+  if (!model.fibres.empty()) {
+    fibres_ = std::make_unique<Fibres>(model);
+    fibres_->add_cliques(cliques_);
+  }
   if (model.magnetism) magnets_ = std::make_unique<const Magnets>(model, body_.element_slots());
   if (like)
     share_layout(*like);
@@ -43,6 +47,7 @@ System::System(const Model& model, const System* like)
   placement_ = std::make_unique<const Placement>(model, body_, *freedoms_, like ? like->placement_.get() : nullptr);
   terms_ = {&body_, &dead_loads_, &fading_loads_, &surroundings_};
   if (tractions_) terms_.push_back(tractions_.get());
+  if (fibres_) terms_.push_back(fibres_.get());
   if (magnets_) terms_.push_back(magnets_.get());
   if (contacts_) terms_.push_back(contacts_.get());
 }
@@ -297,6 +302,10 @@ bool System::symmetric() const {
 bool System::conservative() const {
   return !tendons().any() &&
          std::all_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->conservative(); });
+}
+
+bool System::kinked() const {
+  return contact() || std::any_of(terms_.begin(), terms_.end(), [](const Term* term) { return term->kinked(); });
 }
 
 bool System::any_dead_load() const {

@@ -4,6 +4,7 @@
 #include <softkin/statics/physical/actuator_loads.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
+#include <softkin/statics/physical/fibres.hpp>
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 #include <softkin/statics/physical/placement.hpp>
@@ -139,6 +140,8 @@ class System {
   [[nodiscard]] bool symmetric() const;
   /// Has all that loads it an energy?
   [[nodiscard]] bool conservative() const;
+  /// Does the stiffness of any term come and go within a step?
+  [[nodiscard]] bool kinked() const;
   /// Are there loads that grow with the share: weight, forces, dipoles.
   [[nodiscard]] bool any_dead_load() const;
   [[nodiscard]] bool prestretched() const { return body_.prestretched(); }
@@ -164,6 +167,7 @@ class System {
   FadingLoads fading_loads_;
   Surroundings surroundings_;
   std::unique_ptr<Tractions> tractions_;
+  std::unique_ptr<Fibres> fibres_;
   std::unique_ptr<const Magnets> magnets_;
   std::unique_ptr<Contacts> contacts_;
   ActuatorLoads actuator_loads_;

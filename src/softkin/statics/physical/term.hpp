@@ -75,6 +75,9 @@ class Term {
     return 1;
   }
 
+  /// Does its stiffness come and go within a step, so that only its energy says whether the step leads down.
+  [[nodiscard]] virtual bool kinked() const { return false; }
+
   /// Its part of what is told of an equilibrium, which was evaluated last.
   virtual void tell(const Iterate& /*at*/, const Demand& /*demand*/, Scratch& /*scratch*/, ElementDeformation& /*out*/,
                     Team& /*team*/) const {}
