@@ -311,6 +311,19 @@ TEST(Fibres, AMuscleOfMcKibben) {
   }
 }
 
+/// At rest threads carry nothing, whatever rounding makes of the pieces that corners of elements cut.
+TEST(Fibres, CarryNothingAtRest) {
+  RobotSpec spec = wound({54.7});
+  spec.tractions.clear();
+  spec.fixed[1].displacement = Vec3::Zero();
+  for (FibreSpec& fibre : spec.fibres) fibre.stiffness_N = 1e4;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, model.rest_actuation());
+  EXPECT_LT(distance(found.state.positions, model.rest), 1e-12);
+  for (const FibreForces& fibre : statics.measured(found.state).fibres) EXPECT_LT(std::abs(fibre.largest_N), 1e-9);
+}
+
 /// Derivatives of equilibria by the actuator and by the fibre's stiffness.
 TEST(Fibres, DerivativesOfShapes) {
   RobotSpec spec = bending_finger();

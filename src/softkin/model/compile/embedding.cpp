@@ -164,7 +164,7 @@ std::vector<Embedder::Piece> Embedder::pieces(const Vec3& from, const Vec3& to) 
   const auto at = [&](double share) -> Vec3 { return from + share * (to - from); };
   for (double begin = 0; begin < 1;) {
     Nearest near = nearest(at(begin));
-    const double edge = longest_edge(vertices_, tetrahedra_[near.element]) / length;
+    const double edge = edge_of(near.element) / length;
     const double ahead = std::min(1.0, begin + beyond * edge);
     near = nearest(at(ahead));
     double end = 1;
@@ -202,8 +202,12 @@ EmbeddedPoint Embedder::weighted(const Nearest& by, const Vec3& point) const {
   return normalised(std::move(embedded));
 }
 
+double Embedder::edge_of(Index element) const {
+  return longest_edge(vertices_, tetrahedra_[element]);
+}
+
 double Embedder::edge_near(const Vec3& point) const {
-  return longest_edge(vertices_, tetrahedra_[nearest(point).element]);
+  return edge_of(nearest(point).element);
 }
 
 TetrahedronWeights Embedder::quadratic_weights(Index element, const Vec3& point, Barycentric coordinates,

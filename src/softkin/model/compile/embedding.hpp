@@ -37,6 +37,8 @@ class Embedder {
   /// As embed(), by the element of a piece.
   [[nodiscard]] EmbeddedPoint embed_in(Index element, const Vec3& point) const;
 
+  /// The longest edge of the element of a piece, of its corners [mm].
+  [[nodiscard]] double edge_of(Index element) const;
   /// The longest edge of the element that carries the point, of its corners [mm]. There must be an element.
   [[nodiscard]] double edge_near(const Vec3& point) const;
 

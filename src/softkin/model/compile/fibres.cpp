@@ -87,37 +87,44 @@ class Carrier {
   std::unique_ptr<const Embedder> own_;
 };
 
-/// Between two points that one element carries along, by their distance apart [mm]: how its vertices stretch it there.
-FibrePlace place_between(const EmbeddedPoint& a, const EmbeddedPoint& b, double apart_mm, double length_mm) {
+/// Between two points that one element carries along: how its vertices stretch it there, by 1 at rest.
+FibrePlace place_between(const Points& rest, const EmbeddedPoint& a, const EmbeddedPoint& b, double length_mm) {
   FibrePlace place{{}, {}, {}, length_mm};
+  const double apart = (b.at(rest) - a.at(rest)).norm();
   const auto add = [&](const EmbeddedPoint& point, double sign) {
     for (std::size_t i = 0; i < point.vertices.size(); ++i) {
-      auto at = static_cast<std::size_t>(std::find(place.vertices.begin(), place.vertices.end(), point.vertices[i]) -
-                                         place.vertices.begin());
+      const auto at = static_cast<std::size_t>(
+          std::find(place.vertices.begin(), place.vertices.end(), point.vertices[i]) - place.vertices.begin());
       if (at == place.vertices.size()) {
         place.vertices.push_back(point.vertices[i]);
         place.weights.push_back(0);
         place.slopes.push_back(0);
       }
       place.weights[at] += point.weights[i] / 2;
-      place.slopes[at] += sign * point.weights[i] / apart_mm;
+      place.slopes[at] += sign * point.weights[i] / apart;
     }
   };
   add(a, -1);
   add(b, 1);
+  Vec3 along = Vec3::Zero();
+  for (std::size_t i = 0; i < place.vertices.size(); ++i) along += place.slopes[i] * vertex_at(rest, place.vertices[i]);
+  for (double& slope : place.slopes) slope /= along.norm();
   return place;
 }
 
 /// The places of a straight piece: its middle, or Gauss' two of order 2. The shape functions of straight elements are
 /// quadratic along it at most, so that the secant about a place is the tangent there.
-void add_places(const Embedder& embedder, Index element, bool quadratic, const Vec3& from, const Vec3& to,
+void add_places(const Compilation& c, const Embedder& embedder, Index element, const Vec3& from, const Vec3& to,
                 Fibre& fibre) {
-  const double length = (to - from).norm(), off = quadratic ? 0.5 / std::sqrt(3.0) : 0, half = quadratic ? 0.2 : 0.5;
+  constexpr double shortest_secant = 1e-3;  // over the element's longest edge: weights are known to 1e-13
+  const bool quadratic = !c.model.edge_nodes.empty();
+  const double length = (to - from).norm(), off = quadratic ? 0.5 / std::sqrt(3.0) : 0;
+  const Vec3 along = (to - from) / length;
+  const Vec3 half = std::max((quadratic ? 0.2 : 0.5) * length, shortest_secant * embedder.edge_of(element)) * along;
   for (const double side : quadratic ? std::vector<double>{-1, 1} : std::vector<double>{0}) {
-    const double middle = 0.5 + side * off;
-    const EmbeddedPoint a = embedder.embed_in(element, from + (middle - half) * (to - from)),
-                        b = embedder.embed_in(element, from + (middle + half) * (to - from));
-    fibre.places.push_back(place_between(a, b, 2 * half * length, quadratic ? length / 2 : length));
+    const Vec3 middle = from + (0.5 + side * off) * length * along;
+    fibre.places.push_back(place_between(c.model.rest, embedder.embed_in(element, middle - half),
+                                         embedder.embed_in(element, middle + half), quadratic ? length / 2 : length));
   }
 }
 
@@ -144,7 +151,7 @@ struct Outside {
   double distance_mm = 0;
 };
 
-Outside cut(const Embedder& embedder, bool quadratic, const std::vector<Vec3>& corners, Fibre& fibre) {
+Outside cut(const Compilation& c, const Embedder& embedder, const std::vector<Vec3>& corners, Fibre& fibre) {
   Outside outside;
   const auto look = [&](const EmbeddedPoint& embedded, const Vec3& point) {
     if (embedded.distance_mm > outside.distance_mm) outside = {point, embedded.distance_mm};
@@ -155,7 +162,7 @@ Outside cut(const Embedder& embedder, bool quadratic, const std::vector<Vec3>& c
     const Vec3 &from = corners[i], along = corners[i + 1] - from;
     for (const Embedder::Piece& piece : embedder.pieces(from, corners[i + 1])) {
       const Vec3 begin = from + piece.begin * along, end = from + piece.end * along;
-      add_places(embedder, piece.element, quadratic, begin, end, fibre);
+      add_places(c, embedder, piece.element, begin, end, fibre);
       fibre.knots.push_back(embedder.embed_in(piece.element, end));
       look(fibre.knots.back(), end);
     }
@@ -170,7 +177,7 @@ Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<doub
   fibre.stiffness_N = spec.stiffness_N ? *spec.stiffness_N : unstretchable_N(c, carrier.embedder(), corners);
   Outside outside;
   try {
-    outside = cut(carrier.embedder(), !c.model.edge_nodes.empty(), corners, fibre);
+    outside = cut(c, carrier.embedder(), corners, fibre);
   } catch (const InvalidInput& error) {
     refuse_fibre(spec, std::string("runs where ") + error.what());
   }
@@ -202,7 +209,7 @@ void compile_fibres(Compilation& c) {
   std::erase_if(outside, [&](const auto& fibre) { return fibre.first <= 1e-6 * c.model.diagonal_mm; });
   if (outside.empty()) return;
   const auto& [distance, name] = *std::max_element(outside.begin(), outside.end());
-  c.model.notes.push_back(counted(outside.size(), "fibre runs", "fibres run") + " outside what carries it, at most '" +
+  c.model.notes.push_back(counted(outside.size(), "fibre runs", "fibres run") + " outside the elements, at most '" +
                           name + "', by " + number(distance) + " mm: the nearest elements carry it there.");
 }
 
