@@ -146,6 +146,30 @@ def test_magnets(magnetisation: str) -> None:
     assert "10 mT" in repr(shape)
 
 
+def test_threads_and_loads_on_the_surface() -> None:
+    """With nu 0 a thread along the pull adds its tension to that of the block, alone."""
+    vertices, tetrahedra = block((4, 2, 2), (20, 10, 10))
+    robot = softkin.Robot(
+        vertices,
+        tetrahedra,
+        regions={
+            "base": {"vertices": np.flatnonzero(vertices[:, 0] == 0)},
+            "end": {"vertices": np.flatnonzero(vertices[:, 0] == 20)},
+        },
+        materials=[{"law": "corotational", "youngs_modulus": 1, "poisson_ratio": 0}],
+        fixed=[{"region": "base"}],
+        tractions=[{"name": "pull", "region": "end", "traction": [100, 0, 0]}],
+        fibres=[{"name": "thread", "points": [[0, 5, 5], [20, 5, 5]], "stiffness": 1e-3}],
+    )
+    shape = robot.solve()
+    thread = shape.fibres["thread"]
+    assert isinstance(thread, softkin.Fibre)
+    assert thread.stretch == pytest.approx(1.1, abs=1e-4)
+    assert thread.mean_N == pytest.approx(1e-4, rel=1e-3) and thread.slack == 0
+    assert thread.least_N <= thread.mean_N <= thread.largest_N
+    assert pickle.loads(pickle.dumps(shape)).fibres["thread"].mean_N == pytest.approx(thread.mean_N)
+
+
 def test_no_magnets(shape: softkin.Shape) -> None:
     assert shape.magnetic_load is None
 

@@ -106,8 +106,8 @@ RobotSpec wound(const WoundTube& tube) {
   return spec;
 }
 
-/// The same with threads that are spread over the outside, as a problem of the radius alone: linear pieces of r(R), their
-/// energy per length of the tube in a state of principal stretches r', r / R and the axial one.
+/// The same with threads that are spread over the outside, as a problem of the radius alone: linear pieces of r(R),
+/// their energy per length of the tube in a state of principal stretches r', r / R and the axial one.
 class SpreadTube {
  public:
   explicit SpreadTube(const WoundTube& tube) : tube_(tube) {

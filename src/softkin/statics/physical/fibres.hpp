@@ -5,8 +5,8 @@
 
 namespace softkin::physical {
 
-/// Threads that the body's elements carry along. A piece of length L has the energy L E A / 2 (s - 1)^2, s its stretch, and
-/// the tension E A (s - 1); one that takes tension only neither below a stretch of 1.
+/// Threads that the body's elements carry along. A piece of length L has the energy L E A / 2 (s - 1)^2, s its stretch,
+/// and the tension E A (s - 1); one that takes tension only neither below a stretch of 1.
 class Fibres : public Term {
  public:
   /// model must outlive the object.
