@@ -192,9 +192,9 @@ bool Newton::accept(double moved_mm, Iterate& at) {
   return goes_on();
 }
 
-/// Where contacts or threads cut step after step, a way with less to go is shorter; where what slides has nothing to stop
-/// it, step after whole step is as long as the last; where there is no equilibrium a stiffness that was made positive
-/// leads down, but nowhere.
+/// Where contacts or threads cut step after step, a way with less to go is shorter; where what slides has nothing to
+/// stop it, step after whole step is as long as the last; where there is no equilibrium a stiffness that was made
+/// positive leads down, but nowhere.
 bool Newton::labours(double damping) {
   constexpr double poor = 0.2, same = 0.9;
   constexpr int most_poor = 8, most_same = 12, most_downhill = 5;  // in a row
