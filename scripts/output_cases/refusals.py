@@ -48,7 +48,7 @@ def scenes():
         "law": ("youngs_modulus: 1,", "law: neo, youngs_modulus: 1,"),
              "modulus": ("youngs_modulus: 1", "youngs_modulus: 0"),
         "modulus with unit": ("youngs_modulus: 1", "youngs_modulus: 12 MPa"), "no modulus": ("youngs_modulus: 1, ", ""),
-        "incompressible": ("poisson_ratio: 0.3", "poisson_ratio: 0.5"),
+        "incompressible": ("poisson_ratio: 0.3", "poisson_ratio: 0.5, law: corotational"),
              "poisson": ("poisson_ratio: 0.3", "poisson_ratio: -1"),
         "constant of another law": ("poisson_ratio: 0.3", "poisson_ratio: 0.3, c10: 1"),
         "two of one": (material, "{law: yeoh, c10: 1, poisson_ratio: 0.3, bulk_modulus: 1}"),

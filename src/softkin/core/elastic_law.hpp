@@ -26,4 +26,24 @@ struct ElasticLaw {
   return law == Law::mooney_rivlin || law == Law::yeoh || law == Law::gent;
 }
 
+/// Has the law a part bulk/2 (J - 1)^2, with lambda in place of bulk where it has Lame's constants? Without it an
+/// incompressible material would not keep its volume.
+[[nodiscard]] constexpr bool has_bulk_part(Law law) {
+  return law == Law::neo_hookean || forbids_inversion(law);
+}
+
+/// Shear modulus at small strain [MPa].
+[[nodiscard]] constexpr double shear_modulus(const ElasticLaw& law) {
+  return forbids_inversion(law.law) && law.law != Law::gent ? 2 * (law.c10 + law.c01) : law.mu;
+}
+
+/// The factor of (J - 1)^2 / 2, of a law that has it [MPa].
+[[nodiscard]] inline double& bulk_part(ElasticLaw& law) {
+  return law.law == Law::neo_hookean ? law.lambda : law.bulk;
+}
+
+/// Of a Poisson's ratio of 0.5, over the shear modulus: at a pressure of one shear modulus a volume changes by 1e-9 of
+/// itself, and pressures that a robot's shape leaves open, as where it is held all around, are still numbers.
+inline constexpr double incompressible_bulk = 1e9;
+
 }  // namespace softkin

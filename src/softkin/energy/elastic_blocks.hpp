@@ -56,6 +56,23 @@ struct ViscousBlockOf {
   const double* begun = nullptr;                 // begin_step() of these
 };
 
+/// Pressures at the corners of tetrahedra that keep their volume (energy/pressure.hpp).
+template <class Pack>
+struct CornerPressureOf {
+  Pack at[4]{};      // [MPa]; tension is positive
+  Pack softness{};   // 1 / bulk modulus [1/MPa]
+  Pack smoothing{};  // linear tetrahedra [1/MPa]
+};
+template <class Pack>
+struct PressureMissOf {
+  Pack at[4];
+};
+template <class Pack, int K>
+struct PressureCouplingOf {
+  Pack3Of<Pack> node[4][K];  // by pressure and node
+  Pack own[10];              // (i, j), j <= i, at i (i + 1) / 2 + j
+};
+
 /// Numbers of ViscousBlock::begun at each quadrature point for each branch, in every lane: what M has from the step's
 /// begin, and the cube root of its determinant.
 inline constexpr int begun_entries = 7;
@@ -69,6 +86,10 @@ template <int K>
 using ElasticStiffness = ElasticStiffnessOf<Pack, K>;
 using BranchShares = BranchSharesOf<Pack>;
 using ViscousBlock = ViscousBlockOf<Pack>;
+using CornerPressure = CornerPressureOf<Pack>;
+using PressureMiss = PressureMissOf<Pack>;
+template <int K>
+using PressureCoupling = PressureCouplingOf<Pack, K>;
 /// Prisms between two electrodes (energy/dielectric.hpp).
 using DielectricPrisms = ElasticBlock<6, 6>;
 

@@ -39,6 +39,8 @@ struct State {
   double share = 1;  // of dead loads, prestretch and displacements of supports; -1: of no equilibrium that is known [-]
   std::vector<Anchor> anchors{};  // of friction, sorted by vertex, then part; empty: nothing rubs yet
   std::vector<double> eyelets{};  // cables that rub: lengths beyond where they turn, at which they would not [mm]
+  Eigen::VectorXd pressures{};    // of mixed elements, as Statics orders them; tension is positive; empty: found from
+                                  // the positions, which have but those [MPa]
   std::shared_ptr<const ViscousHistory> history{};             // viscous: at the beginning of the time step
   double elapsed_s = std::numeric_limits<double>::infinity();  // since then; 0: instant, infinity: relaxed
 

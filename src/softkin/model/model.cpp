@@ -85,6 +85,7 @@ class Hash {
     add(m.region, m.shape_ratio, m.weight, m.elastic, m.density, m.linear_range);
     if (m.permittivity != 1) add(m.permittivity);
     if (!m.viscosity.empty()) add(m.viscosity);
+    if (m.mixed) add(m.mixed);
   }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
   void put(const LoadedFace& loaded) { add(loaded.face, loaded.share); }

@@ -18,6 +18,7 @@ struct Material {
   double permittivity = 1;  // over that of the vacuum [-]
   double density = 0;       // [kg/m^3]
   std::optional<double> linear_range;
+  bool mixed = false;  // elements with pressures as unknowns; physical
 };
 
 /// A triangle of a cavity's boundary. Order 2: the nodes on its edges 01, 12, 20 too.

@@ -60,7 +60,7 @@ enum class ElementWeights { printed, mesh_independent };
 struct ElasticSpec {
   Law law = Law::neo_hookean;
   std::optional<double> youngs_modulus;      // [MPa], > 0
-  std::optional<double> poisson_ratio;       // [-], -1 < nu < 0.5
+  std::optional<double> poisson_ratio;       // [-], -1 < nu <= 0.5; 0.5: of laws with a bulk part
   std::optional<double> c10, c01, c20, c30;  // [MPa]
   std::optional<double> bulk_modulus;        // [MPa], > 0
   std::optional<double> shear_modulus;       // [MPa], > 0; gent
@@ -84,6 +84,7 @@ struct MaterialSpec {
   std::shared_ptr<const RemanenceSpec> remanence;  // physical; none: not magnetic
   double density = 0;                              // [kg/m^3], >= 0; physical with gravity
   std::optional<double> linear_range;              // largest |principal strain| of the linear range [-], > 0
+  std::optional<bool> mixed;  // elements with pressures as unknowns; physical; none: where the volume is kept
   Origin origin;
 };
 

@@ -399,6 +399,7 @@ struct Neighbourhood::Parts {
   const Model& model;
   State at;
   TeamPool::Lent team;
+  const physical::Equilibria* equilibria = nullptr;
   std::optional<physical::Equilibria::Lease> lease;
   std::optional<physical::Predictor> physical;
 };
@@ -413,8 +414,10 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
   parts_ = std::make_unique<Parts>(model, at, statics.parts_->team(options));
   if (!statics.parts_->physical || at.multipliers.size() == 0) return;
   const physical::Equilibria& physical = *statics.parts_->physical;
-  parts_->lease.emplace(physical, at.positions, false);
-  parts_->physical.emplace(physical.system(), parts_->lease->work(), at, *parts_->team);
+  parts_->equilibria = &physical;
+  const physical::Equilibria::Inside inside(physical, at, *parts_->team);
+  parts_->lease.emplace(physical, inside->positions, false);
+  parts_->physical.emplace(physical.system(), parts_->lease->work(), *inside, *parts_->team);
 }
 
 Neighbourhood::~Neighbourhood() = default;
@@ -423,7 +426,10 @@ Neighbourhood& Neighbourhood::operator=(Neighbourhood&&) noexcept = default;
 
 State Neighbourhood::predict(const Actuation& actuation) {
   check_actuation(parts_->model, actuation);
-  return parts_->physical ? parts_->physical->predict(actuation, *parts_->team) : parts_->at;
+  if (!parts_->physical) return parts_->at;
+  State predicted = parts_->physical->predict(actuation, *parts_->team);
+  parts_->equilibria->outside(predicted);
+  return predicted;
 }
 
 }  // namespace softkin

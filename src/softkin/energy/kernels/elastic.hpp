@@ -5,7 +5,7 @@
 
 namespace softkin::energy {
 
-// energy/elastic.hpp, dielectric.hpp and viscous.hpp say what they do.
+// energy/elastic.hpp, pressure.hpp, dielectric.hpp and viscous.hpp say what they do.
 SOFTKIN_KERNELS(
     template <int K, int Q> void elastic_force(const energy::ElasticBlock<K, Q>& block, const energy::Shape<K>& current,
                                                energy::ElasticForce<K>& out);
@@ -16,6 +16,17 @@ SOFTKIN_KERNELS(
                            energy::ElasticStiffness<K>& out);
     template <int K, int Q> void turning_pull(const energy::ElasticBlock<K, Q>& block, const energy::Shape<K>& current,
                                               const energy::Shape<K>& step, energy::Shape<K>& pull);
+
+    template <int K, int Q>
+    void add_pressure_force(const energy::ElasticBlock<K, Q>& block, const energy::CornerPressure& pressure,
+                            const energy::Shape<K>& current, energy::ElasticForce<K>& out,
+                            energy::PressureMiss& missed);
+    template <int K, int Q>
+    void add_pressure_stress(const energy::CornerPressure& pressure, energy::Pack33 (&stress)[Q]);
+    template <int K, int Q>
+    void add_pressure_stiffness(const energy::ElasticBlock<K, Q>& block, const energy::CornerPressure& pressure,
+                                const energy::Shape<K>& current, bool projected, energy::ElasticStiffness<K>& out,
+                                energy::PressureCoupling<K>& coupling);
 
     void add_dielectric_force(const energy::DielectricPrisms& prisms, const energy::Pack& permittivity,
                               double voltage_kV, const energy::Shape<6>& current, energy::ElasticForce<6>& out);

@@ -23,6 +23,10 @@ template <int K>
 using ElasticStiffness = ElasticStiffnessOf<Pack, K>;
 using BranchShares = BranchSharesOf<Pack>;
 using ViscousBlock = ViscousBlockOf<Pack>;
+using CornerPressure = CornerPressureOf<Pack>;
+using PressureMiss = PressureMissOf<Pack>;
+template <int K>
+using PressureCoupling = PressureCouplingOf<Pack, K>;
 using DielectricPrisms = ElasticBlock<6, 6>;
 
 SOFTKIN_INLINE Pack pack(double value) {

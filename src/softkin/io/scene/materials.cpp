@@ -54,12 +54,14 @@ void check_constants(const Map& map, const LawKeys& law) {
   if (law.needs_bulk) (void)map.one_of({"bulk_modulus", "poisson_ratio"});
 }
 
-double read_poisson_ratio(const Node& node) {
+double read_poisson_ratio(const Node& node, Law law) {
   const double ratio = number(node);
-  if (ratio == 0.5)
-    fail(node, node.name + " is 0.5: an incompressible material is not supported; take 0.49, and 'order: 2' of 'mesh'");
-  if (!(ratio > -1 && ratio < 0.5))
-    fail(node, node.name + " must be greater than -1 and less than 0.5, not " + node.text);
+  if (ratio == 0.5 && !has_bulk_part(law))
+    fail(node, node.name +
+                   " is 0.5, which keeps the volume: take 'law: neo-hookean', 'mooney-rivlin', 'yeoh' or "
+                   "'gent', which have a part for that, or 0.49");
+  if (!(ratio > -1 && ratio <= 0.5))
+    fail(node, node.name + " must be greater than -1 and at most 0.5, not " + node.text);
   return ratio;
 }
 
@@ -77,7 +79,7 @@ ElasticSpec read_named(const Map& map, const Silicone& named) {
       throw InvalidInput(entry->origin, "key '" + key + "' does not go with 'material', which has the constants of " +
                                             named.name + ": 'poisson_ratio' and 'density' may stand beside it");
   const Node* ratio = map.find("poisson_ratio");
-  return ratio ? named.elastic(read_poisson_ratio(*ratio)) : named.elastic();
+  return ratio ? named.elastic(read_poisson_ratio(*ratio, Law::neo_hookean)) : named.elastic();
 }
 
 std::optional<ElasticSpec> read_elastic(const Map& map) {
@@ -88,7 +90,7 @@ std::optional<ElasticSpec> read_elastic(const Map& map) {
   ElasticSpec elastic;
   elastic.law = law.law;
   if (const Node* node = map.find("youngs_modulus")) elastic.youngs_modulus = positive(*node);
-  if (const Node* node = map.find("poisson_ratio")) elastic.poisson_ratio = read_poisson_ratio(*node);
+  if (const Node* node = map.find("poisson_ratio")) elastic.poisson_ratio = read_poisson_ratio(*node, law.law);
   if (const Node* node = map.find("bulk_modulus")) elastic.bulk_modulus = positive(*node);
   if (const Node* node = map.find("shear_modulus")) elastic.shear_modulus = positive(*node);
   if (const Node* node = map.find("jm")) elastic.jm = positive(*node);
@@ -136,8 +138,8 @@ double read_density(const Node& node) {
 }
 
 MaterialSpec read_material(const Context& context, const Node& node) {
-  Keys known{"region",    "shape_ratio",  "weight",    "linear_range",  "density",
-             "viscosity", "permittivity", "remanence", "magnetisation", "material"};
+  Keys known{"region",       "shape_ratio", "weight",        "linear_range", "density", "viscosity",
+             "permittivity", "remanence",   "magnetisation", "material",     "elements"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;
@@ -159,6 +161,7 @@ MaterialSpec read_material(const Context& context, const Node& node) {
   if (const Node* value = map.find("permittivity")) material.permittivity = read_permittivity(*value);
   material.remanence = read_remanence(context, map);
   if (const Node* range = map.find("linear_range")) material.linear_range = positive(*range);
+  if (const Node* elements = map.find("elements")) material.mixed = choice(*elements, {"plain", "mixed"}) == 1;
   return material;
 }
 

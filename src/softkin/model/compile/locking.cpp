@@ -10,12 +10,24 @@ namespace {
 
 constexpr std::size_t most_samples = 300;  // of thousands of faces: the mean holds to a few percent
 constexpr double least_excess = 0.1;       // elastic constants are hardly known better than that
+constexpr double mixed_ratio = 1.0 / 3;    // Poisson's, of what mixed elements leave to their strains (physical::split)
+constexpr double worthwhile = 0.7;         // of the excess, that mixed elements must not leave
 
 struct Wall {
-  double compliance = 0;  // in bending, of a piece of unit length
-  double across2 = 0;     // squares of the element's extents over the wall's thickness
-  double excess = 0;
+  double compliance = 0;                // in bending, of a piece of unit length
+  double across2 = 0;                   // squares of the element's extents over the wall's thickness
+  double excess = 0, excess_mixed = 0;  // as the elements are, and if they were mixed
 };
+
+/// Of a chain of walls: by how much it is too stiff.
+double excess_of(const std::vector<Wall>& walls, double Wall::*excess) {
+  double whole = 0, locked = 0;
+  for (const Wall& wall : walls) {
+    whole += wall.compliance;
+    locked += wall.compliance / (1 + wall.*excess);
+  }
+  return whole > 0 ? whole / locked - 1 : 0;
+}
 
 std::vector<bool> rigid_vertices(const Model& model) {
   std::vector<bool> rigid(static_cast<std::size_t>(model.rest.rows()));
@@ -33,10 +45,13 @@ std::vector<Wall> walls_of(const Model& model) {
     const Tetrahedron& corners = model.tetrahedra[element];
     if (std::all_of(corners.begin(), corners.end(), is_rigid)) continue;
     const auto material = static_cast<std::size_t>(model.tetrahedron_roles[element].material);
-    const StiffnessAtRest stiffness = stiffness_at_rest(model.materials[material].elastic);
+    const Material& of = model.materials[material];
+    const StiffnessAtRest stiffness = stiffness_at_rest(of.elastic);
+    const double least = std::min(mixed_ratio, stiffness.poisson_ratio);
+    const double as_mixed = bending_excess(sample, has_bulk_part(of.elastic.law) ? least : stiffness.poisson_ratio);
     const double across = sample.across_mm / sample.thickness_mm;
     walls.push_back({sample.area_mm2 / (stiffness.youngs_modulus_MPa * std::pow(sample.thickness_mm, 3)),
-                     across * across, bending_excess(sample, stiffness.poisson_ratio)});
+                     across * across, of.mixed ? as_mixed : bending_excess(sample, stiffness.poisson_ratio), as_mixed});
   }
   return walls;
 }
@@ -45,7 +60,7 @@ std::vector<Wall> walls_of(const Model& model) {
 
 StiffnessAtRest stiffness_at_rest(const ElasticLaw& law) {
   const bool rubber = forbids_inversion(law.law);
-  const double shear = rubber && law.law != Law::gent ? 2 * (law.c10 + law.c01) : law.mu;
+  const double shear = shear_modulus(law);
   const double bulk = rubber ? law.bulk : law.lambda + 2 * law.mu / 3;
   return {9 * bulk * shear / (3 * bulk + shear), (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear))};
 }
@@ -54,20 +69,22 @@ void doubt_linear_tetrahedra(Compilation& c) {
   Model& model = c.model;
   if (model.formulation != Formulation::physical || model.tetrahedra.empty() || !model.edge_nodes.empty()) return;
   // thin and soft walls bend: what they give way by adds up, as in a chain of springs
-  double whole = 0, locked = 0, across2 = 0;
-  for (const Wall& wall : walls_of(model)) {
+  const std::vector<Wall> walls = walls_of(model);
+  const double excess = excess_of(walls, &Wall::excess), as_mixed = excess_of(walls, &Wall::excess_mixed);
+  if (!(excess > least_excess)) return;
+  double whole = 0, across2 = 0;
+  for (const Wall& wall : walls) {
     whole += wall.compliance;
-    locked += wall.compliance / (1 + wall.excess);
     across2 += wall.compliance * wall.across2;
   }
-  if (!(whole > 0)) return;
-  const double excess = whole / locked - 1;
-  if (!(excess > least_excess)) return;
   const std::string thick = decimal(std::sqrt(whole / across2), 1);
   const std::string stiff =
       excess < 1 ? "about " + decimal(100 * excess, 0) + " % too stiff" : "more than twice as stiff as they should be";
-  const std::string cure =
+  std::string cure =
       model.prisms.empty() ? "take 'mesh: {file: F, order: 2}'" : "take a finer mesh, as prisms allow no 'order: 2'";
+  if (as_mixed < worthwhile * excess)
+    cure += "; 'elements: mixed' of the material, whose volume hardly changes, takes about " +
+            decimal(100 * (1 - as_mixed / excess), 0) + " % of that off";
   (c.spec.linear_by_choice ? model.notes : model.warnings)
       .push_back("The walls that bend most are about " + thick +
                  " elements thick, of tetrahedra of order 1: where they bend they are " + stiff + "; " + cure + ".");

@@ -31,7 +31,11 @@ struct Constants {
   }
   double poisson_ratio() const {
     const double nu = required(spec.poisson_ratio, "poisson_ratio");
-    if (!(nu > -1 && nu < 0.5)) refuse(": poisson_ratio must lie between -1 and 0.5, not be " + number(nu));
+    if (!(nu > -1 && nu <= 0.5)) refuse(": poisson_ratio must lie between -1 and 0.5, not be " + number(nu));
+    if (nu == 0.5 && !has_bulk_part(spec.law))
+      refuse(
+          ": poisson_ratio 0.5 keeps the volume, which laws st-venant-kirchhoff and corotational have no part for: "
+          "take neo-hookean, mooney-rivlin, yeoh or gent, or 0.49");
     return nu;
   }
   void absent(const std::optional<double>& value, const std::string& name) const {
@@ -45,7 +49,7 @@ double bulk_modulus(const Constants& c, double shear) {
   if (c.spec.bulk_modulus) return c.positive(c.required(c.spec.bulk_modulus, "bulk_modulus"), "bulk_modulus");
   if (!c.spec.poisson_ratio) c.refuse(" needs bulk_modulus or poisson_ratio");
   const double nu = c.poisson_ratio();
-  return c.finite(2 * shear * (1 + nu) / (3 * (1 - 2 * nu)), "bulk modulus");
+  return nu == 0.5 ? incompressible_bulk * shear : c.finite(2 * shear * (1 + nu) / (3 * (1 - 2 * nu)), "bulk modulus");
 }
 
 void refuse_limit(const Constants& c) {
@@ -63,7 +67,7 @@ void set_lame(const Constants& c, ElasticLaw& law) {
   const double e = c.positive(c.required(c.spec.youngs_modulus, "youngs_modulus"), "youngs_modulus");
   const double nu = c.poisson_ratio();
   law.mu = c.finite(e / (2 * (1 + nu)), "shear modulus");
-  law.lambda = c.finite(e * nu / ((1 + nu) * (1 - 2 * nu)), "lambda");
+  law.lambda = nu == 0.5 ? incompressible_bulk * law.mu : c.finite(e * nu / ((1 + nu) * (1 - 2 * nu)), "lambda");
 }
 
 void set_coefficients(const Constants& c, ElasticLaw& law) {
@@ -93,6 +97,25 @@ void set_limited(const Constants& c, ElasticLaw& law) {
   law.mu = c.positive(c.required(c.spec.shear_modulus, "shear_modulus"), "shear_modulus");
   law.jm = c.positive(c.required(c.spec.jm, "jm"), "jm");
   law.bulk = bulk_modulus(c, law.mu);
+}
+
+/// Has a material elements with pressures as unknowns? Unless its description says so, where it keeps its volume.
+bool takes_mixed(const MaterialSpec& spec, const ElasticLaw& law, const std::string& owner) {
+  const bool incompressible = spec.elastic->poisson_ratio == 0.5;
+  if (!spec.mixed.value_or(incompressible)) {
+    if (incompressible)
+      throw InvalidInput(spec.origin,
+                         owner + " has elements: plain and poisson_ratio 0.5, which needs elements: mixed");
+    return false;
+  }
+  if (!has_bulk_part(law.law))
+    throw InvalidInput(spec.origin, owner +
+                                        " has elements: mixed, which go with a law that has a part of the volume "
+                                        "alone: neo-hookean, mooney-rivlin, yeoh or gent");
+  ElasticLaw own = law;
+  if (!(bulk_part(own) > 0))
+    throw InvalidInput(spec.origin, owner + " has elements: mixed, which need a poisson_ratio above 0");
+  return true;
 }
 
 Material checked_material(const MaterialSpec& spec, Formulation formulation) {
@@ -127,6 +150,7 @@ Material checked_material(const MaterialSpec& spec, Formulation formulation) {
   if (spec.shape_ratio) material.shape_ratio = *spec.shape_ratio;
   material.weight = spec.weight;
   if (physical) material.elastic = elastic_law(*spec.elastic, owner, spec.origin);
+  if (physical) material.mixed = takes_mixed(spec, material.elastic, owner);
   material.density = spec.density;
   material.permittivity = spec.permittivity.value_or(1);
   material.linear_range = spec.linear_range;
@@ -211,6 +235,10 @@ void compile_materials(Compilation& c) {
     const auto index = static_cast<Index>(model.materials.size());
     model.materials.push_back(checked_material(spec, c.spec.formulation));
     const Region& region = c.regions.find(spec.region, spec.origin);
+    if (model.materials.back().mixed && !region.prisms.empty())
+      throw InvalidInput(spec.origin, "the material of region '" + spec.region + "' has elements: mixed" +
+                                          (spec.mixed ? "" : ", as its poisson_ratio is 0.5,") +
+                                          " which prisms are not: take a poisson_ratio of 0.49 and elements: plain");
     if (assign(region.tetrahedra, c.tetrahedron_at, index, physical, model.tetrahedron_roles) +
             assign(region.prisms, c.prism_at, index, physical, model.prism_roles) ==
         0)

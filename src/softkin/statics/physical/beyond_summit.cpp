@@ -96,7 +96,7 @@ Continuation::Climb Continuation::go_beyond(Index a, double way, const Demand& f
     const Climb arrived = arrive_between(a, to, std::move(last), std::move(*next), at);
     if (arrived == Climb::interrupted) keep(a, from, to, summit, at);
     if (arrived == Climb::arrived) {
-      tell_snap(largest_move(summit.at.positions, at.positions), whole(share_of(a, from, to, summit.load)));
+      tell_snap(system_.largest_move(summit.at.positions, at.positions), whole(share_of(a, from, to, summit.load)));
       report_.remark.clear();
     }
     return arrived;

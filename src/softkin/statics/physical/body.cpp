@@ -69,19 +69,79 @@ double von_mises(const Mat3& stress) {
 
 }  // namespace
 
+/// Adds the pressures of an element to a set, into its lane and in advance into those behind.
+template <int K, int Q>
+void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array<Index, 4>& vertices, int first_lane) {
+  if (first_lane == 0) {
+    set.compliance.emplace_back();
+    set.pressures.emplace_back();
+  }
+  const SplitLaw parts = split(law, K == 10);
+  for (int l = first_lane; l < lanes; ++l) {
+    set_law(set.blocks.back().law, l, parts.law);
+    set.compliance.back().softness[l] = parts.softness;
+    set.compliance.back().smoothing[l] = parts.smoothing;
+    for (std::size_t i = 0; i < 4; ++i) set.pressures.back()[i][l] = vertices[i];
+  }
+}
+
+/// In a shape [MPa].
+template <int K, int Q>
+CornerPressure Body::pressure_of(const Set<K, Q>& set, Index block, const Points& positions) const {
+  CornerPressure pressure = set.compliance[block];
+  for (std::size_t i = 0; i < 4; ++i)
+    for (int l = 0; l < lanes; ++l) pressure.at[i][l] = pressure_unit_ * positions(set.pressures[block][i][l], 0);
+  return pressure;
+}
+
+template <int K, int Q>
+void Body::store_miss(const Set<K, Q>& set, Index block, const PressureMiss& miss, Scratch& scratch) const {
+  const Index count = std::min<Index>(lanes, set.count - lanes * block);
+  double* out = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(set.first_miss + 4 * lanes * block);
+  for (Index l = 0; l < count; ++l)
+    for (const Pack& at : miss.at) {
+      out[0] = pressure_unit_ * at[l];
+      out[1] = out[2] = 0;
+      out += 3;
+    }
+}
+
+/// Behind the slots of the nodes among themselves.
+template <int K, int Q>
+void Body::store_coupling(const Set<K, Q>& set, Index block, const PressureCoupling<K>& coupling,
+                          LargeVector<double>& slots) const {
+  const int own = K * (K + 1) / 2, all = set.matrices();
+  const double unit = pressure_unit_;
+  const Index count = std::min<Index>(lanes, set.count - lanes * block);
+  for (Index l = 0; l < count; ++l) {
+    double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(all) * (lanes * block + l) + own);
+    std::fill(slot, slot + 9 * (all - own), 0.0);
+    for (int i = 0, ij = 0; i < 4; ++i) {
+      for (int a = 0; a < K; ++a, slot += 9) {
+        slot[0] = unit * coupling.node[i][a].x[l];
+        slot[1] = unit * coupling.node[i][a].y[l];
+        slot[2] = unit * coupling.node[i][a].z[l];
+      }
+      for (int j = 0; j <= i; ++j, ++ij, slot += 9) slot[0] = unit * unit * coupling.own[ij][l];
+    }
+  }
+}
+
 template <int K, int Q, class Element>
 void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
-               const Element& nodes) {
+               const Element& nodes, const Pressures* pressures) {
   const Material& material = model.materials[role.material];
   const Law law = material.elastic.law;
   const auto branches = static_cast<int>(material.viscosity.size());
+  const bool mixed = pressures && material.mixed;
   auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
-    return s.law == law && s.actuator == role.actuator && s.branches == branches;
+    return s.law == law && s.actuator == role.actuator && s.branches == branches && s.mixed == mixed;
   });
   if (set == sets.end()) {
     set = sets.insert(sets.end(), Set<K, Q>{});
     set->law = law;
     set->branches = branches;
+    set->mixed = mixed;
     set->actuator = role.actuator;
     if (role.actuator >= 0) {
       set->charged = under_voltage(model.actuators[role.actuator]);
@@ -112,26 +172,31 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRo
     }
     for (int i = 0; i < K; ++i) set->nodes.back()[i][l] = nodes[i];
   }
-  if constexpr (K == 6) set->frames.back()[lane] = layer_frame(rest);
+  if constexpr (K == 6)
+    set->frames.back()[lane] = layer_frame(rest);
+  else if (mixed)
+    set_pressures(*set, material.elastic, pressures->of[static_cast<std::size_t>(element)], lane);
   set->elements.push_back(element);
   ++set->count;
 }
 
-Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())) {
+Body::Body(const Model& model, const Pressures* pressures)
+    : vertices_(static_cast<Index>(model.rest.rows())), pressure_unit_(pressures ? pressures->unit : 1) {
   for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
     const ElementRole& role = model.tetrahedron_roles[e];
     const Tetrahedron& t = model.tetrahedra[e];
     if (model.edge_nodes.empty()) {
-      add(linear_, model, role, e, t);
+      add(linear_, model, role, e, t, pressures);
     } else {
       std::array<Index, 10> nodes;
       std::copy(t.begin(), t.end(), nodes.begin());
       std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-      add(quadratic_, model, role, e, nodes);
+      add(quadratic_, model, role, e, nodes, pressures);
     }
   }
   for (const Index e : spatial_order(model.rest, model.prisms))
-    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e]);
+    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e],
+        nullptr);
   for (auto& set : prisms_)
     if (set.charged) add_field(model, set);
   for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
@@ -148,16 +213,22 @@ Body::Body(const Model& model) : vertices_(static_cast<Index>(model.rest.rows())
     strains_ += set.strains_each() * set.blocks.size();
     begun_ += set.begun_each() * set.blocks.size();
   });
+  each_set([&]<int K, int Q>(Set<K, Q>& set) {
+    set.first_miss = pulls_ + misses_;
+    if (set.mixed) misses_ += 4 * set.count;
+  });
   const auto each_pull = [&](const auto& visit) {
     each_set([&]<int K, int Q>(Set<K, Q>& set) {
       for (Index e = 0; e < set.count; ++e)
         for (int i = 0; i < K; ++i) visit(set.nodes[e / lanes][i][e % lanes], set.first_pull + K * e + i);
+      for (Index e = 0; set.mixed && e < set.count; ++e)
+        for (int i = 0; i < 4; ++i) visit(set.pressures[e / lanes][i][e % lanes], set.first_miss + 4 * e + i);
     });
   };
   pull_starts_.assign(static_cast<std::size_t>(vertices_) + 1, 0);
   each_pull([&](Index vertex, Index) { ++pull_starts_[vertex + 1]; });
   std::partial_sum(pull_starts_.begin(), pull_starts_.end(), pull_starts_.begin());
-  pull_order_.resize(static_cast<std::size_t>(pulls_));
+  pull_order_.resize(static_cast<std::size_t>(pulls_ + misses_));
   std::vector<Index> next(pull_starts_.begin(), pull_starts_.end() - 1);
   each_pull([&](Index vertex, Index pull) { pull_order_[next[vertex]++] = pull; });
 }
@@ -173,7 +244,7 @@ void Body::add_field(const Model& model, Set<6, 6>& set) {
 
 Body::Scratch Body::make_scratch() const {
   Scratch scratch;
-  scratch.pulls.resize(3 * static_cast<std::size_t>(pulls_));
+  scratch.pulls.resize(3 * static_cast<std::size_t>(pulls_ + misses_));
   scratch.energies.resize(blocks_);
   scratch.inverted.resize(blocks_);
   scratch.forbidden.resize(blocks_);
@@ -251,6 +322,12 @@ Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& 
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_force<K, Q>(blocks[b], shape, out);
+        if constexpr (K != 6)
+          if (set.mixed) {
+            PressureMiss miss;
+            add_pressure_force<K, Q>(blocks[b], pressure_of(set, b, positions), shape, out, miss);
+            store_miss(set, b, miss, scratch);
+          }
         if (pulls) {
           add_viscous_force<K, Q>(blocks[b], branches_of(set, b, scratch), shape, out);
           out.forbidden |= out.inverted;
@@ -385,6 +462,8 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_stress<K, Q>(blocks[b], shape, points);
+        if constexpr (K != 6)
+          if (set.mixed) add_pressure_stress<K, Q>(blocks[b], pressure_of(set, b, positions), points);
         if (set.branches > 0 && scratch.pulls_viscously())
           add_viscous_stress<K, Q>(blocks[b], branches_of(set, b, scratch), shape, points);
         if constexpr (K == 6)
@@ -407,10 +486,11 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
 void Body::add_cliques(linear::Cliques& cliques) {
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_slot = cliques.slots.back();
-    std::array<Index, K> nodes;
+    std::array<Index, K + 4> nodes;
     for (Index e = 0; e < set.count; ++e) {
       for (int i = 0; i < K; ++i) nodes[i] = set.nodes[e / lanes][i][e % lanes];
-      cliques.add(nodes);
+      for (int i = 0; set.mixed && i < 4; ++i) nodes[K + i] = set.pressures[e / lanes][i][e % lanes];
+      cliques.add(std::span(nodes).first(static_cast<std::size_t>(set.mixed ? K + 4 : K)));
     }
   });
 }
@@ -418,7 +498,7 @@ void Body::add_cliques(linear::Cliques& cliques) {
 std::vector<std::int64_t> Body::element_slots() const {
   std::vector<std::int64_t> slots;
   each_set([&]<int K, int Q>(const Set<K, Q>& set) {
-    constexpr int matrices = K * (K + 1) / 2;
+    const int matrices = set.matrices();
     for (Index e = 0; e < set.count; ++e) {
       const auto element = static_cast<std::size_t>(set.elements[e]);
       if (slots.size() <= element) slots.resize(element + 1);
@@ -433,20 +513,27 @@ void Body::stiffness(const Demand& demand, const Points& positions, bool project
   stretch_layers(demand, scratch);
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     constexpr int matrices = K * (K + 1) / 2;
+    const int others = set.matrices() - matrices;
     team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
       Shape<K> shape;
       ElasticStiffness<K> out;
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         elastic_stiffness<K, Q>(blocks[b], shape, projected, out);
+        if constexpr (K != 6)
+          if (set.mixed) {
+            PressureCoupling<K> coupling;
+            add_pressure_stiffness<K, Q>(blocks[b], pressure_of(set, b, positions), shape, projected, out, coupling);
+            store_coupling(set, b, coupling, slots);
+          }
         if (set.branches > 0 && scratch.pulls_viscously())
           add_viscous_stiffness<K, Q>(blocks[b], branches_of(set, b, scratch), shape, projected, out);
         if constexpr (K == 6)  // the field's has hardly anything that is positive
           if (set.charged && !projected)
             add_dielectric_stiffness(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, out);
         const Index count = std::min<Index>(lanes, set.count - lanes * b);
-        double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices) * lanes * b);
-        for (Index l = 0; l < count; ++l)
+        double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices + others) * lanes * b);
+        for (Index l = 0; l < count; ++l, slot += 9 * others)
           for (int m = 0; m < matrices; ++m, slot += 9)
             for (int r = 0; r < 3; ++r) {
               slot[3 * r] = out.block[m].row[r].x[l];
@@ -473,12 +560,14 @@ void Body::turning(const Points& positions, const Points& step, Scratch& scratch
   for (const auto& set : linear_) run(set);
   for (const auto& set : quadratic_) run(set);
   for (const auto& set : prisms_) run(set);
+  std::fill(scratch.pulls.end() - 3 * static_cast<std::ptrdiff_t>(misses_), scratch.pulls.end(), 0.0);
   residual.setZero(vertices_, 3);
   add_pulls(scratch, residual, team);
 }
 
 Eigen::SparseMatrix<double> Body::laplacian() const {
   std::vector<Eigen::Triplet<double>> entries;
+  std::vector<bool> stretched(static_cast<std::size_t>(vertices_));
   const auto add_set = [&]<int K, int Q>(const Set<K, Q>& set) {
     for (Index e = 0; e < set.count; ++e) {
       const ElasticBlock<K, Q>& block = set.blocks[e / lanes];
@@ -486,6 +575,7 @@ Eigen::SparseMatrix<double> Body::laplacian() const {
       for (int i = 0; i < K; ++i)
         for (int j = 0; j < K; ++j) {
           const Index row = set.nodes[e / lanes][i][l], column = set.nodes[e / lanes][j][l];
+          stretched[row] = true;
           if (row < column) continue;
           double sum = 0;
           for (int q = 0; q < Q; ++q)
@@ -498,7 +588,7 @@ Eigen::SparseMatrix<double> Body::laplacian() const {
   for (const auto& set : quadratic_) add_set(set);
   for (const auto& set : prisms_) add_set(set);
   for (Index v = 0; v < vertices_; ++v)
-    if (pull_starts_[v] == pull_starts_[v + 1]) entries.emplace_back(v, v, 1.0);
+    if (!stretched[v]) entries.emplace_back(v, v, 1.0);
   Eigen::SparseMatrix<double> matrix(vertices_, vertices_);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;

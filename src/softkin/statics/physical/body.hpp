@@ -4,19 +4,22 @@
 #include <algorithm>
 #include <softkin/core/team.hpp>
 #include <softkin/energy/dielectric.hpp>
+#include <softkin/energy/pressure.hpp>
 #include <softkin/energy/viscous.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/physical/pressures.hpp>
 #include <softkin/statics/physical/term.hpp>
 
 namespace softkin::physical {
 
 /// The body of a robot in the physical formulation: elastic energy, that of the electric field in its layers under
-/// voltage, and their derivatives in the vertices.
+/// voltage, and their derivatives in the vertices; in those of pressures, too, where it has mixed elements.
 class Body : public Term {
  public:
-  explicit Body(const Model& model);
+  /// pressures: of model's last vertices; null: it has none
+  explicit Body(const Model& model, const Pressures* pressures = nullptr);
 
   /// What evaluation needs beside the positions; nothing is allocated per call.
   struct Scratch : Term::Scratch {
@@ -120,6 +123,7 @@ class Body : public Term {
     bool charged = false;   // is it under voltage
     double prestretch = 1;  // then its stretch, which no command changes
     int branches = 0;
+    bool mixed = false;  // tetrahedra with pressures; their law is what split() leaves
     Index count = 0;
     Index first_pull = 0;         // element e, node i pulls at first_pull + K e + i
     std::int64_t first_slot = 0;  // of its matrices
@@ -129,12 +133,17 @@ class Body : public Term {
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
     std::vector<energy::Pack> permittivity;               // under voltage: as energy/dielectric.hpp takes it
     std::vector<energy::Pack> moduli, times;              // of branches, by block: [MPa], [s]
+    std::vector<energy::CornerPressure> compliance;       // mixed: softness and smoothing of every block
+    std::vector<std::array<std::array<Index, energy::lanes>, 4>> pressures;  // the same: vertices
+    Index first_miss = 0;                                                    // as first_pull, of these
     std::size_t first_branch = 0, first_strain = 0, first_begun = 0;  // of its branches in Scratch, a history, begun
 
     /// Numbers that a block remembers.
     [[nodiscard]] std::size_t strains_each() const {
       return branches > 0 ? std::size_t{6} * Q * energy::lanes * (static_cast<std::size_t>(branches) + 1) : 0;
     }
+    /// Of an element.
+    [[nodiscard]] int matrices() const { return mixed ? (K + 4) * (K + 5) / 2 : K * (K + 1) / 2; }
     /// Of Scratch::begun.
     [[nodiscard]] std::size_t begun_each() const {
       return std::size_t{energy::begun_entries} * Q * energy::lanes * static_cast<std::size_t>(branches);
@@ -142,8 +151,11 @@ class Body : public Term {
   };
 
   template <int K, int Q, class Element>
-  static void add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
-                  const Element& nodes);
+  void add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
+           const Element& nodes, const Pressures* pressures);
+  template <int K, int Q>
+  static void set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array<Index, 4>& vertices,
+                            int first_lane);
   void add_field(const Model& model, Set<6, 6>& set);
   template <int K, int Q>
   [[nodiscard]] static energy::ViscousBlock branches_of(const Set<K, Q>& set, std::size_t block,
@@ -158,6 +170,13 @@ class Body : public Term {
   void add_pulls(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;
+  template <int K, int Q>
+  [[nodiscard]] energy::CornerPressure pressure_of(const Set<K, Q>& set, Index block, const Points& positions) const;
+  template <int K, int Q>
+  void store_miss(const Set<K, Q>& set, Index block, const energy::PressureMiss& miss, Scratch& scratch) const;
+  template <int K, int Q>
+  void store_coupling(const Set<K, Q>& set, Index block, const energy::PressureCoupling<K>& coupling,
+                      LargeVector<double>& slots) const;
   void stretch_layers(const Demand& demand, Scratch& scratch) const;
 
   /// visit(set, its blocks at the current active stretch)
@@ -193,7 +212,8 @@ class Body : public Term {
   std::vector<Set<6, 6>> prisms_;
   std::vector<Index> voltages_, ratios_;  // actuators of kind dea, by what their commands are
   std::size_t blocks_ = 0, branches_ = 0, strains_ = 0, begun_ = 0;
-  Index pulls_ = 0;
+  Index pulls_ = 0, misses_ = 0;                 // of all sets; the second behind the first
+  double pressure_unit_ = 1;                     // [MPa/mm]
   std::vector<Index> pull_starts_, pull_order_;  // pulls at each vertex
 };
 

@@ -26,7 +26,7 @@ bool Continuation::buckle(const Demand& demand, Iterate& at) {
     if (interrupted_) return false;
     if (!best) return true;
     ++report_.buckled;
-    report_.buckled_mm = std::max(report_.buckled_mm, largest_move(at.positions, best->at.positions));
+    report_.buckled_mm = std::max(report_.buckled_mm, system_.largest_move(at.positions, best->at.positions));
     take(at, std::move(best->at));
     active_ = best->active;
     last_ = best->last;
@@ -75,7 +75,7 @@ std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, c
     settled = outcome == Newton::Outcome::converged;
     if (settled) found.at = std::move(there);
   }
-  if (!settled || largest_move(found.at.positions, from.positions) < 0.1 * std::abs(reach)) return std::nullopt;
+  if (!settled || system_.largest_move(found.at.positions, from.positions) < 0.1 * std::abs(reach)) return std::nullopt;
   found.energy = potential(system_, found.at, demand, active_, work_, team_);
   found.active = active_;
   found.last = judged();

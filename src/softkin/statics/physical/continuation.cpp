@@ -72,11 +72,11 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     if (led) {
       system_.placement().hold(there, trial.positions);
       predicted_ = begun_ = trial.positions;
-      move_mm_ = largest_move(at.positions, predicted_);
+      move_mm_ = system_.largest_move(at.positions, predicted_);
       return true;
     }
     const auto move = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_);
-    move_mm_ = move.value_or(largest_move(at.positions, predicted_));
+    move_mm_ = move.value_or(system_.largest_move(at.positions, predicted_));
     begun_ = trial.positions;
     return move.has_value();
   };
@@ -94,7 +94,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     if (foreseen == Newton::Outcome::converged) outcome = settle(there, policy, trial);
   }
   if (outcome == Newton::Outcome::converged && !led && whole)
-    work_.trail.note_tangent(here, there, largest_move(begun_, trial.positions));
+    work_.trail.note_tangent(here, there, system_.largest_move(begun_, trial.positions));
   if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && prepare(here, at) >= 0) {
     trial = at;
     if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);
@@ -105,12 +105,12 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
 /// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
 /// which the one at its begin misses its end, and by about as much; where it jumps, on the other side.
 bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial) {
-  const double correction = largest_move(predicted_, trial.positions);
+  const double correction = system_.largest_move(predicted_, trial.positions);
   const auto jumps = [&] {
     Iterate back = trial;
     (void)predict(system_, there, here, active_, work_, team_, back);
     const Points ahead = predicted_ - trial.positions, behind = back.positions - at.positions;
-    jump_mm_ = 0.5 * largest_move(ahead, behind);
+    jump_mm_ = 0.5 * system_.largest_move(ahead, behind);
     // where the way has a corner, at which something begins to touch, both miss on the same side, by any lengths
     return !(jump_mm_ <= least_jump * correction) && !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
   };
@@ -232,7 +232,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   };
   const bool blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
   if (outcome != Newton::Outcome::stuck && !blocked && way_.loads_change &&
-      snapped(move_mm_, largest_move(begun_, trial.positions)) && jumped(way_.here, there, at, trial))
+      snapped(move_mm_, system_.largest_move(begun_, trial.positions)) && jumped(way_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
   if (blocked) outcome = Newton::Outcome::stuck;
   const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
@@ -243,7 +243,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
 
   std::optional<Status> end;
   const double longest = longest_step(snap, unstable);
-  const double corrected_mm = outcome == Newton::Outcome::stuck ? 0 : largest_move(begun_, trial.positions);
+  const double corrected_mm = outcome == Newton::Outcome::stuck ? 0 : system_.largest_move(begun_, trial.positions);
   const auto trace = [&](bool taken, const std::string& told) { tracer_.end(taken, told, move_mm_, corrected_mm); };
   if (outcome == Newton::Outcome::stuck) {
     trace(false, why);
@@ -374,7 +374,7 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
 /// Does the workspace hold the stable stiffness of a shape close by?
 bool Continuation::factorised_nearby(const Points& shape) const {
   return work_.exact && work_.saddle.spectrum().unstable == 0 && work_.factorised.rows() == shape.rows() &&
-         largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;
+         system_.largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;
 }
 
 Continuation::Judgement Continuation::judged() const {

@@ -229,18 +229,27 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
   return result;
 }
 
-Sensitivity Equilibria::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
-  Lease lease(*this, at.positions, reuse_factor);
-  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
-  return Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(at), {at.actuation, at.share});
+Sensitivity Equilibria::sensitivity(const State& state, bool reuse_factor, double accuracy, Team& team) const {
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, reuse_factor);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  Sensitivity found =
+      Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(*at), {at->actuation, at->share});
+  for (Points& moves : found.positions) drop_vertices(moves);
+  return found;
 }
 
-ParameterSensitivity Equilibria::sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
+ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vector<Perturbation>& perturbations,
                                              bool reuse_factor, double accuracy, bool reactions, Team& team) const {
-  Lease lease(*this, at.positions, reuse_factor);
-  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
-  return Derivative(system_, lease.work(), accuracy, team)
-      .of(system_.iterate(at), {at.actuation, at.share}, perturbations, at.history, at.elapsed_s, reactions);
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, reuse_factor);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  ParameterSensitivity found =
+      Derivative(system_, lease.work(), accuracy, team)
+          .of(system_.iterate(*at), {at->actuation, at->share}, perturbations, at->history, at->elapsed_s, reactions);
+  for (Points& moves : found.positions) drop_vertices(moves);
+  for (Points& forces : found.reactions) drop_vertices(forces);
+  return found;
 }
 
 }  // namespace softkin::physical

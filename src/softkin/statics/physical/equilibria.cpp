@@ -45,29 +45,35 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
 
 }  // namespace
 
-void Equilibria::measure(const State& at, ElementDeformation& out, Team& team) const {
-  Lease lease(*this, at.positions, true);
-  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
-  const Iterate shape = system_.iterate(at);
+void Equilibria::measure(const State& state, ElementDeformation& out, Team& team) const {
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, true);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  const Iterate shape = system_.iterate(*at);
   hold_friction(system_, shape, lease.work(), team);
-  system_.measure(shape, {at.actuation, at.share}, lease.work(), out, team);
-  out.multipliers = at.multipliers;
+  system_.measure(shape, {at->actuation, at->share}, lease.work(), out, team);
+  out.multipliers = at->multipliers;
+  drop_vertices(out.reactions);
 }
 
-bool Equilibria::foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const {
+bool Equilibria::foresee(const Actuation& actuation, const State& state, Points& positions, Team& team) const {
   if (system_.contact()) return false;
-  Lease lease(*this, at.positions, true);
-  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
-  return physical::foresee(system_, {at.actuation, at.share}, {actuation, at.share}, lease.work(), team,
-                           system_.iterate(at), positions);
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, true);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  const bool foreseen = physical::foresee(system_, {at->actuation, at->share}, {actuation, at->share}, lease.work(),
+                                          team, system_.iterate(*at), positions);
+  if (foreseen) drop_vertices(positions);
+  return foreseen;
 }
 
-ViscousFlow Equilibria::flow(const State& at, Team& team) const {
+ViscousFlow Equilibria::flow(const State& state, Team& team) const {
   ViscousFlow flow;
   if (!system_.viscous()) return flow;
-  Lease lease(*this, at.positions, true);
-  system_.set_time(at.history, at.elapsed_s, lease.work(), team);
-  flow.history = system_.flow(at, lease.work(), flow.lost_mJ, team);
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, true);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  flow.history = system_.flow(*at, lease.work(), flow.lost_mJ, team);
   return flow;
 }
 
@@ -109,6 +115,13 @@ void Equilibria::begin_again(const Demand& to, const Options& options, const Pro
 
 Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, const Options& options,
                               const ProgressCallback& progress, Team& team) const {
+  Equilibrium found = solve_inside(actuation, *Inside(*this, start, team), options, progress, team);
+  outside(found.state);
+  return found;
+}
+
+Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& start, const Options& options,
+                                     const ProgressCallback& progress, Team& team) const {
   const Model& model = system_.model();
   Equilibrium result;
   result.actuation = actuation;

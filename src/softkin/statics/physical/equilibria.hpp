@@ -13,6 +13,7 @@ namespace softkin::physical {
 class Equilibria {
  public:
   class Lease;
+  class Inside;
 
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held
   explicit Equilibria(const Model& model) : system_(model) {}
@@ -35,6 +36,13 @@ class Equilibria {
   /// Arguments are checked already. report.seconds is left to the caller.
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const Options& options,
                                   const ProgressCallback& progress, Team& team) const;
+
+  /// A state with the pressures of mixed elements among its positions, as the system has them, and back. Where it does
+  /// not know them, those that balance its forces best: the only ones, at an equilibrium.
+  ///
+  /// throws  InvalidInput on pressures of another robot
+  [[nodiscard]] State inside(const State& at, Team& team) const;
+  void outside(State& at) const;
 
   /// Of an equilibrium; see Statics::sensitivity.
   [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
@@ -59,6 +67,10 @@ class Equilibria {
  private:
   /// Without that anything passes through anything, every vertex on its straight way.
   bool comes_to(const Points& from, const Points& to, Workspace& work, Team& team) const;
+  [[nodiscard]] Equilibrium solve_inside(const Actuation& actuation, const State& start, const Options& options,
+                                         const ProgressCallback& progress, Team& team) const;
+  void find_pressures(State& at, Team& team) const;
+  void drop_vertices(Points& points) const;
   void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
                    Workspace& work, Iterate& at, SolveReport& report) const;
 

@@ -48,4 +48,22 @@ class Equilibria::Lease {
   std::unique_ptr<Workspace> work_;
 };
 
+/// A state as the system has it, for as long as the other one lives. Without mixed elements it is that.
+class Equilibria::Inside {
+ public:
+  Inside(const Equilibria& owner, const State& at, Team& team) : at_(&at) {
+    if (!owner.system_.pressures()) return;
+    own_ = owner.inside(at, team);
+    at_ = &own_;
+  }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+  const State& operator*() const { return *at_; }
+  const State* operator->() const { return at_; }
+
+ private:
+  State own_;
+  const State* at_;
+};
+
 }  // namespace softkin::physical

@@ -124,7 +124,11 @@ bool Newton::attempt_whole(const Step& step, const Iterate& from) {
 
 /// What a step of Newton's makes less where the stiffness is positive: potential, and constraints that are missed.
 double Newton::merit(const Balance& balance) const {
-  return balance.energy + balance.load_energy + constraint_weights_.dot(balance.constraint.cwiseAbs());
+  double missed = constraint_weights_.dot(balance.constraint.cwiseAbs());
+  const std::vector<Index>& pressures = system_.freedoms().scalar_unknowns();
+  for (std::size_t p = 0; p < pressures.size(); ++p)
+    missed += pressure_weights_[static_cast<Index>(p)] * std::abs(balance.force[pressures[p]]);
+  return balance.energy + balance.load_energy + missed;
 }
 
 /// Chooses the weights of missed constraints, larger than the multipliers, for the step at hand.
@@ -140,6 +144,24 @@ double Newton::weigh_constraints(const Iterate& at) {
     const double multiplier = at.multipliers[a], missed = balance_.constraint[a];
     constraint_weights_[a] = above * std::max(std::abs(multiplier), std::abs(multiplier + step_.change[a]));
     slope += system_.measures().sign(a) * multiplier * missed - constraint_weights_[a] * std::abs(missed);
+  }
+  return slope + weigh_pressures(at, above);
+}
+
+/// The same of pressures, which are multipliers of volumes that are kept: what their part of the slope lacks.
+double Newton::weigh_pressures(const Iterate& at, double above) {
+  if (!system_.pressures()) return 0;
+  const std::vector<Index>& unknowns = system_.freedoms().scalar_unknowns();
+  Points moves;
+  system_.freedoms().expand(step_.move, at.positions, moves);
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(step_.move.size());
+  const Points largest = at.positions.cwiseAbs().cwiseMax((at.positions + moves).cwiseAbs());
+  system_.freedoms().reduce(largest, at.positions, weights);
+  pressure_weights_.resize(static_cast<Index>(unknowns.size()));
+  double slope = system_.pressure_work(at.positions, balance_.force);
+  for (std::size_t p = 0; p < unknowns.size(); ++p) {
+    const double weight = pressure_weights_[static_cast<Index>(p)] = above * weights[unknowns[p]];
+    slope -= weight * std::abs(balance_.force[unknowns[p]]);
   }
   return slope;
 }

@@ -78,6 +78,7 @@ class Newton {
   void note_pace(double damping);
   [[nodiscard]] double merit(const Balance& balance) const;
   [[nodiscard]] double weigh_constraints(const Iterate& at);
+  [[nodiscard]] double weigh_pressures(const Iterate& at, double above);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
   bool update_next();
@@ -102,8 +103,8 @@ class Newton {
   const std::vector<bool>* active_ = nullptr;
   Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
-  std::vector<Secant> secants_;         // of the factor at hand
-  Eigen::VectorXd constraint_weights_;  // in the merit function: N, MPa
+  std::vector<Secant> secants_;                            // of the factor at hand
+  Eigen::VectorXd constraint_weights_, pressure_weights_;  // in the merit function: N, MPa; mm
   Iterate start_, trial_;
   const char* why_ = "";
   int poor_ = 0;         // steps in a row that were much shorter than Newton's

@@ -85,7 +85,7 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   const Points before = at.positions;
   system.advance(tangent.step, 1, work, at.positions, team, &there);
   follow(tangent, 1, system, there, active, at.multipliers);
-  return largest_move(before, at.positions);
+  return system.largest_move(before, at.positions);
 }
 
 std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
@@ -110,7 +110,8 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
     if (first) predicted = at.positions;
     if (share >= end) break;
     end = shorter * share;
-    if (end < most_cut && largest_move(from, predicted) > long_way * system.model().diagonal_mm) return std::nullopt;
+    if (end < most_cut && system.largest_move(from, predicted) > long_way * system.model().diagonal_mm)
+      return std::nullopt;
     if (end >= least) continue;
     end = 0;  // only what is held moves
     const Way alone = [&](double part, Points& out) {
@@ -121,7 +122,7 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
     break;
   }
   follow(tangent, end, system, there, active, at.multipliers);
-  return largest_move(from, at.positions);
+  return system.largest_move(from, at.positions);
 }
 
 bool foresee(const System& system, const Demand& here, const Demand& there, Workspace& work, Team& team,
@@ -211,6 +212,7 @@ State Predictor::predict(const Actuation& actuation, Team& team) {
               1,
               std::move(there.anchors),
               std::move(there.eyelets),
+              {},
               at_.history,
               at_.elapsed_s};
   for (Index a = 0; a < system_.actuators(); ++a) {

@@ -9,12 +9,15 @@ namespace {
 /// Share of a constraint's own compliance below which what it adds to others is rounding [-].
 constexpr double dependent = 1e-9;
 
-/// visit(value) of every entry of the diagonal.
+/// visit(value) of every entry of the diagonal, but of pressures.
 template <class Visit>
-void each_diagonal(const linear::BlockColumns& columns, LargeVector<double>& values, const Visit& visit) {
-  for (Index node = 0; node < columns.nodes(); ++node)
+void each_diagonal(const supports::ReducedMatrix& matrix, LargeVector<double>& values, const Visit& visit) {
+  const linear::BlockColumns& columns = matrix.columns();
+  for (Index node = 0; node < columns.nodes(); ++node) {
+    if (matrix.scalars() > 0 && matrix.is_scalar(node)) continue;
     for (Index i = 0; i < columns.width(node); ++i)
       visit(values[columns.offsets[columns.starts[node]] + i * (columns.width(node) + 1)]);
+  }
 }
 
 }  // namespace
@@ -29,15 +32,15 @@ void Saddle::activate(const std::vector<bool>& active) {
 }
 
 void Saddle::factorise(const Matrix& matrix, const Balance* step, Team& team) {
-  const linear::BlockColumns& columns = matrix.layout->reduced.columns();
+  const supports::ReducedMatrix& reduced = matrix.layout->reduced;
   double trace = 0;
   spectrum_.stiffest = 0;
-  each_diagonal(columns, matrix.values, [&](double value) {
+  each_diagonal(reduced, matrix.values, [&](double value) {
     trace += std::abs(value);
     spectrum_.stiffest = std::max(spectrum_.stiffest, std::abs(value));
   });
-  const double mean = spectrum_.mean = trace / std::max<Index>(1, columns.size());
-  if (matrix.shift > 0) each_diagonal(columns, matrix.values, [&](double& value) { value += matrix.shift * mean; });
+  const double mean = spectrum_.mean = trace / std::max<Index>(1, reduced.columns().size() - reduced.scalars());
+  if (matrix.shift > 0) each_diagonal(reduced, matrix.values, [&](double& value) { value += matrix.shift * mean; });
   if (layout_ != matrix.layout) {
     factor_.change(matrix.layout->symbolic);
     layout_ = matrix.layout;
@@ -53,7 +56,8 @@ void Saddle::solve_factorised(const Matrix& matrix, Precision precision, const B
   if (!reduced.in_order()) reduced.to_columns(solutions_, in_columns_);
   Eigen::MatrixXd& right_sides = reduced.in_order() ? solutions_ : in_columns_;
   spectrum_.negative =
-      factor_.factorise(matrix.values, 1e-13 * spectrum_.mean, precision, right_sides, team, matrix.spare).negative;
+      factor_.factorise(matrix.values, 1e-13 * spectrum_.mean, precision, right_sides, team, matrix.spare).negative -
+      reduced.scalars();
   if (!reduced.in_order()) reduced.to_unknowns(in_columns_, solutions_);
   close();
 }

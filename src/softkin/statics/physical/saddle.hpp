@@ -27,6 +27,9 @@ struct Layout {
 /// Tendons that rub add few columns: K becomes K + U V^T, by Woodbury's formula, and a measure's multiplier pulls with
 /// another column than its slope. As friction is either whole or stiff, a step takes it by its secants over that step.
 ///
+/// K may hold pressures, each with a negative eigenvalue of its own: what is left of K's inertia is that of the shape
+/// with pressures that follow it (Haynsworth 1968).
+///
 /// source  Nocedal, Wright 2006, Numerical optimization, section 16.2: the Schur complement of the constraints
 class Saddle {
  public:
@@ -85,7 +88,7 @@ class Saddle {
   struct Spectrum {
     double stiffest = 0;  // the largest of the diagonal [N/mm],
     double mean = 0;      // and their mean
-    int negative = 0;     // negative eigenvalues,
+    int negative = 0;     // negative eigenvalues, but those that pressures have of their own,
     int unstable = 0;     // and those that the constraints leave
   };
   [[nodiscard]] const Spectrum& spectrum() const { return spectrum_; }

@@ -30,9 +30,12 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
     Workspace::Softest softest{lopsided(system.freedoms().size()).normalized(), 0};
     for (int i = 0; i < soft_iterations; ++i) {
       right.force = -softest.direction;
+      system.drop_pressures(right.force);
       work.saddle.step(right, next, multipliers, team);
-      softest.curvature = softest.direction.dot(next) / next.squaredNorm();
-      softest.direction = next.normalized();
+      Eigen::VectorXd moves = next;  // pressures follow them
+      system.drop_pressures(moves);
+      softest.curvature = softest.direction.dot(moves) / moves.squaredNorm();
+      softest.direction = next / moves.norm();
     }
     work.softest = std::move(softest);
   }
@@ -43,7 +46,9 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
   system.freedoms().move(direction, reach, beside.positions);
   Balance there;
   system.evaluate(beside, demand, active, work, there, team);
-  const double curvature = direction.dot(there.force - balance.force) / reach;
+  Eigen::VectorXd moves = direction;
+  system.drop_pressures(moves);
+  const double curvature = moves.dot(there.force - balance.force) / reach;
   const double expected = work.softest->curvature;
   return std::abs(curvature - expected) <= as_stiff * expected;
 }
@@ -79,10 +84,13 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   // the constraints are met by every step, so that the iteration stays among the directions that keep them
   Balance right;
   right.constraint = Eigen::VectorXd::Zero(system.actuators());
-  Eigen::VectorXd vector = lopsided(system.freedoms().size()).normalized(), next, multipliers;
+  Eigen::VectorXd vector = lopsided(system.freedoms().size()), next, multipliers;
+  system.drop_pressures(vector);
+  vector.normalize();
   for (int i = 0; i < most_inverse_iterations; ++i) {
     right.force = -vector;
     work.saddle.step(right, next, multipliers, team);
+    system.drop_pressures(next);
     const double curvature = 1 / vector.dot(next) - high * mean;
     vector = next.normalized();
     if (i > 2 && std::abs(curvature - mode.curvature) < settled * std::abs(curvature)) break;
@@ -96,10 +104,11 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
 
 namespace {
 
-/// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given.
-double lagrangian(const System& system, const Balance& balance, const Points& positions,
+/// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given; kept
+/// volumes by the pressures of another shape.
+double lagrangian(const System& system, const Balance& balance, const Points& positions, const Points& pressed,
                   const Eigen::VectorXd& multipliers) {
-  double energy = balance.energy;
+  double energy = balance.energy + system.pressure_work(pressed, balance.force);
   for (Index a = 0; a < system.actuators(); ++a)
     if (system.measures().measures(a) && multipliers[a] != 0)
       energy += system.measures().sign(a) * multipliers[a] * system.measures().value(a, positions);
@@ -126,8 +135,8 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
     trial.multipliers += scale * change;
     system.evaluate(trial, demand, active, work, there, team);
     if (there.forbidden || !there.force.allFinite()) continue;
-    if (!(lagrangian(system, there, trial.positions, at.multipliers) <
-          lagrangian(system, balance, at.positions, at.multipliers)))
+    if (!(lagrangian(system, there, trial.positions, at.positions, at.multipliers) <
+          lagrangian(system, balance, at.positions, at.positions, at.multipliers)))
       continue;
     at = std::move(trial);
     shift = std::max(least_shift, shift / 4);

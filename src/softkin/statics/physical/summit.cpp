@@ -86,7 +86,7 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
                 : outcome == Newton::Outcome::unstable  ? "it is unstable"
                 : outcome == Newton::Outcome::converged ? "an element is inverted"
                                                         : newton_.why_stuck(),
-                largest_move(from.at.positions, predicted_), largest_move(begun, end));
+                system_.largest_move(from.at.positions, predicted_), system_.largest_move(begun, end));
   }
   active_[a] = false;
   return found;
@@ -104,7 +104,7 @@ void Continuation::bend(Index a, const Demand& here, const Demand& there, const 
   Iterate back = from.at;
   (void)predict(system_, here, behind, active_, work_, team_, back);
   const Points miss = ratio * ratio * (beside.at.positions - back.positions);
-  if (!(miss.rowwise().norm().maxCoeff() < most * largest_move(from.at.positions, trial.positions))) return;
+  if (!(miss.rowwise().norm().maxCoeff() < most * system_.largest_move(from.at.positions, trial.positions))) return;
   trial.positions += miss;
   system_.placement().hold(there, trial.positions);
   trial.multipliers += ratio * ratio * (beside.at.multipliers - back.multipliers);

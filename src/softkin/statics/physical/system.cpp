@@ -18,12 +18,18 @@ System::System(const Model& model) : System(model, nullptr) {}
 System::System(const Model& model, const System& like) : System(model, &like) {}
 
 System::System(const Model& model, const System* like)
-    : model_(model),
-      body_(model),
-      dead_loads_(model),
-      fading_loads_(model),
-      surroundings_(model),
-      actuator_loads_(model) {
+    : System(model, pressures_of(model, like ? like->pressures() : nullptr), like) {}
+
+System::System(const Model& given, std::unique_ptr<const Pressures> pressures, const System* like)
+    : pressures_(std::move(pressures)),
+      own_(pressures_ ? with_vertices(given, *pressures_) : nullptr),
+      model_(own_ ? *own_ : given),
+      body_(model_, pressures_.get()),
+      dead_loads_(model_),
+      fading_loads_(model_),
+      surroundings_(model_),
+      actuator_loads_(model_) {
+  const Model& model = model_;
   body_.add_cliques(cliques_);
   actuator_loads_.add_cliques(cliques_);
   surroundings_.add_cliques(cliques_);
@@ -54,7 +60,8 @@ System::System(const Model& model, const System* like)
 
 void System::make_layout() {
   linear::BlockPattern pattern(static_cast<Index>(model_.rest.rows()), cliques_);
-  freedoms_ = std::make_unique<const supports::Freedoms>(model_, pattern);
+  freedoms_ = std::make_unique<const supports::Freedoms>(model_, pattern,
+                                                         pressures_ ? pressures_->corners : std::vector<Index>());
   supports::ReducedMatrix reduced(*freedoms_, pattern);
   auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
   linear::require_memory(*symbolic, sizeof(float));  // before what takes long
@@ -85,6 +92,16 @@ void System::evaluate(const Iterate& at, const Demand& demand, const std::vector
   actuator_loads_.evaluate(at, demand, active, work.slopes, work.gradient, balance);
   balance.force.resize(freedoms_->size());
   freedoms_->reduce(work.gradient, at.positions, balance.force);
+}
+
+double System::pressure_work(const Points& positions, const Eigen::VectorXd& force) const {
+  double sum = 0;
+  if (!pressures_) return sum;
+  Points missed;
+  freedoms_->expand(force, positions, missed);
+  for (Index p = 0; p < pressures_->count(); ++p)
+    sum += positions(pressures_->first + p, 0) * missed(pressures_->first + p, 0);
+  return sum;
 }
 
 void System::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Workspace& work,

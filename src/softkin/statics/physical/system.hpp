@@ -8,6 +8,7 @@
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 #include <softkin/statics/physical/placement.hpp>
+#include <softkin/statics/physical/pressures.hpp>
 #include <softkin/statics/physical/surroundings.hpp>
 #include <softkin/statics/physical/tractions.hpp>
 #include <softkin/statics/physical/workspace.hpp>
@@ -16,7 +17,8 @@ namespace softkin::physical {
 
 /// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
 /// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers. The energy is
-/// the sum of the terms'; multipliers of dea actuators under voltage are told, but not read.
+/// the sum of the terms'; multipliers of dea actuators under voltage are told, but not read. Pressures
+/// of mixed elements are vertices more (see Pressures), unknowns as others: the energy is stationary in them, too.
 class System {
  public:
   explicit System(const Model& model);
@@ -110,7 +112,21 @@ class System {
   [[nodiscard]] bool contact() const { return contacts_ != nullptr; }
   [[nodiscard]] bool friction() const { return contacts_ && contacts_->friction().any(); }
 
+  /// With the pressures' vertices, where there are any.
   [[nodiscard]] const Model& model() const { return model_; }
+  /// Null: no element is mixed.
+  [[nodiscard]] const Pressures* pressures() const { return pressures_.get(); }
+  /// Of a vertex from one shape to another, whatever pressures do [mm].
+  [[nodiscard]] double largest_move(const Points& from, const Points& to) const {
+    if (!pressures_) return softkin::largest_move(from, to);
+    return softkin::largest_move(from.topRows(pressures_->first), to.topRows(pressures_->first));
+  }
+  /// Sum of pressures times what their equations miss [mJ]: what the energy of an evaluation lacks to be stationary.
+  [[nodiscard]] double pressure_work(const Points& positions, const Eigen::VectorXd& force) const;
+  /// Sets what vectors over the unknowns say of pressures to zero.
+  void drop_pressures(Eigen::VectorXd& vector) const {
+    for (const Index u : freedoms_->scalar_unknowns()) vector[u] = 0;
+  }
   /// In the order in which they are added; a workspace has their scratch in the same.
   [[nodiscard]] const std::vector<const Term*>& terms() const { return terms_; }
   [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
@@ -148,6 +164,7 @@ class System {
 
  private:
   System(const Model& model, const System* like);
+  System(const Model& model, std::unique_ptr<const Pressures> pressures, const System* like);
   void make_layout();
   void share_layout(const System& like);
   [[nodiscard]] bool multiplies_unknowns(const Workspace& work) const;
@@ -161,6 +178,8 @@ class System {
     for (std::size_t i = 0; i < terms_.size(); ++i) visit(*terms_[i], *work.terms[i]);
   }
 
+  std::unique_ptr<const Pressures> pressures_;
+  std::unique_ptr<const Model> own_;  // where there are any
   const Model& model_;
   Body body_;
   DeadLoads dead_loads_;

@@ -10,6 +10,12 @@ std::vector<std::unique_ptr<Term::Scratch>> scratches(const std::vector<const Te
   return all;
 }
 
+/// Single precision is tried where the stiffness is positive, which it is not with pressures.
+Saddle::Precision usual_precision(const System& system) {
+  if (system.pressures()) return Saddle::Precision::twice;
+  return system.contacts() ? Saddle::Precision::good : Saddle::Precision::enough;
+}
+
 }  // namespace
 
 Workspace::Workspace(const System& system)
@@ -20,6 +26,6 @@ Workspace::Workspace(const System& system)
       layout(system.layout()),
       slots(9 * static_cast<std::size_t>(layout->slots)),
       slopes(system.model().actuators.size()),
-      saddle(system.measures(), layout, contacts ? Saddle::Precision::good : Saddle::Precision::enough) {}
+      saddle(system.measures(), layout, usual_precision(system)) {}
 
 }  // namespace softkin::physical

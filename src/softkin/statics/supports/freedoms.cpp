@@ -1,14 +1,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <softkin/linear/ordering.hpp>
 #include <softkin/statics/supports/freedoms.hpp>
 #include <softkin/statics/supports/reduced_matrix.hpp>
 
 namespace softkin::supports {
 
-Freedoms::Freedoms(const Model& model, const linear::BlockPattern& pattern)
-    : rest_(model.rest), held_(model.held), fixed_(model.fixed), region_of_(model.rest.rows(), -1) {
+Freedoms::Freedoms(const Model& model, const linear::BlockPattern& pattern, std::vector<Index> scalars)
+    : rest_(model.rest),
+      held_(model.held),
+      fixed_(model.fixed),
+      scalars_(std::move(scalars)),
+      region_of_(model.rest.rows(), -1) {
   find_regions(model);
   number(model, pattern);
 }
@@ -62,8 +65,7 @@ void Freedoms::number(const Model& model, const linear::BlockPattern& pattern) {
   for (Index v = 0; v < rest_.rows(); ++v)
     if (region_of_[v] >= 0) node_of_[v] = vertex_nodes + region_of_[v];
   const Eigen::SparseMatrix<double> graph = node_graph(pattern, node_of_, count);
-  const linear::Ordering ordering =
-      model.edge_nodes.empty() ? linear::nested_dissection(graph) : linear::nested_dissection(graph, ends_of(model));
+  const linear::Ordering ordering = ordering_of(model, graph);
   pieces_ = ordering.pieces;
 
   std::vector<Index> place(static_cast<std::size_t>(count));
@@ -79,6 +81,7 @@ void Freedoms::number(const Model& model, const linear::BlockPattern& pattern) {
       vertex_of_.push_back(v);
       first_unknown_[v] = first;
       for (int axis = 0; axis < 3; ++axis) width += !fixed_[v][axis];
+      if (is_scalar(v)) scalar_unknowns_.push_back(first);
     } else {
       Region& region = regions_[node - vertex_nodes];
       vertex_of_.push_back(-1);
@@ -212,12 +215,13 @@ Freedoms::Size Freedoms::size_of(const Eigen::Ref<const Eigen::VectorXd>& unknow
   Points moves;
   expand(unknowns, positions, moves);
   double largest = 0, sum = 0;
-  for (Index v = 0; v < moves.rows(); ++v) {
+  const Index count = static_cast<Index>(moves.rows()) - static_cast<Index>(scalars_.size());
+  for (Index v = 0; v < count; ++v) {
     const double square = moves.row(v).squaredNorm();
     if (!(square <= largest)) largest = square;  // also where it is not a number
     sum += square;
   }
-  return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(moves.rows()))};
+  return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(count))};
 }
 
 void Freedoms::add_turning(const Points& gradient, const Points& positions,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <softkin/linear/block_matrix.hpp>
+#include <softkin/linear/ordering.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/statics/supports/rigid_body.hpp>
 
@@ -12,7 +13,9 @@ namespace softkin::supports {
 /// from that of moves by a length squared). x moves by T u to first order.
 class Freedoms {
  public:
-  Freedoms(const Model& model, const linear::BlockPattern& pattern);
+  /// scalars: the model's last vertices are such, each an unknown that stands at a corner and pushes what is around
+  ///          it, with nothing or little of its own on the diagonal: the corner of each
+  Freedoms(const Model& model, const linear::BlockPattern& pattern, std::vector<Index> scalars = {});
   /// The same unknowns of a model that is held elsewhere by the same.
   Freedoms(const Freedoms& like, const Model& model);
 
@@ -20,6 +23,9 @@ class Freedoms {
 
   /// Vertices that are not of a rigid region, in the order of elimination.
   [[nodiscard]] std::vector<Index> vertex_order() const;
+
+  /// Unknowns that are scalars.
+  [[nodiscard]] const std::vector<Index>& scalar_unknowns() const { return scalar_unknowns_; }
 
   /// T^T vectors. positions: where the rigid regions are
   void reduce(const Points& vectors, const Points& positions, Eigen::Ref<Eigen::VectorXd> out) const;
@@ -33,7 +39,7 @@ class Freedoms {
   /// Moves positions by scale u: rigid regions turn, all else is x + scale T u.
   void move(const Eigen::Ref<const Eigen::VectorXd>& unknowns, double scale, Points& positions) const;
 
-  /// Largest and root mean square move of a vertex [mm] that unknowns stand for.
+  /// Largest and root mean square move of a vertex [mm] that unknowns stand for, whatever scalars do.
   struct Size {
     double largest = 0, mean = 0;
   };
@@ -58,6 +64,10 @@ class Freedoms {
   void find_regions(const Model& model);
   [[nodiscard]] std::vector<std::array<Index, 2>> ends_of(const Model& model) const;
   void number(const Model& model, const linear::BlockPattern& pattern);
+  [[nodiscard]] linear::Ordering ordering_of(const Model& model, const Eigen::SparseMatrix<double>& graph) const;
+  [[nodiscard]] bool is_scalar(Index vertex) const {
+    return vertex >= static_cast<Index>(rest_.rows()) - static_cast<Index>(scalars_.size());
+  }
   [[nodiscard]] Index nodes() const { return static_cast<Index>(vertex_of_.size()); }
   [[nodiscard]] Index width(Index node) const { return unknowns_[node + 1] - unknowns_[node]; }
   [[nodiscard]] Eigen::Matrix<double, 3, Eigen::Dynamic> tangent(Index vertex, const std::vector<Vec3>& centers,
@@ -66,6 +76,7 @@ class Freedoms {
 
   Points rest_, held_;
   std::vector<std::array<bool, 3>> fixed_;  // per vertex and axis; regions aside
+  std::vector<Index> scalars_, scalar_unknowns_;
   std::vector<Region> regions_;
   std::vector<Index> region_of_;  // per vertex, -1
   // nodes, which are free vertices and regions, in an order of elimination of the pattern

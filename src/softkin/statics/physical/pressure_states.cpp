@@ -1,0 +1,61 @@
+#include <softkin/statics/physical/contact_steps.hpp>
+#include <softkin/statics/physical/lease.hpp>
+
+namespace softkin::physical {
+
+State Equilibria::inside(const State& at, Team& team) const {
+  const Pressures* pressures = system_.pressures();
+  State inner = at;
+  if (!pressures) return inner;
+  if (at.pressures.size() > 0 && (at.pressures.size() != pressures->count() || !at.pressures.allFinite()))
+    throw InvalidInput("the pressures of the elements are of another robot");
+  inner.positions.conservativeResize(pressures->first + pressures->count(), 3);
+  inner.positions.bottomRows(pressures->count()).setZero();
+  if (at.pressures.size() > 0)
+    inner.positions.col(0).tail(pressures->count()) = at.pressures / pressures->unit;
+  else if (inner.positions != system_.model().rest || at.actuation.size() > 0)
+    find_pressures(inner, team);
+  return inner;
+}
+
+void Equilibria::outside(State& at) const {
+  const Pressures* pressures = system_.pressures();
+  if (!pressures || at.positions.rows() == 0) return;
+  at.pressures = pressures->unit * at.positions.col(0).tail(pressures->count());
+  drop_vertices(at.positions);
+}
+
+void Equilibria::drop_vertices(Points& points) const {
+  if (system_.pressures() && points.rows() > 0) points.conservativeResize(system_.pressures()->first, 3);
+}
+
+/// Those of one step of Newton's from none: with the law's own stiffness A, and B that by the pressures, at an
+/// equilibrium the step is (0, p), whatever A is.
+void Equilibria::find_pressures(State& at, Team& team) const {
+  const Index actuators = system_.actuators();
+  const bool known = at.knows(actuators) && at.multipliers.size() == actuators;
+  Lease lease(*this, at.positions, false);
+  Workspace& work = lease.work();
+  State loaded = at;
+  if (!known) loaded.multipliers = Eigen::VectorXd::Zero(actuators);
+  const Demand demand{at.actuation.size() == actuators ? at.actuation : system_.model().rest_actuation(),
+                      at.share >= 0 ? at.share : 1};
+  std::vector<bool> active(static_cast<std::size_t>(actuators));
+  for (Index a = 0; a < actuators; ++a)
+    active[static_cast<std::size_t>(a)] = !known && system_.measures().constrains(a);
+  system_.set_time(at.history, at.elapsed_s, work, team);
+  const Iterate shape = system_.iterate(loaded);
+  hold_friction(system_, shape, work, team);
+  Balance balance;
+  system_.evaluate(shape, demand, active, work, balance, team);
+  if (balance.forbidden || !balance.force.allFinite()) return;
+  (void)system_.factorise(shape, demand, active, balance, {System::Stiffness::exact, 0, true}, work, team);
+  Eigen::VectorXd step, change;
+  work.saddle.first_step(balance, step, change);
+  Points moves;
+  system_.freedoms().expand(step, shape.positions, moves);
+  const Pressures& pressures = *system_.pressures();
+  if (moves.allFinite()) at.positions.col(0).tail(pressures.count()) = moves.col(0).tail(pressures.count());
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <softkin/statics/physical/pressures.hpp>
+
+namespace softkin::physical {
+
+std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressures* like) {
+  if (std::none_of(model.materials.begin(), model.materials.end(), [](const Material& m) { return m.mixed; }))
+    return nullptr;
+  constexpr double share = 30;  // of the diagonal, one over it, is a pressure of one shear modulus
+  auto pressures = std::make_unique<Pressures>();
+  pressures->first = static_cast<Index>(model.rest.rows());
+  pressures->of.assign(model.tetrahedra.size(), {-1, -1, -1, -1});
+  double shear = 0;
+  std::map<std::pair<Index, Index>, Index> known;  // by material and corner
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    const Index material = model.tetrahedron_roles[e].material;
+    const Material& of = model.materials[static_cast<std::size_t>(material)];
+    if (!of.mixed) continue;
+    shear = std::max(shear, shear_modulus(of.elastic));
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index corner = model.tetrahedra[e][i];
+      const auto [at, is_new] = known.emplace(std::pair{material, corner}, pressures->first + pressures->count());
+      if (is_new) pressures->corners.push_back(corner);
+      pressures->of[e][i] = at->second;
+    }
+  }
+  if (pressures->corners.empty()) return nullptr;
+  // a power of two: pressures come back from MPa bit by bit
+  pressures->unit = like ? like->unit : std::exp2(std::round(std::log2(share * shear / model.diagonal_mm)));
+  return pressures;
+}
+
+std::unique_ptr<const Model> with_vertices(const Model& model, const Pressures& pressures) {
+  auto own = std::make_unique<Model>(model);
+  const auto all = static_cast<std::size_t>(pressures.first + pressures.count());
+  const auto extend = [&](Points& points) {
+    if (points.rows() == 0) return;
+    points.conservativeResize(static_cast<Index>(all), 3);
+    points.bottomRows(pressures.count()).setZero();
+  };
+  extend(own->rest);
+  extend(own->held);
+  extend(own->dead_load);
+  own->fixed.resize(all, {false, true, true});
+  own->support_of.resize(all, {-1, -1, -1});
+  own->used.resize(all, false);
+  return own;
+}
+
+SplitLaw split(const ElasticLaw& law, bool quadratic) {
+  constexpr double most_kept = 2;  // of the bulk part, over the shear modulus
+  SplitLaw result{law};
+  double& bulk = bulk_part(result.law);
+  const double whole = bulk, shear = shear_modulus(law);
+  bulk = std::min(most_kept * shear, 0.5 * whole);
+  result.softness = 1 / (whole - bulk);
+  if (!quadratic) result.smoothing = 1 / shear;
+  return result;
+}
+
+}  // namespace softkin::physical
