@@ -36,13 +36,81 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
           vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
 }
 
+/// The pressures of mixed elements: a number for each material and corner, in the order in which elements name them.
+struct Pressing {
+  std::map<std::pair<Index, Index>, Index> numbers;
+  std::vector<Real> missed, volume, area;  // by number: sums of what PressurePulls has
+
+  Index number(Index material, Index corner) {
+    const auto [at, is_new] = numbers.emplace(std::pair{material, corner}, static_cast<Index>(missed.size()));
+    if (is_new)
+      for (std::vector<Real>* list : {&missed, &volume, &area}) list->push_back(0);
+    return at->second;
+  }
+};
+
+/// The law of a mixed material without what its pressures stand for: it keeps two shear moduli, or half.
+Real take_bulk(ElasticLaw& law) {
+  const double shear = law.law == Law::neo_hookean || law.law == Law::gent ? law.mu : 2 * (law.c10 + law.c01);
+  double& part = law.law == Law::neo_hookean ? law.lambda : law.bulk;
+  const double whole = part;
+  part = std::min(2 * shear, whole / 2);
+  return static_cast<Real>(whole) - part;
+}
+
+void add_pressures(const Model& model, const Equilibrium& found, Forces& forces, Confirmation& out) {
+  Pressing pressing;
+  const Eigen::VectorXd& all = found.state.pressures;
+  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+    const Index material = model.tetrahedron_roles[e].material;
+    if (!model.materials[material].mixed) continue;
+    ElasticLaw law = model.materials[material].elastic;
+    const Real bulk = take_bulk(law);
+    const Real shear = law.law == Law::neo_hookean || law.law == Law::gent ? law.mu : 2 * (law.c10 + law.c01);
+    std::array<Index, 10> nodes;
+    std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
+    if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+    const int count = model.edge_nodes.empty() ? 4 : 10;
+    std::array<Index, 4> numbers;
+    std::array<Real, 4> pressures;
+    for (std::size_t i = 0; i < 4; ++i) {
+      numbers[i] = pressing.number(material, nodes[i]);
+      pressures[i] = numbers[i] < all.size() ? all[numbers[i]] : 0;
+    }
+    const PressurePulls pulls =
+        pressure_pulls_of(nodes_at(model.rest, nodes.data(), count),
+                          nodes_at(found.state.positions, nodes.data(), count), pressures, bulk, shear);
+    for (int i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      forces.add(nodes[at], pulls.pulls.force[at], pulls.pulls.rounding[at]);
+      forces.stiffness[nodes[at]] += pulls.pulls.stiffness[at];
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      pressing.missed[numbers[i]] += pulls.missed[i];
+      pressing.volume[numbers[i]] += pulls.volume[i];
+      pressing.area[numbers[i]] += pulls.area[i];
+    }
+  }
+  if (static_cast<std::size_t>(all.size()) != pressing.missed.size())
+    out.faults.push_back("there are " + std::to_string(all.size()) + " pressures, not " +
+                         std::to_string(pressing.missed.size()));
+  Real worst = 0;
+  for (std::size_t n = 0; n < pressing.missed.size(); ++n)
+    worst = std::max(worst, std::abs(pressing.missed[n]) /
+                                (2 * found.report.tolerance_mm * pressing.area[n] + balanced * pressing.volume[n]));
+  if (!(worst <= 1))
+    out.faults.push_back("a volume is missed by " + digits(static_cast<double>(worst)) + " times what may be");
+}
+
 void add_elements(const Model& model, const Equilibrium& found, const State& begun, Forces& forces) {
   const Points& positions = found.state.positions;
   const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive, Real begun_ratio) {
     const BranchDrive branches{&model.materials[material].viscosity, found.state.elapsed_s,
                                nodes_at(begun.positions, nodes, count), begun_ratio};
-    const ElementPulls pulls = pulls_of(model.materials[material].elastic, nodes_at(model.rest, nodes, count),
-                                        nodes_at(positions, nodes, count), drive, branches);
+    ElasticLaw law = model.materials[material].elastic;
+    if (model.materials[material].mixed) (void)take_bulk(law);
+    const ElementPulls pulls =
+        pulls_of(law, nodes_at(model.rest, nodes, count), nodes_at(positions, nodes, count), drive, branches);
     for (int i = 0; i < count; ++i) {
       forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
       forces.stiffness[nodes[i]] += pulls.stiffness[i];
@@ -396,6 +464,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   check_places(model, state, out);
   Forces forces(static_cast<Index>(model.rest.rows()));
   add_elements(model, found, begun, forces);
+  add_pressures(model, found, forces, out);
   add_actuators(model, found, forces, out);
   add_magnets(model, found, forces);
   add_tractions(model, state, forces);

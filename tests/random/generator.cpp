@@ -77,6 +77,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_weights(m);
   make_turns(m);
   make_tractions(m);
+  make_mixed(m);
   make_friction(m);
   make_fibres(m);
   spoil_number(m);

@@ -72,6 +72,7 @@ void make_turns(Making& m);
 void make_tractions(Making& m);
 /// Threads through some robots and around them, before what is spoilt.
 void make_fibres(Making& m);
+void make_mixed(Making& m);
 /// Some cables rub, in sheaths too.
 void make_friction(Making& m);
 

@@ -7,7 +7,8 @@ namespace {
 /// Draws of their own, so that robots of the same seed are otherwise what they were.
 constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72,
                         draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73,
-                        draws_of_tractions = 0x7472616374, draws_of_fibres = 0x666962726573;
+                        draws_of_tractions = 0x7472616374, draws_of_fibres = 0x666962726573,
+                        draws_of_mixed = 0x6D69786564;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -97,6 +98,17 @@ void make_fibres(Making& m) {
     if (draw.chance(0.9)) fibre.stiffness_N = draw.log_between(1e-3, 30) * m.modulus * size[1] * size[2];
     fibre.tension_only = draw.chance(0.4);
     m.made.spec.fibres.push_back(std::move(fibre));
+  }
+}
+
+void make_mixed(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_mixed);
+  if (!m.physical || !m.mesh().prisms.empty() || !draw.chance(0.12)) return;
+  for (MaterialSpec& material : m.made.spec.materials) {
+    if (!material.elastic || !has_bulk_part(material.elastic->law) || !draw.chance(0.8)) continue;
+    material.mixed = true;
+    if (material.elastic->poisson_ratio && draw.chance(0.6))
+      material.elastic->poisson_ratio = draw.pick({0.49, 0.499, 0.4999, 0.5});
   }
 }
 

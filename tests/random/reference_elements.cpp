@@ -321,6 +321,58 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
   return out;
 }
 
+PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& current, const std::array<Real, 4>& pressures,
+                                Real bulk, Real shear) {
+  constexpr Real ulp = std::numeric_limits<double>::epsilon();
+  const Eigen::Index count = rest.rows();
+  const auto nodes = static_cast<std::size_t>(count);
+  PressurePulls out{
+      {std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0), std::vector<Real>(nodes, 0)}};
+  const Real size = rest.rowwise().norm().maxCoeff() + current.rowwise().norm().maxCoeff();
+  Real whole = 0;
+  for (const ParentPoint& point : points_of(count)) {
+    const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
+    const Real volume = point.weight * jacobian.determinant();
+    const RealPoints slope = point.slope * jacobian.inverse();
+    const RealMat3 f = (current.rowwise() - current.row(0)).transpose() * slope;
+    RealMat3 cofactor;
+    for (int i = 0; i < 3; ++i)
+      cofactor.row(i) = RealVec3(f.row((i + 1) % 3)).cross(RealVec3(f.row((i + 2) % 3))).transpose();
+    std::array<Real, 4> share;  // barycentric, of the shape functions of whatever order
+    for (std::size_t i = 0; i < 4; ++i) {
+      share[i] = point.shape[i];
+      for (std::size_t e = 0; nodes == 10 && e < 6; ++e)
+        if (tetrahedron_edges[e][0] == static_cast<int>(i) || tetrahedron_edges[e][1] == static_cast<int>(i))
+          share[i] += point.shape[4 + e] / 2;
+    }
+    Real p = 0;
+    for (std::size_t i = 0; i < 4; ++i) p += share[i] * pressures[i];
+    const Real j = f.determinant(), all = slope.rowwise().norm().sum();
+    whole += volume;
+    for (std::size_t i = 0; i < 4; ++i) {
+      out.missed[i] += volume * share[i] * (j - 1 - p / bulk);
+      out.volume[i] +=
+          volume * share[i] * (1 + std::abs(j) + std::abs(p / bulk) + f.norm() * f.norm() * all * size * ulp);
+      out.area[i] += volume * share[i] * cofactor.norm() * all;
+    }
+    for (Eigen::Index a = 0; a < count; ++a) {
+      const Real own = volume * slope.row(a).norm() * std::abs(p);
+      out.pulls.force[static_cast<std::size_t>(a)] += volume * p * (cofactor * slope.row(a).transpose());
+      out.pulls.stiffness[static_cast<std::size_t>(a)] += own * 2 * f.norm() * all;
+      out.pulls.rounding[static_cast<std::size_t>(a)] += own * f.norm() * (f.norm() + 2 * all * size) * ulp;
+    }
+  }
+  Real mean = 0;
+  for (const Real pressure : pressures) mean += pressure / 4;
+  for (std::size_t i = 0; nodes == 4 && i < 4; ++i) {  // integral of L_i (p - mean)
+    Real left = -whole * mean / 4;
+    for (std::size_t j = 0; j < 4; ++j) left += whole * (i == j ? 0.1L : 0.05L) * pressures[j];
+    out.missed[i] -= left * (1 / bulk + 1 / shear);
+    out.volume[i] += whole * (std::abs(mean) + std::abs(pressures[i])) * (1 / bulk + 1 / shear);
+  }
+  return out;
+}
+
 ElementPulls magnetic_pulls_of(const RealPoints& rest, const RealPoints& current, const RealVec3& remanence, bool turns,
                                const std::function<RealFlux(const RealVec3&)>& flux) {
   constexpr Real permeability = 4e-7L * 3.14159265358979323846L;  // [T m / A]; 1 mT^2 is 1e-6 T^2, 1 MPa 1e6 Pa

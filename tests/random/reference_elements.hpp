@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <softkin/model/model.hpp>
 #include <vector>
@@ -46,6 +47,18 @@ struct BranchDrive {
 /// prism (6).
 [[nodiscard]] ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
                                     const LayerDrive& drive, const BranchDrive& viscous);
+
+/// What a mixed element's pressures at its corners [MPa; tension is positive] do to its nodes, and what their equations
+/// miss: the integral of L_i (J - 1 - p / bulk), less what smooths them on linear tetrahedra (docs/formulations.md).
+struct PressurePulls {
+  ElementPulls pulls;
+  std::array<Real, 4> missed{};  // [mm^3]
+  std::array<Real, 4> volume{};  // integral of L_i (1 + |J| + |p / bulk|) [mm^3]
+  std::array<Real, 4> area{};    // largest change of what is missed when all nodes move by at most 1 mm [mm^2]
+};
+/// bulk: what the pressures stand for [MPa]; shear: shear modulus at small strain [MPa]
+[[nodiscard]] PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& current,
+                                              const std::array<Real, 4>& pressures, Real bulk, Real shear);
 
 /// Flux density at a place [mT] and its slopes there, (i, j) of b_i along x_j [mT/mm].
 struct RealFlux {
