@@ -21,7 +21,7 @@ class ActuatorState:
     requested: float
     """what was commanded, in `unit`"""
     unit: str
-    """'kPa', 'N', 'kV', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio to rest [-]"""
+    """'kPa', 'N', 'kV', 'mL', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio to rest [-]"""
     ratio: float
     """volume, length or area over that at rest [-]; of others the command that the shape is of"""
     measure: float
@@ -42,6 +42,11 @@ class ActuatorState:
     """of a cable that rubs, at its far end [N]; `load` is that at the motor"""
     sticking: float | None = None
     """the share of its friction in which it sticks [-]"""
+    amount_mL: float | None = None
+    """of a sealed chamber: its gas or liquid, that in its syringe and dead volume with it [mL under atmospheric
+    pressure]; else None"""
+    volumes_mL: dict[str, float] | None = None
+    """of chambers that are connected: the volume of each by its region [mL]; else None"""
 
     def _load_of(self, kind: str, what: str) -> float:
         if self.kind != kind:

@@ -98,8 +98,9 @@ class Shape(Saving[CoreShape]):
                 *(info.name, info.kind, requested, info.unit, ratio, measure, load, curve, slack),
                 *(layer or (None, None, None)),
                 *(tendon or (None, None)),
+                *(chamber[0], dict(zip(info.connected, chamber[1])) or None),
             )
-            for info, (requested, ratio, measure, load, curve, slack, layer, tendon) in zip(
+            for info, (requested, ratio, measure, load, curve, slack, layer, tendon, chamber) in zip(
                 self._robot.actuator_infos, self._core.actuators()
             )
         }

@@ -54,16 +54,25 @@ void bind_actuator(nb::module_& module) {
       .def_prop_ro(
           "control", [](const Actuator& a) { return control_name(a); },
           "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure', 'tension', 'voltage', "
+          "'amount of gas', 'amount of liquid', 'pushed volume', "
           "'flux density', 'current', 'position' or 'moment'.")
       .def_prop_ro(
           "unit", [](const Actuator& a) { return command_unit(a); },
-          "Of a command: 'kPa', 'N', 'kV', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio [-].")
+          "Of a command: 'kPa', 'N', 'kV', 'mL', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio [-].")
       .def_prop_ro(
           "range", [](const Actuator& a) { return std::pair(a.low, a.high); }, "Of commands.")
       .def_ro("rest", &Actuator::rest, "The command where none is given.")
       .def_ro("rest_measure", &Actuator::rest_measure, "Length [mm], area [mm^2] or volume [mm^3] at rest.")
       .def_prop_ro(
           "column", [](const Actuator& a) { return command_column(a); }, "Of tables: 'air', 'air_kPa'.")
+      .def_prop_ro(
+          "connected",
+          [](const Actuator& a) {
+            std::vector<std::string> regions;
+            for (const ConnectedChamber& chamber : a.connected) regions.push_back(chamber.region);
+            return regions;
+          },
+          "Regions of chambers that share one pipe; [] of others.")
       .def_prop_ro(
           "load_key", [](const Actuator& a) { return multiplier_key(a); },
           "'pressure_kPa', 'tension_N', 'voltage_kV' or ''.")

@@ -8,6 +8,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <softkin/model/names.hpp>
+#include <softkin/runs/chamber_json.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
 
@@ -46,9 +47,11 @@ std::string report_of(const Shape& shape) {
 using LayerOut = std::array<double, 3>;
 /// Of a cable that rubs: tension at its far end, share that sticks.
 using TendonOut = std::array<double, 2>;
-/// An actuator in a shape: requested, ratio, measure, load, input by its curve, slack, layer, tendon.
+/// Of a sealed chamber: its amount [mL]. Of connected ones: the volume of each [mL].
+using ChamberOut = std::pair<std::optional<double>, std::vector<double>>;
+/// An actuator in a shape: requested, ratio, measure, load, input by its curve, slack, layer, tendon, chamber.
 using ActuatorOut = std::tuple<double, double, double, std::optional<double>, std::optional<double>, bool,
-                               std::optional<LayerOut>, std::optional<TendonOut>>;
+                               std::optional<LayerOut>, std::optional<TendonOut>, ChamberOut>;
 ActuatorOut actuator_of(const Shape& shape, std::size_t a, const runs::ActuatorRecord& record) {
   const Actuator& actuator = shape.model().actuators[a];
   const bool loaded = !multiplier_key(actuator).empty() && shape.model().formulation == Formulation::physical;
@@ -57,6 +60,8 @@ ActuatorOut actuator_of(const Shape& shape, std::size_t a, const runs::ActuatorR
   std::optional<TendonOut> tendon;
   if (rubs(actuator))
     if (const auto& of = shape.deformation().tendons.at(a)) tendon = {of->end_N, of->sticks};
+  const std::optional<double> amount =
+      actuator.filling ? std::optional(runs::amount_mL(actuator, record)) : std::nullopt;
   return {record.requested,
           record.achieved,
           record.achieved * actuator.rest_measure,
@@ -64,7 +69,8 @@ ActuatorOut actuator_of(const Shape& shape, std::size_t a, const runs::ActuatorR
           record.by_curve,
           record.slack,
           layer,
-          tendon};
+          tendon,
+          {amount, record.volumes_mL}};
 }
 
 void bind_fields(nb::class_<Shape>& type) {

@@ -24,14 +24,17 @@ fs::path examples() {
   return fs::path(SOFTKIN_SOURCE_DIR) / "examples";
 }
 
-/// Of what closes on something: the ends of its ranges are far inside of that, and target shapes touch nothing.
-const fs::path gripper = "two_finger_gripper";
+/// Of what closes on something: the ends of its ranges are far inside of that, and target shapes touch nothing. And of
+/// what is sealed, which target shapes do not know either.
+bool is_of_two_fingers(const fs::path& folder) {
+  return folder.filename() == "two_finger_gripper" || folder.filename() == "sealed_fingers";
+}
 
-/// Every examples/NAME/SCENE.yaml but the gripper's, sorted.
+/// Every examples/NAME/SCENE.yaml but those of two fingers, sorted.
 std::vector<fs::path> scenes() {
   std::vector<fs::path> found;
   for (const auto& folder : fs::directory_iterator(examples())) {
-    if (!folder.is_directory() || folder.path().filename() == gripper) continue;
+    if (!folder.is_directory() || is_of_two_fingers(folder.path())) continue;
     for (const auto& file : fs::directory_iterator(folder))
       if (file.path().extension() == ".yaml" && file.path().stem().extension() != ".hardware")
         found.push_back(file.path());
@@ -174,7 +177,8 @@ TEST(Examples, EveryFolderHasAScene) {
   std::size_t folders = 0;
   for (const auto& entry : fs::directory_iterator(examples())) {
     const fs::path name = entry.path().filename();
-    if (!entry.is_directory() || name == "cpp" || name == "python" || name == gripper || name == "acrylic_strip")
+    if (!entry.is_directory() || name == "cpp" || name == "python" || is_of_two_fingers(name) ||
+        name == "acrylic_strip")
       continue;
     if (name == "paper" || name == "real") continue;  // their meshes are brought or made by the user
     ++folders;
@@ -234,7 +238,7 @@ TEST(Examples, TwoLayoutsOfMaterialBendDifferently) {
 /// Both fingers press on the cube, which is held where it is, alike and from both sides; robot and support are told
 /// apart.
 TEST(Examples, GripperHoldsItsCubeBetweenItsFingers) {
-  const json step = solved_step(examples() / gripper / "two_finger_gripper.yaml",
+  const json step = solved_step(examples() / "two_finger_gripper" / "two_finger_gripper.yaml",
                                 {"--set", "left.air=1.2", "--set", "right.air=1.2"});
   EXPECT_EQ(step["status"], "converged");
   EXPECT_EQ(step["inverted_elements"], 0);
@@ -293,6 +297,30 @@ TEST(Examples, PayloadMovesTheFinger) {
   EXPECT_GT(std::abs(loaded["actuators"]["air"]["pressure_kPa"].get<double>() -
                      free["actuators"]["air"]["pressure_kPa"].get<double>()),
             1);
+}
+
+/// Boyle's law for the air of both, whatever pushes one of them; that one loses air to the other.
+TEST(Examples, SealedFingersShareTheirAir) {
+  const auto air = [](const std::string& push) {
+    const fs::path scene = examples() / "sealed_fingers" / "sealed_fingers.yaml";
+    const ProgramResult result = run_program(
+        {"fk", scene.string(), "--json", "--threads", "1", "--set", "air=12 mL", "--force", "push=0,0," + push});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    const json told = json::parse(result.output)["steps"][0]["actuators"]["air"];
+    const double absolute = told["pressure_kPa"].get<double>() + 101.325, volume = told["volume_mL"];
+    const double amount = told["amount_mL"];
+    EXPECT_NEAR(absolute * (volume + 2 + 20 - 12) / (101.325 * amount), 1, 1e-9);
+    EXPECT_NEAR(told["volumes_mL"]["left.chamber"].get<double>() + told["volumes_mL"]["right.chamber"].get<double>(),
+                volume, 1e-9);
+    return told;
+  };
+  const json free = air("0"), pushed = air("2");
+  const auto left = [](const json& told) { return told["volumes_mL"]["left.chamber"].get<double>(); };
+  const auto right = [](const json& told) { return told["volumes_mL"]["right.chamber"].get<double>(); };
+  EXPECT_NEAR(left(free), right(free), 1e-6);
+  EXPECT_LT(left(pushed), left(free) - 0.1);
+  EXPECT_GT(right(pushed), right(free) + 0.01);
+  EXPECT_GT(pushed["pressure_kPa"].get<double>(), free["pressure_kPa"].get<double>() + 0.1);
 }
 
 }  // namespace

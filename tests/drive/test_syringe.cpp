@@ -146,6 +146,47 @@ TEST(Syringe, MovesBesideATendon) {
   EXPECT_NEAR(std::stod(plan.program.lines[0].text.substr(12)), 30 * std::hypot(20.0, 50.0), 1e-3);
 }
 
+/// What is pushed of a sealed chamber needs no pressure: 17 mL are 50 mm of 340 mm^2. Its air is the scene's.
+TEST(Syringe, PushesWhatASealedChamberIsCommandedBy) {
+  Model model = one_chamber();
+  Actuator& air = model.actuators[0];
+  air.control = Control::filling;
+  air.low = -5;
+  air.high = 40;
+  air.filling = Filling{
+      .pushed = true, .atmosphere_MPa = 0.101325, .dead_mm3 = 5000, .syringe_mm3 = 40'000, .chamber_mm3 = 20'000};
+  const Commands commands = air_commands({{0, 0}, {17, 0}, {-3.4, 0}}, false);
+  HardwareSpec pulled = one_syringe();
+  pulled.syringes[0].travel_limits_mm = {{-20, 100}};
+  const Plan plan = make_plan(model, pulled, commands, false);
+  ASSERT_EQ(plan.program.lines.size(), 2u);
+  EXPECT_EQ(plan.program.lines[0].text.rfind("G1 Z50 F", 0), 0u) << plan.program.lines[0].text;
+  EXPECT_EQ(plan.program.lines[1].text.rfind("G1 Z-10 F", 0), 0u) << plan.program.lines[1].text;
+  const std::vector<PlungerRow> rows = plunger_rows(plan, 0);
+  EXPECT_NEAR(rows[1].reached, 17, 1e-9);
+  EXPECT_NEAR(use_of_syringe(plan, 0).error, 0, 1e-9);
+  for (const std::string& line : plan.machine.defaults)
+    EXPECT_EQ(line.find("atmosphere_kPa"), std::string::npos) << line;
+
+  HardwareSpec other = one_syringe();
+  other.syringes[0].syringe_mL = 50;
+  expect_refused(model, other, commands,
+                 "hardware.yaml:3: syringe 'air': syringe_mL is 50 mL, but 40 mL in the scene: give both the same");
+  other = one_syringe();
+  other.atmosphere_kPa = 100;
+  expect_refused(model, other, commands, "atmosphere_kPa is 100 kPa, but 101.325 kPa in the scene");
+  other = one_syringe();
+  other.syringes[0].limits_kpa = {{-5, 20}};
+  expect_refused(model, other, commands, "limits_kPa cannot be kept");
+  air.filling->pushed = false;
+  expect_refused(
+      model, one_syringe(), commands,
+      "commands.csv: chamber 'air' is commanded by its amount of gas, and a plunger sets what it has pushed");
+  other = HardwareSpec();
+  other.file = "hardware.yaml";
+  expect_refused(model, other, commands, "a regulator sets pressures");
+}
+
 TEST(Syringe, RefusesRowsByLine) {
   HardwareSpec hardware = one_syringe();
   const Model model = one_chamber();

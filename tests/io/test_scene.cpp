@@ -470,7 +470,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 9u);
+  ASSERT_EQ(specs.size(), 10u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -482,11 +482,12 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[4].materials.at(0).elastic.value().poisson_ratio, 0.5);
   EXPECT_FALSE(specs[4].materials[0].mixed) << "left to the material";
   EXPECT_EQ(specs[5].fixed.at(1).rotation.value().degrees, 90);
-  EXPECT_EQ(specs[6].actuators.at(0).friction, 0.15);
-  EXPECT_EQ(specs[6].actuators[0].sheath_friction, 0.05);
-  EXPECT_EQ(specs[6].actuators[0].sheath_turns_degrees, 270);
-  EXPECT_EQ(specs[7].fibres.size(), 2u);
-  EXPECT_EQ(specs[8].contact.value().obstacles.size(), 2u);
+  EXPECT_EQ(specs[6].actuators.at(0).filling.value().syringe_mL, 20);
+  EXPECT_EQ(specs[7].actuators.at(0).friction, 0.15);
+  EXPECT_EQ(specs[7].actuators[0].sheath_friction, 0.05);
+  EXPECT_EQ(specs[7].actuators[0].sheath_turns_degrees, 270);
+  EXPECT_EQ(specs[8].fibres.size(), 2u);
+  EXPECT_EQ(specs[9].contact.value().obstacles.size(), 2u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

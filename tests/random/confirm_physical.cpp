@@ -276,6 +276,16 @@ Measure measure_of(const Actuator& actuator, const Points& positions) {
   return actuator.kind == ActuatorKind::cable ? length_of(actuator, positions) : volume_of(actuator, positions);
 }
 
+/// What a gauge pressure [kPa] leaves a chamber of what is sealed in it, by its law [mm^3]; not finite below a vacuum.
+Real filled_volume(const Filling& filling, Real rest, Real command, Real kPa) {
+  const Real atmosphere = 1e3L * filling.atmosphere_MPa, dead = filling.dead_mm3, syringe = filling.syringe_mm3;
+  const Real amount = filling.pushed ? rest + dead + syringe : 1000 * command;
+  const Real outside = filling.pushed ? dead + syringe - 1000 * command : dead;
+  if (filling.liquid) return amount * std::exp(-filling.compressibility * kPa / 1000) - outside;
+  const Real logarithm = std::log1p(kPa / atmosphere);  // p_abs V^n = p_atm N^n
+  return amount * std::exp(-logarithm / filling.exponent) - outside;
+}
+
 void check_measure(const Actuator& actuator, const Measure& now, const Measure& rest, double command, double multiplier,
                    Confirmation& out) {
   const std::string name = "actuator '" + actuator.name + "'";
@@ -284,7 +294,9 @@ void check_measure(const Actuator& actuator, const Measure& now, const Measure& 
       out.faults.push_back(name + ": load " + digits(multiplier) + " instead of " + digits(command));
     return;
   }
-  const Real asked = command * rest.value, allowed = met * std::abs(asked) + sums * (now.rounding + rest.rounding);
+  const Real asked =
+      actuator.filling ? filled_volume(*actuator.filling, rest.value, command, multiplier) : command * rest.value;
+  const Real allowed = met * std::abs(asked) + sums * (now.rounding + rest.rounding);
   const bool cable = actuator.kind == ActuatorKind::cable;
   if (cable && multiplier < 0) out.faults.push_back(name + ": a tension of " + digits(multiplier) + " N");
   const bool slack = cable && multiplier == 0;

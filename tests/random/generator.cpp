@@ -79,6 +79,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_tractions(m);
   make_mixed(m);
   make_friction(m);
+  make_sealed(m);
   make_fibres(m);
   spoil_number(m);
   return std::move(m.made);

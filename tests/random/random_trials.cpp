@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72,
                         draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73,
                         draws_of_tractions = 0x7472616374, draws_of_fibres = 0x666962726573,
-                        draws_of_mixed = 0x6D69786564;
+                        draws_of_mixed = 0x6D69786564, draws_of_sealed = 0x7365616C6564;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -109,6 +109,58 @@ void make_mixed(Making& m) {
     material.mixed = true;
     if (material.elastic->poisson_ratio && draw.chance(0.6))
       material.elastic->poisson_ratio = draw.pick({0.49, 0.499, 0.4999, 0.5});
+  }
+}
+
+namespace {
+
+/// Of a chamber at rest, about [mL].
+double chamber_mL(const Mesh& mesh, const ActuatorSpec& spec) {
+  double mm3 = 0;
+  if (spec.surface) mm3 = std::abs(enclosed_volume(spec.surface->vertices, spec.surface->triangles));
+  const auto corner = [&](Index v) { return Vec3(mesh.vertices.row(v).transpose()); };
+  for (const Region& region : mesh.regions) {
+    if (!spec.region || region.name != *spec.region) continue;
+    for (const Index e : region.tetrahedra) {
+      const Tetrahedron& t = mesh.tetrahedra[static_cast<std::size_t>(e)];
+      if (*std::min_element(t.begin(), t.end()) < 0 || *std::max_element(t.begin(), t.end()) >= mesh.vertices.rows())
+        return 0;
+      const Vec3 a = corner(t[0]);
+      mm3 += std::abs((corner(t[1]) - a).dot((corner(t[2]) - a).cross(corner(t[3]) - a))) / 6;
+    }
+  }
+  return mm3 / 1000;
+}
+
+}  // namespace
+
+void make_sealed(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_sealed);
+  if (!m.physical || !draw.chance(0.3)) return;
+  std::vector<ActuatorSpec>& actuators = m.made.spec.actuators;
+  for (std::size_t a = 0; a < actuators.size(); ++a) {
+    ActuatorSpec& spec = actuators[a];
+    if (spec.kind != ActuatorKind::pneumatic || spec.control != Control::ratio) continue;
+    const double rest = chamber_mL(m.mesh(), spec);
+    if (!(rest > 0 && std::isfinite(rest))) continue;
+    FillingSpec filling;
+    filling.liquid = draw.chance(0.2);
+    filling.atmosphere_kPa = 1e3 * m.modulus * draw.log_between(3e-3, 3);
+    filling.exponent = draw.pick({1.0, 1.0, 1.4, 1.2});
+    if (filling.liquid) filling.compressibility = draw.chance(0.2) ? 0 : draw.log_between(1e-5, 1) / m.modulus;
+    if (draw.chance(0.5)) filling.dead_mL = rest * draw.log_between(0.01, 1);
+    if (draw.chance(0.5)) filling.syringe_mL = rest * draw.log_between(1, 3);
+    // what would be a ratio to rest is that of all that is sealed, or adds as much to the chamber
+    const auto command = [&](double ratio) {
+      return filling.syringe_mL ? std::min(rest * (ratio - 1), *filling.syringe_mL) : ratio * (rest + filling.dead_mL);
+    };
+    spec.control = Control::filling;
+    spec.low = command(spec.low);
+    spec.high = command(spec.high);
+    spec.filling = filling;
+    for (Actuation& actuation : m.made.commands)
+      if (static_cast<Index>(a) < actuation.size())
+        actuation[static_cast<Index>(a)] = command(actuation[static_cast<Index>(a)]);
   }
 }
 

@@ -73,7 +73,10 @@ void describe(const RandomCase& robot, const Model& model) {
         m.elastic.c20, m.elastic.c30, m.elastic.bulk, m.shape_ratio, m.weight);
   for (const Actuator& a : model.actuators)
     std::printf("  actuator %s: kind %d, %s, %g to %g, measure at rest %g\n", a.name.c_str(), static_cast<int>(a.kind),
-                a.control == Control::load ? "load" : "ratio", a.low, a.high, a.rest_measure);
+                a.control == Control::load ? "load"
+                : a.filling                ? "filling"
+                                           : "ratio",
+                a.low, a.high, a.rest_measure);
   for (const RigidRegion& r : model.rigid) std::printf("  rigid: %zu vertices\n", r.vertices.size());
   if (model.dead_load.rows() > 0) std::printf("  dead load: %g N\n", model.dead_load.rowwise().norm().sum());
   for (const std::string& note : model.notes) std::printf("  note: %s\n", note.c_str());

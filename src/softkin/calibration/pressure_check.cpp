@@ -28,6 +28,7 @@ void prepare(RobotSpec& spec, std::size_t chamber, double highest) {
     each.branch = Branch::loading;
     const bool tested = a == chamber;
     each.control = tested ? Control::ratio : Control::load;
+    each.filling.reset();
     each.low = tested ? 1 : 0;
     each.high = tested ? highest : 0;
     each.rest = tested ? 1 : 0;

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <softkin/core/text.hpp>
 #include <softkin/drive/machine.hpp>
+#include <softkin/model/names.hpp>
 
 namespace softkin::drive {
 
@@ -96,11 +98,38 @@ SyringeSetup air_of(const SyringeSpec& spec, const Actuator& actuator, double at
   return {chamber_mm3, dead_ml * mm3_per_ml, spec.syringe_mL * mm3_per_ml, atmosphere_kpa};
 }
 
-Syringe syringe_of(const SyringeSpec& spec, const Actuator& actuator, Index index, Machine& machine) {
+/// What a syringe has pushed is commanded: its own air is that of the scene.
+void check_air(const SyringeSpec& spec, const Actuator& actuator, const std::optional<double>& atmosphere_kPa) {
+  constexpr double same = 1e-6, kPa_per_MPa = 1000;
+  const Filling& filling = *actuator.filling;
+  const auto agree = [&](const std::optional<double>& given, double scene, const char* key, const char* unit) {
+    if (!given || std::abs(*given - scene) <= same * std::max(*given, scene)) return;
+    throw InvalidInput(spec.origin, "syringe '" + spec.actuator + "': " + key + " is " + number(*given) + " " + unit +
+                                        ", but " + number(scene) + " " + unit + " in the scene: give both the same");
+  };
+  agree(spec.syringe_mL, filling.syringe_mm3 / mm3_per_ml, "syringe_mL", "mL");
+  agree(spec.dead_volume_mL, filling.dead_mm3 / mm3_per_ml, "dead_volume_mL", "mL");
+  agree(spec.chamber_mL, filling.chamber_mm3 / mm3_per_ml, "chamber_mL", "mL");
+  agree(atmosphere_kPa, kPa_per_MPa * filling.atmosphere_MPa, "atmosphere_kPa", "kPa");
+  if (spec.limits_kpa)
+    throw InvalidInput(spec.origin, "syringe '" + spec.actuator + "': limits_kPa cannot be kept, as '" + spec.actuator +
+                                        "' is commanded by its pushed volume, which says no pressure: leave "
+                                        "limits_kPa out and give travel_limits_mm");
+}
+
+Syringe syringe_of(const SyringeSpec& spec, const Actuator& actuator, Index index,
+                   const std::optional<double>& atmosphere_kPa, Machine& machine) {
   Defaults take("syringe '" + spec.actuator + "'");
   Syringe syringe;
   name_motor(spec, index, syringe);
-  syringe.air = air_of(spec, actuator, machine.atmosphere_kpa, take);
+  syringe.by_pushed_mL = actuator.filling.has_value();
+  if (syringe.by_pushed_mL) {
+    check_air(spec, actuator, atmosphere_kPa);
+    const Filling& filling = *actuator.filling;
+    syringe.air = {filling.chamber_mm3, filling.dead_mm3, filling.syringe_mm3, 1000 * filling.atmosphere_MPa};
+  } else {
+    syringe.air = air_of(spec, actuator, machine.atmosphere_kpa, take);
+  }
   syringe.mm3_per_mm = spec.mL_per_mm * mm3_per_ml;
   syringe.lead_mm = spec.lead_mm;
   gear_motor(spec, spec.lead_mm, "lead_mm", "plunger", take, syringe);
@@ -113,7 +142,7 @@ Syringe syringe_of(const SyringeSpec& spec, const Actuator& actuator, Index inde
                                         " mm would have pushed out more than the " + number(spec.syringe_mL, 6) +
                                         " mL of the syringe, which end at " + number(depth_mm, 6) + " mm");
   syringe.limits_kpa = spec.limits_kpa;
-  if (!spec.limits_kpa) take.note("limits_kPa", "none");
+  if (!spec.limits_kpa && !syringe.by_pushed_mL) take.note("limits_kPa", "none");
   syringe.max_speed_mm_per_s = default_plunger_speed;
   syringe.max_acceleration_mm_per_s2 = default_plunger_acceleration;
   limit_motor(spec, take, syringe);
@@ -154,6 +183,11 @@ void check_drivable(const Actuator& actuator, bool pressure_known, bool on_syrin
                            "' is commanded by its tension, and a stepper sets lengths: give it 'control: length' in "
                            "the scene and command ratios, such as those that fk reports as achieved");
   if (actuator.kind != ActuatorKind::pneumatic) return;
+  if (actuator.filling && !(on_syringe && actuator.filling->pushed))
+    throw InvalidInput(
+        {file}, "chamber '" + actuator.name + "' is commanded by its " + control_name(actuator) + ", and " +
+                    (on_syringe ? "a plunger sets what it has pushed: give it 'source: {syringe_mL: ...}' in the scene"
+                                : "a regulator sets pressures: put it on a syringe, or give it 'control: pressure'"));
   if (on_syringe && actuator.control == Control::load)
     throw InvalidInput({file},
                        "chamber '" + actuator.name +
@@ -184,13 +218,17 @@ bool stands_on_syringe(const HardwareSpec& hardware, const Actuator& actuator) {
                      [&](const SyringeSpec& spec) { return spec.actuator == actuator.name; });
 }
 
-void assemble_board(const HardwareSpec& hardware, Machine& machine) {
+void assemble_board(const Model& model, const HardwareSpec& hardware, Machine& machine) {
   Defaults take("board");
   if (!hardware.configure) take.note("configure", "true");
   machine.configure = hardware.configure.value_or(true);
   take(machine.approach_speed_mm_per_s, hardware.approach_speed_mm_per_s, "approach_speed_mm_per_s");
   take.add_to(machine.defaults);
-  if (hardware.syringes.empty()) return;
+  const bool any_air = std::any_of(hardware.syringes.begin(), hardware.syringes.end(), [&](const SyringeSpec& spec) {
+    const auto actuator = find_actuator(model, spec.actuator);
+    return !actuator || !model.actuators[static_cast<std::size_t>(*actuator)].filling;
+  });
+  if (!any_air) return;
   Defaults take_air("air");
   take_air(machine.atmosphere_kpa, hardware.atmosphere_kPa, "atmosphere_kPa");
   take_air.add_to(machine.defaults);
@@ -208,7 +246,7 @@ std::vector<const Motor*> Machine::motors() const {
 Machine assemble(const Model& model, const HardwareSpec& hardware, const Commands& commands) {
   Machine machine;
   machine.file = hardware.file;
-  assemble_board(hardware, machine);
+  assemble_board(model, hardware, machine);
   const auto& actuators = model.actuators;
   const auto is_driven = [&](std::size_t a) { return commands.commanded[a] || commands.pressure_known[a]; };
   for (std::size_t a = 0; a < actuators.size(); ++a)
@@ -222,7 +260,9 @@ Machine assemble(const Model& model, const HardwareSpec& hardware, const Command
   }
   for (const SyringeSpec& spec : hardware.syringes) {
     const std::size_t a = find(model, spec.actuator, spec.origin, ActuatorKind::pneumatic, "syringes", "chamber");
-    if (is_driven(a)) machine.syringes.push_back(syringe_of(spec, actuators[a], static_cast<Index>(a), machine));
+    if (is_driven(a))
+      machine.syringes.push_back(
+          syringe_of(spec, actuators[a], static_cast<Index>(a), hardware.atmosphere_kPa, machine));
   }
   for (const ChamberSpec& spec : hardware.chambers) {
     const std::size_t a = find(model, spec.actuator, spec.origin, ActuatorKind::pneumatic, "chambers", "chamber");

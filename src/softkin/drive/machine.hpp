@@ -50,6 +50,7 @@ struct Syringe : Motor {
   std::optional<double> lead_mm;  // plunger in a revolution
   double lowest_mm = 0, highest_mm = 0;
   std::optional<std::array<double, 2>> limits_kpa;  // gauge
+  bool by_pushed_mL = false;  // is what it has pushed commanded, so that its place depends on no pressure
 
   /// Where the plunger stands, from home, when the chamber is at a ratio under a gauge pressure: Eq. (18).
   [[nodiscard]] double plunger_mm(double ratio, double gauge_kpa) const {
@@ -86,7 +87,8 @@ struct Machine {
 /// throws  InvalidInput, naming the hardware's line or the commands' file, on: entries for actuators that the model has
 ///         not or of another kind; commanded actuators without an entry; cables commanded by tension and dielectric
 ///         elastomers; chambers commanded by volume whose pressures are not known, or on a syringe and commanded by
-///         pressure; a plunger that is allowed farther than its syringe is deep
+///         pressure; sealed chambers on no syringe of the scene, or on another one than the scene's; a plunger that is
+///         allowed farther than its syringe is deep
 [[nodiscard]] Machine assemble(const Model& model, const HardwareSpec& hardware, const Commands& commands);
 
 }  // namespace softkin::drive

@@ -159,15 +159,18 @@ class Planner {
   }
 
   [[nodiscard]] double pushed(const CommandRow& row, const Syringe& syringe, std::size_t motor) const {
-    const double ratio = row.actuation[syringe.actuator], gauge_kpa = row.pressures_kpa[syringe.actuator];
-    check_pressure(row, syringe, motor, gauge_kpa);
-    const double place = syringe.plunger_mm(ratio, gauge_kpa);
+    const double command = row.actuation[syringe.actuator], gauge_kpa = row.pressures_kpa[syringe.actuator];
+    if (!syringe.by_pushed_mL) check_pressure(row, syringe, motor, gauge_kpa);
+    const double place =
+        syringe.by_pushed_mL ? 1000 * command / syringe.mm3_per_mm : syringe.plunger_mm(command, gauge_kpa);
     const double slack = slack_of_limits * std::max(std::abs(syringe.lowest_mm), std::abs(syringe.highest_mm));
     const bool low = place < syringe.lowest_mm - slack;
     if (low || !(place <= syringe.highest_mm + slack) || !std::isfinite(place))
       fail(row, motor,
-           "plunger " + number(place, 6) + " mm from home (ratio " + number(ratio, 6) + " at " + number(gauge_kpa, 6) +
-               " kPa) is " + (low ? "below" : "above") + " its limit of " +
+           "plunger " + number(place, 6) + " mm from home (" +
+               (syringe.by_pushed_mL ? number(command, 6) + " mL pushed"
+                                     : "ratio " + number(command, 6) + " at " + number(gauge_kpa, 6) + " kPa") +
+               ") is " + (low ? "below" : "above") + " its limit of " +
                number(low ? syringe.lowest_mm : syringe.highest_mm, 6) + " mm");
     return place;
   }

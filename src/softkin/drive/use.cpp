@@ -63,8 +63,9 @@ std::vector<PlungerRow> plunger_rows(const Plan& plan, std::size_t index) {
     const double motor = syringe.mm(static_cast<double>(steps[i]));
     plunger = std::clamp(plunger, motor, motor + syringe.backlash_mm);  // it is taken along at the ends of the play
     const double gauge_kpa = asked.pressures_kpa[syringe.actuator];
-    rows.push_back({asked.line, asked.time_s, asked.actuation[syringe.actuator], gauge_kpa, plunger,
-                    plunger * syringe.mm3_per_mm, syringe.ratio(plunger, gauge_kpa)});
+    const double volume = plunger * syringe.mm3_per_mm;
+    rows.push_back({asked.line, asked.time_s, asked.actuation[syringe.actuator], gauge_kpa, plunger, volume,
+                    syringe.by_pushed_mL ? volume / 1000 : syringe.ratio(plunger, gauge_kpa)});
   }
   return rows;
 }

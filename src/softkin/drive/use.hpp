@@ -21,10 +21,10 @@ struct TendonUse : MotorUse {
 struct PlungerRow {
   std::size_t line = 0;  // of the commands
   std::optional<double> time_s;
-  double ratio = 0, gauge_kpa = 0;  // asked
+  double ratio = 0, gauge_kpa = 0;  // asked; where what is pushed is commanded that [mL], and no pressure
   double plunger_mm = 0;            // from home, in whole steps, as the backlash leaves it
   double volume_mm3 = 0;            // pushed out of the syringe
-  double reached = 0;               // ratio by Eq. (19) under the pressure asked
+  double reached = 0;               // ratio by Eq. (19) under the pressure asked; or pushed [mL]
 };
 
 /// A row each of the commands: a simulated run of the program that is sent. Moves too small for a board wait for the
@@ -32,9 +32,9 @@ struct PlungerRow {
 [[nodiscard]] std::vector<PlungerRow> plunger_rows(const Plan& plan, std::size_t syringe);
 
 struct SyringeUse : MotorUse {
-  double lowest_ratio = 0, highest_ratio = 0, lowest_kpa = 0, highest_kpa = 0;  // asked
+  double lowest_ratio = 0, highest_ratio = 0, lowest_kpa = 0, highest_kpa = 0;  // asked; as of PlungerRow
   double lowest_mm = 0, highest_mm = 0;                                         // plunger
-  double error = 0;  // of the ratios reached, the largest [-]
+  double error = 0;  // of the ratios reached, the largest [-]; or of what is pushed [mL]
 };
 [[nodiscard]] SyringeUse use_of_syringe(const Plan& plan, std::size_t syringe);
 

@@ -216,6 +216,7 @@ class Joiner {
       actuator.robot = placed_.name;
       for (auto* region : {&actuator.region, &actuator.wall})
         if (*region) *region = full(**region);
+      for (std::string& region : actuator.connected) region = full(region);
       if (actuator.surface) place(actuator.surface->vertices);
       if (actuator.shares)
         for (Index& prism : actuator.shares->prisms) prism += static_cast<Index>(all_.mesh.prisms.size());

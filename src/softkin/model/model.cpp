@@ -106,6 +106,10 @@ class Hash {
   void put(const ContactModel& c) {
     add(c.distance_mm, c.modulus_MPa, c.parts, c.pairs, c.triangles, c.part_of, c.area, c.other_vertices);
   }
+  void put(const Filling& f) {
+    add(f.liquid, f.pushed, f.exponent, f.compressibility, f.atmosphere_MPa, f.dead_mm3, f.syringe_mm3, f.chamber_mm3);
+  }
+  void put(const ConnectedChamber& chamber) { add(chamber.region, chamber.end); }
   void put(const Actuator& a) {
     add(a.name, a.kind, a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.tetrahedra, a.cavity,
         a.prisms, a.points, a.surface, a.gaps, a.other, a.axis, a.rest_measure);
@@ -113,6 +117,8 @@ class Hash {
     if (a.friction != 0 || a.sheath != 0) add(a.friction, a.sheath);
     if (under_voltage(a)) add(a.shares, a.prestretch);
     if (a.distribution == Distribution::proportional) add(a.distribution);
+    if (a.filling) put(*a.filling);
+    if (!a.connected.empty()) add(a.connected);
   }
 
   std::uint64_t state_ = 0xcbf29ce484222325;
@@ -156,6 +162,17 @@ double enclosed_volume(const Points& positions, const std::vector<CavityFace>& f
   for (const CavityFace& face : faces)
     three_volumes += face.edges[0] < 0 ? linear_face(positions, face, origin) : quadratic_face(positions, face, origin);
   return three_volumes / 3;
+}
+
+std::vector<double> connected_volumes(const Actuator& actuator, const Points& positions) {
+  std::vector<double> volumes;
+  auto begin = actuator.cavity.begin();
+  for (const ConnectedChamber& chamber : actuator.connected) {
+    const auto end = actuator.cavity.begin() + chamber.end;
+    volumes.push_back(enclosed_volume(positions, std::vector<CavityFace>(begin, end)));
+    begin = end;
+  }
+  return volumes;
 }
 
 Eigen::VectorXd Model::rest_actuation() const {

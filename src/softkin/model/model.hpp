@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/model/contact_model.hpp>
+#include <softkin/model/filling.hpp>
 #include <softkin/model/marker.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
@@ -45,30 +46,39 @@ struct CableGap {
   EmbeddedPoint apex;
 };
 
+/// One of several chambers that share what fills them: faces of the actuator's cavity, to before `end`, from where the
+/// one before it ends.
+struct ConnectedChamber {
+  std::string region;
+  Index end = 0;
+};
+
 struct Actuator {
   std::string name;
   ActuatorKind kind = ActuatorKind::pneumatic;
   Control control = Control::ratio;
   double low = 0, high = 0, rest = 1, weight = 5;
   Distribution distribution = Distribution::least_norm;
-  std::vector<Index> tetrahedra;       // pneumatic, target-shape: elements of Model
-  std::vector<CavityFace> cavity;      // pneumatic with a region, physical: its boundary, normals out of the chamber
-  std::vector<Index> prisms;           // dea: elements of Model
-  std::vector<double> shares;          // dea under voltage: of it that each of them has [-]
-  double prestretch = 1;               // the same: area of the layer without force, over that in the mesh [-]
-  std::vector<EmbeddedPoint> points;   // cable; or the vertices of a pneumatic actuator's surface
-  std::vector<Triangle> surface;       // pneumatic with a surface: triangles over `points`
-  std::vector<CableGap> gaps;          // cable, target-shape
-  std::optional<ActuatorCurve> curve;  // ratio by pressure or voltage
-  Branch branch = Branch::loading;     // of the curve, where a command names none
-  Index other = -1;                    // motion: part of ContactModel; force, hold: index into Model::bodies;
-                                       // magnetic: index into Magnetism::sources; turn: into Model::turns
-  int axis = -1;                       // motion, force; magnetic: which of the source's commands
-  bool pushes = false;                 // cable: held to its length whatever that takes, as a rod would be
-  double friction = 0, sheath = 0;     // cable, physical: where it turns; of its sheath, times the sheath's turns [-]
-  double factor = 1, offset = 0;       // load control: what acts is factor times the command plus offset [N, kPa]
-  double rest_measure = 0;             // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
-                                       // a dea's ratio 1
+  std::vector<Index> tetrahedra;      // pneumatic, target-shape: elements of Model
+  std::vector<CavityFace> cavity;     // pneumatic with a region, physical: its boundary, normals out of the chamber
+  std::vector<Index> prisms;          // dea: elements of Model
+  std::vector<double> shares;         // dea under voltage: of it that each of them has [-]
+  double prestretch = 1;              // the same: area of the layer without force, over that in the mesh [-]
+  std::vector<EmbeddedPoint> points;  // cable; or the vertices of a pneumatic actuator's surface
+  std::vector<Triangle> surface;      // pneumatic with a surface: triangles over `points`
+  std::vector<CableGap> gaps;         // cable, target-shape
+  std::optional<Filling> filling;     // pneumatic, physical: of control filling
+  std::vector<ConnectedChamber> connected;  // the same: of several chambers
+  std::optional<ActuatorCurve> curve;       // ratio by pressure or voltage
+  Branch branch = Branch::loading;          // of the curve, where a command names none
+  Index other = -1;                         // motion: part of ContactModel; force, hold: index into Model::bodies;
+                                            // magnetic: index into Magnetism::sources; turn: into Model::turns
+  int axis = -1;                            // motion, force; magnetic: which of the source's commands
+  bool pushes = false;                      // cable: held to its length whatever that takes, as a rod would be
+  double friction = 0, sheath = 0;  // cable, physical: where it turns; of its sheath, times the sheath's turns [-]
+  double factor = 1, offset = 0;    // load control: what acts is factor times the command plus offset [N, kPa]
+  double rest_measure = 0;          // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
+                                    // a dea's ratio 1
 };
 
 /// Stands on the floor and slides where friction lets it.
@@ -195,6 +205,9 @@ struct Model {
   [[nodiscard]] Eigen::VectorXd rest_actuation() const;
 };
 
+/// Present volume of each of several chambers that are connected [mm^3]; none where they are not.
+[[nodiscard]] std::vector<double> connected_volumes(const Actuator& actuator, const Points& positions);
+
 /// Is it of the robot: does inverse kinematics choose it, and a workspace vary it.
 [[nodiscard]] bool drives(const Actuator& actuator);
 /// A dea that is commanded by its voltage: the field in its layer is its load.
@@ -212,9 +225,9 @@ struct Model {
 ///         actuators, values outside their ranges, a robot with a part that can still move rigidly, DEA regions with
 ///         tetrahedra, pneumatic regions with prisms, cables of zero length, duplicate names, elements without volume;
 ///         physical: materials without elastic constants, chambers that do not touch the body, gravity without a
-///         density; target-shape: load control, contact; feet that are not two different markers; contact with unknown
-///         or repeated names, obstacles without extent, a distance that is not below a twentieth of the robot's
-///         diagonal
+///         density; target-shape: load control, sealed chambers, contact; feet that are not two different markers;
+///         contact with unknown or repeated names, obstacles without extent, a distance that is not below a twentieth
+///         of the robot's diagonal
 [[nodiscard]] Model compile(const RobotSpec& spec);
 
 /// The ratio that an actuator's curve gives for an input: pressure [kPa gauge] or voltage [kV]. Without input it is the

@@ -19,6 +19,10 @@ Quantity field_quantity(const Actuator& actuator) {
   return {"flux density", "mT", "mT"};
 }
 
+const char* filling_quantity(const Filling& filling) {
+  return filling.pushed ? "pushed volume" : filling.liquid ? "amount of liquid" : "amount of gas";
+}
+
 }  // namespace
 
 const char* kind_name(const Actuator& actuator) {
@@ -41,14 +45,19 @@ bool answers_with_measure(const Actuator& actuator) {
   return has_measure(actuator) && actuator.control != Control::ratio;
 }
 
+bool answers_with_load(const Actuator& actuator) {
+  return actuator.control != Control::load && !multiplier_key(actuator).empty();
+}
+
 bool shows_measure(const Actuator& actuator) {
-  return answers_with_measure(actuator) && actuator.kind != ActuatorKind::cable;
+  return answers_with_measure(actuator) && actuator.control == Control::load && actuator.kind != ActuatorKind::cable;
 }
 
 const char* control_name(const Actuator& actuator) {
   if (!drives(actuator)) return kind_name(actuator);
   if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).name;
   if (actuator.control == Control::ratio) return measure_name(actuator);
+  if (actuator.filling) return filling_quantity(*actuator.filling);
   constexpr const char* loads[] = {"tension", "voltage", "pressure"};  // the same
   return loads[static_cast<std::size_t>(actuator.kind)];
 }
@@ -59,6 +68,7 @@ const char* command_name(const Actuator& actuator) {
 
 std::string command_unit(const Actuator& actuator) {
   if (actuator.control == Control::ratio) return "";
+  if (actuator.control == Control::filling) return "mL";
   if (actuator.kind == ActuatorKind::motion) return "mm";
   if (actuator.kind == ActuatorKind::turn) return "deg";
   if (actuator.kind == ActuatorKind::dea) return "kV";

@@ -10,7 +10,8 @@ namespace softkin {
 /// or "turn".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
 /// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; of a
-/// magnetic field "flux density", "current", "position" or "moment"; else its kind.
+/// sealed chamber "amount of gas", "amount of liquid" or "pushed volume"; of a magnetic field "flux density",
+/// "current", "position" or "moment"; else its kind.
 [[nodiscard]] const char* control_name(const Actuator& actuator);
 /// "ratio", or control_name().
 [[nodiscard]] const char* command_name(const Actuator& actuator);
@@ -18,15 +19,18 @@ namespace softkin {
 [[nodiscard]] bool has_measure(const Actuator& actuator);
 /// What that is: "length", "area" or "volume".
 [[nodiscard]] const char* measure_name(const Actuator& actuator);
-/// Is it commanded by its load, so that what it comes to is its measure?
+/// Is it commanded by its load or by what fills it, so that what it comes to is its measure?
 [[nodiscard]] bool answers_with_measure(const Actuator& actuator);
-/// Is it, and no cable: its volume or area says more than the pressure or voltage again.
+/// Does a physical robot answer with its load, as that is not what is commanded?
+[[nodiscard]] bool answers_with_load(const Actuator& actuator);
+/// Is it commanded by its load, and no cable: its volume or area says more than the pressure or voltage again.
 [[nodiscard]] bool shows_measure(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mm", "mT", "A" or "A m^2"; as a table has it:
+/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A" or "A m^2"; as a table has it:
 /// "[-]", "[kPa]", ....
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
-/// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa", "magnet_mx_Am2".
+/// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa", "magnet_mx_Am2",
+/// "air_mL".
 [[nodiscard]] std::string command_column(const Actuator& actuator);
 
 /// What a physical robot answers with: "pressure_kPa" (pneumatic), "tension_N" (cable), "voltage_kV" (dea under

@@ -108,8 +108,18 @@ struct FixedSpec {
 enum class ActuatorKind { cable, dea, pneumatic, magnetic, motion, force, hold, turn };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
-/// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by.
-enum class Control { ratio, load };
+/// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by; or what fills a sealed chamber [mL].
+enum class Control { ratio, load, filling };
+
+/// What is sealed in a chamber as the user describes it.
+struct FillingSpec {
+  bool liquid = false;
+  double exponent = 1;               // gas: n of p V^n = const, > 0
+  double compressibility = 0;        // liquid [1/MPa], >= 0
+  double dead_mL = 0;                // tubes and fittings, >= 0
+  std::optional<double> syringe_mL;  // before it pushes, > 0; then what it has pushed is commanded, else the amount
+  double atmosphere_kPa = 101.325;   // absolute, > 0
+};
 
 /// How a target-shape actuator's elements share what its command asks for, a_i being the ratio of element i, u_i its
 /// measure at rest, and sum a_i u_i = a U, Eqs. (6)-(8). least_norm: the change of the current ratios whose norm is
@@ -129,16 +139,20 @@ struct ActuatorSpec {
   std::optional<std::string> region;       // dea, pneumatic: the volume region of its elements
   std::optional<TriangleSurface> surface;  // pneumatic: cavity surface instead of a region [mm]
   std::optional<std::string> wall;         // pneumatic: region of faces around the cavity, instead of either
+  std::vector<std::string> connected;      // pneumatic, physical: instead of these, two regions or more, of elements or
+                                           // of faces: chambers that share what fills them
+  std::optional<FillingSpec> filling;      // of control filling
   std::string robot;                       // of several: whose elements, gaps and empty spaces count; empty: all
   std::vector<PointRef> points;            // cable: at least two, in order
   std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
   double spacing = 0;                      // cable: how often it is guided inside the body [mm]; 0: at its points
   double friction = 0;  // cable: Coulomb's, where it turns, >= 0; pulled at its first point; physical
   double sheath_friction = 0, sheath_turns_degrees = 0;  // the same of a sheath before that
-  Control control = Control::ratio;                      // load: physical formulation
+  Control control = Control::ratio;                      // others: physical formulation
   double low = 0, high = 0;       // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
-                                  // pressure [kPa]: any
-  double rest = 1;                // value where none is asked for: a dea's prestretch; load control: 0; else 1
+                                  // pressure [kPa]: any; filling [mL]: 0 < low, pushed: any
+  double rest = 1;                // value where none is asked for: a dea's prestretch; load control: 0; filling: found
+                                  // by compile(); else 1
   double factor = 1, offset = 0;  // tension and pressure: of a command, what acts is this times it plus that
                                   // [N, kPa]; factor > 0
   double prestretch = 1;          // dea under voltage: area that its layer has without force, over that in the

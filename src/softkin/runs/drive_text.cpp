@@ -42,10 +42,11 @@ Table syringe_table(const drive::Plan& plan) {
   for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i) {
     const drive::Syringe& syringe = plan.machine.syringes[i];
     const drive::SyringeUse use = drive::use_of_syringe(plan, i);
+    const bool pushed = syringe.by_pushed_mL;
     table.rows.push_back({printable(syringe.name), std::string(1, syringe.axis),
-                          decimal(use.lowest_ratio, 4) + " to " + decimal(use.highest_ratio, 4),
-                          range_text(use.lowest_kpa, use.highest_kpa), range_text(use.lowest_mm, use.highest_mm),
-                          range_text(syringe.lowest_mm, syringe.highest_mm),
+                          pushed ? "-" : decimal(use.lowest_ratio, 4) + " to " + decimal(use.highest_ratio, 4),
+                          pushed ? "-" : range_text(use.lowest_kpa, use.highest_kpa),
+                          range_text(use.lowest_mm, use.highest_mm), range_text(syringe.lowest_mm, syringe.highest_mm),
                           std::to_string(use.lowest) + " to " + std::to_string(use.highest),
                           decimal(use.fastest_mm_per_s, 2), decimal(syringe.max_speed_mm_per_s, 2)});
   }
@@ -57,7 +58,11 @@ Table plunger_table(const drive::Plan& plan) {
   if (plan.motion.timed) table.columns.push_back(drive_column("t [s]", false));
   for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i) {
     const std::string name = printable(plan.machine.syringes[i].name);
-    for (const char* title : {" [-]", "pressure [kPa]", "out of the syringe [mL]", "plunger [mm]", "leads to [-]"})
+    const std::vector<const char*> titles =
+        plan.machine.syringes[i].by_pushed_mL
+            ? std::vector{" [mL]", "plunger [mm]", "out of the syringe [mL]"}
+            : std::vector{" [-]", "pressure [kPa]", "out of the syringe [mL]", "plunger [mm]", "leads to [-]"};
+    for (const char* title : titles)
       table.columns.push_back(drive_column(title[0] == ' ' ? name + title : title, false));
   }
   for (const CommandRow& row : plan.commands.rows) {
@@ -67,11 +72,14 @@ Table plunger_table(const drive::Plan& plan) {
   constexpr double mm3_per_ml = 1000;
   for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i) {
     const std::vector<drive::PlungerRow> rows = drive::plunger_rows(plan, i);
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      for (const std::string& cell :
-           {decimal(rows[k].ratio, 5), decimal(rows[k].gauge_kpa, 3), decimal(rows[k].volume_mm3 / mm3_per_ml, 4),
-            decimal(rows[k].plunger_mm, 4), decimal(rows[k].reached, 5)})
-        table.rows[k].push_back(cell);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const std::string asked = decimal(rows[k].ratio, 5), out = decimal(rows[k].volume_mm3 / mm3_per_ml, 4),
+                        plunger = decimal(rows[k].plunger_mm, 4);
+      const auto cells = plan.machine.syringes[i].by_pushed_mL ? std::vector{asked, plunger, out}
+                                                               : std::vector{asked, decimal(rows[k].gauge_kpa, 3), out,
+                                                                             plunger, decimal(rows[k].reached, 5)};
+      table.rows[k].insert(table.rows[k].end(), cells.begin(), cells.end());
+    }
   }
   return table;
 }

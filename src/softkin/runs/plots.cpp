@@ -86,7 +86,7 @@ class Steps {
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
       if (model_.formulation != Formulation::physical || multiplier_key(model_.actuators[a]) != key || steps_.empty())
         continue;
-      if (answers_with_measure(model_.actuators[a])) continue;
+      if (!answers_with_load(model_.actuators[a])) continue;
       curves.push_back({model_.actuators[a].name, unit, {}});
       for (const StepRecord& step : steps_) curves.back().values.push_back(step.actuators[a].multiplier);
     }

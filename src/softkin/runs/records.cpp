@@ -27,6 +27,7 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   else
     record.achieved =
         found.state.actuation.size() > 0 ? found.state.actuation[i] : std::numeric_limits<double>::quiet_NaN();
+  for (const double mm3 : connected_volumes(actuator, found.state.positions)) record.volumes_mL.push_back(mm3 / 1000);
   if (actuator.curve) record.by_curve = input_by_curve(actuator, found.actuation[i], actuator.branch);
   if (model.formulation != Formulation::physical || multiplier_key(actuator).empty()) return record;
   if (found.state.multipliers.size() == 0) return record;  // not known

@@ -19,7 +19,8 @@ namespace softkin::runs {
 
 /// An actuator in a shape.
 struct ActuatorRecord {
-  double requested = 0;                  // ratio to rest [-], or tension [N], gauge pressure [kPa] or voltage [kV]
+  double requested = 0;                  // ratio to rest [-], or tension [N], gauge pressure [kPa], voltage [kV] or
+                                         // amount [mL]
   double achieved = 0;                   // ratio to rest [-]
   std::optional<double> by_curve{};      // the input that the actuator's curve gives for the request [kPa gauge or kV];
                                          // none outside the curve or without one
@@ -27,6 +28,7 @@ struct ActuatorRecord {
   bool slack = false;                    // a cable that carries nothing because its path is shorter than it
   std::optional<ElectricLayer> layer{};  // of a dea under voltage
   std::optional<TendonForces> tendon{};  // of a cable that rubs
+  std::vector<double> volumes_mL{};      // of each of several chambers that are connected
 };
 
 /// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/chamber_json.hpp>
 #include <softkin/runs/contacts_json.hpp>
 #include <softkin/runs/layer_json.hpp>
 #include <softkin/runs/record_log.hpp>
@@ -277,6 +278,7 @@ Json actuator_json(const Model& model, const Actuator& actuator, const ActuatorR
     json["sticking"] = known(record.tendon->sticks);
   }
   if (under_voltage(actuator)) json.update(layer_json(record.layer));
+  if (actuator.kind == ActuatorKind::pneumatic) json.update(chamber_json(actuator, record));
   return json;
 }
 
@@ -292,6 +294,7 @@ ActuatorRecord actuator_of(const Model& model, const Actuator& actuator, const J
   if (json.contains("end_tension_N"))
     record.tendon = {number_or_nan(json.at("end_tension_N")), number_or_nan(json.at("sticking"))};
   if (under_voltage(actuator)) record.layer = layer_of(json);
+  read_chamber(actuator, json, record);
   return record;
 }
 

@@ -250,15 +250,21 @@ Json syringe_json(const drive::Plan& plan, std::size_t index, bool whole) {
                {"max_speed_mm_per_s", syringe.max_speed_mm_per_s},
                {"max_acceleration_mm_per_s2", syringe.max_acceleration_mm_per_s2},
                {"backlash_mm", syringe.backlash_mm},
-               {"ratio_error", use.error}};
+               {syringe.by_pushed_mL ? "pushed_error_mL" : "ratio_error", use.error}};
   if (!whole) return json;
   for (const drive::PlungerRow& row : drive::plunger_rows(plan, index))
-    json["rows"].push_back({{"line", row.line},
-                            {"ratio", row.ratio},
-                            {"pressure_kPa", row.gauge_kpa},
-                            {"plunger_mm", row.plunger_mm},
-                            {"volume_mm3", row.volume_mm3},
-                            {"leads_to", row.reached}});
+    if (syringe.by_pushed_mL)
+      json["rows"].push_back({{"line", row.line},
+                              {"pushed_mL", row.ratio},
+                              {"plunger_mm", row.plunger_mm},
+                              {"volume_mm3", row.volume_mm3}});
+    else
+      json["rows"].push_back({{"line", row.line},
+                              {"ratio", row.ratio},
+                              {"pressure_kPa", row.gauge_kpa},
+                              {"plunger_mm", row.plunger_mm},
+                              {"volume_mm3", row.volume_mm3},
+                              {"leads_to", row.reached}});
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/chamber_json.hpp>
 #include <softkin/runs/run_tables.hpp>
 
 namespace softkin::runs {
@@ -220,6 +221,9 @@ Table table_of_steps(const Model& model, std::size_t steps, const std::optional<
     add(fixed(measure_title(actuator), value_decimals, width));
     if (const std::string load = load_title(model, actuator); !load.empty())
       add(fixed(load, value_decimals, load_width));
+    if (actuator.filling) add(fixed("volume [mL]", value_decimals, load_width));
+    for (const ConnectedChamber& chamber : actuator.connected)
+      add(fixed(short_name(chamber.region) + " [mL]", value_decimals, load_width));
     if (actuator.curve)
       add(fixed("by curve [" + std::string(unit_of_input(actuator.curve->input) + 1) + "]", value_decimals,
                 load_width));
@@ -248,6 +252,8 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record, std::
     if (!has_measure(actuator)) continue;
     row.emplace_back(of.achieved);
     if (!load_title(model, actuator).empty()) row.push_back(of.slack ? Cell("slack") : Cell(of.multiplier));
+    if (actuator.filling) row.emplace_back(volume_mL(actuator, of));
+    for (const double volume : of.volumes_mL) row.emplace_back(volume);
     if (actuator.curve) row.push_back(of.by_curve ? Cell(*of.by_curve) : Cell("outside"));
   }
   const std::vector<bool> oriented = oriented_markers(model);

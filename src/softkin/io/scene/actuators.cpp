@@ -12,13 +12,13 @@ namespace {
 struct Kind {
   ActuatorKind kind;
   const char* name;
-  Keys controls;  // the ratio, then the load where there is one
+  Keys controls;  // the ratio, then the load where there is one, then what fills it
   Keys keys;      // beside the common ones
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region", "surface",       "points", "apexes", "spacing",  "prestretch",
-                     "curve",  "voltage_share", "factor", "offset", "friction", "sheath"};
+const Keys kind_keys{"region",     "surface", "connected",     "source", "liquid", "points",   "apexes", "spacing",
+                     "prestretch", "curve",   "voltage_share", "factor", "offset", "friction", "sheath"};
 
 Keys all_kind_keys() {
   Keys all = kind_keys;
@@ -30,8 +30,8 @@ const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {ActuatorKind::pneumatic,
        "pneumatic",
-       {"volume", "pressure"},
-       {"region", "surface", "curve", "factor", "offset"}},
+       {"volume", "pressure", "gas", "liquid"},
+       {"region", "surface", "connected", "source", "liquid", "curve", "factor", "offset"}},
       {ActuatorKind::cable,
        "cable",
        {"length", "tension"},
@@ -65,13 +65,15 @@ Control read_control(const Map& map, const Kind& kind, Formulation formulation) 
   if (formulation != Formulation::physical)
     fail(*node, "control '" + control + "' belongs to the physical formulation, and this scene is of 'target-shape': " +
                     "give elastic constants and 'formulation: physical', or use '" + kind.controls[0] + "'");
-  return Control::load;
+  return found == kind.controls.begin() + 1 ? Control::load : Control::filling;
 }
 
-/// Ratios are positive; a tension pulls; a voltage acts with its square; a pressure may be below that around the robot.
+/// Ratios and amounts are positive; a tension pulls; a voltage acts with its square; a pressure may be below that
+/// around the robot, and a plunger drawn back.
 double read_low(const Node& node, const ActuatorSpec& actuator) {
   if (actuator.control == Control::ratio) return positive(node);
   const double low = number(node);
+  if (actuator.filling && !actuator.filling->syringe_mL) return positive(node);
   if (actuator.kind == ActuatorKind::cable && low < 0)
     fail(node, node.name + " must not be negative, since a cable only pulls: " + node.text);
   if (actuator.kind == ActuatorKind::dea && low < 0)
@@ -85,6 +87,48 @@ void read_range(const Node& node, ActuatorSpec& actuator) {
   actuator.high = actuator.control == Control::ratio ? positive(*items[1]) : number(*items[1]);
   if (actuator.low > actuator.high)
     fail(node, node.name + " must be [low, high], but " + items[0]->text + " is above " + items[1]->text);
+}
+
+/// n of p V^n = const.
+double read_process(const Node& node) {
+  constexpr double isothermal = 1, adiabatic = 1.4;  // of air and what else has molecules of two atoms
+  if (node.kind == Node::Kind::map) return positive(Map(node, {"exponent"}).at("exponent"));
+  return choice(node, {"isothermal", "adiabatic"}) == 0 ? isothermal : adiabatic;
+}
+
+/// What a chamber is sealed with.
+FillingSpec read_filling(const Map& map) {
+  FillingSpec filling;
+  const Node *source = map.find("source"), *liquid = map.find("liquid");
+  filling.liquid = text(map.at("control")) == "liquid";
+  if (liquid != nullptr && !filling.liquid) fail(*liquid, liquid->name + " belongs to 'control: liquid'");
+  if (filling.liquid) {
+    constexpr double per_GPa = 1e-3;
+    const Map stiffness(map.at("liquid"), {"bulk_modulus", "compressibility"});
+    const Node::Entry& by = stiffness.one_of({"bulk_modulus", "compressibility"});
+    filling.compressibility = by.key == "bulk_modulus" ? 1 / positive(*by.value) : per_GPa * not_negative(*by.value);
+  }
+  if (source == nullptr) return filling;
+  const Map keys(*source, {"syringe_mL", "dead_mL", "process"});
+  if (const Node* node = keys.find("syringe_mL")) filling.syringe_mL = positive(*node);
+  if (const Node* node = keys.find("dead_mL")) filling.dead_mL = not_negative(*node);
+  if (const Node* node = keys.find("process")) {
+    if (filling.liquid) fail(*node, node->name + " is of a gas, not of a liquid");
+    filling.exponent = read_process(*node);
+  }
+  return filling;
+}
+
+/// Refuses what belongs to a sealed chamber where there is none.
+void read_filling(const Map& map, ActuatorSpec& actuator) {
+  if (actuator.control == Control::filling) {
+    actuator.filling = read_filling(map);
+    return;
+  }
+  for (const char* key : {"source", "liquid"})
+    if (const Node* node = map.find(key))
+      fail(*node, node->name + " belongs to " + (key == std::string("liquid") ? "" : "'control: gas' and ") +
+                      "'control: liquid'");
 }
 
 /// A file, a map of file and unit, or a map with the region of the wall's faces.
@@ -108,7 +152,13 @@ void read_surface(const Context& context, const Node& node, ActuatorSpec& actuat
 void read_chamber(const Context& context, const Map& map, ActuatorSpec& actuator) {
   const Node* region = map.find("region");
   const Node* surface = map.find("surface");
-  if (region && surface) (void)map.one_of({"region", "surface"});  // fails, naming both
+  const Node* connected = map.find("connected");
+  if ((region || connected) && surface) (void)map.one_of({"region", "surface", "connected"});  // fails, naming both
+  if (region && connected) (void)map.one_of({"region", "connected"});
+  if (connected) {
+    for (const auto& item : list(*connected)) actuator.connected.push_back(text(*item));
+    if (actuator.connected.size() < 2) fail(*connected, connected->name + " must hold at least 2 regions");
+  }
   if (region) actuator.region = text(*region);
   if (surface) read_surface(context, *surface, actuator);
 }
@@ -135,6 +185,9 @@ void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator
     if (const Node* branch = map.find("branch"))
       actuator.branch = choice(*branch, {"loading", "unloading"}) == 0 ? Branch::loading : Branch::unloading;
   }
+  if (actuator.control == Control::filling)
+    fail(node, node.name + " turns a pressure into a volume, but what fills the chamber is controlled here: leave " +
+                   node.name + " out, or use 'control: volume'");
   if (actuator.control == Control::load) {
     const bool dea = actuator.kind == ActuatorKind::dea;
     const std::string load = dea ? "voltage" : "pressure", ratio = dea ? "area" : "volume";
@@ -169,7 +222,7 @@ PrismValues read_shares(const Context& context, const Node& node, const Actuator
 void read_share(const Map& map, ActuatorSpec& actuator) {
   const Node *factor = map.find("factor"), *offset = map.find("offset");
   for (const Node* node : {factor, offset})
-    if (node != nullptr && actuator.control == Control::ratio)
+    if (node != nullptr && actuator.control != Control::load)
       fail(*node, node->name + " belongs to 'control: tension' and 'control: pressure'");
   if (factor != nullptr) actuator.factor = positive(*factor);
   if (offset != nullptr) actuator.offset = number(*offset);
@@ -197,6 +250,7 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
   actuator.kind = kind.kind;
   actuator.control = read_control(map, kind, formulation);
   if (actuator.control == Control::load) actuator.rest = 0;
+  read_filling(map, actuator);
   read_range(map.at("range"), actuator);
   if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
   if (const Node* node = map.find("distribution"))

@@ -130,6 +130,11 @@ FootSpec read_foot(const Node& node) {
   return {text(map.at("marker")), friction("forward"), friction("backward"), node.origin};
 }
 
+void set_atmosphere(double kPa, RobotSpec& spec) {
+  for (ActuatorSpec& actuator : spec.actuators)
+    if (actuator.filling) actuator.filling->atmosphere_kPa = kPa;
+}
+
 void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   const auto each = [&map](const char* key, const auto& read) {
     if (const Node* node = map.find(key))
@@ -148,6 +153,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   each("fixed", [&](const Node& item) { spec.fixed.push_back(read_fixed(context, item)); });
   each("rigid", [&](const Node& item) { spec.rigid.push_back(read_rigid(context, item, spec.rigid.size() + 1)); });
   if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
+  if (const Node* node = map.find("atmosphere")) set_atmosphere(positive(*node), spec);
   each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
   each("tractions", [&](const Node& item) { spec.tractions.push_back(read_traction(context, item, tractions)); });
   each("fibres", [&](const Node& item) { spec.fibres.push_back(read_fibre(context, item, fibres)); });
@@ -191,7 +197,7 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
   const scene::Map map(root,
                        {"softkin",   "units",   "mesh",  "meshes",  "robots",    "formulation", "weights", "regions",
                         "materials", "void",    "fixed", "rigid",   "actuators", "gravity",     "forces",  "tractions",
-                        "fibres",    "markers", "feet",  "contact", "obstacles", "bodies"});
+                        "fibres",    "markers", "feet",  "contact", "obstacles", "bodies",      "atmosphere"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);

@@ -99,7 +99,7 @@ class Columns {
     if (!cable && actuator.kind != ActuatorKind::pneumatic) return std::nullopt;
     const bool load = column == actuator.name + (cable ? "_tension_N" : "_pressure_kPa");
     if (!load && column != actuator.name + (cable ? "_length_mm" : "_volume_mm3")) return std::nullopt;
-    if (load == (actuator.control == Control::load))
+    if (actuator.control == (load ? Control::load : Control::ratio))
       table_.fail_header("column " + excerpt(column) + ": " + actuator.name +
                          " is commanded by that, so it is no reading; its command is column '" +
                          command_column(actuator) + "'");

@@ -113,9 +113,10 @@ struct OtherUnit {
 };
 
 // longer names before those that they end in
-constexpr OtherUnit other_units[] = {{"MPa", "kPa", 1000}, {"hPa", "kPa", 0.1},      {"mbar", "kPa", 0.1},
-                                     {"bar", "kPa", 100},  {"psi", "kPa", 6.894757}, {"Pa", "kPa", 0.001},
-                                     {"mN", "N", 0.001},   {"kN", "N", 1000},        {"V", "kV", 0.001}};
+constexpr OtherUnit other_units[] = {
+    {"MPa", "kPa", 1000}, {"hPa", "kPa", 0.1},  {"mbar", "kPa", 0.1}, {"bar", "kPa", 100}, {"psi", "kPa", 6.894757},
+    {"Pa", "kPa", 0.001}, {"mN", "N", 0.001},   {"kN", "N", 1000},    {"V", "kV", 0.001},  {"uL", "mL", 0.001},
+    {"cm3", "mL", 1},     {"mm3", "mL", 0.001}, {"L", "mL", 1000}};
 
 bool is_kPa(const std::string& unit) {
   return unit == "kPa";

@@ -34,12 +34,12 @@ bool is_cable(const Model& model, const Actuator& actuator) {
 
 /// Does a physical robot answer with a load?
 bool answers_with_load(const Model& model, const Actuator& actuator) {
-  return model.formulation == Formulation::physical && actuator.control == Control::ratio &&
-         !multiplier_key(actuator).empty();
+  return model.formulation == Formulation::physical && softkin::answers_with_load(actuator);
 }
 
 bool answers_with_ratio(const Model& model, const Actuator& actuator) {
-  return has_measure(actuator) && (!answers_with_load(model, actuator) || is_cable(model, actuator));
+  return has_measure(actuator) &&
+         (answers_with_measure(actuator) || !answers_with_load(model, actuator) || is_cable(model, actuator));
 }
 
 }  // namespace

@@ -10,16 +10,12 @@ namespace softkin {
 
 namespace {
 
-std::string range_text(double low, double high) {
-  return "[" + number(low) + ", " + number(high) + "]";
-}
-
 void check_field(const ActuatorSpec& spec, Formulation formulation) {
   if (formulation != Formulation::physical) refuse(spec, "is a magnetic field: that needs the physical formulation");
   if (!spec.field || !spec.field->source || spec.control != Control::load)
     refuse(spec, "is a magnetic field: it needs a source and is controlled by its load");
   if (!(std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high)))
-    refuse(spec, "needs a range with low <= high, not " + range_text(spec.low, spec.high));
+    refuse(spec, "needs a range with low <= high, not " + interval_text(spec.low, spec.high));
   if (!places_dipole(spec.field->command) && spec.rest != 0)
     refuse(spec, "cannot have a field at rest other than 0, not " + number(spec.rest));
   if (!(std::isfinite(spec.rest))) refuse(spec, "needs a place at rest that is finite");
@@ -32,17 +28,17 @@ void check_load(const ActuatorSpec& spec, Formulation formulation) {
   const char* load = any_sign ? "pressure" : spec.kind == ActuatorKind::cable ? "tension" : "voltage";
   if (!(std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high)) || (!any_sign && spec.low < 0))
     refuse(spec, std::string("needs a range of its ") + load + " with " + (any_sign ? "" : "0 <= ") +
-                     "low <= high, not " + range_text(spec.low, spec.high));
+                     "low <= high, not " + interval_text(spec.low, spec.high));
   if (spec.rest != 0) refuse(spec, "cannot have a load at rest other than 0, not " + number(spec.rest));
 }
 
 void check_ratio(const ActuatorSpec& spec) {
   if (!(spec.low > 0 && spec.low <= spec.high && std::isfinite(spec.high)))
-    refuse(spec, "needs a range with 0 < low <= high, not " + range_text(spec.low, spec.high));
+    refuse(spec, "needs a range with 0 < low <= high, not " + interval_text(spec.low, spec.high));
   if (spec.kind == ActuatorKind::dea) {
     if (!(spec.rest >= spec.low && spec.rest <= spec.high))
       refuse(spec, "has its rest ratio (prestretch) " + number(spec.rest) + " outside its range " +
-                       range_text(spec.low, spec.high));
+                       interval_text(spec.low, spec.high));
   } else if (spec.rest != 1) {
     refuse(spec, "cannot have a rest ratio other than 1: only a dea has a prestretch");
   }
@@ -51,6 +47,8 @@ void check_ratio(const ActuatorSpec& spec) {
 void check_curve(const ActuatorSpec& spec) {
   if (spec.kind == ActuatorKind::cable) refuse(spec, "is a cable: it takes no curve");
   if (spec.kind == ActuatorKind::magnetic) refuse(spec, "is a magnetic field: it takes no curve");
+  if (spec.control == Control::filling)
+    refuse(spec, "is controlled by what fills it, and takes no curve: control its volume, or leave the curve out");
   if (spec.control == Control::load)
     refuse(spec,
            spec.kind == ActuatorKind::dea
@@ -71,8 +69,12 @@ void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
     check_field(spec, formulation);
   else if (spec.control == Control::load)
     check_load(spec, formulation);
+  else if (spec.control == Control::filling)
+    check_filling(spec, formulation);
   else
     check_ratio(spec);
+  if (spec.control != Control::filling && spec.filling)
+    refuse(spec, "takes nothing that fills it: only a chamber that is controlled by that does");
   if (spec.curve) check_curve(spec);
   const bool charged = spec.kind == ActuatorKind::dea && spec.control == Control::load;
   if (spec.shares && !charged)
@@ -114,9 +116,13 @@ void check_members(const ActuatorSpec& spec, Formulation formulation) {
     refuse(spec, "is a magnetic field: it takes no region and no surface");
   if (spec.kind == ActuatorKind::dea && (!spec.region || spec.surface || spec.wall))
     refuse(spec, "needs a region of prisms");
+  check_connected(spec, formulation);
   if (spec.kind != ActuatorKind::pneumatic) return;
-  const int given = spec.region.has_value() + spec.surface.has_value() + spec.wall.has_value();
-  if (given > 1) refuse(spec, "needs a region or a surface, one of the two");
+  const int given =
+      spec.region.has_value() + spec.surface.has_value() + spec.wall.has_value() + !spec.connected.empty();
+  if (given > 1)
+    refuse(spec, spec.connected.empty() ? "needs a region or a surface, one of the two"
+                                        : "needs a region, a surface or connected chambers, one of them");
   if (given == 0 && formulation != Formulation::physical)
     refuse(spec, "needs a region or a surface: the target-shape formulation needs the chamber meshed");
 }
@@ -189,8 +195,32 @@ void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) 
   for (const Index i : actuator.tetrahedra) actuator.rest_measure += model.tetrahedron_volumes[i];
 }
 
+/// Each as a chamber of its own would be; one cavity of all.
+void fill_connected(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  double volume = 0;
+  for (const std::string& name : spec.connected) {
+    ActuatorSpec one = spec;
+    one.connected.clear();
+    std::vector<Index> elements;
+    if (c.regions.find(name, spec.origin).dimension == 2) {
+      one.wall = name;
+    } else {
+      one.region = name;
+      take(c, one, in_model(one, chamber_region(c, one), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
+           "tetrahedron", elements);
+    }
+    Actuator chamber;
+    compile_cavity(c, one, elements, chamber);
+    actuator.cavity.insert(actuator.cavity.end(), chamber.cavity.begin(), chamber.cavity.end());
+    actuator.connected.push_back({name, static_cast<Index>(actuator.cavity.size())});
+    volume += chamber.rest_measure;
+  }
+  actuator.rest_measure = volume;
+}
+
 void fill_pneumatic(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   if (c.spec.formulation != Formulation::physical) return fill_chamber(c, spec, actuator);
+  if (!spec.connected.empty()) return fill_connected(c, spec, actuator);
   std::vector<Index> elements;
   if (spec.region)
     take(c, spec, in_model(spec, chamber_region(c, spec), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
@@ -249,17 +279,10 @@ void fill_shares(const Compilation& c, const ActuatorSpec& spec, Actuator& actua
   }
 }
 
-void note_rest(Compilation& c, const Actuator& actuator) {
-  if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
-  c.model.notes.push_back(
-      "The range " + range_text(actuator.low, actuator.high) + " of actuator '" + actuator.name + "' excludes its " +
-      (actuator.control == Control::load ? "load at rest " + number(actuator.rest) : "rest ratio 1") +
-      ": where none is asked for, " + number(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
-}
-
 }  // namespace
 
 void compile_actuator_elements(Compilation& c) {
+  check_atmospheres(c.spec);
   std::set<std::string> names;
   for (const ActuatorSpec& spec : c.spec.actuators) {
     if (spec.name.empty()) throw InvalidInput(spec.origin, "an actuator needs a name");
@@ -285,7 +308,7 @@ void compile_actuator_elements(Compilation& c) {
     if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);
     if (spec.kind == ActuatorKind::dea) fill_membrane(c, spec, actuator);
     if (under_voltage(actuator)) fill_shares(c, spec, actuator);
-    note_rest(c, actuator);
+    if (!spec.filling) note_rest(c, actuator);
     c.model.actuators.push_back(std::move(actuator));
   }
 }
@@ -295,10 +318,12 @@ void compile_actuator_points(Compilation& c) {
     const ActuatorSpec& spec = c.spec.actuators[i];
     Actuator& actuator = c.model.actuators[i];
     if (spec.kind == ActuatorKind::cable) compile_cable(c, spec, actuator);
-    if (!spec.surface || !actuator.cavity.empty()) continue;
-    if (body_of(c, spec.robot).embedder.empty())
-      refuse(spec, "has a surface but the robot has no body that could hold it");
-    embed_surface(c, spec, actuator);
+    if (spec.surface && actuator.cavity.empty()) {
+      if (body_of(c, spec.robot).embedder.empty())
+        refuse(spec, "has a surface but the robot has no body that could hold it");
+      embed_surface(c, spec, actuator);
+    }
+    if (spec.filling) compile_filling(c, *spec.filling, actuator);
   }
 }
 

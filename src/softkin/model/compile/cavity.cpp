@@ -193,7 +193,7 @@ void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<
 void check_openings(const Compilation& c) {
   for (std::size_t i = 0; i < c.spec.actuators.size(); ++i) {
     const ActuatorSpec& spec = c.spec.actuators[i];
-    if (!c.model.actuators[i].cavity.empty() && (spec.region || spec.wall))
+    if (!c.model.actuators[i].cavity.empty() && (spec.region || spec.wall || !spec.connected.empty()))
       check_openings(c.model, spec, c.model.actuators[i]);
   }
 }

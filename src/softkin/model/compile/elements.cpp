@@ -49,8 +49,14 @@ std::vector<bool> chamber_elements(const Compilation& c) {
   std::vector<bool> inside(c.mesh.tetrahedra.size());
   if (c.spec.formulation != Formulation::physical) return inside;
   for (const ActuatorSpec& spec : c.spec.actuators) {
-    if (spec.kind != ActuatorKind::pneumatic || !spec.region) continue;
-    for (const Index i : c.regions.find(*spec.region, spec.origin).tetrahedra) inside[i] = true;
+    if (spec.kind != ActuatorKind::pneumatic) continue;
+    std::vector<std::string> regions = spec.connected;
+    if (spec.region) regions.push_back(*spec.region);
+    for (const std::string& name : regions) {
+      const Region& region = c.regions.find(name, spec.origin);
+      if (region.dimension != 2)
+        for (const Index i : region.tetrahedra) inside[i] = true;
+    }
   }
   return inside;
 }

@@ -121,6 +121,21 @@ void compile_actuator_points(Compilation& c);
 /// The elements of Eq. (6): a triangle over each gap; none in the physical formulation.
 void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
 
+/// "[0, 1.5]"
+[[nodiscard]] inline std::string interval_text(double low, double high) {
+  return "[" + number(low) + ", " + number(high) + "]";
+}
+/// Refuses a filling whose numbers or range make no sense, and one of target shapes.
+void check_filling(const ActuatorSpec& spec, Formulation formulation);
+/// Refuses fewer than two connected chambers, one twice, and such of target shapes.
+void check_connected(const ActuatorSpec& spec, Formulation formulation);
+/// Refuses fillings under different atmospheres.
+void check_atmospheres(const RobotSpec& spec);
+/// When the chamber's volume at rest is known.
+void compile_filling(Compilation& c, const FillingSpec& spec, Actuator& actuator);
+/// Notes a range that leaves out the value at rest.
+void note_rest(Compilation& c, const Actuator& actuator);
+
 /// What a support is called: its name, that of a region that no other entry holds, or "fixed_N", N counted from 1.
 [[nodiscard]] std::string support_name(const std::vector<FixedSpec>& fixed, std::size_t entry);
 

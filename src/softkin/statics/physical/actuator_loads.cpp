@@ -7,17 +7,32 @@ void ActuatorLoads::evaluate(const Iterate& at, const Demand& demand, const std:
   balance.constraint.setZero(measures_.count());
   balance.load_energy = 0;
   if (tendons_.any()) balance.slips = tendons_.slips(at);
+  if (measures_.any_filling()) balance.compliance.setZero(measures_.count());
   Points pulls;
   for (Index a = 0; a < measures_.count(); ++a) {
     if (!measures_.measures(a) || (!active[a] && at.multipliers[a] == 0)) continue;
     const double value = measures_.value(a, at.positions, &slopes[a]);
-    if (active[a])
-      balance.constraint[a] = value - measures_.target(a, demand.actuation);
+    if (active[a] && measures_.filling(a))
+      fill(a, value, at.multipliers[a], demand, balance);
+    else if (active[a])
+      balance.constraint[a] = value - measures_.target(a, demand.actuation, at.multipliers[a]);
     else
       balance.load_energy += measures_.sign(a) * at.multipliers[a] * value;
     if (tendons_.rubs(a)) tendons_.pull(a, at, pulls);
     gradient += measures_.sign(a) * at.multipliers[a] * (tendons_.rubs(a) ? pulls : slopes[a]);
   }
+}
+
+void ActuatorLoads::fill(Index actuator, double volume, double pressure, const Demand& demand, Balance& balance) const {
+  const Filling& filling = *measures_.filling(actuator);
+  if (!filling.exists(pressure)) {
+    balance.forbidden = true;
+    return;
+  }
+  const double command = demand.actuation[actuator], target = filling.volume(command, pressure);
+  balance.constraint[actuator] = volume - target;
+  balance.compliance[actuator] = filling.compliance(command, pressure);
+  balance.load_energy += filling.energy(command, target);
 }
 
 void ActuatorLoads::stiffness(const Iterate& at, LargeVector<double>& slots, Team& team) const {
@@ -45,7 +60,8 @@ void ActuatorLoads::add_change(const Iterate& at, const Demand& from, const Dema
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0 || !measures_.measures(a)) continue;
     if (active[a]) {
-      constraint[a] += measures_.target(a, from.actuation) - measures_.target(a, to.actuation);
+      constraint[a] +=
+          measures_.target(a, from.actuation, at.multipliers[a]) - measures_.target(a, to.actuation, at.multipliers[a]);
     } else if (!measures_.constrains(a)) {
       pull(a, at, slopes[a]);
       force += measures_.sign(a) * measures_.rate(a) * change * slopes[a];

@@ -10,7 +10,8 @@ namespace softkin::physical {
 /// What cables and chambers pull and push with in the equations of equilibrium: the gradient of
 /// sum_a sign_a multiplier_a measure_a. No term of the energy: a measure that is active is held to what is demanded,
 /// and its multiplier is an unknown; else the multiplier is given. A cable that rubs pulls with less and less of its
-/// multiplier, that is its tension at the motor: see Tendons.
+/// multiplier, that is its tension at the motor: see Tendons. What fills a sealed chamber gives way: the volume that it
+/// is held to follows from its multiplier.
 ///
 /// active    per actuator
 /// gradient  of each measure in turn, #V by 3, left there
@@ -43,6 +44,9 @@ class ActuatorLoads {
   void derivative(Index actuator, const Iterate& at, Points& force) const;
 
  private:
+  /// What a sealed chamber misses, and what its filling stores.
+  void fill(Index actuator, double volume, double pressure, const Demand& demand, Balance& balance) const;
+
   supports::ActuatorMeasures measures_;
   Tendons tendons_;
 };

@@ -8,12 +8,14 @@ namespace softkin::physical {
 void Bordered::set(const Iterate& at, const Balance& balance) {
   at_ = &at;
   system_.reduce_slopes(at, balance, work_, slopes_, pulls_);
+  compliance_ = system_.compliance(balance, work_);
 }
 
 void Bordered::set_factorised(const Iterate& at) {
   at_ = &at;
   slopes_ = saddle_.slopes();
   pulls_ = saddle_.pulls();
+  compliance_ = saddle_.compliance();
 }
 
 /// Solves with the factor, in place.
@@ -31,6 +33,7 @@ void Bordered::multiply(const Columns& columns, Columns& product) {
   system_.multiply(*at_, columns.moves, work_, product.moves, team_);
   product.moves.noalias() += pulls() * columns.multipliers;
   product.multipliers.noalias() = slopes_.transpose() * columns.moves;
+  if (compliance_.size() > 0) product.multipliers -= compliance_.asDiagonal() * columns.multipliers;
 }
 
 linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rounds, Columns& found,

@@ -10,9 +10,9 @@ struct Columns {
   Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the active measures
 };
 
-/// K X + P L = right.moves, G^T X = right.multipliers with the stiffness K, the slopes G and what multipliers pull
-/// with, P, of one shape; P is G where no tendon rubs. Solved by Krylov's method with the factor that the workspace
-/// has, of a shape nearby, or of a lower precision.
+/// K X + P L = right.moves, G^T X - C L = right.multipliers with the stiffness K, the slopes G, their compliances C and
+/// what multipliers pull with, P, of one shape; P is G where no tendon rubs. Solved by Krylov's method with the factor
+/// that the workspace has, of a shape nearby, or of a lower precision.
 class Bordered {
  public:
   /// All must outlive the object.
@@ -48,6 +48,7 @@ class Bordered {
   Team& team_;
   const Iterate* at_ = nullptr;
   Eigen::MatrixXd slopes_, pulls_;  // G; P where it is another
+  Eigen::VectorXd compliance_;      // C; no rows: 0
 };
 
 }  // namespace softkin::physical

@@ -406,15 +406,17 @@ bool Continuation::change_loads(const Demand& from, const Demand& to) const {
 
 /// What to command instead of loads that change, which may have come to a maximum; "" where none does.
 std::string Continuation::instead_of_loads() const {
-  bool pressures = false, tensions = false;
+  bool pressures = false, tensions = false, fillings = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     const Actuator& actuator = system_.model().actuators[a];
+    fillings = fillings || (actuator.filling && way_.from.actuation[a] != way_.to.actuation[a]);
     if (actuator.control != Control::load || !system_.measures().measures(a) ||
         way_.from.actuation[a] == way_.to.actuation[a])
       continue;
     tensions = tensions || actuator.kind == ActuatorKind::cable;
     pressures = pressures || actuator.kind == ActuatorKind::pneumatic;
   }
+  if (fillings) return "; where what fills a chamber has its maximum, command its volume (control: volume) to go on";
   if (!pressures && !tensions) return "";
   return std::string("; where a ") + (pressures ? "pressure" : "tension") + " has its maximum, command " +
          (pressures ? "volumes (control: volume)" : "") + (pressures && tensions ? " and " : "") +
@@ -443,7 +445,7 @@ bool Continuation::release(const Demand& there, Iterate& at, bool contradicting)
   bool changed = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (!active_[a] || !system_.measures().only_pulls(a) || (at.multipliers[a] > 0 && !contradicting)) continue;
-    if (system_.measures().value(a, at.positions) >= system_.measures().target(a, there.actuation)) continue;
+    if (system_.measures().value(a, at.positions) >= system_.measures().target(a, there.actuation, 0)) continue;
     active_[a] = false;
     at.multipliers[a] = 0;
     changed = true;

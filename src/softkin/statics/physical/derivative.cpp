@@ -34,9 +34,9 @@ Derivative::Derivative(const System& system, Workspace& work, double accuracy, T
 void Derivative::hold(const Iterate& at, const Demand& demand) {
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (!system_.measures().constrains(a)) continue;
-    active_[a] =
-        !system_.measures().only_pulls(a) || at.multipliers[a] > 0 ||
-        system_.measures().value(a, at.positions) >= (1 - verge) * system_.measures().target(a, demand.actuation);
+    active_[a] = !system_.measures().only_pulls(a) || at.multipliers[a] > 0 ||
+                 system_.measures().value(a, at.positions) >=
+                     (1 - verge) * system_.measures().target(a, demand.actuation, at.multipliers[a]);
     if (active_[a]) held_.push_back(a);
   }
   hold_friction(system_, at, work_, team_);
@@ -64,7 +64,8 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
   by_commands_ = true;
   make_room(system_.actuators());
   for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
-    right_.multipliers(i, held_[i]) = system_.measures().sign(held_[i]) * system_.measures().rest(held_[i]);
+    right_.multipliers(i, held_[i]) =
+        system_.measures().sign(held_[i]) * system_.measures().target_by_command(held_[i], at.multipliers[held_[i]]);
   Points force, moves;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (system_.measures().constrains(a)) continue;

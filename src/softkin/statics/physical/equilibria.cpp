@@ -1,3 +1,4 @@
+#include <cmath>
 #include <softkin/statics/physical/contact_at_rest.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
@@ -17,6 +18,29 @@ Demand at_rest(const Model& model, const Actuation& wanted) {
   return demand;
 }
 
+/// The command that a start's measure is of. What fills a chamber is told by its pressure, too: where that is not known
+/// it is what is asked for, under the pressure that it has in the volume.
+double measured_command(const supports::ActuatorMeasures& measures, Index actuator, const State& start, bool rests,
+                        double wanted) {
+  const double measure = measures.value(actuator, start.positions);
+  const bool known = start.multipliers.size() > 0;
+  const double pressure = known ? measures.unit(actuator) * start.multipliers[actuator] : 0;
+  const Filling* filling = measures.filling(actuator);
+  if (!filling || known || rests || !filling->gives_way() || !std::isfinite(filling->pressure(wanted, measure)))
+    return measures.command_for(actuator, measure, pressure);
+  return wanted;
+}
+
+/// Multipliers of a start of which only the shape is known, and what it is taken for: of what fills chambers.
+void fill_chambers(const supports::ActuatorMeasures& measures, const Demand& demand, Iterate& at) {
+  for (Index a = 0; a < measures.count(); ++a) {
+    const Filling* filling = measures.filling(a);
+    if (!filling || !filling->gives_way()) continue;
+    const double pressure = filling->pressure(demand.actuation[a], measures.value(a, at.positions));
+    if (std::isfinite(pressure)) at.multipliers[a] = pressure;
+  }
+}
+
 /// What the start is an equilibrium of, as far as it tells.
 Demand demand_of(const System& system, const Model& model, const State& start, const Actuation& wanted) {
   if (start.actuation.size() > 0) return {start.actuation, start.share};
@@ -25,7 +49,7 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
   if (!rests) demand.share = start.share >= 0 ? start.share : 1.0;
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.measures().constrains(a))
-      demand.actuation[a] = system.measures().value(a, start.positions) / system.measures().rest(a);
+      demand.actuation[a] = measured_command(system.measures(), a, start, rests, wanted[a]);
     else if (model.actuators[a].kind == ActuatorKind::motion ||
              (model.actuators[a].kind == ActuatorKind::turn && !rests))
       demand.actuation[a] = system.placement().command_of(a, start.positions);
@@ -142,6 +166,8 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
       at.multipliers[a] = system_.measures().measures(a) && system_.measures().given_load(a)
                               ? system_.measures().given(a, from.actuation[a])  // of this robot's factor
                               : system_.measures().unit(a) * start.multipliers[a];
+  else if (start.positions != model.rest)
+    fill_chambers(system_.measures(), from, at);
   system_.set_time(options.history, options.elapsed_s, lease.work(), team);
   const bool rests = start.positions == model.rest && start.actuation.size() == 0;
   const bool same_time =

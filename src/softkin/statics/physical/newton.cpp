@@ -390,6 +390,16 @@ bool Newton::improve_constraints() {
   return missed > promised && missed < worthwhile_balance * std::exchange(missed_, missed);
 }
 
+/// The pressure of a gas is that of its volume, to the last digit: its law holds for what is told. Of a liquid, which
+/// hardly gives way, the balance of forces knows it better.
+void Newton::settle_gases(Iterate& at) const {
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    const Filling* filling = system_.measures().filling(a);
+    if (filling && !filling->liquid && (*active_)[a])
+      at.multipliers[a] = filling->pressure(demand_->actuation[a], system_.measures().value(a, at.positions));
+  }
+}
+
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
@@ -453,6 +463,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   report_.energy = balance_.energy;
   if (!meets_constraints()) return Outcome::unmet;
   work_.saddle.correct_multipliers(balance_, at.multipliers, team_);
+  settle_gases(at);
   if (negative_ != 0 && doubtful_) make_sure(at);
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }

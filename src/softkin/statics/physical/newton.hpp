@@ -90,6 +90,7 @@ class Newton {
   bool improve_balance();
   void make_sure(const Iterate& at);
   bool improve_constraints();
+  void settle_gases(Iterate& at) const;
   Advance reject(const Iterate& at);
   void record(double step_mm);
 

@@ -82,6 +82,8 @@ bool Saddle::loses_energy(const Matrix& matrix, Team& team) {
   }
   Eigen::MatrixXd image = Eigen::MatrixXd::Zero(basis.rows(), iterates);
   linear::subtract_product(matrix.layout->reduced.columns(), matrix.values, basis, image, team);
+  for (Index i = 0; i < static_cast<Index>(compliance_.size()); ++i)  // what gives way is no constraint, but stiff
+    if (compliance_[i] > 0) image -= slopes_.col(i) * (slopes_.col(i).transpose() * basis) / compliance_[i];
   return symmetric_eigenvalues(-(basis.transpose() * image)).minCoeff() < -rounding * spectrum_.mean;
 }
 
@@ -183,6 +185,7 @@ void Saddle::close_constraints() {
   const Index count = static_cast<Index>(active_.size());
   if (count == 0) return;
   Eigen::MatrixXd schur = slopes_.transpose() * responses_;
+  if (compliance_.size() > 0) schur.diagonal() += compliance_;
   scale_.resize(count);
   for (Index i = 0; i < count; ++i) scale_[i] = schur(i, i) != 0 ? 1 / std::sqrt(std::abs(schur(i, i))) : 1;
   schur_matrix_ = scale_.asDiagonal() * (0.5 * (schur + schur.transpose()).eval()) * scale_.asDiagonal();
@@ -217,7 +220,8 @@ void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd&
     const Eigen::MatrixXd lengths = stretched - stretches_ * tensions;
     Eigen::VectorXd now = lengths.col(0);
     if (count > 0) {
-      const Eigen::MatrixXd left = met - held * tensions;
+      Eigen::MatrixXd left = met - held * tensions;
+      if (compliance_.size() > 0) left.rightCols(count).diagonal() += compliance_;
       const Eigen::VectorXd more = MinimumNorm(left.rightCols(count), dependent).solve(asked_of(balance, left.col(0)));
       now -= lengths.rightCols(count) * more;
       if (known) grow(more, growth);

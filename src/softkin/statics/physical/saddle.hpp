@@ -20,9 +20,9 @@ struct Layout {
   std::uint64_t fingerprint = 0;  // of these
 };
 
-/// The equations of a Newton step, factorised: K step + G change = -force, G^T step = -sign constraint, with the
-/// stiffness K over the unknowns and a column of G per active constraint: its slope with its sign. Where constraints
-/// contradict each other, what misses them least.
+/// The equations of a Newton step, factorised: K step + G change = -force, G^T step - C change = -sign constraint, with
+/// the stiffness K over the unknowns, a column of G per active constraint, its slope with its sign, and their
+/// compliances C >= 0, 0 but for sealed chambers. Where constraints contradict each other, what misses them least.
 ///
 /// Tendons that rub add few columns: K becomes K + U V^T, by Woodbury's formula, and a measure's multiplier pulls with
 /// another column than its slope. As friction is either whole or stiff, a step takes it by its secants over that step.
@@ -42,6 +42,8 @@ class Saddle {
   void activate(const std::vector<bool>& active);
   /// G, to be written for these before factorise() or couple().
   [[nodiscard]] Eigen::MatrixXd& slopes() { return slopes_; }
+  /// C, the same; no rows: 0.
+  [[nodiscard]] Eigen::VectorXd& compliance() { return compliance_; }
   /// What the multipliers pull with; no columns: with G.
   [[nodiscard]] Eigen::MatrixXd& pulls() { return pulls_; }
   [[nodiscard]] TendonColumns& tendons() { return tendons_; }
@@ -81,7 +83,7 @@ class Saddle {
   [[nodiscard]] const Eigen::MatrixXd& responses() const { return responses_; }
   /// S, which makes the diagonal of the next 1.
   [[nodiscard]] const Eigen::VectorXd& scale() const { return scale_; }
-  /// S G^T K^-1 pulls S; singular where constraints depend on each other.
+  /// S (G^T K^-1 pulls + C) S; singular where constraints depend on each other.
   [[nodiscard]] const MinimumNorm& schur() const { return schur_; }
 
   /// Of the last factorisation.
@@ -116,6 +118,7 @@ class Saddle {
   Precision precision_;
   std::vector<Index> active_;
   Eigen::MatrixXd slopes_, pulls_, responses_;
+  Eigen::VectorXd compliance_;
   TendonColumns tendons_;
   Eigen::VectorXd slips_;
   Eigen::MatrixXd free_;        // K^-1 of the pulls without tendons' columns,

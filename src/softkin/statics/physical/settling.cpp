@@ -133,7 +133,7 @@ bool Continuation::change_active(const Demand& demand, Iterate& at) {
   bool changed = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (!system_.measures().constrains(a) || !system_.measures().only_pulls(a)) continue;  // a chamber pushes and pulls
-    const double target = system_.measures().target(a, demand.actuation);
+    const double target = system_.measures().target(a, demand.actuation, at.multipliers[a]);
     if (active_[a] && at.multipliers[a] < 0) {
       active_[a] = false;
       at.multipliers[a] = 0;

@@ -48,7 +48,10 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
   system.evaluate(beside, demand, active, work, there, team);
   Eigen::VectorXd moves = direction;
   system.drop_pressures(moves);
-  const double curvature = moves.dot(there.force - balance.force) / reach;
+  double curvature = moves.dot(there.force - balance.force) / reach;
+  for (Index a = 0; a < static_cast<Index>(balance.compliance.size()); ++a)  // of what is sealed in chambers
+    if (active[a] && balance.compliance[a] > 0)
+      curvature += std::pow((there.constraint[a] - balance.constraint[a]) / reach, 2) / balance.compliance[a];
   const double expected = work.softest->curvature;
   return std::abs(curvature - expected) <= as_stiff * expected;
 }
@@ -104,14 +107,19 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
 
 namespace {
 
-/// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given; kept
-/// volumes by the pressures of another shape.
-double lagrangian(const System& system, const Balance& balance, const Points& positions, const Points& pressed,
-                  const Eigen::VectorXd& multipliers) {
+/// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given; what is
+/// sealed in chambers by what it stores, kept volumes by the pressures of another shape.
+double lagrangian(const System& system, const Demand& demand, const Balance& balance, const Points& positions,
+                  const Points& pressed, const Eigen::VectorXd& multipliers) {
   double energy = balance.energy + system.pressure_work(pressed, balance.force);
-  for (Index a = 0; a < system.actuators(); ++a)
-    if (system.measures().measures(a) && multipliers[a] != 0)
+  for (Index a = 0; a < system.actuators(); ++a) {
+    if (!system.measures().measures(a)) continue;
+    const Filling* filling = system.measures().filling(a);
+    if (filling && filling->gives_way())
+      energy += filling->energy(demand.actuation[a], system.measures().value(a, positions));
+    else if (multipliers[a] != 0)
       energy += system.measures().sign(a) * multipliers[a] * system.measures().value(a, positions);
+  }
   return energy;
 }
 
@@ -135,8 +143,8 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
     trial.multipliers += scale * change;
     system.evaluate(trial, demand, active, work, there, team);
     if (there.forbidden || !there.force.allFinite()) continue;
-    if (!(lagrangian(system, there, trial.positions, at.positions, at.multipliers) <
-          lagrangian(system, balance, at.positions, at.positions, at.multipliers)))
+    if (!(lagrangian(system, demand, there, trial.positions, at.positions, at.multipliers) <
+          lagrangian(system, demand, balance, at.positions, at.positions, at.multipliers)))
       continue;
     at = std::move(trial);
     shift = std::max(least_shift, shift / 4);

@@ -184,6 +184,7 @@ void System::ask(const Iterate& at, const std::vector<bool>& active, const Balan
   work.saddle.activate(active);
   work.softest.reset();
   reduce_slopes(at, balance, work, work.saddle.slopes(), work.saddle.pulls());
+  work.saddle.compliance() = compliance(balance, work);
   if (!tendons().any()) return;
   work.saddle.tendons() = tendons().columns(at, *freedoms_);
   work.saddle.slips() = balance.slips;
@@ -207,6 +208,13 @@ void System::reduce_slopes(const Iterate& at, const Balance& balance, const Work
     freedoms_->reduce(pull, at.positions, pulls.col(i));
     pulls.col(i) *= measures().sign(active[i]);
   }
+}
+
+Eigen::VectorXd System::compliance(const Balance& balance, const Workspace& work) const {
+  const std::vector<Index>& active = work.saddle.active();
+  if (balance.compliance.size() == 0) return {};
+  return Eigen::VectorXd::NullaryExpr(static_cast<Index>(active.size()),
+                                      [&](Eigen::Index i) { return balance.compliance[active[i]]; });
 }
 
 void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,

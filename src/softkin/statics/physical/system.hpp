@@ -16,9 +16,10 @@
 namespace softkin::physical {
 
 /// Equations of equilibrium: gradient of energy(x) + sum_a sign_a multiplier_a measure_a(x) - load . x is zero in the
-/// unknowns, and measure_a(x) = demand for every active constraint. sign: +1 for cables, -1 for chambers. The energy is
-/// the sum of the terms'; multipliers of dea actuators under voltage are told, but not read. Pressures
-/// of mixed elements are vertices more (see Pressures), unknowns as others: the energy is stationary in them, too.
+/// unknowns, and measure_a(x) = demand for every active constraint: of a sealed chamber the volume that multiplier_a
+/// leaves of what fills it. sign: +1 for cables, -1 for chambers. The energy is the sum of the terms'; multipliers of
+/// dea actuators under voltage are told, but not read. Pressures of mixed elements are vertices more (see Pressures),
+/// unknowns as others: the energy is stationary in them, too.
 class System {
  public:
   explicit System(const Model& model);
@@ -92,6 +93,9 @@ class System {
   /// pulls  what their multipliers pull with, where it is something else; else no columns
   void reduce_slopes(const Iterate& at, const Balance& balance, const Workspace& work, Eigen::MatrixXd& slopes,
                      Eigen::MatrixXd& pulls) const;
+
+  /// Of the active measures, as Saddle has it.
+  [[nodiscard]] Eigen::VectorXd compliance(const Balance& balance, const Workspace& work) const;
 
   /// Balance that a change of demand upsets, to first order: for the tangent predictor. Where it moves supports the
   /// stiffness is to be assembled.

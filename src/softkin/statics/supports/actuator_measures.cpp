@@ -143,11 +143,12 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a) {
     const Actuator& actuator = model.actuators[a];
     const bool cable = actuator.kind == ActuatorKind::cable;
-    const bool constrains =
-        actuator.kind != ActuatorKind::dea && drives(actuator) && actuator.control == Control::ratio;
+    const bool constrains = actuator.kind != ActuatorKind::dea && drives(actuator) && actuator.control != Control::load;
     const bool given_load = !constrains && (measures(a) || under_voltage(actuator));
     roles_.push_back({constrains, given_load, cable && !actuator.pushes, cable ? 1.0 : -1.0,
-                      actuator.kind == ActuatorKind::pneumatic ? 1e-3 : 1.0, actuator.factor, actuator.offset});
+                      actuator.kind == ActuatorKind::pneumatic ? 1e-3 : 1.0, actuator.factor, actuator.offset,
+                      actuator.filling ? &*actuator.filling : nullptr});
+    any_filling_ = any_filling_ || actuator.filling;
   }
 }
 

@@ -10,6 +10,7 @@ namespace softkin::supports {
 /// and second derivatives in the vertices.
 class ActuatorMeasures {
  public:
+  /// model must outlive the object.
   explicit ActuatorMeasures(const Model& model);
 
   /// Of actuators, of all kinds.
@@ -20,9 +21,9 @@ class ActuatorMeasures {
   [[nodiscard]] double rest(Index actuator) const { return rest_[actuator]; }
 
   // In the equations of equilibrium an actuator's measure is held to what is commanded, or its multiplier, a tension
-  // [N] or gauge pressure [MPa], is given.
+  // [N] or gauge pressure [MPa], is given. What fills a sealed chamber holds its volume to what its pressure leaves it.
 
-  /// Is its measure commanded (else its load, or it is a dea, or what is done to the robot).
+  /// Is its measure or what fills it commanded (else its load, or it is a dea, or what is done to the robot).
   [[nodiscard]] bool constrains(Index actuator) const { return roles_[actuator].constrains; }
   /// Is a load of the robot itself commanded: tension, pressure or voltage.
   [[nodiscard]] bool given_load(Index actuator) const { return roles_[actuator].given_load; }
@@ -44,10 +45,25 @@ class ActuatorMeasures {
   [[nodiscard]] double rate(Index actuator) const { return roles_[actuator].unit * roles_[actuator].factor; }
   /// A cable, which gives way where it would push.
   [[nodiscard]] bool only_pulls(Index actuator) const { return roles_[actuator].only_pulls; }
-  /// Demanded measure [mm, mm^3] by a command.
-  [[nodiscard]] double target(Index actuator, const Eigen::VectorXd& actuation) const {
-    return actuation[actuator] * rest_[actuator];
+  /// Demanded measure [mm, mm^3] by a command; that of a sealed chamber follows from its multiplier, too.
+  [[nodiscard]] double target(Index actuator, const Eigen::VectorXd& actuation, double multiplier) const {
+    const Filling* filling = roles_[actuator].filling;
+    return filling ? filling->volume(actuation[actuator], multiplier) : actuation[actuator] * rest_[actuator];
   }
+  /// Its derivative by the command.
+  [[nodiscard]] double target_by_command(Index actuator, double multiplier) const {
+    const Filling* filling = roles_[actuator].filling;
+    return filling ? filling->by_command(multiplier) : rest_[actuator];
+  }
+  /// The command that demands a measure.
+  [[nodiscard]] double command_for(Index actuator, double measure, double multiplier) const {
+    const Filling* filling = roles_[actuator].filling;
+    return filling ? filling->command(measure, multiplier) : measure / rest_[actuator];
+  }
+  /// What fills a sealed chamber whose amount is commanded; null: nothing that is.
+  [[nodiscard]] const Filling* filling(Index actuator) const { return roles_[actuator].filling; }
+  /// Is there such a chamber?
+  [[nodiscard]] bool any_filling() const { return any_filling_; }
 
   /// Value of an actuator's measure; gradient (#V by 3) where it is asked for.
   [[nodiscard]] double value(Index actuator, const Points& positions, Points* gradient = nullptr) const;
@@ -81,6 +97,7 @@ class ActuatorMeasures {
   struct Role {
     bool constrains, given_load, only_pulls;
     double sign, unit, factor, offset;
+    const Filling* filling;  // the model's
   };
 
   [[nodiscard]] Vec3 at(Index node, const Points& positions) const;
@@ -95,6 +112,7 @@ class ActuatorMeasures {
   std::vector<Clique> cliques_;
   std::vector<double> rest_;
   std::vector<Role> roles_;
+  bool any_filling_ = false;
 };
 
 }  // namespace softkin::supports

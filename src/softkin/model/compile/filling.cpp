@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <softkin/model/compile/parts.hpp>
+#include <softkin/model/names.hpp>
+
+namespace softkin {
+
+namespace {
+
+void require_positive(const ActuatorSpec& spec, double value, const char* what) {
+  if (!(value > 0 && std::isfinite(value)))
+    refuse(spec, std::string("needs ") + what + " above 0, not " + number(value));
+}
+
+void require_not_negative(const ActuatorSpec& spec, double value, const char* what) {
+  if (!(value >= 0 && std::isfinite(value)))
+    refuse(spec, std::string("needs ") + what + " of 0 or more, not " + number(value));
+}
+
+}  // namespace
+
+void check_filling(const ActuatorSpec& spec, Formulation formulation) {
+  if (formulation != Formulation::physical)
+    refuse(spec, "is controlled by what fills it: that needs the physical formulation");
+  if (spec.kind != ActuatorKind::pneumatic || !spec.filling)
+    refuse(spec, "is controlled by what fills it: it needs to be a chamber with a filling");
+  const FillingSpec& filling = *spec.filling;
+  require_positive(spec, filling.exponent, "an exponent of its gas");
+  require_positive(spec, filling.atmosphere_kPa, "an atmosphere");
+  require_not_negative(spec, filling.compressibility, "a compressibility");
+  require_not_negative(spec, filling.dead_mL, "a dead volume");
+  if (filling.syringe_mL) require_positive(spec, *filling.syringe_mL, "a syringe's volume");
+  const bool ordered = std::isfinite(spec.low) && spec.low <= spec.high && std::isfinite(spec.high);
+  if (!ordered || !(filling.syringe_mL || spec.low > 0))
+    refuse(spec, std::string("needs a range of ") +
+                     (filling.syringe_mL ? "what is pushed with low <= high" : "its amount with 0 < low <= high") +
+                     ", not " + interval_text(spec.low, spec.high));
+  if (filling.syringe_mL && spec.high > *filling.syringe_mL)
+    refuse(spec, "cannot push " + number(spec.high) + " mL out of a syringe of " + number(*filling.syringe_mL) + " mL");
+}
+
+void check_connected(const ActuatorSpec& spec, Formulation formulation) {
+  if (spec.connected.empty()) return;
+  if (spec.kind != ActuatorKind::pneumatic) refuse(spec, "takes no connected chambers: only a pneumatic one does");
+  if (formulation != Formulation::physical)
+    refuse(spec, "is of connected chambers: that needs the physical formulation");
+  if (spec.connected.size() < 2) refuse(spec, "needs two connected chambers or more");
+  std::set<std::string> names;
+  for (const std::string& name : spec.connected)
+    if (!names.insert(name).second) refuse(spec, "has '" + name + "' among its connected chambers twice");
+}
+
+void compile_filling(Compilation& c, const FillingSpec& spec, Actuator& actuator) {
+  constexpr double mm3_per_mL = 1000, MPa_per_kPa = 1e-3;
+  const double syringe = spec.syringe_mL.value_or(0);
+  actuator.filling = Filling{.liquid = spec.liquid,
+                             .pushed = spec.syringe_mL.has_value(),
+                             .exponent = spec.exponent,
+                             .compressibility = spec.compressibility,
+                             .atmosphere_MPa = MPa_per_kPa * spec.atmosphere_kPa,
+                             .dead_mm3 = mm3_per_mL * spec.dead_mL,
+                             .syringe_mm3 = mm3_per_mL * syringe,
+                             .chamber_mm3 = actuator.rest_measure};
+  actuator.rest = actuator.filling->rest();
+  const auto part = [](double mL, const char* where) { return mL > 0 ? ", " + number(mL) + " mL " + where : ""; };
+  c.model.notes.push_back(
+      "Actuator '" + actuator.name + "' is sealed at rest with " +
+      number((actuator.rest_measure + actuator.filling->dead_mm3 + actuator.filling->syringe_mm3) / mm3_per_mL) +
+      " mL of " + (spec.liquid ? "liquid" : "gas") + " under " + number(spec.atmosphere_kPa) +
+      " kPa: " + number(actuator.rest_measure / mm3_per_mL) + " mL in " +
+      (actuator.connected.empty() ? "its chamber" : "its chambers") + part(spec.dead_mL, "of dead volume") +
+      part(syringe, "in its syringe") + ".");
+  note_rest(c, actuator);
+}
+
+void check_atmospheres(const RobotSpec& spec) {
+  const ActuatorSpec* first = nullptr;
+  for (const ActuatorSpec& actuator : spec.actuators) {
+    if (!actuator.filling) continue;
+    if (first == nullptr) first = &actuator;
+    if (actuator.filling->atmosphere_kPa == first->filling->atmosphere_kPa) continue;
+    refuse(actuator, "is under an atmosphere of " + number(actuator.filling->atmosphere_kPa) + " kPa, actuator '" +
+                         first->name + "' under one of " + number(first->filling->atmosphere_kPa) +
+                         " kPa: give all scenes of robots the same");
+  }
+}
+
+void note_rest(Compilation& c, const Actuator& actuator) {
+  if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
+  c.model.notes.push_back(
+      "The range " + interval_text(actuator.low, actuator.high) + " of actuator '" + actuator.name + "' excludes its " +
+      (actuator.control == Control::load ? "load at rest " + number(actuator.rest)
+       : actuator.control == Control::filling
+           ? std::string(control_name(actuator)) + " at rest, " + command_text(actuator, actuator.rest)
+           : "rest ratio 1") +
+      ": where none is asked for, " + number(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
+}
+
+}  // namespace softkin
