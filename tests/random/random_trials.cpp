@@ -1,3 +1,5 @@
+#include <Eigen/Geometry>
+
 #include "random/parts.hpp"
 
 namespace softkin::random_robots {
