@@ -194,10 +194,10 @@ RobotSpec parse_scene(const std::string& yaml_text, const std::string& file_name
 RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files) {
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
-  const scene::Map map(root,
-                       {"softkin",   "units",   "mesh",  "meshes",  "robots",    "formulation", "weights", "regions",
-                        "materials", "void",    "fixed", "rigid",   "actuators", "gravity",     "forces",  "tractions",
-                        "fibres",    "markers", "feet",  "contact", "obstacles", "bodies",      "atmosphere"});
+  const scene::Map map(
+      root, {"softkin",   "units",   "mesh",  "meshes",  "robots",    "formulation", "weights",   "regions",
+             "materials", "void",    "fixed", "rigid",   "actuators", "gravity",     "forces",    "tractions",
+             "fibres",    "markers", "feet",  "contact", "obstacles", "bodies",      "atmosphere"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);
