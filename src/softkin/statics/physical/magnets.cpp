@@ -5,6 +5,7 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/energy/elastic.hpp>
 #include <softkin/statics/physical/element_shapes.hpp>
+#include <softkin/statics/physical/lanes.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 
 namespace softkin::physical {
@@ -51,15 +52,7 @@ energy::Pack3 places_of(const std::array<Point, energy::lanes>& points) {
   return places;
 }
 
-Vec3 lane_of(const energy::Pack3& vector, int lane) {
-  return {vector.x[lane], vector.y[lane], vector.z[lane]};
-}
-Mat3 lane_of(const energy::Pack33& matrix, int lane) {
-  Mat3 own;
-  for (int r = 0; r < 3; ++r) own.row(r) = lane_of(matrix.row[r], lane).transpose();
-  return own;
-}
-Flux lane_of(const energy::FluxPoint& flux, int lane) {
+Flux flux_of_lane(const energy::FluxPoint& flux, int lane) {
   return {lane_of(flux.value, lane),
           lane_of(flux.slope, lane),
           {lane_of(flux.second[0], lane), lane_of(flux.second[1], lane), lane_of(flux.second[2], lane)}};
@@ -166,7 +159,7 @@ std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, cons
     for (Index e = 0; e < count; ++e)  // by one thread: elements share vertices
       for (int q = 0; q < Q; ++q) {
         const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
-        const Flux flux = lane_of(fluxes[e / lanes][q], e % lanes);
+        const Flux flux = flux_of_lane(fluxes[e / lanes][q], e % lanes);
         energy -= point.moment.dot(flux.value);
         const Vec3 pull = flux.slope.transpose() * point.moment;
         for (int i = 0; i < K; ++i)
@@ -232,7 +225,7 @@ void Magnets::stiffness(const Iterate& at, const Demand& demand, bool projected,
           const Index elements = std::min<Index>(lanes, count - lanes * b);
           if (!fields_.flux(setting, places_of(points), elements, true, flux)) continue;  // a shape that is forbidden
           for (Index l = 0; l < elements; ++l)
-            of_element(lanes * b + l, q, points[l], lane_of(flux, l), slots.data() + 9 * set.slots[lanes * b + l]);
+            of_element(lanes * b + l, q, points[l], flux_of_lane(flux, l), slots.data() + 9 * set.slots[lanes * b + l]);
         }
     });
   });

@@ -1,0 +1,248 @@
+#include <algorithm>
+#include <numeric>
+#include <softkin/statics/electric_layer.hpp>
+#include <softkin/statics/physical/body.hpp>
+#include <softkin/statics/physical/lanes.hpp>
+
+namespace softkin::physical {
+
+using namespace energy;
+
+namespace {
+
+/// Elements along a curve through space that keeps neighbours together: their vertices share cache lines.
+template <class Element>
+std::vector<Index> spatial_order(const Points& rest, const std::vector<Element>& elements) {
+  const Eigen::RowVector3d low = rest.colwise().minCoeff();
+  const double extent = std::max((rest.colwise().maxCoeff() - low).maxCoeff(), 1e-300);
+  std::vector<std::pair<std::uint64_t, Index>> keys;
+  for (const Element& element : elements) {
+    Eigen::RowVector3d middle = Eigen::RowVector3d::Zero();
+    for (const Index v : element) middle += rest.row(v) / static_cast<double>(element.size());
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto place = static_cast<std::uint64_t>((middle[axis] - low[axis]) / extent * 1048575);
+      for (int bit = 0; bit < 20; ++bit) key |= (place >> bit & 1) << (3 * bit + axis);
+    }
+    keys.emplace_back(key, static_cast<Index>(keys.size()));
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Index> order;
+  for (const auto& key : keys) order.push_back(key.second);
+  return order;
+}
+
+void set_law(LawBlock& block, int lane, const ElasticLaw& law) {
+  block.law = law.law;
+  block.mu[lane] = law.mu;
+  block.lambda[lane] = law.lambda;
+  block.c10[lane] = law.c10;
+  block.c01[lane] = law.c01;
+  block.c20[lane] = law.c20;
+  block.c30[lane] = law.c30;
+  block.bulk[lane] = law.bulk;
+  block.jm[lane] = law.jm;
+}
+
+}  // namespace
+
+/// Adds the pressures of an element to a set, into its lane and in advance into those behind.
+template <int K, int Q>
+void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array<Index, 4>& vertices, int first_lane) {
+  if (first_lane == 0) {
+    set.compliance.emplace_back();
+    set.pressures.emplace_back();
+  }
+  const SplitLaw parts = split(law, K == 10);
+  for (int l = first_lane; l < lanes; ++l) {
+    set_law(set.blocks.back().law, l, parts.law);
+    set.compliance.back().softness[l] = parts.softness;
+    set.compliance.back().smoothing[l] = parts.smoothing;
+    for (std::size_t i = 0; i < 4; ++i) set.pressures.back()[i][l] = vertices[i];
+  }
+}
+
+template <int K, int Q, class Element>
+void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
+               const Element& nodes, const Pressures* pressures) {
+  const Material& material = model.materials[role.material];
+  const Law law = material.elastic.law;
+  const auto branches = static_cast<int>(material.viscosity.size());
+  const bool mixed = pressures && material.mixed;
+  auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
+    return s.law == law && s.actuator == role.actuator && s.branches == branches && s.mixed == mixed;
+  });
+  if (set == sets.end()) {
+    set = sets.insert(sets.end(), Set<K, Q>{});
+    set->law = law;
+    set->branches = branches;
+    set->mixed = mixed;
+    set->actuator = role.actuator;
+    if (role.actuator >= 0) {
+      set->charged = under_voltage(model.actuators[role.actuator]);
+      set->prestretch = model.actuators[role.actuator].prestretch;
+    }
+  }
+  Eigen::Matrix<double, K, 3> rest;
+  for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
+  const ElasticRest<K, Q> shape = elastic_rest(rest);
+  const int lane = set->count % lanes;
+  if (lane == 0) {
+    set->blocks.emplace_back();
+    set->nodes.emplace_back();
+    set->frames.emplace_back();
+    set->moduli.resize(set->moduli.size() + material.viscosity.size());
+    set->times.resize(set->moduli.size());
+  }
+  ElasticBlock<K, Q>& block = set->blocks.back();
+  for (int l = lane; l < lanes; ++l) {  // later elements overwrite the lanes that this one fills in advance
+    set_law(block.law, l, material.elastic);
+    for (std::size_t i = 0, at = set->moduli.size() - material.viscosity.size(); i < material.viscosity.size(); ++i) {
+      set->moduli[at + i][l] = material.viscosity[i].modulus_MPa;
+      set->times[at + i][l] = material.viscosity[i].time_s;
+    }
+    for (int q = 0; q < Q; ++q) {
+      for (int i = 0; i < K; ++i) set_lane(block.slope[q][i], l, shape.slope[q].row(i).transpose());
+      block.volume[q][l] = l == lane ? shape.volume[q] : 0;
+    }
+    for (int i = 0; i < K; ++i) set->nodes.back()[i][l] = nodes[i];
+  }
+  if constexpr (K == 6)
+    set->frames.back()[lane] = layer_frame(rest);
+  else if (mixed)
+    set_pressures(*set, material.elastic, pressures->of[static_cast<std::size_t>(element)], lane);
+  set->elements.push_back(element);
+  ++set->count;
+}
+
+Body::Body(const Model& model, const Pressures* pressures)
+    : vertices_(static_cast<Index>(model.rest.rows())), pressure_unit_(pressures ? pressures->unit : 1) {
+  for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
+    const ElementRole& role = model.tetrahedron_roles[e];
+    const Tetrahedron& t = model.tetrahedra[e];
+    if (model.edge_nodes.empty()) {
+      add(linear_, model, role, e, t, pressures);
+    } else {
+      std::array<Index, 10> nodes;
+      std::copy(t.begin(), t.end(), nodes.begin());
+      std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      add(quadratic_, model, role, e, nodes, pressures);
+    }
+  }
+  for (const Index e : spatial_order(model.rest, model.prisms))
+    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e],
+        nullptr);
+  for (auto& set : prisms_)
+    if (set.charged) add_field(model, set);
+  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+    if (model.actuators[a].kind == ActuatorKind::dea)
+      (under_voltage(model.actuators[a]) ? voltages_ : ratios_).push_back(a);
+  each_set([&]<int K, int Q>(Set<K, Q>& set) {
+    set.first_pull = pulls_;
+    pulls_ += K * set.count;
+    blocks_ += set.blocks.size();
+    set.first_branch = branches_;
+    set.first_strain = strains_;
+    branches_ += set.moduli.size();
+    set.first_begun = begun_;
+    strains_ += set.strains_each() * set.blocks.size();
+    begun_ += set.begun_each() * set.blocks.size();
+  });
+  each_set([&]<int K, int Q>(Set<K, Q>& set) {
+    set.first_miss = pulls_ + misses_;
+    if (set.mixed) misses_ += 4 * set.count;
+  });
+  const auto each_pull = [&](const auto& visit) {
+    each_set([&]<int K, int Q>(Set<K, Q>& set) {
+      for (Index e = 0; e < set.count; ++e)
+        for (int i = 0; i < K; ++i) visit(set.nodes[e / lanes][i][e % lanes], set.first_pull + K * e + i);
+      for (Index e = 0; set.mixed && e < set.count; ++e)
+        for (int i = 0; i < 4; ++i) visit(set.pressures[e / lanes][i][e % lanes], set.first_miss + 4 * e + i);
+    });
+  };
+  pull_starts_.assign(static_cast<std::size_t>(vertices_) + 1, 0);
+  each_pull([&](Index vertex, Index) { ++pull_starts_[vertex + 1]; });
+  std::partial_sum(pull_starts_.begin(), pull_starts_.end(), pull_starts_.begin());
+  pull_order_.resize(static_cast<std::size_t>(pulls_ + misses_));
+  std::vector<Index> next(pull_starts_.begin(), pull_starts_.end() - 1);
+  each_pull([&](Index vertex, Index pull) { pull_order_[next[vertex]++] = pull; });
+}
+
+/// The permittivities of a set under voltage, whose elements are there.
+void Body::add_field(const Model& model, Set<6, 6>& set) {
+  const std::vector<double> permittivity = layer_permittivity(model, set.actuator);
+  const auto tetrahedra = static_cast<Index>(model.tetrahedra.size());
+  set.permittivity.assign(set.blocks.size(), Pack{});
+  for (Index e = 0; e < set.count; ++e)
+    set.permittivity[e / lanes][e % lanes] = permittivity[set.elements[e] - tetrahedra];
+}
+
+Body::Scratch Body::make_scratch() const {
+  Scratch scratch;
+  scratch.pulls.resize(3 * static_cast<std::size_t>(pulls_ + misses_));
+  scratch.energies.resize(blocks_);
+  scratch.inverted.resize(blocks_);
+  scratch.forbidden.resize(blocks_);
+  for (const auto& set : prisms_)
+    if (set.actuator >= 0) {
+      scratch.layers.push_back(set.blocks);
+      scratch.layer_ratios.push_back(0);
+    }
+  return scratch;
+}
+
+void Body::add_cliques(linear::Cliques& cliques) {
+  each_set([&]<int K, int Q>(Set<K, Q>& set) {
+    set.first_slot = cliques.slots.back();
+    std::array<Index, K + 4> nodes;
+    for (Index e = 0; e < set.count; ++e) {
+      for (int i = 0; i < K; ++i) nodes[i] = set.nodes[e / lanes][i][e % lanes];
+      for (int i = 0; set.mixed && i < 4; ++i) nodes[K + i] = set.pressures[e / lanes][i][e % lanes];
+      cliques.add(std::span(nodes).first(static_cast<std::size_t>(set.mixed ? K + 4 : K)));
+    }
+  });
+}
+
+std::vector<std::int64_t> Body::element_slots() const {
+  std::vector<std::int64_t> slots;
+  each_set([&]<int K, int Q>(const Set<K, Q>& set) {
+    const int matrices = set.matrices();
+    for (Index e = 0; e < set.count; ++e) {
+      const auto element = static_cast<std::size_t>(set.elements[e]);
+      if (slots.size() <= element) slots.resize(element + 1);
+      slots[element] = set.first_slot + static_cast<std::int64_t>(matrices) * e;
+    }
+  });
+  return slots;
+}
+
+Eigen::SparseMatrix<double> Body::laplacian() const {
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<bool> stretched(static_cast<std::size_t>(vertices_));
+  const auto add_set = [&]<int K, int Q>(const Set<K, Q>& set) {
+    for (Index e = 0; e < set.count; ++e) {
+      const ElasticBlock<K, Q>& block = set.blocks[e / lanes];
+      const int l = e % lanes;
+      for (int i = 0; i < K; ++i)
+        for (int j = 0; j < K; ++j) {
+          const Index row = set.nodes[e / lanes][i][l], column = set.nodes[e / lanes][j][l];
+          stretched[row] = true;
+          if (row < column) continue;
+          double sum = 0;
+          for (int q = 0; q < Q; ++q)
+            sum += block.volume[q][l] * lane_of(block.slope[q][i], l).dot(lane_of(block.slope[q][j], l));
+          entries.emplace_back(row, column, sum);
+        }
+    }
+  };
+  for (const auto& set : linear_) add_set(set);
+  for (const auto& set : quadratic_) add_set(set);
+  for (const auto& set : prisms_) add_set(set);
+  for (Index v = 0; v < vertices_; ++v)
+    if (!stretched[v]) entries.emplace_back(v, v, 1.0);
+  Eigen::SparseMatrix<double> matrix(vertices_, vertices_);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+}  // namespace softkin::physical
