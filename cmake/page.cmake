@@ -1,5 +1,6 @@
-# softkin_page(TARGET): compiles the page of apps/view/web into it, as embedded_page(); an empty one where there is no
-# npm or its registry cannot be reached, which the build says. Nothing is written into the sources.
+# softkin_page(TARGET): compiles the page of apps/view/web into it, as embedded_page(), and of it the code of exported
+# maps, as embedded_map_script(); both empty where there is no npm or its registry cannot be reached, which the build
+# says. Nothing is written into the sources.
 function(softkin_page target)
   set(web ${PROJECT_SOURCE_DIR}/apps/view/web)
   set(embedded ${PROJECT_BINARY_DIR}/page/embedded_page.cpp)
@@ -10,7 +11,7 @@ function(softkin_page target)
     file(GLOB_RECURSE files CONFIGURE_DEPENDS ${web}/*)
     list(FILTER files EXCLUDE REGEX "^${web}/(node_modules|dist)/")
     if(NOT SOFTKIN_NPM)
-      message(STATUS "npm not found: no pages (--html)")
+      message(STATUS "npm not found: no pages (--html, view) and no modules of maps (map export --js)")
     endif()
   endif()
   # depends on whether there is an npm as well as on the files

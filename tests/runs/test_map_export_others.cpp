@@ -5,6 +5,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/runs/map_export.hpp>
+#include <softkin/runs/page.hpp>
 
 #include "cli/run_program.hpp"
 #include "exported_maps.hpp"
@@ -18,6 +19,12 @@ using Told = nlohmann::json;
 
 bool can_run(const std::string& command) {
   return softkin::testing::run_shell(command + " > /dev/null 2>&1").exit_code == 0;
+}
+
+/// Why no exported module can be made and run; empty: it can.
+std::string no_module_runs() {
+  if (!page_is_there()) return no_page;
+  return can_run("node --version") ? "" : "node is not installed";
 }
 
 /// not_a_number: as a reader of JSON wants it
@@ -131,12 +138,12 @@ void compare_module(const MapData& data) {
 }
 
 TEST(MapExportJs, AnswersAsTheMapDoes) {
-  if (!can_run("node --version")) GTEST_SKIP() << "node is not installed";
+  if (const std::string lacks = no_module_runs(); !lacks.empty()) GTEST_SKIP() << lacks;
   for (const MapData& data : testing::small_maps()) compare_module(data);
 }
 
 TEST(MapExportJs, ItsCheckNoticesAnotherCoefficient) {
-  if (!can_run("node --version")) GTEST_SKIP() << "node is not installed";
+  if (const std::string lacks = no_module_runs(); !lacks.empty()) GTEST_SKIP() << lacks;
   const softkin::testing::TemporaryFolder folder;
   std::string module = map_js_module(testing::arm_map());
   const std::string before = "\"coefficients\":\"";

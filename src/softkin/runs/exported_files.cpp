@@ -2,6 +2,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/runs/exported_files.hpp>
 #include <softkin/runs/map_export.hpp>
+#include <softkin/runs/map_export_text.hpp>
 #include <softkin/runs/map_file.hpp>
 
 namespace softkin::runs {
@@ -28,6 +29,7 @@ std::string MapExport::js_types() const {
 }
 
 std::vector<ExportedFile> exported_files(const std::filesystem::path& map, const MapExport& to) {
+  if (!to.js.empty()) (void)js_script();  // or it throws, whatever the map is
   const MapData data = read_map(map);
   std::vector<ExportedFile> all;
   try {

@@ -20,7 +20,7 @@ struct ExportedFile {
   std::string what;  // "35.6 kB; arm_fk(), ...; tables: 1216 bytes of flash ..."
 };
 
-/// throws  InvalidInput naming the map
+/// throws  InvalidInput naming the map, or where softkin was built without the page that a module takes its code from
 [[nodiscard]] std::vector<ExportedFile> exported_files(const std::filesystem::path& map, const MapExport& to);
 
 }  // namespace softkin::runs

@@ -19,7 +19,7 @@ enum class CNumbers { doubles, floats };
 
 /// An ES module: the same, and the whole shape if the map has it.
 ///
-/// throws  as map_c_header()
+/// throws  as map_c_header(), and InvalidInput where softkin was built without its page
 [[nodiscard]] std::string map_js_module(const MapData& data);
 /// Its types, for TypeScript.
 [[nodiscard]] std::string map_js_types(const MapData& data);

@@ -1,9 +1,11 @@
 #include <nlohmann/json.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/core/version.hpp>
 #include <softkin/runs/map_export_parts.hpp>
 #include <softkin/runs/map_export_text.hpp>
 #include <softkin/runs/map_tables.hpp>
+#include <softkin/runs/page.hpp>
 
 namespace softkin::runs {
 
@@ -55,9 +57,30 @@ constexpr JsConstant js_constants[] = {
      "{points: number, outside: number, equilibria: number, shapeLargestErrorMm?: number, shapeMeanErrorMm?: number}",
      "Actuations at which the map was compared with the finite-element robot, and how many it was made of."}};
 
+constexpr const char* js_types = R"TS(
+/** Outputs, and by how much each changes per command: jacobian[output][input].
+    Null: the commands are outside the map. */
+export function fk(commands: ArrayLike<number>): {outputs: number[]; jacobian: number[][]} | null;
+
+/** Commands that bring a marker to a target [mm], near those from which it starts (left out: the middles of the
+    ranges); where they do not get there, others are tried. Null: it starts outside the map. */
+export function ik(marker: number | string, target: ArrayLike<number>, start?: ArrayLike<number>,
+                   options?: {reachedMm?: number; starts?: number}):
+    {reached: boolean; commands: number[]; errorMm: number} | null;
+
+/** Compares with answers of softkin: '' where all are the same, else what is not. */
+export function check(): string;
+)TS";
+
 }  // namespace
 
+std::string_view js_script() {
+  if (embedded_map_script().empty()) throw InvalidInput(std::string("no module for JavaScript: ") + no_page);
+  return embedded_map_script();
+}
+
 std::string map_js_module(const MapData& data) {
+  const std::string_view script = js_script();
   const Json values[] = {data.name,           data.robot,         inputs_table(data),
                          outputs_table(data), marker_names(data), checked_table(data)};
   std::string text = "// Where a robot goes: a map in closed form, exported by softkin " SOFTKIN_VERSION ".\n";
@@ -66,10 +89,12 @@ std::string map_js_module(const MapData& data) {
     text += constant(js_constants[i].type, js_constants[i].name, js_constants[i].comment, values[i]);
   text += "\nconst tables = " + js_text(map_tables(data)) + ";\n";
   if (data.shape) text += "\nconst shapeTables = " + js_text(shape_table(*data.shape)) + ";\n";
-  text += js_evaluation;
-  if (data.shape) text += js_shape;
-  text += js_inverse;
-  return text + "\nconst answers = " + js_text(answers_table(data)) + ";\n" + js_check;
+  text += "\nconst answers = " + js_text(answers_table(data)) + ";\n\n";
+  text += script;
+  const bool shaped = data.shape.has_value();
+  return text + "\nconst map = softkinMap.exported({name, inputs, outputs, markers, checked, tables" +
+         (shaped ? ", shapeTables" : "") + "}, answers);\nexport const {fk, ik, check" +
+         (shaped ? ", shape, vertices" : "") + "} = map;\n";
 }
 
 std::string map_js_types(const MapData& data) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 /// Code of exported maps, which their tables come before. "map_" and "MAP_" stand for the robot's name.
 
 namespace softkin::runs {
@@ -9,10 +11,9 @@ extern const char* const c_slack;       // which cables hang slack
 extern const char* const c_inverse;
 extern const char* const c_check;
 
-extern const char* const js_evaluation;
-extern const char* const js_shape;
-extern const char* const js_inverse;
-extern const char* const js_check;
-extern const char* const js_types;
+/// The code of maps that pages run: exported() of apps/view/web/src/exported_map.ts, in a variable softkinMap.
+///
+/// throws  InvalidInput where softkin was built without its page
+[[nodiscard]] std::string_view js_script();
 
 }  // namespace softkin::runs

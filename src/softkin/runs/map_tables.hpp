@@ -3,7 +3,7 @@
 #include <softkin/io/json_text.hpp>
 #include <softkin/kinematics/map.hpp>
 
-/// A map as what runs in a browser reads it: map_export_js_text.cpp evaluates these.
+/// A map as what runs in a browser reads it: apps/view/web/src/map.ts evaluates these.
 
 namespace softkin::runs {
 

@@ -12,8 +12,9 @@
 
 namespace softkin::runs {
 
-/// The page of apps/view/web as it was built; empty where it was not.
+/// The page of apps/view/web as it was built, and of it what exported maps run; empty where they were not.
 [[nodiscard]] std::string_view embedded_page();
+[[nodiscard]] std::string_view embedded_map_script();
 [[nodiscard]] inline bool page_is_there() {
   return !embedded_page().empty();
 }

@@ -27,7 +27,7 @@ function solve(a: number[][], held: number[], right: number[]): number[] {
 
 /** The least s.a.s / 2 - g.s with low <= s <= high, low <= 0 <= high: holds what meets a bound on the way there, frees
     what wants to leave it. */
-export function boundedStep(a: number[][], g: number[], low: number[], high: number[]): number[] {
+function boundedStep(a: number[][], g: number[], low: number[], high: number[]): number[] {
   const n = g.length, s = new Array<number>(n).fill(0), left = g.slice(), held = new Array<number>(n).fill(0);
   for (let turn = 0; turn < 4 * n; ++turn) {
     const d = solve(a, held, left);
@@ -93,17 +93,18 @@ function descend(map: Differentiable, goals: Goal[], start: number[], reachedMm:
   return here;
 }
 
-export function inverse(map: Differentiable, goals: Goal[], start: ArrayLike<number>,
-                        options: IkOptions): IkResult | null {
-  const {reachedMm = 1e-3, starts = 4} = options;
-  let best = descend(map, goals, Array.from(start), reachedMm);
-  if (!best) return null;
-  for (let n = 1; n < starts && best.square > reachedMm * reachedMm; ++n) {
+export function inverse(map: Differentiable, goals: Goal[], start: ArrayLike<number> | undefined,
+                        {reachedMm = 1e-3, starts = 4}: IkOptions): IkResult | null {
+  const middle = map.inputs.map(({low, high}) => low + (high - low) / 2);
+  let best = descend(map, goals, Array.from(start ?? middle), reachedMm);
+  if (!best && start) return null;
+  for (let n = 1; n < starts && !(best && best.square <= reachedMm * reachedMm); ++n) {
     const other = descend(map, goals, map.inputs.map(({low, high}, i) => {
       const share = 0.5 + n * (i + 1) * 0.618034;
       return low + (share - Math.floor(share)) * (high - low);
     }), reachedMm);
-    if (other && other.square < best.square) best = other;
+    if (other && !(best && best.square <= other.square)) best = other;
   }
+  if (!best) return null;
   return {reached: best.square <= reachedMm * reachedMm, commands: best.commands, errorMm: Math.sqrt(best.square)};
 }

@@ -15,7 +15,7 @@ export interface MapTables {
   boxes: number[][][]; outputs: PackedSums; modes: PackedSums;
 }
 
-/** The tables of a map, as in the module that `softkin map export --js` writes; shapes are those of the surface. */
+/** The tables of a map, as in pages and modules of `softkin map export --js`; shapes of a page are of the surface. */
 export interface MapDocument {
   name: string; inputs: MapInput[]; outputs: MapOutput[]; markers: string[]; checked: MapChecked; tables: MapTables;
   shapeTables?: {mean: string; units: number[]; modes: string} | null;
@@ -74,7 +74,7 @@ export class KinematicMap {
   readonly outputs: MapOutput[];
   readonly markers: string[];
   readonly checked: MapChecked;
-  readonly hasShape: boolean;
+  readonly vertices: number;  // of its shape
   private readonly tables: MapTables;
   private readonly outputSums: Sums;
   private readonly modeSums: Sums;
@@ -87,8 +87,8 @@ export class KinematicMap {
       map);
     this.outputSums = {...map.tables.outputs, coefficients: float64(map.tables.outputs.coefficients)};
     this.modeSums = {...map.tables.modes, coefficients: float64(map.tables.modes.coefficients)};
-    this.hasShape = Boolean(map.shapeTables);
     this.mean = map.shapeTables ? float32(map.shapeTables.mean) : new Float32Array();
+    this.vertices = this.mean.length / 3;
     this.units = map.shapeTables?.units ?? [];
     this.modes = map.shapeTables ? int16(map.shapeTables.modes) : new Int16Array();
     if (this.modes.length < this.mean.length * this.units.length)
@@ -161,7 +161,7 @@ export class KinematicMap {
   /** x, y, z of each vertex [mm]. */
   shape(commands: ArrayLike<number>): Float32Array | null {
     const place = this.find(commands, new Array<number>(this.outputs.length).fill(0), null);
-    if (!place || !this.hasShape) return null;
+    if (!place || !this.vertices) return null;
     const amplitudes = new Array<number>(this.modeSums.size).fill(0), at = Float32Array.from(this.mean);
     addUp(this.modeSums, place.cell, this.scaled(place, commands), amplitudes, null);
     amplitudes.forEach((amplitude, m) => {
@@ -171,20 +171,9 @@ export class KinematicMap {
     return at;
   }
 
-  /** Where its markers are. */
-  markersAt(outputs: number[]): number[][] {
-    return this.markers.map((_, i) => outputs.slice(3 * i, 3 * i + 3));
-  }
-
-  /** Commands that bring a marker to a target [mm], near those from which it starts; where they do not get there,
-      others are tried. Null: it starts outside the map. */
-  ik(marker: number, target: ArrayLike<number>, start: ArrayLike<number>, options: IkOptions = {}): IkResult | null {
-    if (!(marker in this.markers)) throw new RangeError(`the map has no marker ${marker}`);
-    return this.lead(Array.from(target, (value, k) => ({output: 3 * marker + k, value})), start, options);
-  }
-
-  /** As ik(), to goals of any outputs. */
-  lead(goals: Goal[], start: ArrayLike<number>, options: IkOptions = {}): IkResult | null {
+  /** Commands at which outputs come nearest to goals, near those from which it starts (left out: the middles of the
+      ranges); where they do not get there, others are tried. Null: it starts outside the map. */
+  lead(goals: Goal[], start?: ArrayLike<number>, options: IkOptions = {}): IkResult | null {
     return inverse(this, goals, start, options);
   }
 }

@@ -53,8 +53,8 @@ export class Robot {
   takeMap(document: MapDocument | null): void {
     const {actuators, markers, rest} = this.document, map = document && new KinematicMap(document);
     const known = map?.inputs.map(({name}) => actuators.findIndex((actuator) => actuator.name === name)) ?? [];
-    const fits = map?.hasShape === true && known.every((a) => a >= 0) &&
-      map.shape(map.inputs.map(({low, high}) => (low + high) / 2))?.length === rest.length;
+    const fits = known.every((a) => a >= 0) &&
+      map?.shape(map.inputs.map(({low, high}) => (low + high) / 2))?.length === rest.length;
     this.map = fits ? map : null;
     this.order = known;
     this.markerOutputs = markers.map(({name}) => this.map?.markers.indexOf(name) ?? -1);

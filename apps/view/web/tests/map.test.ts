@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
-import {existsSync, readFileSync} from 'node:fs';
 import {test} from 'node:test';
+import {exported, type MapAnswers} from '../src/exported_map';
 import {KinematicMap, type MapDocument} from '../src/map';
 
 /** Of one input u from 0 to 2, x = u - 1: (1 + 2 T1 + 3 T2, 4 T1, 5) and a pressure 6 T1. */
@@ -42,12 +42,21 @@ test('commands out of range have no answer, wrong ones are refused', () => {
   assert.throws(() => map.fk([1, 1]), TypeError);
 });
 
+/** As softkin would answer at u: outputs and slopes of the polynomials, input 0 moved once its range. */
+const answersAt = (...commands: number[]): MapAnswers => ({
+  commands: commands.map((u) => [u]),
+  outputs: commands.map((u) => [1 + 2 * (u - 1) + 3 * (2 * (u - 1) ** 2 - 1), 4 * (u - 1), 5, 6 * (u - 1)]),
+  slopes: commands.map((u) => [2 * (2 + 12 * (u - 1)), 8, 0, 12]),
+  outputScale: [10, 10, 10, 10], slopeScale: [10, 10, 10, 10],
+});
+
 test('inverse kinematics finds the command, and the nearest where the target is out of reach', () => {
-  const map = new KinematicMap(line), at = (u: number) => map.fk([u])?.outputs.slice(0, 3) ?? [];
-  const found = map.ik(0, at(1.62), [1]);
-  assert.ok(found?.reached);
-  assert.ok(Math.abs(found.commands[0] - 1.62) < 1e-3);
-  const [x, y, z] = at(2), beyond = map.ik(0, [x, y + 3, z], [0.5]);
+  const {fk, ik} = exported(line, answersAt(1)), at = (u: number) => fk([u])?.outputs.slice(0, 3) ?? [];
+  for (const found of [ik(0, at(1.62), [1]), ik('tip', at(1.62))]) {
+    assert.ok(found?.reached);
+    assert.ok(Math.abs(found.commands[0] - 1.62) < 1e-3);
+  }
+  const [x, y, z] = at(2), beyond = ik(0, [x, y + 3, z], [0.5]);
   assert.ok(beyond && !beyond.reached);
   let nearest = Infinity;
   for (let k = 0; k <= 20000; ++k) {
@@ -55,34 +64,20 @@ test('inverse kinematics finds the command, and the nearest where the target is 
     nearest = Math.min(nearest, Math.hypot(place[0] - x, place[1] - y - 3, place[2] - z));
   }
   assert.ok(Math.abs(beyond.errorMm - nearest) < 1e-4, `${beyond.errorMm}, not ${nearest}`);
+  assert.equal(ik('tip', at(1), [2.5]), null);
+  for (const marker of ['top', 1]) assert.throws(() => ik(marker, at(1)), RangeError);
 });
 
-/** SOFTKIN_MAP_MODULE: what `softkin map export --js` wrote, with answers of softkin in it. */
-const file = process.env.SOFTKIN_MAP_MODULE ?? '';
-test('answers of an exported module are met', {skip: !existsSync(file)}, async () => {
-  const text = readFileSync(file, 'utf8');
-  const constant = (name: string) => {
-    const found = new RegExp(`const ${name} = (.*);\n`).exec(text);
-    return found ? JSON.parse(found[1]) : null;
-  };
-  const names = ['name', 'inputs', 'outputs', 'markers', 'checked', 'tables', 'shapeTables'];
-  const document = Object.fromEntries(names.map((name) => [name, constant(name)])) as unknown as MapDocument;
-  const map = new KinematicMap(document);
-  const module = await import(file), answers = constant('answers');
-  assert.ok(answers.commands.length > 0);
-  answers.commands.forEach((commands: number[], n: number) => {
-    const found = map.fk(commands);
-    assert.ok(found);
-    found.outputs.forEach((value, q) => {
-      assert.ok(Math.abs(value - answers.outputs[n][q]) <= 1e-12 * answers.outputScale[q], map.outputs[q].name);
-      const slope = map.inputs.reduce((sum, {low, high}, i) => sum + found.jacobian[q][i] * (i + 1) * (high - low), 0);
-      assert.ok(Math.abs(slope - answers.slopes[n][q]) <= 1e-10 * answers.slopeScale[q]);
-    });
-    if (module.shape) assert.deepEqual(map.shape(commands), module.shape(commands));
-    const target = found.outputs.slice(0, 3).map((x) => x + 0.5);
-    const middle = map.inputs.map(({low, high}) => low + (high - low) / 2);
-    assert.deepEqual(map.ik(0, target, middle), module.ik(0, target, middle));
-  });
+test('an exported map notices that it does not answer as softkin does', () => {
+  const answers = answersAt(0, 0.3, 1.7), told = (changed: Partial<MapAnswers>) =>
+    exported(line, {...answers, ...changed}).check();
+  assert.equal(told({}), '');
+  const outputs = answers.outputs.map((row) => [...row]), slopes = answers.slopes.map((row) => [...row]);
+  outputs[1][0] += 1e-10;
+  slopes[2][3] += 1e-8;
+  assert.match(told({outputs}), /^tip_x at \[0.3\] is /);
+  assert.match(told({slopes}), /^slopes of air_pressure at \[1.7\]/);
+  assert.match(told({commands: [[0], [3], [1.7]]}), /no answer at \[3\]/);
 });
 
 test('at the edge of a map less than the accuracy is not wrong', () => {
@@ -90,4 +85,7 @@ test('at the edge of a map less than the accuracy is not wrong', () => {
   const map = new KinematicMap({...line, tables});  // its tension is 6 (u - 1), its accuracy 0.01
   assert.ok(map.fk([1]) && map.fk([0.999]));
   assert.equal(map.fk([0.99]), null);
+  const goals = [{output: 1, value: 2}];  // at 1.5
+  assert.equal(map.lead(goals, [0.5]), null);
+  assert.ok(map.lead(goals)?.reached);
 });
