@@ -53,7 +53,7 @@ TEST(Measure, AHomogeneousDeformationIsFoundInACurvedElement) {
 }
 
 /// x -> x + bend with quadratic terms, which an element of order 2 represents exactly, and its gradient.
-Vec3 bent(const Vec3& x) {
+Vec3 bent_place(const Vec3& x) {
   return x + Vec3(0.3 * x.x() * x.y(), -0.2 * x.z() * x.z() + 0.1 * x.x() * x.z(), 0.4 * x.y() * x.y());
 }
 Mat3 bent_gradient(const Vec3& x) {
@@ -68,7 +68,7 @@ Mat3 bent_gradient(const Vec3& x) {
 
 Points bent_all(const Points& rest) {
   Points positions(rest.rows(), 3);
-  for (Index i = 0; i < rest.rows(); ++i) positions.row(i) = bent(rest.row(i).transpose()).transpose();
+  for (Index i = 0; i < rest.rows(); ++i) positions.row(i) = bent_place(rest.row(i).transpose()).transpose();
   return positions;
 }
 
