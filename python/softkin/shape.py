@@ -98,7 +98,8 @@ class Shape(Saving[CoreShape]):
                 *(info.name, info.kind, requested, info.unit, ratio, measure, load, curve, slack),
                 *(layer or (None, None, None)),
                 *(tendon or (None, None)),
-                *(chamber[0], dict(zip(info.connected, chamber[1])) or None),
+                amount_mL=chamber[0],
+                volumes_mL=dict(zip(info.connected, chamber[1])) or None,
             )
             for info, (requested, ratio, measure, load, curve, slack, layer, tendon, chamber) in zip(
                 self._robot.actuator_infos, self._core.actuators()
@@ -174,8 +175,8 @@ class Shape(Saving[CoreShape]):
     def fibres(self) -> dict[str, Fibre]:
         """By name; empty without `fibres` in the scene, and where a map answered."""
         return {
-            name: Fibre(name, *forces, np.array(at), stretch, slack)
-            for name, forces, at, stretch, slack in self._core.fibres
+            name: Fibre(name, mean, largest, least, np.array(at), stretch, slack)
+            for name, (mean, largest, least), at, stretch, slack in self._core.fibres
         }
 
     @property
