@@ -47,6 +47,7 @@ class ActuatorState:
     pressure]; else None"""
     volumes_mL: dict[str, float] | None = None
     """of chambers that are connected: the volume of each by its region [mL]; else None"""
+
     def _load_of(self, kind: str, what: str) -> float:
         if self.kind != kind:
             raise AttributeError(f"actuator {self.name!r} is a {self.kind}: it has no {what}")

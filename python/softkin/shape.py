@@ -93,18 +93,16 @@ class Shape(Saving[CoreShape]):
     @cached_property
     def actuators(self) -> dict[str, ActuatorState]:
         """By name: ratio, pressure, tension or voltage."""
-        return {
-            info.name: ActuatorState(
+        states = {}
+        for info, told in zip(self._robot.actuator_infos, self._core.actuators()):
+            requested, ratio, measure, load, curve, slack, layer, tendon, (amount, volumes) = told
+            charge, capacitance, field = layer or (None, None, None)
+            end, sticking = tendon or (None, None)
+            states[info.name] = ActuatorState(
                 *(info.name, info.kind, requested, info.unit, ratio, measure, load, curve, slack),
-                *(layer or (None, None, None)),
-                *(tendon or (None, None)),
-                amount_mL=chamber[0],
-                volumes_mL=dict(zip(info.connected, chamber[1])) or None,
+                *(charge, capacitance, field, end, sticking, amount, dict(zip(info.connected, volumes)) or None),
             )
-            for info, (requested, ratio, measure, load, curve, slack, layer, tendon, chamber) in zip(
-                self._robot.actuator_infos, self._core.actuators()
-            )
-        }
+        return states
 
     @property
     def status(self) -> str:

@@ -170,6 +170,30 @@ def test_threads_and_loads_on_the_surface() -> None:
     assert pickle.loads(pickle.dumps(shape)).fibres["thread"].mean_N == pytest.approx(thread.mean_N)
 
 
+def test_sealed_chambers_on_one_pipe() -> None:
+    """Boyle's law: pressure times volume of all that is sealed, the syringe with it, is that at rest."""
+    air = {
+        "name": "air",
+        "kind": "pneumatic",
+        "connected": ["chamber1", "chamber2"],
+        "control": "gas",
+        "range": (-1, 3),
+        "source": {"syringe_mL": 5, "dead_mL": 1},
+    }
+    robot = beam(actuators=[air])
+    (info,) = robot.actuator_infos
+    assert info.connected == ["chamber1", "chamber2"] and info.unit == "mL"
+    shape = robot.solve(air=2)
+    state = shape.actuators["air"]
+    assert state.volumes_mL is not None and state.amount_mL is not None
+    assert list(state.volumes_mL) == info.connected
+    volume = sum(state.volumes_mL.values())
+    assert volume == pytest.approx(state.volume_mm3 / 1000)
+    rest = info.rest_measure / 1000
+    assert state.amount_mL == pytest.approx(rest + 6)
+    assert (101.325 + state.pressure_kPa) * (volume + 1 + 5 - 2) == pytest.approx(101.325 * state.amount_mL, rel=1e-9)
+
+
 def test_no_magnets(shape: softkin.Shape) -> None:
     assert shape.magnetic_load is None
 
