@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
@@ -138,11 +139,11 @@ void check_numbers(Compilation& c, const FibreSpec& spec, const std::set<std::st
 
 /// What a fibre that does not stretch is held with [N].
 double unstretchable_N(const Compilation& c, const Embedder& embedder, const std::vector<Vec3>& corners) {
-  double stiffest = 0, longest = 0;
+  double softest = std::numeric_limits<double>::infinity(), longest = 0;
   for (const Material& material : c.model.materials)
-    stiffest = std::max(stiffest, stiffness_at_rest(material.elastic).youngs_modulus_MPa);
+    softest = std::min(softest, stiffness_at_rest(material.elastic).youngs_modulus_MPa);
   for (const Vec3& corner : corners) longest = std::max(longest, embedder.edge_near(corner));
-  return unstretchable * stiffest * longest * longest;
+  return unstretchable * softest * longest * longest;
 }
 
 /// Where a fibre is farthest outside what carries it.
