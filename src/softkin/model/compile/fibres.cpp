@@ -12,7 +12,7 @@ namespace softkin {
 namespace {
 
 constexpr double shortest_mm = 1e-9;     // between two corners
-constexpr double unstretchable = 1e4;    // E A over E l^2 of what surrounds a fibre that does not stretch
+constexpr double unstretchable = 1e4;    // E A of a fibre that does not stretch, over E l^2 of the softest material
 constexpr int corners_per_turn = 120;    // a helix is shorter by 1.1e-4 through them
 constexpr double most_corners = 100000;  // of a helix
 
