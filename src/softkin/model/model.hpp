@@ -9,6 +9,9 @@
 namespace softkin {
 
 struct Magnetism;  // magnetic_field.hpp
+struct Growth;     // growth.hpp
+struct Families;   // families.hpp
+struct Layer;      // layer.hpp
 
 struct Material {
   std::string region;
@@ -19,7 +22,8 @@ struct Material {
   double permittivity = 1;  // over that of the vacuum [-]
   double density = 0;       // [kg/m^3]
   std::optional<double> linear_range;
-  bool mixed = false;  // elements with pressures as unknowns; physical
+  bool mixed = false;                        // elements with pressures as unknowns; physical
+  std::shared_ptr<const Families> families;  // physical; none: isotropic
 };
 
 /// A triangle of a cavity's boundary. Order 2: the nodes on its edges 01, 12, 20 too.
@@ -72,7 +76,7 @@ struct Actuator {
   std::optional<ActuatorCurve> curve;       // ratio by pressure or voltage
   Branch branch = Branch::loading;          // of the curve, where a command names none
   Index other = -1;                         // motion: part of ContactModel; force, hold: index into Model::bodies;
-                                            // magnetic: index into Magnetism::sources; turn: into Model::turns
+                                            // magnetic: index into Magnetism::sources; growth, turn: of Model
   int axis = -1;                            // motion, force; magnetic: which of the source's commands
   bool pushes = false;                      // cable: held to its length whatever that takes, as a rod would be
   double friction = 0, sheath = 0;  // cable, physical: where it turns; of its sheath, times the sheath's turns [-]
@@ -129,6 +133,8 @@ struct FollowingTraction {
   Vec3 traction_MPa{0, 0, 0};  // as the surface stands at rest
   double pressure_MPa = 0;     // onto it, along its normal
   std::vector<LoadedFace> faces;
+  Vec3 deeper_MPa_mm{0, 0, 0};  // by how much the pressure grows with the present place, from a level on; nothing
+  Vec3 level_mm{0, 0, 0};       // above it: a liquid around the robot; a place of the level
 };
 
 /// A place of a thread, of whose length it stands for some.
@@ -185,6 +191,8 @@ struct Model {
   Points dead_load;  // #V by 3 [N]: weight, forces, tractions that follow nothing; physical, else empty
   std::vector<FollowingTraction> tractions;
   std::vector<Fibre> fibres;
+  std::vector<std::shared_ptr<const Layer>> layers;
+  std::vector<std::shared_ptr<const Growth>> growths;  // by Actuator::other
   ContactModel contact;
   std::shared_ptr<const Magnetism> magnetism;  // physical; none: nothing is magnetic
   std::vector<bool> used;                      // per vertex: is it a vertex of an element

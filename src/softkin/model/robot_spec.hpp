@@ -15,6 +15,9 @@ namespace softkin {
 
 struct FieldSpec;      // magnetic_field.hpp
 struct RemanenceSpec;  // the same
+struct GrowthSpec;     // growth.hpp
+struct FamiliesSpec;   // families.hpp
+struct LayerSpec;      // layer.hpp
 
 // Selectors choose vertices (inside or on the boundary) and elements (centroid inside); shapes are in mm.
 struct VertexList {
@@ -85,6 +88,7 @@ struct MaterialSpec {
   double density = 0;                              // [kg/m^3], >= 0; physical with gravity
   std::optional<double> linear_range;              // largest |principal strain| of the linear range [-], > 0
   std::optional<bool> mixed;  // elements with pressures as unknowns; physical; none: where the volume is kept
+  std::shared_ptr<const FamiliesSpec> families;  // of fibres in the material; physical; none: isotropic
   Origin origin;
 };
 
@@ -104,8 +108,9 @@ struct FixedSpec {
 };
 
 /// The last four are no drives of the robot but what is done to it and its surroundings: the motion of an obstacle, a
-/// force on a body, how firmly a body is held, and the angle by which a support turns what it holds.
-enum class ActuatorKind { cable, dea, pneumatic, magnetic, motion, force, hold, turn };
+/// force on a body or at a place of the robot, how firmly a body is held, and the angle by which a support turns what it
+/// holds.
+enum class ActuatorKind { cable, dea, pneumatic, magnetic, growth, motion, force, hold, turn };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
 /// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by; or what fills a sealed chamber [mL].
@@ -162,6 +167,7 @@ struct ActuatorSpec {
   std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
   Branch branch = Branch::loading;         // of the curve, where a command names none
   std::shared_ptr<const FieldSpec> field;  // magnetic
+  std::shared_ptr<const GrowthSpec> growth;
   std::optional<PrismValues> shares;  // dea under voltage: the share of it that each prism has [-]; none: all of it
   Origin origin;
 };
@@ -191,7 +197,8 @@ struct RigidSpec {
 struct ForceSpec {
   std::string name;
   PointRef at;
-  Vec3 force{0, 0, 0};  // [N]
+  Vec3 force{0, 0, 0};                         // [N]; where it is commanded: where no command says another
+  std::optional<std::array<Vec3, 2>> range{};  // commanded, within these along each axis [N]; none: it is not
 };
 
 /// A load on each piece of the body's surface in a region, over its area.
@@ -201,6 +208,13 @@ struct TractionSpec {
   bool follows = false;       // turns with the surface and acts on its present area; else neither, on its area at rest
   Vec3 kilopascals{0, 0, 0};  // as the surface stands at rest [kPa]
   double pressure_kPa = 0;    // where it follows: onto the surface, along its normal [kPa]
+};
+
+/// A liquid around the robot, at rest: it presses on the outer surface by its depth below a level.
+struct LiquidAroundSpec {
+  double density = 1000;  // [kg/m^3], > 0
+  Vec3 surface{0, 0, 0};  // a point of its level, which stands across gravity [mm]
+  Origin origin;
 };
 
 /// A thread wound about an axis at a constant pitch.
@@ -251,6 +265,8 @@ struct RobotSpec {
   std::vector<ForceSpec> forces;        // physical
   std::vector<TractionSpec> tractions;  // physical
   std::vector<FibreSpec> fibres;        // physical
+  std::vector<std::shared_ptr<const LayerSpec>> layers;  // physical
+  std::optional<LiquidAroundSpec> liquid_around;         // physical; none: nothing but the atmosphere
   std::vector<RegionSpec> regions;
   std::vector<MaterialSpec> materials;
   std::vector<RegionRef> voids;
